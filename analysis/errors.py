@@ -1,0 +1,90 @@
+"""The error tree. Factored out so that every room can raise without importing another.
+
+A message is one line, ``file:line: what is wrong; what to do``; the command line turns errors into exit codes.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+LONGEST_SHOWN = 200
+
+
+def shown(text: str) -> str:
+    r"""Return text fit for one line of a message: nothing unprintable, nothing endless.
+
+    >>> shown("/a" + chr(10) + "b")
+    '/a\\nb'
+    """
+    line = "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
+    return line if len(line) <= LONGEST_SHOWN else line[:LONGEST_SHOWN] + "…"
+
+
+class RosPrivacyError(Exception):
+    """Base of all errors that this program raises on purpose."""
+
+    exit_code = 2
+
+
+class InputError(RosPrivacyError):
+    """One problem at one place of an input file.
+
+    Parameters
+    ----------
+    file
+        As the user named it, or the file that it includes.
+    line
+        1 for the first; 0 where the problem has no line.
+    problem
+        What is wrong.
+    hint
+        What to do.
+    """
+
+    def __init__(self, file: str, line: int, problem: str, hint: str) -> None:
+        self.file = file
+        self.line = line
+        self.problem = problem
+        self.hint = hint
+        super().__init__(f"{shown(file)}:{line}: {problem}; {hint}")
+
+
+class PolicyError(InputError):
+    """A policy that cannot be read, or that sros2 would refuse."""
+
+
+class LabelError(InputError):
+    """A label file that cannot be read, contradicts itself, or names what is not there (S11)."""
+
+
+class FleetError(InputError):
+    """A fleet file that cannot be read."""
+
+
+class OntologyError(InputError):
+    """An ontology file that cannot be read, or a category that it does not have."""
+
+
+class GraphError(InputError):
+    """A saved graph that cannot be read."""
+
+
+class InputErrors(RosPrivacyError):  # noqa: N818 - it is several
+    """All problems of the input at once, in the order of file and line."""
+
+    def __init__(self, errors: Iterable[InputError]) -> None:
+        self.errors = tuple(sorted(set(errors), key=lambda e: (e.file, e.line, str(e))))
+        super().__init__("\n".join(str(error) for error in self.errors))
+
+
+class QueryError(RosPrivacyError):
+    """A query that is wrong, unknown, or refused by the server."""
+
+
+class DatabaseError(RosPrivacyError):
+    """A database that cannot be reached or does not answer."""
+
+    exit_code = 3

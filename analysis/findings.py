@@ -1,0 +1,320 @@
+"""Graph + labels -> ``Analysis``: findings, witnesses, open questions, verdict (rules S10 to S12, S14).
+
+In: a flow graph, bound statements, the hierarchy. Out: one frozen ``Analysis``.
+
+Source: the paper, section II-B, for paths from source to leak and for the dismissal of those through another leak;
+what it counts on one undirected graph for one kind of data stands here per category on directed flows.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections import defaultdict
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.model import (
+    Analysis,
+    Carried,
+    Diagnostic,
+    Element,
+    Finding,
+    OpenQuestion,
+    Place,
+    Severity,
+    Step,
+    Verdict,
+)
+from rosprivacy.analysis.paths import WITNESS, Between, further
+from rosprivacy.analysis.search import START, Net, Search, path_to, search
+from rosprivacy.analysis.spread import Spread, bits_of, spread
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Iterator
+    from typing import Any
+
+    from rosprivacy.analysis.hierarchy import Hierarchy
+    from rosprivacy.analysis.model import Bound, FlowGraph
+
+MAX_PATHS = 100
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """What is asked for.
+
+    Attributes
+    ----------
+    categories
+        Emitted categories that the answer is about; None for all.
+    paths
+        ``witness``: no further paths; ``disjoint``: paths that share no flow; ``all``: simple paths.
+    max_paths
+        Bound on further paths per finding.
+    """
+
+    categories: Collection[str] | None = None
+    paths: str = WITNESS
+    max_paths: int = MAX_PATHS
+
+
+def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Options | None = None) -> Analysis:
+    """Answer, for every category in one pass, whether it can get from a source to a leak.
+
+    Raises
+    ------
+    InputErrors
+        If labels contradict each other.
+
+    Notes
+    -----
+    The fixpoint says which leaks are reached; only where one is, searches say from which source and along which way:
+    one or two per source, O(flows) each for a fixed number of categories, and networkx's ``edge_disjoint_paths`` on
+    the part of the graph between the two.
+    """
+    options = options or Options()
+    found = spread(graph, bound, hierarchy)
+    wanted = [c for c in found.categories if options.categories is None or c in options.categories]
+    mask = sum(found.both(category) for category in wanted)
+    net = Net.of(found)
+    findings = tuple(_findings(net, mask, options))
+    questions = _open_questions(net, mask)
+    sources = any(found.begins(vertex) & mask for vertex in range(len(graph.elements)))
+    return Analysis(
+        graph=graph,
+        verdict=_verdict(findings, questions, sources=sources),
+        emitted=tuple(wanted),
+        findings=findings,
+        open=questions,
+        carried=_carried(found, mask, hierarchy),
+        roles=_roles(found, mask),
+        standard_channels=_standard_channels(found),
+        unstated=tuple(_unstated(found)),
+        diagnostics=() if sources else (_no_source(options),),
+    )
+
+
+def _verdict(findings: Iterable[Finding], questions: Iterable[OpenQuestion], *, sources: bool) -> Verdict:
+    """Rule S12. Without any source nothing was asked, so nothing can be said."""
+    if any(not finding.dismissed for finding in findings):
+        return Verdict.LEAK
+    return Verdict.UNDETERMINED if any(True for _ in questions) or not sources else Verdict.NO_LEAK_FOUND
+
+
+def _no_source(options: Options) -> Diagnostic:
+    what = "no label names a source" if options.categories is None else "no source emits one of the chosen categories"
+    message = f"{what}: no data was followed, so this says nothing about the system"
+    return Diagnostic(Place("labels", 0), Severity.WARNING, message)
+
+
+# ---------------------------------------------------------------- findings
+
+
+def _findings(net: Net, mask: int, options: Options) -> Iterator[Finding]:
+    """All findings, sorted by category, source and leak."""
+    found = net.spread
+    leaks = {v: bits & mask for v, bits in found.leaks.items() if bits & mask & found.present(v)}
+    results: list[tuple[int, int, int, Finding]] = []
+    memory: dict[Any, Any] = {}
+    for source in [v for v in found.facts if found.begins(v)] if leaks else []:
+        for leak, category, finding in _findings_of(net, source, leaks, options, memory):
+            results.append((category, source, leak, finding))
+    yield from (finding for *_, finding in sorted(results, key=lambda row: row[:3]))
+
+
+def _findings_of(
+    net: Net, source: int, leaks: dict[int, int], options: Options, memory: dict[Any, Any]
+) -> Iterator[tuple[int, int, Finding]]:
+    """(leak, number of the category, finding) of one source."""
+    found, k = net.spread, len(net.spread.categories)
+    whole = search(net, [source], found.all_bits, {})
+    between: dict[tuple[int, bool], Between] = {}
+    reached = {v: bits & _present(whole, v) for v, bits in leaks.items() if bits & _present(whole, v)}
+    free: dict[int, Search] = {}  # number of the category -> search that stops at other leaks of it
+    for leak, bits in reached.items():
+        for i in sorted({bit % k for bit in bits_of(bits)}):
+            if i not in free:
+                _search_free(net, source, i, free)
+            chosen, bit = _best(free[i], whole, leak, i, k)
+            dismissed = chosen is whole
+            finding = _finding(net, chosen, source, leak, bit, dismissed=dismissed)
+            if len(finding.witness) == 1:
+                yield leak, i, finding
+                continue
+            if (i, dismissed) not in between:
+                stop = {} if dismissed else _leaks_of(found, i)
+                between[i, dismissed] = Between(net, chosen, source, i, stop)
+            more = further(between[i, dismissed], leak, memory, options.paths, options.max_paths)
+            yield leak, i, replace(finding, disjoint_paths=more.disjoint, paths=more.paths, bounded=more.bounded)
+
+
+def _search_free(net: Net, source: int, i: int, free: dict[int, Search]) -> None:
+    """Search with the leaks of category i as ends; one search serves all categories that nothing is made into."""
+    found, k = net.spread, len(net.spread.categories)
+    made = {after % k for pairs in found.derives.values() for before, after in pairs if after % k != before % k}
+    together = [i] if i in made else [j for j in range(k) if j not in made]
+    stop = {v: bits & sum(1 << j | 1 << j + k for j in together) for v, bits in found.leaks.items()}
+    allowed = found.all_bits if i in made else sum(1 << j | 1 << j + k for j in together)
+    result = search(net, [source], allowed, stop)
+    free.update(dict.fromkeys(together, result))
+
+
+def _leaks_of(found: Spread, i: int) -> dict[int, int]:
+    both = 1 << i | 1 << i + len(found.categories)
+    return {v: bits & both for v, bits in found.leaks.items() if bits & both}
+
+
+def _present(found: Search, vertex: int) -> int:
+    """Bits that arrive at a vertex, start there, or are made there."""
+    made = 0
+    for bits, origin in found.left.get(vertex, ()):
+        if origin is not None:
+            made |= bits
+    return found.seen.get(vertex, 0) | found.begun.get(vertex, 0) | made
+
+
+def _best(free: Search, whole: Search, leak: int, i: int, k: int) -> tuple[Search, int]:
+    """The way to show: not through another leak before through one, as it is before pseudonymised."""
+    for chosen in (free, whole):
+        for bit in (i, i + k):
+            if _present(chosen, leak) >> bit & 1:
+                return chosen, bit
+    raise AssertionError("a reached leak has a way")
+
+
+def _finding(net: Net, way: Search, source: int, leak: int, bit: int, *, dismissed: bool) -> Finding:
+    found, k = net.spread, len(net.spread.categories)
+    elements = found.graph.elements
+    i = bit % k
+    own = leak == source and way.begun[source] >> bit & 1  # a finding by itself, of one element
+    path = [(START, source, bit)] if own else path_to(net, way, leak, bit)
+    through = _other_leaks(found, path, i)
+    category = found.categories[i]
+    shown, steps = _shown(net, path)
+    return Finding(
+        id=finding_id(category, elements[source], elements[leak]),
+        kind="disclosure",
+        category=category,
+        pseudonymised=bit >= k,
+        source=elements[source],
+        leak=elements[leak],
+        witness=shown,
+        steps=steps,
+        disjoint_paths=1,
+        through=tuple(elements[v] for v in dict.fromkeys(through)) if dismissed else (),
+        dismissed=dismissed,
+    )
+
+
+def _other_leaks(found: Spread, path: list[tuple[int, int, int]], i: int) -> list[int]:
+    """Leaks of a category inside a path, where it arrives or is made."""
+    k = len(found.categories)
+    inside = [(v, bits) for (_, v, arriving), (_, _, leaving) in pairwise(path[1:]) for bits in [{arriving, leaving}]]
+    return [v for v, bits in inside if any(b % k == i and found.leaks.get(v, 0) >> b & 1 for b in bits)]
+
+
+def finding_id(category: str, source: Element, leak: Element) -> str:
+    """Return the stable id of a finding, made from category, source and leak (rule S10).
+
+    >>> finding_id("Video", Element("node", "/camera"), Element("node", "/uplink"))
+    'f23c6b6e4af4b0d2'
+    """
+    parts = [category, *source.identity, *leak.identity]
+    return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:16]
+
+
+def _shown(net: Net, path: list[tuple[int, int, int]]) -> tuple[tuple[Element, ...], tuple[Step, ...]]:
+    """Elements and steps of a path; the two sides of one wildcard are one element to the reader."""
+    graph, categories = net.spread.graph, net.spread.categories
+    elements = [graph.elements[path[0][1]]]
+    steps: list[Step] = []
+    for index, vertex, bit in path[1:]:
+        flow, element = graph.flows[index], graph.elements[vertex]
+        if element.shown_as == elements[-1].shown_as:
+            continue
+        plane, i = divmod(bit, len(categories))
+        steps.append(Step(elements[-1], element, flow.role, categories[i], bool(plane), flow.grants))
+        elements.append(element)
+    return tuple(elements), tuple(steps)
+
+
+# ---------------------------------------------------------------- open questions
+
+
+def _open_questions(net: Net, mask: int) -> tuple[OpenQuestion, ...]:
+    """Rule S11: elements that a category reaches and no label covers, in the order of review."""
+    found, elements = net.spread, net.spread.graph.elements
+    open_bits: dict[int, int] = {}
+    for vertex in {*found.arrives, *found.leaves}:
+        bits = found.present(vertex) & mask & ~found.covered.get(vertex, 0)
+        if bits:
+            open_bits[vertex] = bits
+    if not open_bits:
+        return ()
+    sources = [vertex for vertex in found.facts if found.begins(vertex)]
+    nearest = search(net, sources, found.all_bits, {})
+    stop = {v: found.leaks.get(v, 0) | (open_bits.get(v, 0) if elements[v].is_node else 0) for v in
+            {*found.leaks, *open_bits}}  # fmt: skip
+    first = search(net, sources, found.all_bits, {v: _both_planes(bits, found) for v, bits in stop.items() if bits})
+    merged: dict[tuple[str, str, str, str], OpenQuestion] = {}
+    for vertex in sorted(open_bits):
+        element, bits = elements[vertex], open_bits[vertex]
+        distance = nearest.level(vertex, bits)
+        frontier = element.is_node and bool(_present(first, vertex) & bits)
+        question = OpenQuestion(element, found.names(bits), distance or 0, frontier)
+        known = merged.get(element.shown_as)
+        if known:
+            categories = tuple(sorted({*known.categories, *question.categories}))
+            question = replace(known, categories=categories, distance=min(known.distance, question.distance))
+        merged[element.shown_as] = question
+    return tuple(sorted(merged.values(), key=lambda q: (not q.frontier, q.distance, q.element.sort_key())))
+
+
+def _both_planes(bits: int, found: Spread) -> int:
+    """A category that is open or a leak in one plane is so in the other."""
+    k = len(found.categories)
+    either = (bits | bits >> k) & ((1 << k) - 1)
+    return either | either << k
+
+
+# ---------------------------------------------------------------- what is carried, and what was taken
+
+
+def _carried(found: Spread, mask: int, hierarchy: Hierarchy) -> tuple[Carried, ...]:
+    merged: dict[tuple[str, str, str, str], int] = defaultdict(int)
+    first: dict[tuple[str, str, str, str], Element] = {}
+    for vertex in sorted({*found.arrives, *found.leaves}):
+        bits = found.present(vertex) & mask
+        if bits:
+            element = found.graph.elements[vertex]
+            merged[element.shown_as] |= bits
+            first.setdefault(element.shown_as, element)
+    return tuple(
+        Carried(first[key], *(hierarchy.narrowest(names) for names in found.planes(bits)))
+        for key, bits in merged.items()
+    )
+
+
+def _roles(found: Spread, mask: int) -> dict[Element, dict[str, tuple[str, ...]]]:
+    roles: dict[Element, dict[str, tuple[str, ...]]] = {}
+    shown = set(found.names(mask))
+    for vertex, decided in sorted(found.facts.items()):
+        said = {c: fact.roles for c, fact in decided.items() if c in shown and fact.roles}
+        if said:
+            roles[found.graph.elements[vertex]] = said
+    return roles
+
+
+def _standard_channels(found: Spread) -> int:
+    """Channels taken as mundane on a shipped file's word alone (rule S13)."""
+    elements = found.graph.elements
+    return len({elements[v].identity for v in found.standard})
+
+
+def _unstated(found: Spread) -> Iterator[tuple[Element, str]]:
+    """Sanitizers whose method was taken as pseudonymise (rule S8)."""
+    for vertex, decided in sorted(found.facts.items()):
+        for category, fact in sorted(decided.items()):
+            if fact.unstated and category in found.categories:
+                yield found.graph.elements[vertex], category

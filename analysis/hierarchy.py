@@ -1,0 +1,62 @@
+"""Which category is a kind of which (rule S7): ``skos:broader`` closed transitively, with distances.
+
+In: categories with their direct broader ones. Out: for each category the broader ones, nearest first.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from rosprivacy.analysis.model import Category
+
+
+@dataclass(frozen=True, slots=True)
+class Hierarchy:
+    """The closure of ``skos:broader``.
+
+    Attributes
+    ----------
+    ancestors
+        Name -> names of itself (distance 0) and all broader categories, with the least number of steps up.
+    """
+
+    ancestors: Mapping[str, Mapping[str, int]]
+
+    @classmethod
+    def of(cls, categories: Iterable[Category]) -> Hierarchy:
+        """Close the hierarchy of some categories; parents that are not among them are left out.
+
+        A cycle does no harm here (every member is broader than every other); the ontology's rules refuse it.
+        """
+        parents = {category.name: category.broader for category in categories}
+        return cls({name: _climb(name, parents) for name in parents})
+
+    def distance(self, category: str, broader: str) -> int | None:
+        """Steps from a category up to a same or broader one; None if it is not broader."""
+        return self.ancestors[category].get(broader)
+
+    def broader(self, category: str) -> list[str]:
+        """All strictly broader categories, nearest first."""
+        above = self.ancestors[category]
+        return sorted((name for name in above if name != category), key=lambda name: (above[name], name))
+
+    def narrowest(self, categories: Iterable[str]) -> tuple[str, ...]:
+        """Of some categories those that have no narrower one among them, sorted."""
+        names = set(categories)
+        covered = {above for name in names for above in self.ancestors[name] if above != name}
+        return tuple(sorted(names - covered))
+
+
+def _climb(start: str, parents: Mapping[str, tuple[str, ...]]) -> dict[str, int]:
+    steps = {start: 0}
+    level = [start]
+    while level:
+        level = [up for name in level for up in parents[name] if up in parents]
+        level = [up for up in dict.fromkeys(level) if up not in steps]
+        distance = max(steps.values()) + 1
+        steps.update(dict.fromkeys(level, distance))
+    return steps

@@ -1,0 +1,421 @@
+"""The facts that the rooms hand to each other, as frozen dataclasses. Names are those of the glossary.
+
+Nothing here reads or writes anything; validation is done where a fact is made.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+KINDS = ("node", "action", "service", "topic")  # nodes first: flow.py sweeps nodes and channels in turn
+
+
+@dataclass(frozen=True, slots=True)
+class Element:
+    """Anything in the graph; identity is (robot, kind, name), rule S1.
+
+    Attributes
+    ----------
+    kind
+        One of ``KINDS``.
+    name
+        Fully qualified; with wildcards where the element is a pattern.
+    robot
+        Empty where there is only one.
+    leg
+        ``request`` or ``response`` of a service or action, rule S2; empty otherwise.
+    side
+        Only of a pattern (rule S4): ``write`` for what is written to names that it matches, ``read`` for what is
+        read from them. Two vertices, so that nothing flows from one name to another through a wildcard.
+    without
+        Only of a pattern: the DDS expressions that a DENY of its enclave takes out of it (rule S5), sorted.
+    """
+
+    kind: str
+    name: str
+    robot: str = ""
+    leg: str = ""
+    side: str = ""
+    without: tuple[str, ...] = ()
+
+    @property
+    def pattern(self) -> bool:
+        """Whether the name is a wildcard expression."""
+        return bool(self.side)
+
+    @property
+    def is_node(self) -> bool:
+        """Whether this is a ROS node."""
+        return self.kind == "node"
+
+    @property
+    def identity(self) -> tuple[str, str, str]:
+        """(robot, kind, name), rule S1: legs and sides are parts of one element."""
+        return (self.robot, self.kind, self.name)
+
+    @property
+    def shown_as(self) -> tuple[str, str, str, str]:
+        """What a reader sees: the identity and the leg, without the side of a pattern."""
+        return (self.robot, self.kind, self.name, self.leg)
+
+    def sort_key(self) -> tuple[object, ...]:
+        """Nodes first, then by robot, name and part: the order of all output (rule S14)."""
+        return (KINDS.index(self.kind), self.robot, self.name, self.leg, self.side, self.without)
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A line of a file; line 0 where there is none."""
+
+    file: str
+    line: int
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line}"
+
+
+@dataclass(frozen=True, slots=True)
+class Profile:
+    """A node's entry in an enclave, ``<profile ns node>``."""
+
+    enclave: str
+    node: str
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Grant:
+    """What one policy line allows or denies to one profile.
+
+    Attributes
+    ----------
+    allow
+        False for DENY.
+    role
+        As written: ``publish``, ``subscribe``, ``reply``, ``request``, ``call`` or ``execute``.
+    kind
+        Of the channel as written: ``topic``, ``service`` or ``action``.
+    name
+        Fully qualified.
+    """
+
+    allow: bool
+    role: str
+    kind: str
+    name: str
+    enclave: str
+    node: str
+    place: Place
+
+
+class Severity(StrEnum):
+    """How much a diagnostic weighs. An error ends the run, so a report shows warnings and notices only."""
+
+    ERROR = "error"
+    WARNING = "warning"
+    NOTICE = "notice"
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnostic:
+    """Something that the reader of a report has to know about an input."""
+
+    place: Place
+    severity: Severity
+    message: str
+
+
+@dataclass(frozen=True, slots=True)
+class Policy:
+    """What one policy file grants, with everything that it includes.
+
+    Attributes
+    ----------
+    sources
+        (file, SHA-256) of the policy and of all that it includes, sorted.
+    """
+
+    file: str
+    sources: tuple[tuple[str, str], ...]
+    profiles: tuple[Profile, ...]
+    grants: tuple[Grant, ...]
+    diagnostics: tuple[Diagnostic, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Flow:
+    """A directed step along which data can go, by index into ``FlowGraph.elements``.
+
+    Attributes
+    ----------
+    role
+        Of the grant behind it, or ``matches`` between a pattern and what it covers.
+    grants
+        The policy lines that allow it, or that a DENY overrides; empty for ``matches``.
+    denials
+        The DENY lines, for a denied flow.
+    """
+
+    source: int
+    target: int
+    role: str
+    grants: tuple[Grant, ...] = ()
+    denials: tuple[Grant, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class FlowGraph:
+    """Elements and the flows between them.
+
+    Attributes
+    ----------
+    elements
+        The vertices, sorted by ``Element.sort_key``.
+    flows
+        Allowed flows, sorted by (source, target, role); at most one of each.
+    denied
+        Flows that an ALLOW grants and a DENY takes back (rule S5), sorted alike.
+    profiles
+        Of all policies, sorted.
+    view
+        ``declared`` or ``enforced``, rule S6.
+    """
+
+    elements: tuple[Element, ...]
+    flows: tuple[Flow, ...]
+    denied: tuple[Flow, ...]
+    profiles: tuple[Profile, ...]
+    view: str = "declared"
+
+
+@dataclass(frozen=True, slots=True)
+class Category:
+    """A kind of personal data.
+
+    Attributes
+    ----------
+    name
+        Short name, the IRI's last part; used in label files.
+    iri
+        Full IRI.
+    label
+        Neo4j label name, an identifier, unique.
+    title
+        English name for people.
+    definition
+        One sentence.
+    broader
+        Names of the direct broader categories (``skos:broader``), sorted.
+    synonyms
+        Other names that find it, sorted.
+    """
+
+    name: str
+    iri: str
+    label: str
+    title: str
+    definition: str
+    broader: tuple[str, ...] = ()
+    synonyms: tuple[str, ...] = ()
+
+
+class Method(StrEnum):
+    """What a sanitizer does, rule S8. The first three end the category, pseudonymise does not (recital 26)."""
+
+    ANONYMISE = "anonymise"
+    AGGREGATE = "aggregate"
+    DROP = "drop"
+    PSEUDONYMISE = "pseudonymise"
+
+    @property
+    def ends(self) -> bool:
+        """Whether nothing of the category leaves the sanitizer."""
+        return self is not Method.PSEUDONYMISE
+
+
+@dataclass(frozen=True, slots=True)
+class Statement:
+    """One thing that a label says of an element or a flow.
+
+    Attributes
+    ----------
+    role
+        Of a node: ``source``, ``leak``, ``sanitizer``, ``conduit``, ``derivation``. Of a channel: ``mundane``,
+        ``sensitive``, ``only``, ``never``. Of a flow: ``only``, ``never``.
+    categories
+        Names; empty means every category. One name for the roles of a node.
+    rank
+        (tier, specificity): shipped files below the user's own, globs below names; the higher wins.
+    place
+        Of the label.
+    method
+        Of a sanitizer.
+    stated
+        Whether the label states the method.
+    to
+        Of a derivation: the category that comes out.
+    through
+        Of a source: name expressions of the channels that carry it; empty means all.
+    shipped
+        Whether it comes from the standard channels' file (rule S13).
+    """
+
+    role: str
+    categories: tuple[str, ...]
+    rank: tuple[int, int]
+    place: Place
+    method: Method | None = None
+    stated: bool = True
+    to: str = ""
+    through: tuple[str, ...] = ()
+    shipped: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Bound:
+    """Statements joined to a graph.
+
+    Attributes
+    ----------
+    elements
+        By vertex.
+    flows
+        By index of an allowed flow.
+    through
+        (vertex, ``Statement.through``) -> the flows out of the vertex that these name expressions mean.
+    """
+
+    elements: Mapping[int, tuple[Statement, ...]]
+    flows: Mapping[int, tuple[Statement, ...]] = field(default_factory=dict)
+    through: Mapping[tuple[int, tuple[str, ...]], tuple[int, ...]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One hop of a witness: what goes along it, and the policy lines that allow it."""
+
+    source: Element
+    target: Element
+    role: str
+    category: str
+    pseudonymised: bool
+    grants: tuple[Grant, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """A category reaches a place that it should not, rule S10.
+
+    Attributes
+    ----------
+    id
+        16 hexadecimal digits made from category, source and leak; stable as long as these are.
+    pseudonymised
+        Whether the data arrives in pseudonymised form only.
+    witness
+        One shortest path, source first.
+    steps
+        The flows of the witness, one fewer than its elements.
+    disjoint_paths
+        How many paths share no flow; 1 for a finding of one element.
+    through
+        Other leaks of the category on the witness; not empty only if dismissed.
+    dismissed
+        Whether every path goes through another leak of the category, which has a finding of its own.
+    paths
+        Further paths if asked for, each source first.
+    bounded
+        Whether ``paths`` was cut at the bound that the user set.
+    """
+
+    id: str
+    kind: str
+    category: str
+    pseudonymised: bool
+    source: Element
+    leak: Element
+    witness: tuple[Element, ...]
+    steps: tuple[Step, ...]
+    disjoint_paths: int
+    through: tuple[Element, ...] = ()
+    dismissed: bool = False
+    paths: tuple[tuple[Element, ...], ...] = ()
+    bounded: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class OpenQuestion:
+    """An element that a category reaches and that no label covers for it, rule S11.
+
+    Attributes
+    ----------
+    categories
+        Names, sorted.
+    distance
+        Flows from the nearest source.
+    frontier
+        Of a node: whether a category reaches it without another open node or a leak of it on the way.
+    """
+
+    element: Element
+    categories: tuple[str, ...]
+    distance: int
+    frontier: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Carried:
+    """What an element carries: emitted categories, sorted; ``pseudonymised`` is a plane of its own (rule S8)."""
+
+    element: Element
+    categories: tuple[str, ...]
+    pseudonymised: tuple[str, ...] = ()
+
+
+class Verdict(StrEnum):
+    """Rule S12. Never 'compliant' or 'safe': the labels are a person's word."""
+
+    LEAK = "leak"
+    UNDETERMINED = "undetermined"
+    NO_LEAK_FOUND = "no-leak-found"
+
+
+@dataclass(frozen=True, slots=True)
+class Analysis:
+    """The answer: what was found, what is open, what every element carries.
+
+    Attributes
+    ----------
+    graph
+        What was analysed.
+    emitted
+        Names of the categories that a source or a derivation emits, sorted.
+    findings
+        Sorted by category, source, leak; dismissed ones included.
+    open
+        Frontier first, then by distance and name.
+    carried
+        Every element that data arrives at or starts from, in the order of the graph.
+    roles
+        Per vertex and emitted category the roles of nodes that hold, sorted; what labels decided.
+    standard_channels
+        Channels taken as mundane by the shipped file (rule S13).
+    unstated
+        (element, category) of sanitizers whose method no label states.
+    """
+
+    graph: FlowGraph
+    verdict: Verdict
+    emitted: tuple[str, ...]
+    findings: tuple[Finding, ...]
+    open: tuple[OpenQuestion, ...]
+    carried: tuple[Carried, ...]
+    roles: Mapping[Element, Mapping[str, tuple[str, ...]]]
+    standard_channels: int
+    unstated: tuple[tuple[Element, str], ...] = ()
+    diagnostics: tuple[Diagnostic, ...] = ()

@@ -1,0 +1,257 @@
+"""Graph + labels -> what every element does with every category, and what arrives where (rules S7, S8).
+
+In: a ``FlowGraph``, the statements bound to it, the hierarchy. Out: a ``Spread``: sets of bits per vertex, as Python
+integers, which have as many bits as are needed. Bit i is the i-th emitted category as it is, bit i + k the same in
+the pseudonymised plane, where k is the number of emitted categories.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rosprivacy.analysis.errors import InputError, InputErrors
+from rosprivacy.analysis.flow import WORD, Edges, fixpoint
+from rosprivacy.analysis.roles import NOTHING_SAID, Facts, facts
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+    from typing import Any
+
+    from numpy.typing import NDArray
+
+    from rosprivacy.analysis.hierarchy import Hierarchy
+    from rosprivacy.analysis.model import Bound, FlowGraph, Statement
+
+
+@dataclass(slots=True)
+class Spread:
+    """What labels mean for a graph, and the fixpoint of it. Made by ``spread``, then only read.
+
+    Attributes
+    ----------
+    categories
+        Emitted ones, sorted; they give the bits their numbers.
+    facts
+        Vertex -> category -> what it does with it; labelled vertices only.
+    emits, leaks, covered
+        Vertex -> bits; 0 where absent. A leak and a cover hold in both planes.
+    keeps
+        Vertex -> bits that pass it as they are; all where absent.
+    derives
+        Vertex -> (bit that arrives, bit that leaves for it); pseudonymising is one of these.
+    flow_emits, flow_keeps
+        The same for single flows.
+    flow_begins
+        Vertex -> bits that it emits along single flows only.
+    standard
+        Channels taken as mundane on a shipped file's word alone (rule S13).
+    arrives, leaves
+        Vertex -> bits, where there are any.
+    """
+
+    graph: FlowGraph
+    categories: tuple[str, ...]
+    facts: dict[int, dict[str, Facts]] = field(default_factory=dict)
+    emits: dict[int, int] = field(default_factory=dict)
+    leaks: dict[int, int] = field(default_factory=dict)
+    covered: dict[int, int] = field(default_factory=dict)
+    keeps: dict[int, int] = field(default_factory=dict)
+    derives: dict[int, tuple[tuple[int, int], ...]] = field(default_factory=dict)
+    flow_emits: dict[int, int] = field(default_factory=dict)
+    flow_keeps: dict[int, int] = field(default_factory=dict)
+    flow_begins: dict[int, int] = field(default_factory=dict)
+    standard: set[int] = field(default_factory=set)
+    arrives: dict[int, int] = field(default_factory=dict)
+    leaves: dict[int, int] = field(default_factory=dict)
+
+    @property
+    def all_bits(self) -> int:
+        """Every bit of both planes."""
+        return (1 << 2 * len(self.categories)) - 1
+
+    def begins(self, vertex: int) -> int:
+        """Bits that a vertex emits, along all of its flows or single ones."""
+        return self.emits.get(vertex, 0) | self.flow_begins.get(vertex, 0)
+
+    def both(self, category: str) -> int:
+        """The two bits of a category, as it is and pseudonymised."""
+        i = self.categories.index(category)
+        return 1 << i | 1 << i + len(self.categories)
+
+    def present(self, vertex: int) -> int:
+        """What arrives at or starts from a node, or is carried by a channel."""
+        arrives, leaves = self.arrives.get(vertex, 0), self.leaves.get(vertex, 0)
+        return arrives | leaves if self.graph.elements[vertex].is_node else leaves
+
+    def names(self, bits: int) -> tuple[str, ...]:
+        """The categories of some bits, planes put together, in order."""
+        k = len(self.categories)
+        either = (bits | bits >> k) & ((1 << k) - 1)
+        return tuple(self.categories[i] for i in bits_of(either))
+
+    def planes(self, bits: int) -> tuple[tuple[str, ...], tuple[str, ...]]:
+        """The categories of some bits, as they are and pseudonymised."""
+        k = len(self.categories)
+        return self.names(bits & ((1 << k) - 1)), self.names(bits >> k)
+
+
+def bits_of(number: int) -> Iterator[int]:
+    """The positions of the bits that are set, lowest first.
+
+    >>> list(bits_of(0b10010))
+    [1, 4]
+    """
+    while number:
+        lowest = number & -number
+        yield lowest.bit_length() - 1
+        number ^= lowest
+
+
+def spread(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy) -> Spread:
+    """Apply labels to a graph and carry every category to where it can get.
+
+    Raises
+    ------
+    InputErrors
+        If statements of equal rank contradict each other.
+    """
+    categories = tuple(sorted(_emitted(bound)))
+    found = Spread(graph, categories)
+    problems: list[InputError] = []
+    decided: dict[tuple[tuple[Statement, ...], str], Facts] = {}
+
+    def decide(said: tuple[Statement, ...], name: str) -> dict[str, Facts]:
+        mentioned = {category for statement in said for category in statement.categories}
+        result = {}
+        for category in sorted(mentioned.union(categories) or hierarchy.ancestors):
+            if (said, category) not in decided:
+                try:
+                    decided[said, category] = facts(name, said, category, hierarchy)
+                except InputError as error:
+                    problems.append(error)
+                    continue
+            result[category] = decided[said, category]
+        return result
+
+    for vertex, said in bound.elements.items():
+        found.facts[vertex] = decide(said, graph.elements[vertex].name)
+        _set_vertex(found, vertex, bound)
+    for index, said in bound.flows.items():
+        ends = graph.elements[graph.flows[index].source], graph.elements[graph.flows[index].target]
+        kept = decide(said, f"the flow {ends[0].name} -> {ends[1].name}")
+        found.flow_keeps[index] = _bits(found, kept, lambda fact: fact.passes)
+    if problems:
+        raise InputErrors(problems)
+    _carry(found)
+    return found
+
+
+def _emitted(bound: Bound) -> set[str]:
+    """Categories that a source names or a derivation makes: only these have bits (rule S7)."""
+    emitted: set[str] = set()
+    for said in bound.elements.values():
+        for statement in said:
+            if statement.role == "source":
+                emitted.update(statement.categories)
+            elif statement.role == "derivation":
+                emitted.add(statement.to)
+    return emitted
+
+
+def _bits(found: Spread, decided: Mapping[str, Facts], test: Any) -> int:
+    """The bits, in both planes, of the emitted categories whose facts pass a test."""
+    bits = 0
+    for category, fact in decided.items():
+        if category in found.categories and test(fact):
+            bits |= found.both(category)
+    return bits
+
+
+def _set_vertex(found: Spread, vertex: int, bound: Bound) -> None:
+    decided = found.facts[vertex]
+    if any(fact.standard for fact in decided.values()):
+        found.standard.add(vertex)
+    k = len(found.categories)
+    found.keeps[vertex] = _bits(found, decided, lambda fact: fact.passes)
+    found.leaks[vertex] = _bits(found, decided, lambda fact: fact.leaks)
+    found.covered[vertex] = _bits(found, decided, lambda fact: fact.covered)
+    for to in {to for fact in decided.values() for to in fact.derives}:  # who makes it knows of it
+        found.covered[vertex] |= found.both(to)
+    number = {category: i for i, category in enumerate(found.categories)}
+    made = _closed({c: decided[c].derives for c in found.categories if c in decided})
+    pairs: set[tuple[int, int]] = set()
+    emits = 0
+    for category, i in number.items():
+        fact = decided.get(category, NOTHING_SAID)
+        after = sum(1 << number[to] for to in made.get(category, ()))
+        pairs.update((i + plane, j + plane) for j in bits_of(after) for plane in (0, k))
+        if fact.pseudonymises:
+            pairs.add((i, i + k))
+        if fact.emits:
+            emits |= after  # what a node makes of its own data leaves it like what it makes of others'
+            emits |= 0 if fact.through else 1 << i
+        for flow in bound.through.get((vertex, fact.through), ()) if fact.emits else ():
+            found.flow_emits[flow] = found.flow_emits.get(flow, 0) | 1 << i
+            found.flow_begins[vertex] = found.flow_begins.get(vertex, 0) | 1 << i
+    found.derives[vertex] = tuple(sorted(pairs))
+    found.emits[vertex] = emits
+
+
+def _closed(derives: Mapping[str, tuple[str, ...]]) -> dict[str, set[str]]:
+    """What is made of each category, and of that in turn."""
+    made = {category: set(to) for category, to in derives.items()}
+    changed = True
+    while changed:
+        changed = False
+        for after in made.values():
+            more = {further for to in after for further in made.get(to, ())} - after
+            after.update(more)
+            changed = changed or bool(more)
+    return {category: after - {category} for category, after in made.items()}
+
+
+def _carry(found: Spread) -> None:
+    """Run the fixpoint. A flow that emits or blocks something becomes a vertex of its own on the way."""
+    graph = found.graph
+    count = len(graph.elements)
+    special = sorted({*found.flow_emits, *found.flow_keeps})
+    sources = [flow.source for flow in graph.flows]
+    targets = [flow.target for flow in graph.flows]
+    for number, index in enumerate(special):
+        sources.append(count + number)
+        targets.append(targets[index])
+        targets[index] = count + number
+    words = max(1, -(-2 * len(found.categories) // WORD))
+    emitted = np.zeros((count + len(special), words), np.uint64)
+    keep = np.full((count + len(special), words), ~np.uint64(0))
+    for vertex, bits in found.emits.items():
+        emitted[vertex] = _words(bits, words)
+    for vertex, bits in found.keeps.items():
+        keep[vertex] = _words(bits, words)
+    for number, index in enumerate(special):
+        emitted[count + number] = _words(found.flow_emits.get(index, 0), words)
+        keep[count + number] = _words(found.flow_keeps.get(index, found.all_bits), words)
+    derivations = [(vertex, *pair) for vertex, pairs in found.derives.items() for pair in pairs]
+    nodes = sum(element.is_node for element in graph.elements)
+    edges = Edges.of(count + len(special), np.array(sources, np.int64), np.array(targets, np.int64), nodes)
+    arrives, leaves = fixpoint(edges, emitted, keep, np.array(derivations, np.int64))
+    found.arrives = _as_numbers(arrives[:count])
+    found.leaves = _as_numbers(leaves[:count])
+    for vertex, bits in found.flow_begins.items():  # through one channel only is still from here
+        found.leaves[vertex] = found.leaves.get(vertex, 0) | bits
+
+
+def _words(bits: int, words: int) -> list[int]:
+    mask = (1 << WORD) - 1
+    return [bits >> WORD * word & mask for word in range(words)]
+
+
+def _as_numbers(bits: NDArray[np.uint64]) -> dict[int, int]:
+    """Rows that are not empty, as numbers of any length."""
+    numbers = {}
+    for vertex in np.flatnonzero(bits.any(axis=1)).tolist():
+        numbers[vertex] = sum(word << WORD * i for i, word in enumerate(bits[vertex].tolist()))
+    return numbers

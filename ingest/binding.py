@@ -1,0 +1,133 @@
+"""Labels + graph -> ``Bound``: which statement is about which vertex or flow.
+
+In: label files and a flow graph. Out: statements by index. A name that matches nothing is an error with the nearest
+names that exist, never silence (rule S11).
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from difflib import get_close_matches
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, shown
+from rosprivacy.analysis.model import Bound
+from rosprivacy.ingest.names import covers, is_pattern, matcher
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from rosprivacy.analysis.model import FlowGraph, Statement
+    from rosprivacy.ingest.labels import Entry, FlowEntry, Labels
+
+NEAREST = 3
+
+
+def bind(graph: FlowGraph, labels: Sequence[Labels]) -> Bound:
+    """Join label files to a graph.
+
+    Raises
+    ------
+    InputErrors
+        With every name that matches nothing, but for shipped files.
+    """
+    names = _Names(graph)
+    elements: dict[int, list[Statement]] = defaultdict(list)
+    flows: dict[int, list[Statement]] = defaultdict(list)
+    through: dict[tuple[int, tuple[str, ...]], tuple[int, ...]] = {}
+    leaving = _leaving(graph)
+    problems: list[InputError] = []
+    for file in labels:
+        for entry in file.entries:
+            vertices = names.matching(entry.name, entry.kinds)
+            if not vertices and not file.shipped:
+                problems.append(names.unmatched(entry))
+            for vertex in vertices:
+                elements[vertex] += entry.statements
+            problems += _through(graph, leaving, entry, vertices, through)
+        for flow in file.flows:
+            indices = _flows(graph, names, flow)
+            if not indices:
+                hint = "name two elements with a flow between them, in its direction"
+                what = f"no flow goes from {shown(flow.source)!r} to {shown(flow.target)!r}"
+                problems.append(LabelError(flow.place.file, flow.place.line, what, hint))
+            for index in indices:
+                flows[index] += flow.statements
+    if problems:
+        raise InputErrors(problems)
+    return Bound(
+        {vertex: tuple(said) for vertex, said in sorted(elements.items())},
+        {index: tuple(said) for index, said in sorted(flows.items())},
+        through,
+    )
+
+
+class _Names:
+    """The vertices of a graph by kind and name."""
+
+    def __init__(self, graph: FlowGraph) -> None:
+        self.by_kind: dict[str, dict[str, list[int]]] = defaultdict(lambda: defaultdict(list))
+        for vertex, element in enumerate(graph.elements):
+            self.by_kind[element.kind][element.name].append(vertex)
+
+    def matching(self, name: str, kinds: Iterable[str] | None = None) -> list[int]:
+        """The vertices of some kinds (of all by default) that a name or glob covers wholly."""
+        found = []
+        for kind in self.by_kind if kinds is None else kinds:
+            known = self.by_kind.get(kind, {})
+            if not is_pattern(name):
+                found += known.get(name, [])
+                continue
+            plain = matcher(name)
+            for other, vertices in known.items():
+                if covers(name, other) if is_pattern(other) else plain(other):
+                    found += vertices
+        return sorted(found)
+
+    def unmatched(self, entry: Entry) -> LabelError:
+        """The error for a name that matches nothing, with the nearest names."""
+        known = [name for kind in entry.kinds for name in self.by_kind.get(kind, {})]
+        close = get_close_matches(entry.name, known, n=NEAREST, cutoff=0.5)
+        what = f"{shown(entry.name)!r} matches no {' or '.join(entry.kinds)} of the policies"
+        elsewhere = [kind for kind in self.by_kind if kind not in entry.kinds and entry.name in self.by_kind[kind]]
+        if elsewhere:
+            hint = f"there is a {elsewhere[0]} of that name: move it to the section for it"
+        elif close:
+            hint = f"did you mean {' or '.join(shown(name) for name in close)}?"
+        else:
+            hint = "see the names with rosprivacy labels --init"
+        return LabelError(entry.place.file, entry.place.line, what, hint)
+
+
+def _flows(graph: FlowGraph, names: _Names, entry: FlowEntry) -> list[int]:
+    sources, targets = set(names.matching(entry.source)), set(names.matching(entry.target))
+    return [i for i, flow in enumerate(graph.flows) if flow.source in sources and flow.target in targets]
+
+
+def _leaving(graph: FlowGraph) -> dict[int, list[int]]:
+    leaving: dict[int, list[int]] = defaultdict(list)
+    for index, flow in enumerate(graph.flows):
+        leaving[flow.source].append(index)
+    return leaving
+
+
+def _through(
+    graph: FlowGraph, leaving: Mapping[int, Sequence[int]], entry: Entry, vertices: Sequence[int],
+    through: dict[tuple[int, tuple[str, ...]], tuple[int, ...]],
+) -> Iterable[InputError]:  # fmt: skip
+    """Find the flows of a source that is one only through some channels; a channel it does not write is an error."""
+    for expressions in {statement.through for statement in entry.statements if statement.through}:
+        written: set[str] = set()
+        for vertex in vertices:
+            flows = {index: graph.elements[graph.flows[index].target].name for index in leaving.get(vertex, ())}
+            written.update(flows.values())
+            chosen = [index for index, name in flows.items() if any(covers(e, name) for e in expressions)]
+            through[vertex, expressions] = tuple(chosen)
+        for name in expressions:
+            if vertices and not any(covers(name, channel) for channel in written):
+                close = get_close_matches(name, sorted(written), n=NEAREST, cutoff=0.5)
+                hint = (
+                    f"did you mean {' or '.join(map(shown, close))}?" if close else "name a channel that it writes to"
+                )
+                what = f"{shown(entry.name)!r} writes to no channel {shown(name)!r}"
+                yield LabelError(entry.place.file, entry.place.line, what, hint)

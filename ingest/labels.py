@@ -1,0 +1,350 @@
+"""Label files -> ``Labels``: what a person says of elements, flows and kinds of data.
+
+In: YAML or JSON in the format of the documentation, or the paper's JSON with its six lists. Out: statements, each
+with its line and rank, not yet joined to a graph (``binding.py`` does that). All problems of a file are raised at
+once.
+
+Source: the paper, section II-A, for the roles; rules S7, S8 and S13 for what they mean.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, shown
+from rosprivacy.analysis.model import Diagnostic, Method, Place, Severity, Statement
+from rosprivacy.ingest import yamlfile
+from rosprivacy.ingest.names import is_pattern
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rosprivacy.ingest.yamlfile import Value
+    from rosprivacy.ontology.vocabulary import Vocabulary
+
+SECTIONS = {
+    "nodes": ("node",),
+    "channels": ("topic", "service", "action"),
+    "topics": ("topic",),
+    "services": ("service",),
+    "actions": ("action",),
+}
+SIX_LISTS = ("source", "leak", "conduit", "sanitizer", "sensitive", "mundane")
+NODE_KEYS = ("source", "leak", "sanitizer", "conduit", "derives", "note")
+CHANNEL_KEYS = ("only", "never", "note")
+FLOW_KEYS = ("from", "to", "only", "never", "note")
+OURS, SHIPPED_FILES = "rosprivacy:", ("standard", "infrastructure")
+STANDARD = f"{OURS}standard"
+EXACT = 1_000_000  # a name outranks every glob
+SHIPPED, OWN = 0, 1  # tiers: a person's own word outranks what comes with the program
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """What is said of the elements of some kinds that a name or glob covers."""
+
+    kinds: tuple[str, ...]
+    name: str
+    place: Place
+    statements: tuple[Statement, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class FlowEntry:
+    """What is said of the flows from one element to another, by names or globs."""
+
+    source: str
+    target: str
+    place: Place
+    statements: tuple[Statement, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Labels:
+    """One label file.
+
+    Attributes
+    ----------
+    shipped
+        Whether it comes with the program: then a name that matches nothing is no error.
+    """
+
+    file: str
+    sha256: str
+    entries: tuple[Entry, ...]
+    flows: tuple[FlowEntry, ...] = ()
+    diagnostics: tuple[Diagnostic, ...] = ()
+    shipped: bool = False
+
+
+def read_labels(file: str, vocabulary: Vocabulary, *, category: str = "PersonalData", shipped: bool = False) -> Labels:
+    """Read one label file.
+
+    Parameters
+    ----------
+    file
+        Path; or ``rosprivacy:standard`` or ``rosprivacy:infrastructure``, which come with the program.
+    category
+        What the paper's six lists are about; of no effect on other files.
+    shipped
+        Read it as one that comes with the program: of lower rank, and free to name what is not there.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the file, each a ``LabelError`` of one line.
+    """
+
+    def fail(line: int, problem: str, hint: str) -> InputError:
+        return LabelError(file, line, problem, hint)
+
+    name = file.removeprefix(OURS)
+    shipped = shipped or (file.startswith(OURS) and name in SHIPPED_FILES)
+    try:
+        top, data = yamlfile.read(_shipped_path(name) if file.startswith(OURS) and shipped else file, fail)
+    except InputError as error:
+        raise InputErrors([error]) from None
+    reader = _Reader(file, vocabulary, category, SHIPPED if shipped else OWN)
+    reader.document(top)
+    if reader.problems:
+        raise InputErrors(reader.problems)
+    return Labels(
+        file,
+        hashlib.sha256(data).hexdigest(),
+        tuple(reader.entries),
+        tuple(reader.flows),
+        tuple(reader.diagnostics),
+        shipped,
+    )
+
+
+def shipped_text(name: str) -> str:
+    """Return a label file that comes with the program, as text: one of ``SHIPPED_FILES``."""
+    return Path(_shipped_path(name)).read_text("utf-8")
+
+
+def _shipped_path(name: str) -> str:
+    return str(files("rosprivacy.ingest").joinpath(f"{name}.yaml"))
+
+
+def specificity(name: str) -> int:
+    """Return the rank of a name among those that cover an element: the more that is spelt out, the higher.
+
+    >>> specificity("/robot/*") < specificity("/robot/cam*") < specificity("/a")
+    True
+    """
+    return sum(char not in "*?[]" for char in name) if is_pattern(name) else EXACT
+
+
+@dataclass
+class _Reader:
+    """Walks the file once, from the outside in."""
+
+    file: str
+    vocabulary: Vocabulary
+    category: str
+    tier: int
+    problems: list[InputError] = field(default_factory=list)
+    diagnostics: list[Diagnostic] = field(default_factory=list)
+    entries: list[Entry] = field(default_factory=list)
+    flows: list[FlowEntry] = field(default_factory=list)
+
+    def document(self, top: Value) -> None:
+        if top.kind != "map":
+            self.problem(top.line, f"a label file is a map, not a {top.kind}", "begin with 'labels: 1'")
+        elif top.get("labels") is None and any(top.get(key) for key in SIX_LISTS):
+            self._six_lists(top)
+        else:
+            self._labels(top)
+
+    def _labels(self, top: Value) -> None:
+        version = top.get("labels")
+        if version is None:
+            self.problem(top.line, "no 'labels: 1'", "say so on the first line: it is the format's version")
+        elif version.text != "1":
+            self.problem(
+                version.line, f"label format {shown(version.text or version.kind)!r}", "this reads 'labels: 1'"
+            )
+        for key, line, value in self._entries(top, ("labels", *SECTIONS, "flows")):
+            if key == "flows":
+                for item in self._list(value, "flows"):
+                    self._flow(item)
+            elif key in SECTIONS:
+                self._section(key, line, value)
+
+    def _section(self, section: str, line: int, value: Value) -> None:
+        if value.kind == "empty":
+            return
+        if value.kind != "map":
+            self.problem(line, f"{section} is a map from names to labels, not a {value.kind}", "write '/name: label'")
+        for name, at, label in value.entries:
+            if not name.startswith(("/", "*", "?", "[")):
+                self.problem(at, f"name {shown(name)!r} is not absolute", "begin it with /")
+                continue
+            rank = (self.tier, specificity(name))
+            read = self._node if section == "nodes" else self._channel
+            statements = tuple(read(label, Place(self.file, at), rank))
+            self.entries.append(Entry(SECTIONS[section], name, Place(self.file, at), statements))
+
+    def _node(self, label: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
+        if label.kind == "empty":  # a line of --init that nobody has filled in yet
+            return
+        if label.kind == "text" and label.text == "conduit":
+            yield Statement("conduit", (), rank, place)
+            return
+        if label.kind != "map":
+            what = f"label {shown(label.text or label.kind)!r} on a node"
+            self.problem(place.line, what, "write conduit, or {source: [Video]}, {leak: […]}, {sanitizer: {…}}, …")
+            return
+        for key, line, value in self._entries(label, NODE_KEYS):
+            at = Place(self.file, line)
+            if key == "source":
+                yield from self._source(value, at, rank)
+            elif key in ("leak", "conduit"):
+                for name in self._categories(value, key):
+                    yield Statement(key, (name,), rank, at)
+            elif key == "sanitizer":
+                yield from self._sanitizer(value, at, rank)
+            elif key == "derives":
+                yield from self._derives(value, at, rank)
+
+    def _source(self, value: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
+        if value.kind != "map":
+            for name in self._categories(value, "source"):
+                yield Statement("source", (name,), rank, place)
+            return
+        for written, line, channels in value.entries:
+            name = self._category(written, line)
+            through = tuple(sorted({self._name(item) for item in self._list(channels, f"source of {shown(written)}")}))
+            if not through:
+                self.problem(line, f"source of {shown(written)} names no channel", "name them: [/topic]")
+            yield Statement("source", (name,), rank, place, through=through)
+
+    def _sanitizer(self, value: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
+        if value.kind != "map":
+            for name in self._categories(value, "sanitizer"):
+                yield Statement("sanitizer", (name,), rank, place, Method.PSEUDONYMISE, stated=False)
+            return
+        for written, line, method in value.entries:
+            name = self._category(written, line)
+            if method.kind == "empty":
+                yield Statement("sanitizer", (name,), rank, place, Method.PSEUDONYMISE, stated=False)
+            elif method.kind == "text" and method.text in list(Method):
+                yield Statement("sanitizer", (name,), rank, place, Method(method.text))
+            else:
+                what = f"sanitizer method {shown(method.text or method.kind)!r}"
+                self.problem(method.line, what, f"one of {', '.join(Method)}")
+
+    def _derives(self, value: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
+        for item in self._list(value, "derives"):
+            if item.kind != "map":
+                self.problem(
+                    item.line, f"a derivation is a map, not a {item.kind}", "write {from: Video, to: FaceTemplate}"
+                )
+                continue
+            ends = {key: self._category_of(end) for key, _, end in self._entries(item, ("from", "to"))}
+            if len(ends) < len(("from", "to")):
+                self.problem(item.line, "a derivation needs from and to", "write {from: Video, to: FaceTemplate}")
+            elif all(ends.values()):
+                yield Statement("derivation", (ends["from"],), rank, place, to=ends["to"])
+
+    def _channel(self, label: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
+        if label.kind == "empty":
+            return
+        if label.kind == "text" and label.text in ("mundane", "sensitive"):
+            yield Statement(label.text, (), rank, place, shipped=self.tier == SHIPPED)
+            return
+        if label.kind != "map":
+            what = f"label {shown(label.text or label.kind)!r} on a channel"
+            self.problem(place.line, what, "write mundane, sensitive, {only: […]} or {never: […]}")
+            return
+        yield from self._restrictions(label, CHANNEL_KEYS, rank)
+
+    def _restrictions(self, label: Value, keys: tuple[str, ...], rank: tuple[int, int]) -> Iterable[Statement]:
+        """``only`` and ``never`` of a channel or flow."""
+        for key, line, value in self._entries(label, keys):
+            if key in ("only", "never"):
+                names = tuple(self._categories(value, key))
+                if names:
+                    yield Statement(key, names, rank, Place(self.file, line))
+
+    def _flow(self, item: Value) -> None:
+        if item.kind != "map":
+            self.problem(item.line, f"a flow is a map, not a {item.kind}", "write {from: /a, to: /b, never: [Video]}")
+            return
+        place = Place(self.file, item.line)
+        ends = {key: self._name(value) for key, _, value in item.entries if key in ("from", "to")}
+        rank = (self.tier, sum(specificity(name) for name in ends.values()))
+        statements = tuple(self._restrictions(item, FLOW_KEYS, rank))
+        if len(ends) < len(("from", "to")) or not statements:
+            self.problem(
+                item.line, "a flow needs from, to, and only or never", "write {from: /a, to: /b, never: [Video]}"
+            )
+            return
+        self.flows.append(FlowEntry(ends["from"], ends["to"], place, statements))
+
+    def _six_lists(self, top: Value) -> None:
+        """The paper's JSON: six lists of names, one kind of data; there a sanitizer ends it (rule S8)."""
+        name = self._category(self.category, 0)
+        for role, line, value in self._entries(top, SIX_LISTS):
+            kinds = SECTIONS["channels" if role in ("sensitive", "mundane") else "nodes"]
+            for item in self._list(value, role):
+                element = self._name(item)
+                place, rank = Place(self.file, item.line), (self.tier, specificity(element))
+                method = Method.ANONYMISE if role == "sanitizer" else None
+                statement = Statement(role, (name,), rank, place, method)
+                self.entries.append(Entry(kinds, element, place, (statement,)))
+            if role == "sanitizer" and value.items:
+                message = "a sanitizer of the paper's six lists ends the category; the method is not stated"
+                self.diagnostics.append(Diagnostic(Place(self.file, line), Severity.NOTICE, message))
+
+    def _entries(self, value: Value, known: tuple[str, ...]) -> Iterable[tuple[str, int, Value]]:
+        """The entries of a map, those with unknown keys reported."""
+        for key, line, child in value.entries:
+            if key in known:
+                yield key, line, child
+            else:
+                close = get_close_matches(key, known, n=1)
+                hint = f"did you mean {close[0]!r}?" if close else f"one of {', '.join(known)}"
+                self.problem(line, f"unknown key {shown(key)!r}", hint)
+
+    def _list(self, value: Value, what: str) -> tuple[Value, ...]:
+        if value.kind not in ("list", "empty"):
+            self.problem(value.line, f"{what} takes a list, not a {value.kind}", "write […]")
+        return value.items
+
+    def _categories(self, value: Value, what: str) -> Iterable[str]:
+        if value.kind == "empty" or (value.kind == "list" and not value.items):
+            self.problem(value.line, f"{what} names no category", "name one, such as [Video], or remove it")
+        for item in self._list(value, what):
+            name = self._category_of(item)
+            if name:
+                yield name
+
+    def _category_of(self, value: Value) -> str:
+        if value.kind != "text":
+            self.problem(value.line, f"a {value.kind} where a category is named", "write its name, such as Video")
+            return ""
+        return self._category(value.text, value.line)
+
+    def _category(self, written: str, line: int) -> str:
+        """The category's name; rule S11: one that is not there is an error with the nearest."""
+        category = self.vocabulary.find(written)
+        if category is None:
+            nearest = ", ".join(self.vocabulary.nearest(written))
+            self.problem(line, f"unknown category {shown(written)!r}", f"did you mean one of: {nearest}?")
+            return ""
+        return category.name
+
+    def _name(self, value: Value) -> str:
+        if value.kind != "text" or not value.text.startswith(("/", "*", "?", "[")):
+            self.problem(value.line, f"{shown(value.text or value.kind)!r} is not an absolute name", "begin it with /")
+        return value.text
+
+    def problem(self, line: int, problem: str, hint: str) -> None:
+        self.problems.append(LabelError(self.file, line, problem, hint))

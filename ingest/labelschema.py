@@ -1,0 +1,119 @@
+"""The JSON Schema of label files, for editors: the format of ``labels.py`` as data.
+
+In: the categories. Out: a schema (draft 2020-12) that completes their names and accepts every name that finds one.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.model import Method
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rosprivacy.analysis.model import Category
+
+NAME = {"type": "string", "pattern": r"^[/*?\[]"}
+
+
+def label_schema(categories: Iterable[Category]) -> dict[str, Any]:
+    """Return the schema.
+
+    Parameters
+    ----------
+    categories
+        Whose names and definitions an editor offers.
+    """
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "rosprivacy label file",
+        "description": "Which elements of a ROS 2 system bring in, let out, clean or pass on which personal data.",
+        "type": "object",
+        "required": ["labels"],
+        "additionalProperties": False,
+        "properties": {
+            "labels": {"const": 1, "description": "Version of the format."},
+            "nodes": _section("node", "Labels of nodes, by absolute name or glob."),
+            "channels": _section("channel", "Labels of topics, services and actions, by absolute name or glob."),
+            "topics": _section("channel", "As channels, for topics only."),
+            "services": _section("channel", "As channels, for services only."),
+            "actions": _section("channel", "As channels, for actions only."),
+            "flows": {"type": "array", "items": {"$ref": "#/$defs/flow"}},
+        },
+        "$defs": _definitions(list(categories)),
+    }
+
+
+def _section(kind: str, description: str) -> dict[str, Any]:
+    return {
+        "type": ["object", "null"],
+        "description": description,
+        "propertyNames": NAME,
+        "additionalProperties": {"$ref": f"#/$defs/{kind}"},
+    }
+
+
+def _definitions(categories: list[Category]) -> dict[str, Any]:
+    one = {"$ref": "#/$defs/category"}
+    some = {"type": "array", "minItems": 1, "items": one}
+    note = {"type": "string", "description": "Why; for people."}
+    restrictions = {
+        "only": {**some, "description": "Carries these at most."},
+        "never": {**some, "description": "Does not carry these."},
+    }
+    return {
+        "category": {
+            "anyOf": [
+                {"oneOf": [{"const": c.name, "description": c.definition} for c in categories]},
+                {"type": "string", "minLength": 1, "description": "Another name, a synonym or the IRI of one."},
+            ]
+        },
+        "node": {"anyOf": [{"type": "null"}, {"const": "conduit"}, _node(one, some, note)]},
+        "channel": {
+            "anyOf": [
+                {"type": "null"},
+                {"enum": ["mundane", "sensitive"]},
+                _object({**restrictions, "note": note}),
+            ]
+        },
+        "flow": {
+            **_object({"from": NAME, "to": NAME, **restrictions, "note": note}),
+            "required": ["from", "to"],
+            "anyOf": [{"required": ["only"]}, {"required": ["never"]}],
+        },
+    }
+
+
+def _node(one: dict[str, Any], some: dict[str, Any], note: dict[str, Any]) -> dict[str, Any]:
+    channels = {"type": "array", "minItems": 1, "items": NAME}
+    return _object(
+        {
+            "source": {
+                "description": "Brings these in; as a map, only through the channels named.",
+                "anyOf": [some, _by_category(channels)],
+            },
+            "leak": {**some, "description": "Lets these out."},
+            "conduit": {**some, "description": "Reviewed: passes these on."},
+            "sanitizer": {
+                "description": "Cleans these; a method that is not stated counts as pseudonymise.",
+                "anyOf": [some, _by_category({"enum": [*map(str, Method), None]})],
+            },
+            "derives": {
+                "type": "array",
+                "items": {**_object({"from": one, "to": one}), "required": ["from", "to"]},
+                "description": "Makes one kind of data of another.",
+            },
+            "note": note,
+        }
+    )
+
+
+def _by_category(value: dict[str, Any]) -> dict[str, Any]:
+    """A map whose keys are categories."""
+    names = {"$ref": "#/$defs/category"}
+    return {"type": "object", "minProperties": 1, "propertyNames": names, "additionalProperties": value}
+
+
+def _object(properties: dict[str, Any]) -> dict[str, Any]:
+    return {"type": "object", "additionalProperties": False, "properties": properties}

@@ -1,0 +1,194 @@
+"""Analysis -> a report for the terminal: verdict, findings hop by hop, what to review next, what was assumed.
+
+In: a JSON document of the contract, so that no reader is told anything that another is not. Out: lines on a rich
+console; colours are the console's business. Names come from anybody's files, so they are made printable.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rich.text import Text
+
+from rosprivacy.analysis.errors import shown
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from rich.console import Console
+
+VERDICTS = {
+    "leak": ("bold red", "data can reach a leak"),
+    "undetermined": ("bold yellow", "no leak reached, but not everything on the way is reviewed"),
+    "no-leak-found": ("bold green", "no way to a leak, everything on the way is reviewed"),
+}
+VERBS = {
+    "publish": "publishes", "subscribe": "is read by", "request": "request", "reply": "reply",
+    "call": "call", "execute": "execute", "matches": "wildcard covers",
+}  # fmt: skip
+SHOWN = 12  # open elements of a kind, without --verbose
+Line = tuple[str, str]  # text, style
+
+
+def print_report(console: Console, report: Mapping[str, Any], *, verbose: bool = False, quiet: bool = False) -> None:
+    """Print a document.
+
+    Parameters
+    ----------
+    verbose
+        All open elements and notices.
+    quiet
+        The verdict only.
+    """
+    for text, style in _lines(report, verbose=verbose, quiet=quiet):
+        console.print(Text(text, style), soft_wrap=True)
+
+
+def _lines(report: Mapping[str, Any], *, verbose: bool, quiet: bool) -> Iterator[Line]:
+    style, meaning = VERDICTS[report["verdict"]]
+    if not any(report["categories"]) or (report["verdict"] == "undetermined" and not report["open"]):
+        meaning = "no data was followed"
+    yield f"{report['verdict']}: {meaning}", style
+    if quiet:
+        return
+    yield _summary(report), ""
+    yield from _findings(report)
+    yield from _review(report, verbose=verbose)
+    yield from _assumed(report)
+    yield from _diagnostics(report, verbose=verbose)
+
+
+def _summary(report: Mapping[str, Any]) -> str:
+    findings = [finding for finding in report["findings"] if not finding["dismissed"]]
+    dismissed = len(report["findings"]) - len(findings)
+    parts = [
+        _count(len(findings), "finding"),
+        *([f"{dismissed} more only through another leak"] if dismissed else []),
+        f"{_count(len(report['open']), 'element')} to review",
+        f"{_count(report['elements'], 'element')} and {_count(report['flows'], 'flow')} in all",
+    ]
+    return ", ".join(parts)
+
+
+def _findings(report: Mapping[str, Any]) -> Iterator[Line]:
+    for number, finding in enumerate(report["findings"], 1):
+        source, leak = finding["source"], finding["leak"]
+        form = "pseudonymised " if finding["pseudonymised"] else ""
+        style = "dim" if finding["dismissed"] else "bold"
+        yield "", ""
+        yield f"{number}. {form}{finding['category']}: {_name(source)} -> {_name(leak)}   [{finding['id']}]", style
+        if finding["dismissed"]:
+            through = ", ".join(_name(element) for element in finding["through"])
+            yield f"   only through {through}, which has a finding of its own", "dim"
+        yield from _way(finding, report)
+        yield from _paths(finding)
+
+
+def _way(finding: Mapping[str, Any], report: Mapping[str, Any]) -> Iterator[Line]:
+    """The witness, hop by hop: element, what labels say of it, policy line."""
+    roles = {(_key(said["element"]), said["category"]): said["roles"] for said in report["roles"]}
+    unreviewed = {(_key(question["element"]), name) for question in report["open"] for name in question["categories"]}
+    witness, steps = finding["witness"], finding["steps"]
+    data = [step["category"] for step in steps]
+    for hop, element in enumerate(witness):
+        # what is there: the data that arrives, at the source the data that leaves, at the leak what gets out too
+        here = dict.fromkeys([*data[max(hop - 1, 0) : hop or 1], *([] if hop < len(steps) else [finding["category"]])])
+        said = [(name, role) for name in here for role in roles.get((_key(element), name), ())]
+        notes = [f"{role} of {name}" for name, role in said]
+        notes += ["not reviewed" for name in here if (_key(element), name) in unreviewed]
+        style = "red" if any(role == "leak" for _, role in said) else ""
+        yield f"   {_name(element)}  ({', '.join([_kind(element), *notes])})", style
+        if hop < len(steps):
+            before = steps[hop - 1] if hop else steps[hop]
+            yield f"     | {_step(steps[hop], before)}", "dim"
+
+
+def _step(step: Mapping[str, Any], before: Mapping[str, Any]) -> str:
+    """One hop: what the policy allows, where, and what the data has become."""
+    places = [f"{shown(grant['file'])}:{grant['line']}" for grant in step["policy"]]
+    more = f" and {len(places) - 1} more" if len(places) > 1 else ""
+    what = f"{VERBS[step['role']]}  {places[0]}{more}" if places else VERBS[step["role"]]
+    changed = (step["category"], step["pseudonymised"]) != (before["category"], before["pseudonymised"])
+    form = "pseudonymised " if step["pseudonymised"] else ""
+    return f"{what}   now {form}{step['category']}" if changed else what
+
+
+def _paths(finding: Mapping[str, Any]) -> Iterator[Line]:
+    if finding["disjoint_paths"] > 1:
+        yield f"   {finding['disjoint_paths']} ways that share no flow", ""
+    for path in finding.get("paths", ()):
+        yield "   way: " + " -> ".join(_name(element) for element in path), ""
+    if finding.get("paths_bounded"):
+        yield f"   … there are more ways; the bound is {len(finding['paths'])} (--max-paths)", "yellow"
+
+
+def _review(report: Mapping[str, Any], *, verbose: bool) -> Iterator[Line]:
+    """Open elements in the order of review: nodes on the frontier, then channels, then what lies behind."""
+    groups = (
+        ("Review next (nodes that data reaches first)", [q for q in report["open"] if q["frontier"]]),
+        ("Channels not reviewed", [q for q in report["open"] if q["element"]["kind"] != "node"]),
+        ("Nodes behind those", [q for q in report["open"] if q["element"]["kind"] == "node" and not q["frontier"]]),
+    )
+    for title, questions in groups:
+        if not questions:
+            continue
+        yield "", ""
+        yield f"{title}: {len(questions)}", "bold"
+        chosen = questions if verbose else questions[:SHOWN]
+        for question in chosen:
+            element = question["element"]
+            what = f"{_name(element)}  ({_kind(element)}; {', '.join(question['categories'])};"
+            yield f"   {what} {_count(question['distance'], 'step')} from a source)", ""
+        if len(questions) > len(chosen):
+            yield f"   … and {len(questions) - len(chosen)} more (-v shows all)", "dim"
+
+
+def _assumed(report: Mapping[str, Any]) -> Iterator[Line]:
+    assumptions = report["assumptions"]
+    yield "", ""
+    yield "Assumed", "bold"
+    view = {"declared": "each node does what its own profile says", "enforced": "each node may do what its enclave may"}
+    yield f"   view {report['view']}: {view[report['view']]}", ""
+    if assumptions["standard_channels"]:
+        channels = _count(report["standard_channels"], "standard ROS channel")
+        yield f"   {channels} taken as mundane (rosprivacy labels --standard)", ""
+    else:
+        yield "   no standard channels taken as mundane", ""
+    for file in assumptions["labels"]:
+        yield f"   labels {shown(file['file'])} (sha256 {file['sha256'][:12]})", ""
+    if not assumptions["labels"]:
+        yield "   no labels", ""
+    if assumptions["categories_asked"] != "all":
+        yield f"   only {', '.join(assumptions['categories_asked'])} and narrower categories", ""
+    for taken in assumptions["sanitizers_without_method"]:
+        method = f"sanitizer {_name(taken['element'])} states no method for {taken['category']}"
+        yield f"   {method}: taken as pseudonymise, the data is still personal", "yellow"
+    yield "   labels are a person's word; this is no legal verdict", "dim"
+
+
+def _diagnostics(report: Mapping[str, Any], *, verbose: bool) -> Iterator[Line]:
+    notices = [d for d in report["diagnostics"] if d["severity"] == "notice"]
+    for diagnostic in report["diagnostics"]:
+        if verbose or diagnostic["severity"] != "notice":
+            place = f"{shown(diagnostic['file'])}:{diagnostic['line']}"
+            yield f"{diagnostic['severity']}: {place}: {diagnostic['message']}", "yellow"
+    if notices and not verbose:
+        yield f"{_count(len(notices), 'notice')} (-v shows them)", "dim"
+
+
+def _count(number: int, thing: str) -> str:
+    return f"{number:,} {thing}" if number == 1 else f"{number:,} {thing}s"
+
+
+def _key(element: Mapping[str, Any]) -> tuple[str, ...]:
+    return (element["robot"], element["kind"], element["name"], element.get("leg", ""))
+
+
+def _name(element: Mapping[str, Any]) -> str:
+    robot = f"{element['robot']}:" if element["robot"] else ""
+    return shown(robot + element["name"])
+
+
+def _kind(element: Mapping[str, Any]) -> str:
+    parts: Iterable[str] = (element["kind"], element.get("leg", ""), "wildcard" if element.get("pattern") else "")
+    return " ".join(part for part in parts if part)

@@ -1,0 +1,49 @@
+"""Where personal data can go in a ROS 2 system: SROS 2 policies and labels in, leak paths per category out.
+
+>>> import rosprivacy
+>>> result = rosprivacy.analyze(["examples/factory/before.policy.xml"], ["examples/factory/run2.labels.yaml"])
+>>> str(result.analysis.verdict)
+'leak'
+
+The heavy parts are imported when they are used.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from typing import Any
+
+    from rosprivacy.assembly import Result
+
+__all__ = ["__version__", "analyze"]
+__version__ = "0.1.0"
+
+
+def analyze(policies: Iterable[str], labels: Iterable[str] = (), **options: Any) -> Result:
+    """Analyse SROS 2 policies under label files.
+
+    Parameters
+    ----------
+    policies
+        Files, folders and globs.
+    labels
+        Label files, YAML or JSON, or the paper's JSON with six lists.
+    **options
+        Fields of ``rosprivacy.assembly.Settings``.
+
+    Returns
+    -------
+    Result
+        The analysis, and what it rests on.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the input, one line each.
+    """
+    from rosprivacy.assembly import Settings, run  # noqa: PLC0415 - light start
+
+    return run(tuple(policies), tuple(labels), Settings(**options))

@@ -1,0 +1,5 @@
+"""``python -m rosprivacy``."""
+
+from rosprivacy.cli import main
+
+main()

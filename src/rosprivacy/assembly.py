@@ -1,0 +1,177 @@
+"""The way through the house: files -> model -> graph -> analysis. The command line is a thin layer over this.
+
+In: what a user names. Out: a ``Result``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import rosprivacy
+from rosprivacy.analysis.errors import InputError, InputErrors, OntologyError, shown
+from rosprivacy.analysis.findings import MAX_PATHS, Options, analyse
+from rosprivacy.analysis.paths import WITNESS
+from rosprivacy.ingest.binding import bind
+from rosprivacy.ingest.files import read_policies
+from rosprivacy.ingest.graph import DECLARED, build
+from rosprivacy.ingest.labels import STANDARD, read_labels
+from rosprivacy.ingest.saved import read_saved
+from rosprivacy.ingest.xinclude import MAX_BYTES
+from rosprivacy.ontology.vocabulary import TOP, load
+from rosprivacy.report.document import document
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
+
+    from rosprivacy.analysis.model import Analysis, Diagnostic, FlowGraph, Policy
+    from rosprivacy.ingest.labels import Labels
+    from rosprivacy.ontology.vocabulary import Vocabulary
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """How to read and what to ask.
+
+    Attributes
+    ----------
+    add
+        Saved graphs to add to.
+    view
+        ``declared`` or ``enforced``, rule S6.
+    categories
+        Names; the answer is about these and narrower ones. Empty for all.
+    category
+        What the paper's six lists are about.
+    standard_channels
+        The label file of the standard channels, or None to take none as mundane (rule S13).
+    paths, max_paths
+        See ``Options``.
+    include_root, max_bytes
+        See ``read_policy``.
+    progress
+        Wraps the list of files, to show how far it is.
+    """
+
+    add: tuple[str, ...] = ()
+    view: str = DECLARED
+    categories: tuple[str, ...] = ()
+    category: str = TOP
+    standard_channels: str | None = STANDARD
+    paths: str = WITNESS
+    max_paths: int = MAX_PATHS
+    include_root: str | None = None
+    max_bytes: int = MAX_BYTES
+    progress: Callable[[Sequence[str]], Iterable[str]] = field(default=lambda files: files)
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """An analysis and what it rests on."""
+
+    analysis: Analysis
+    vocabulary: Vocabulary
+    policies: tuple[Policy, ...]
+    diagnostics: tuple[Diagnostic, ...]
+    assumptions: dict[str, Any]
+
+    def document(self) -> dict[str, Any]:
+        """Return the JSON document of the contract."""
+        vocabulary = self.vocabulary
+        return document(self.analysis, vocabulary.categories, vocabulary.hierarchy, self.diagnostics, self.assumptions)
+
+
+def run(policies: tuple[str, ...], labels: tuple[str, ...], settings: Settings) -> Result:
+    """Read everything, analyse it, and keep what the answer rests on.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the input, one line each.
+    """
+    vocabulary = load()
+    asked = _asked(vocabulary, settings.categories)
+    system, diagnostics = read_system(policies, settings)
+    graph = build(system, settings.view)
+    files = _read_labels(labels, vocabulary, settings)
+    bound = bind(graph, files)
+    analysis = analyse(graph, bound, vocabulary.hierarchy, Options(asked, settings.paths, settings.max_paths))
+    said = tuple(d for policy in system for d in policy.diagnostics) + diagnostics
+    said += tuple(d for file in files for d in file.diagnostics)
+    return Result(analysis, vocabulary, system, said, _assumptions(graph, system, files, analysis, settings))
+
+
+def read_system(policies: tuple[str, ...], settings: Settings) -> tuple[tuple[Policy, ...], tuple[Diagnostic, ...]]:
+    """Read policies and the saved graphs that they add to."""
+    saved = [policy for file in settings.add for policy in read_saved(file)]
+    read: tuple[Policy, ...] = ()
+    diagnostics: tuple[Diagnostic, ...] = ()
+    if policies or not saved:
+        read, diagnostics = read_policies(
+            policies,
+            include_root=settings.include_root,
+            max_bytes=settings.max_bytes,
+            progress=settings.progress,
+        )
+    known = {policy.file for policy in read}  # read again is read anew
+    system = (*read, *(policy for policy in saved if policy.file not in known))
+    return tuple(sorted(system, key=lambda policy: policy.file)), diagnostics
+
+
+def standard_channels(graph: FlowGraph, vocabulary: Vocabulary, settings: Settings) -> set[tuple[str, str]]:
+    """Return (kind, name) of the channels that the standard file takes as mundane (rule S13)."""
+    bound = bind(graph, _read_labels((), vocabulary, settings))
+    return {(graph.elements[vertex].kind, graph.elements[vertex].name) for vertex in bound.elements}
+
+
+def _read_labels(labels: tuple[str, ...], vocabulary: Vocabulary, settings: Settings) -> list[Labels]:
+    """The standard channels' file and the user's, with the problems of all of them."""
+    files: list[Labels] = []
+    problems: list[InputError] = []
+    standard = [settings.standard_channels] if settings.standard_channels else []
+    for file in [*standard, *dict.fromkeys(labels)]:
+        try:
+            shipped = file in standard
+            files.append(read_labels(file, vocabulary, category=settings.category, shipped=shipped))
+        except InputErrors as error:
+            problems += error.errors
+    if problems:
+        raise InputErrors(problems)
+    return files
+
+
+def _asked(vocabulary: Vocabulary, names: tuple[str, ...]) -> set[str] | None:
+    """The categories that the answer is about, narrower ones included."""
+    asked: set[str] = set()
+    problems = []
+    for name in names:
+        category = vocabulary.find(name)
+        if category is None:
+            hint = f"did you mean one of: {', '.join(vocabulary.nearest(name))}?"
+            problems.append(OntologyError("--categories", 0, f"unknown category {shown(name)!r}", hint))
+        else:
+            asked |= vocabulary.with_narrower(category.name)
+    if problems:
+        raise InputErrors(problems)
+    return asked if names else None
+
+
+def _assumptions(
+    graph: FlowGraph, system: tuple[Policy, ...], files: list[Labels], analysis: Analysis, settings: Settings
+) -> dict[str, Any]:
+    """What the answer rests on (rule S12)."""
+    sources = sorted({source for policy in system for source in policy.sources})
+    hashes = [{"file": file.file, "sha256": file.sha256} for file in files]
+    standard = [entry for entry in hashes if entry["file"] == settings.standard_channels]
+    return {
+        "rosprivacy": rosprivacy.__version__,
+        "view": graph.view,
+        "policies": [{"file": name, "sha256": digest} for name, digest in sources],
+        "labels": [entry for entry in hashes if entry not in standard],
+        "standard_channels": {**standard[0], "taken": analysis.standard_channels} if standard else None,
+        "unlabelled_node": "conduit, not reviewed",
+        "unlabelled_channel": "sensitive, not reviewed",
+        "categories_asked": list(settings.categories) or "all",
+        "paths": settings.paths,
+        "max_paths": settings.max_paths,
+    }

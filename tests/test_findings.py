@@ -1,0 +1,303 @@
+"""The analysis against brute force (``brute.py``), on random graphs with cycles, derivations and both planes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import networkx as nx
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rosprivacy.analysis.errors import InputErrors
+from rosprivacy.analysis.findings import Options, analyse
+from rosprivacy.analysis.hierarchy import Hierarchy
+from rosprivacy.analysis.model import (
+    Analysis,
+    Bound,
+    Category,
+    Element,
+    Flow,
+    FlowGraph,
+    Method,
+    Place,
+    Statement,
+    Verdict,
+)
+from tests.brute import Brute
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+#      Any
+#     /   \
+#   Bio   Loc      Deep0 > Deep1 > … 70 more, so that two planes need three words
+#   / \
+#  Face Voice
+PARENTS = {"Any": (), "Bio": ("Any",), "Loc": ("Any",), "Face": ("Bio",), "Voice": ("Bio",)}
+HIERARCHY = Hierarchy.of(Category(n, f"urn:{n}", n, n, n, up) for n, up in PARENTS.items())
+WIDE = [f"K{i:02}" for i in range(70)]
+WIDE_HIERARCHY = Hierarchy.of(Category(n, f"urn:{n}", n, n, n) for n in WIDE)
+METHODS = tuple(Method)
+
+
+def statement(role: str, *categories: str, method: Method | None = None, to: str = "") -> Statement:
+    return Statement(role, categories, (1, 0), Place("labels", 1), method, to=to)
+
+
+@dataclass
+class System:
+    nodes: int
+    channels: int
+    edges: list[tuple[int, int]]
+    said: dict[int, list[Statement]]
+    never: dict[int, set[str]]
+    hierarchy: Hierarchy = HIERARCHY
+
+    def graph(self) -> FlowGraph:
+        elements = [Element("node", f"/n{i}") for i in range(self.nodes)]
+        elements += [Element("topic", f"/t{i}") for i in range(self.channels)]
+        return FlowGraph(tuple(elements), tuple(Flow(a, b, "publish") for a, b in self.edges), (), ())
+
+    def bound(self) -> Bound:
+        flows = {i: (statement("never", *sorted(names)),) for i, names in self.never.items()}
+        return Bound({v: tuple(said) for v, said in sorted(self.said.items()) if said}, flows)
+
+    def analyse(self, options: Options | None = None) -> Analysis:
+        return analyse(self.graph(), self.bound(), self.hierarchy, options)
+
+    def brute(self) -> Brute:
+        never = {self.edges[i]: names for i, names in self.never.items()}
+        return Brute(range(self.nodes), self.edges, self.said, self.hierarchy, never)
+
+
+@st.composite
+def systems(draw: st.DrawFn, names: tuple[str, ...] = tuple(PARENTS)) -> System:
+    """Dense enough that most have a leak, a third something derived, pseudonymised or dismissed (measured)."""
+    nodes, channels = draw(st.integers(1, 7)), draw(st.integers(1, 6))
+    ends = st.sets(st.integers(0, nodes - 1), min_size=1, max_size=3)
+    edges: set[tuple[int, int]] = set()
+    for channel in range(nodes, nodes + channels):
+        edges |= {(node, channel) for node in draw(ends)} | {(channel, node) for node in draw(ends)}
+    category = st.sampled_from(names)
+    cleans = st.builds(
+        lambda c, m: statement("sanitizer", c, method=m), category, st.sampled_from((*METHODS, Method.PSEUDONYMISE))
+    )
+    derives = st.builds(lambda c, t: statement("derivation", c, to=t), category, category)
+    others = [st.builds(statement, st.just(role), category) for role in ("source", "leak", "conduit")]
+    labels = st.lists(st.one_of(cleans, derives, derives, *others), max_size=2, unique=True)
+    said = {vertex: draw(labels) for vertex in range(nodes)}
+    always = [*others[:2], others[1], derives, cleans]  # a source, two leaks, a derivation, a sanitizer
+    for label in always:
+        said[draw(st.integers(0, nodes - 1))].append(draw(label))
+    plain = st.sampled_from([[], [], [statement("mundane")], [statement("sensitive")]])
+    some = st.sets(category, min_size=1, max_size=2)
+    part = st.builds(lambda r, c: [statement(r, *sorted(c))], st.sampled_from(["only", "never"]), some)
+    said |= {vertex: draw(st.one_of(plain, plain, part)) for vertex in range(nodes, nodes + channels)}
+    never = draw(st.dictionaries(st.integers(0, len(edges) - 1), some, max_size=2))
+    unique = {vertex: list(dict.fromkeys(rows)) for vertex, rows in said.items()}
+    return System(nodes, channels, sorted(edges), unique, never)
+
+
+def analysed(system: System) -> Analysis | None:
+    """None where the labels contradict each other."""
+    try:
+        return system.analyse()
+    except InputErrors:
+        return None
+
+
+def index(system: System) -> dict[Element, int]:
+    return {element: i for i, element in enumerate(system.graph().elements)}
+
+
+@given(systems())
+def test_what_is_carried_is_what_brute_force_reaches(system: System) -> None:
+    """Rules S7 and S8, all categories in one pass against sets and a queue."""
+    found = analysed(system)
+    if found is None:
+        return
+    number = index(system)
+    brute = system.brute()
+    expected: dict[int, tuple[set[str], set[str]]] = {}
+    for vertex, (category, hidden) in brute.spread(brute.sources()):
+        expected.setdefault(vertex, (set(), set()))[hidden].add(category)
+    narrowest = {v: tuple(system.hierarchy.narrowest(names) for names in both) for v, both in expected.items()}
+    assert {number[c.element]: (c.categories, c.pseudonymised) for c in found.carried} == narrowest
+
+
+@given(systems())
+def test_findings_are_those_of_brute_force(system: System) -> None:
+    """Rule S10: which (category, source, leak), in which form, dismissed or not, and how short a way."""
+    found = analysed(system)
+    if found is None:
+        return
+    number = index(system)
+    expected = system.brute().findings()
+    assert {
+        (f.category, number[f.source], number[f.leak]): (f.pseudonymised, f.dismissed, len(f.witness) - 1)
+        for f in found.findings
+    } == expected
+    assert len({f.id for f in found.findings}) == len(found.findings)
+
+
+@given(systems())
+def test_a_witness_is_a_way_along_flows_and_names_the_leaks_that_dismiss_it(system: System) -> None:
+    found = analysed(system)
+    if found is None:
+        return
+    number, edges, brute = index(system), set(system.edges), system.brute()
+    for finding in found.findings:
+        way = [number[element] for element in finding.witness]
+        assert way[0] == number[finding.source]
+        assert way[-1] == number[finding.leak]
+        assert all(step in edges for step in pairwise(way))
+        assert [number[s.source] for s in finding.steps] == way[:-1]
+        assert bool(finding.through) == finding.dismissed
+        assert all(brute.has(number[element], "leak", finding.category) for element in finding.through)
+
+
+@given(systems())
+def test_open_questions_are_those_of_brute_force(system: System) -> None:
+    """Rule S11: which elements, for which categories, how far, and which are on the frontier."""
+    found = analysed(system)
+    if found is None:
+        return
+    number = index(system)
+    got = {number[q.element]: (set(q.categories), q.distance, q.frontier) for q in found.open}
+    assert got == system.brute().open()
+    assert list(found.open) == sorted(found.open, key=lambda q: (not q.frontier, q.distance))
+
+
+@given(systems())
+def test_the_verdict_says_no_more_than_is_known(system: System) -> None:
+    """Rule S12."""
+    found = analysed(system)
+    if found is None:
+        return
+    if any(not finding.dismissed for finding in found.findings):
+        assert found.verdict is Verdict.LEAK
+    elif found.open or not system.brute().sources():
+        assert found.verdict is Verdict.UNDETERMINED
+    else:
+        assert found.verdict is Verdict.NO_LEAK_FOUND
+    assert found.verdict is Verdict.LEAK or not found.findings  # a dismissed finding has another before it
+
+
+@given(systems())
+def test_disjoint_paths_are_as_many_as_a_minimum_cut_has_flows(system: System) -> None:
+    """Menger's theorem, on the flows along which the category goes; systems without derivations."""
+    system.said = {v: [s for s in said if s.role != "derivation"] for v, said in system.said.items()}
+    found = analysed(system)
+    if found is None:
+        return
+    number, brute = index(system), system.brute()
+    for finding in found.findings:
+        source, leak, category = number[finding.source], number[finding.leak], finding.category
+        if source == leak:
+            assert finding.disjoint_paths == 1
+            continue
+        ends = {leak} if finding.dismissed else {v for v in system.said if brute.has(v, "leak", category)} - {source}
+        graph: nx.DiGraph[int] = nx.DiGraph()
+        graph.add_nodes_from([source, leak])
+        for a, b in system.edges:
+            dead = (a in ends) or (b not in brute.nodes and brute.kills(b, category))
+            ended = [s for s in brute.holding(a, category) if s.role == "sanitizer"] if a != source else []
+            dead = dead or any(s.method is not None and s.method.ends for s in ended)
+            names = brute.never.get((a, b), set())
+            if not dead and not any(name in HIERARCHY.ancestors[category] for name in names):
+                graph.add_edge(a, b)
+        assert finding.disjoint_paths == nx.edge_connectivity(graph, source, leak)
+
+
+@given(systems(), st.data())
+def test_more_flows_never_shrink_what_is_carried(system: System, data: st.DataObject) -> None:
+    before = analysed(system)
+    if before is None:
+        return
+    node = data.draw(st.integers(0, system.nodes - 1))
+    channel = data.draw(st.integers(system.nodes, system.nodes + system.channels - 1))
+    edge = (node, channel) if data.draw(st.booleans()) else (channel, node)
+    never = {system.edges[i]: names for i, names in system.never.items()}
+    edges = sorted({*system.edges, edge})
+    more = System(
+        system.nodes, system.channels, edges, system.said, {edges.index(e): names for e, names in never.items()}
+    )
+    after = analysed(more)
+    assert after is not None
+    assert _covers(after, before)
+
+
+@given(systems(), st.data())
+def test_a_sanitizer_that_anonymises_never_grows_what_is_carried(system: System, data: st.DataObject) -> None:
+    node = data.draw(st.integers(0, system.nodes - 1))
+    system.said[node] = []
+    before = analysed(system)
+    category = data.draw(st.sampled_from(tuple(PARENTS)))
+    system.said[node] = [statement("sanitizer", category, method=Method.ANONYMISE)]
+    after = analysed(system)
+    if before is not None:
+        assert after is not None
+        assert _covers(before, after)
+
+
+def _covers(more: Analysis, less: Analysis) -> bool:
+    """Whether everything that one carries, the other does too; the narrowest names stand for the broader ones."""
+
+    def closed(names: Iterable[str]) -> set[str]:
+        return {above for name in names for above in HIERARCHY.ancestors[name]}
+
+    carried = {c.element: c for c in more.carried}
+    return all(
+        c.element in carried
+        and closed(c.categories) <= closed(carried[c.element].categories)
+        and closed(c.pseudonymised) <= closed(carried[c.element].pseudonymised)
+        for c in less.carried
+    )
+
+
+@given(systems(names=tuple(WIDE)))
+def test_more_categories_than_a_word_has_bits(system: System) -> None:
+    """70 kinds in two planes are 140 bits; every category is emitted, so the words are full."""
+    system.hierarchy = WIDE_HIERARCHY
+    for i, name in enumerate(WIDE):
+        system.said.setdefault(i % system.nodes, []).append(statement("source", name))
+    found = analysed(system)
+    if found is None:
+        return
+    number, brute = index(system), system.brute()
+    assert len(found.emitted) == len(WIDE)
+    expected: dict[int, tuple[set[str], set[str]]] = {}
+    for vertex, (category, hidden) in brute.spread(brute.sources()):
+        expected.setdefault(vertex, (set(), set()))[hidden].add(category)
+    assert {number[c.element]: (set(c.categories), set(c.pseudonymised)) for c in found.carried} == expected
+
+
+@given(systems(), st.sampled_from(["disjoint", "all"]), st.integers(1, 5))
+def test_further_paths_keep_to_their_bound_and_say_so(system: System, asked: str, most: int) -> None:
+    try:
+        found = system.analyse(Options(paths=asked, max_paths=most))
+        unbounded = system.analyse(Options(paths=asked, max_paths=10_000))
+    except InputErrors:
+        return
+    number, edges = index(system), set(system.edges)
+    for finding, whole in zip(found.findings, unbounded.findings, strict=True):
+        assert len(finding.paths) <= most
+        assert finding.bounded == (len(whole.paths) > most)
+        assert finding.paths == whole.paths[:most]
+        assert list(map(len, whole.paths)) == sorted(map(len, whole.paths))
+        if whole.paths and asked == "all":  # those that share no flow need not have the shortest among them
+            assert len(whole.paths[0]) == len(finding.witness)
+        for path in finding.paths:
+            way = [number[element] for element in path]
+            assert all(step in edges for step in pairwise(way))
+
+
+@given(systems(), st.sampled_from(tuple(PARENTS)))
+def test_an_answer_about_some_categories_is_a_part_of_the_whole_answer(system: System, name: str) -> None:
+    found = analysed(system)
+    if found is None:
+        return
+    part = system.analyse(Options(categories={name}))
+    assert part.findings == tuple(f for f in found.findings if f.category == name)
