@@ -49,7 +49,7 @@ class InputError(RosPrivacyError):
         self.line = line
         self.problem = problem
         self.hint = hint
-        super().__init__(f"{shown(file)}:{line}: {problem}; {hint}")
+        super().__init__(f"{shown(file) or repr(file)}:{line}: {problem}; {hint}")
 
 
 class PolicyError(InputError):
@@ -76,7 +76,8 @@ class InputErrors(RosPrivacyError):  # noqa: N818 - it is several
     """All problems of the input at once, in the order of file and line."""
 
     def __init__(self, errors: Iterable[InputError]) -> None:
-        self.errors = tuple(sorted(set(errors), key=lambda e: (e.file, e.line, str(e))))
+        distinct = {str(error): error for error in errors}.values()
+        self.errors = tuple(sorted(distinct, key=lambda e: (e.file, e.line, str(e))))
         super().__init__("\n".join(str(error) for error in self.errors))
 
 

@@ -20,14 +20,14 @@ from rosprivacy.analysis.model import (
     Diagnostic,
     Element,
     Finding,
-    OpenQuestion,
     Place,
     Severity,
     Step,
     Verdict,
 )
 from rosprivacy.analysis.paths import WITNESS, Between, further
-from rosprivacy.analysis.search import START, Net, Search, path_to, search
+from rosprivacy.analysis.questions import open_questions
+from rosprivacy.analysis.search import START, Net, Search, path_to, present, search
 from rosprivacy.analysis.spread import Spread, bits_of, spread
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from rosprivacy.analysis.hierarchy import Hierarchy
-    from rosprivacy.analysis.model import Bound, FlowGraph
+    from rosprivacy.analysis.model import Bound, FlowGraph, OpenQuestion
 
 MAX_PATHS = 100
 
@@ -79,7 +79,7 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
     mask = sum(found.both(category) for category in wanted)
     net = Net.of(found)
     findings = tuple(_findings(net, mask, options))
-    questions = _open_questions(net, mask)
+    questions = open_questions(net, mask)
     sources = any(found.begins(vertex) & mask for vertex in range(len(graph.elements)))
     return Analysis(
         graph=graph,
@@ -108,9 +108,6 @@ def _no_source(options: Options) -> Diagnostic:
     return Diagnostic(Place("labels", 0), Severity.WARNING, message)
 
 
-# ---------------------------------------------------------------- findings
-
-
 def _findings(net: Net, mask: int, options: Options) -> Iterator[Finding]:
     """All findings, sorted by category, source and leak."""
     found = net.spread
@@ -130,7 +127,7 @@ def _findings_of(
     found, k = net.spread, len(net.spread.categories)
     whole = search(net, [source], found.all_bits, {})
     between: dict[tuple[int, bool], Between] = {}
-    reached = {v: bits & _present(whole, v) for v, bits in leaks.items() if bits & _present(whole, v)}
+    reached = {v: bits & present(whole, v) for v, bits in leaks.items() if bits & present(whole, v)}
     free: dict[int, Search] = {}  # number of the category -> search that stops at other leaks of it
     for leak, bits in reached.items():
         for i in sorted({bit % k for bit in bits_of(bits)}):
@@ -165,20 +162,11 @@ def _leaks_of(found: Spread, i: int) -> dict[int, int]:
     return {v: bits & both for v, bits in found.leaks.items() if bits & both}
 
 
-def _present(found: Search, vertex: int) -> int:
-    """Bits that arrive at a vertex, start there, or are made there."""
-    made = 0
-    for bits, origin in found.left.get(vertex, ()):
-        if origin is not None:
-            made |= bits
-    return found.seen.get(vertex, 0) | found.begun.get(vertex, 0) | made
-
-
 def _best(free: Search, whole: Search, leak: int, i: int, k: int) -> tuple[Search, int]:
     """The way to show: not through another leak before through one, as it is before pseudonymised."""
     for chosen in (free, whole):
         for bit in (i, i + k):
-            if _present(chosen, leak) >> bit & 1:
+            if present(chosen, leak) >> bit & 1:
                 return chosen, bit
     raise AssertionError("a reached leak has a way")
 
@@ -218,7 +206,7 @@ def finding_id(category: str, source: Element, leak: Element) -> str:
     """Return the stable id of a finding, made from category, source and leak (rule S10).
 
     >>> finding_id("Video", Element("node", "/camera"), Element("node", "/uplink"))
-    'f23c6b6e4af4b0d2'
+    '72abf86b6fa9e2ae'
     """
     parts = [category, *source.identity, *leak.identity]
     return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:16]
@@ -237,48 +225,6 @@ def _shown(net: Net, path: list[tuple[int, int, int]]) -> tuple[tuple[Element, .
         steps.append(Step(elements[-1], element, flow.role, categories[i], bool(plane), flow.grants))
         elements.append(element)
     return tuple(elements), tuple(steps)
-
-
-# ---------------------------------------------------------------- open questions
-
-
-def _open_questions(net: Net, mask: int) -> tuple[OpenQuestion, ...]:
-    """Rule S11: elements that a category reaches and no label covers, in the order of review."""
-    found, elements = net.spread, net.spread.graph.elements
-    open_bits: dict[int, int] = {}
-    for vertex in {*found.arrives, *found.leaves}:
-        bits = found.present(vertex) & mask & ~found.covered.get(vertex, 0)
-        if bits:
-            open_bits[vertex] = bits
-    if not open_bits:
-        return ()
-    sources = [vertex for vertex in found.facts if found.begins(vertex)]
-    nearest = search(net, sources, found.all_bits, {})
-    stop = {v: found.leaks.get(v, 0) | (open_bits.get(v, 0) if elements[v].is_node else 0) for v in
-            {*found.leaks, *open_bits}}  # fmt: skip
-    first = search(net, sources, found.all_bits, {v: _both_planes(bits, found) for v, bits in stop.items() if bits})
-    merged: dict[tuple[str, str, str, str], OpenQuestion] = {}
-    for vertex in sorted(open_bits):
-        element, bits = elements[vertex], open_bits[vertex]
-        distance = nearest.level(vertex, bits)
-        frontier = element.is_node and bool(_present(first, vertex) & bits)
-        question = OpenQuestion(element, found.names(bits), distance or 0, frontier)
-        known = merged.get(element.shown_as)
-        if known:
-            categories = tuple(sorted({*known.categories, *question.categories}))
-            question = replace(known, categories=categories, distance=min(known.distance, question.distance))
-        merged[element.shown_as] = question
-    return tuple(sorted(merged.values(), key=lambda q: (not q.frontier, q.distance, q.element.sort_key())))
-
-
-def _both_planes(bits: int, found: Spread) -> int:
-    """A category that is open or a leak in one plane is so in the other."""
-    k = len(found.categories)
-    either = (bits | bits >> k) & ((1 << k) - 1)
-    return either | either << k
-
-
-# ---------------------------------------------------------------- what is carried, and what was taken
 
 
 def _carried(found: Spread, mask: int, hierarchy: Hierarchy) -> tuple[Carried, ...]:

@@ -147,7 +147,10 @@ def _contradict(a: Statement, b: Statement) -> bool:
 
 def _contradiction(name: str, category: str, a: Statement, b: Statement) -> LabelError:
     first, second = sorted((a, b), key=lambda s: (s.place.file, s.place.line))
-    what = f"{shown(name)} is {_said(second)} for {category} here and {_said(first)} at {first.place}"
+    every = not first.categories and not second.categories
+    every = every or {first.role, second.role} <= {"mundane", "sensitive", "only"}
+    about = "every category" if every else category
+    what = f"{shown(name)} is {_said(second)} for {about} here and {_said(first)} at {first.place}"
     return LabelError(second.place.file, second.place.line, what, "keep one of them, or make one more specific")
 
 

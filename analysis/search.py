@@ -167,6 +167,15 @@ def _leave(found: Search, vertex: int, bits: int, origin: int | None, leaving: d
         leaving[vertex] |= new
 
 
+def present(found: Search, vertex: int) -> int:
+    """Bits that arrive at a vertex, start there, or are made there."""
+    made = 0
+    for bits, origin in found.left.get(vertex, ()):
+        if origin is not None:
+            made |= bits
+    return found.seen.get(vertex, 0) | found.begun.get(vertex, 0) | made
+
+
 def path_to(net: Net, found: Search, vertex: int, bit: int) -> list[tuple[int, int, int]]:
     """Read a shortest path back from a vertex where a bit is.
 

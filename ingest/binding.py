@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.labels import Entry, FlowEntry, Labels
 
 NEAREST = 3
+COMPARISONS = 50_000  # of names, in the search for the nearest; a label file of another system is refused soon
 
 
 def bind(graph: FlowGraph, labels: Sequence[Labels]) -> Bound:
@@ -48,9 +49,7 @@ def bind(graph: FlowGraph, labels: Sequence[Labels]) -> Bound:
         for flow in file.flows:
             indices = _flows(graph, names, flow)
             if not indices:
-                hint = "name two elements with a flow between them, in its direction"
-                what = f"no flow goes from {shown(flow.source)!r} to {shown(flow.target)!r}"
-                problems.append(LabelError(flow.place.file, flow.place.line, what, hint))
+                problems.append(names.no_flow(flow))
             for index in indices:
                 flows[index] += flow.statements
     if problems:
@@ -66,6 +65,7 @@ class _Names:
     """The vertices of a graph by kind and name."""
 
     def __init__(self, graph: FlowGraph) -> None:
+        self.comparisons = 0
         self.by_kind: dict[str, dict[str, list[int]]] = defaultdict(lambda: defaultdict(list))
         for vertex, element in enumerate(graph.elements):
             self.by_kind[element.kind][element.name].append(vertex)
@@ -86,17 +86,32 @@ class _Names:
 
     def unmatched(self, entry: Entry) -> LabelError:
         """The error for a name that matches nothing, with the nearest names."""
-        known = [name for kind in entry.kinds for name in self.by_kind.get(kind, {})]
-        close = get_close_matches(entry.name, known, n=NEAREST, cutoff=0.5)
+        close = self._close(entry.name, entry.kinds)
         what = f"{shown(entry.name)!r} matches no {' or '.join(entry.kinds)} of the policies"
         elsewhere = [kind for kind in self.by_kind if kind not in entry.kinds and entry.name in self.by_kind[kind]]
         if elsewhere:
             hint = f"there is a {elsewhere[0]} of that name: move it to the section for it"
         elif close:
-            hint = f"did you mean {' or '.join(shown(name) for name in close)}?"
+            hint = f"did you mean {' or '.join(map(shown, close))}?"
         else:
             hint = "see the names with rosprivacy labels --init"
         return LabelError(entry.place.file, entry.place.line, what, hint)
+
+    def no_flow(self, entry: FlowEntry) -> LabelError:
+        """The error for a flow that is not there."""
+        hints = []
+        for end in (entry.source, entry.target):
+            close = [] if self.matching(end) else self._close(end, self.by_kind)
+            hints += [f"instead of {shown(end)} did you mean {' or '.join(map(shown, close))}?"] if close else []
+        what = f"no flow goes from {shown(entry.source)!r} to {shown(entry.target)!r}"
+        hint = " ".join(hints) or "name two elements with a flow between them, in its direction"
+        return LabelError(entry.place.file, entry.place.line, what, hint)
+
+    def _close(self, name: str, kinds: Iterable[str]) -> list[str]:
+        """The nearest names, as long as looking for them does not take too long."""
+        known = [other for kind in kinds for other in self.by_kind.get(kind, {})]
+        self.comparisons += len(known)
+        return get_close_matches(name, known, n=NEAREST, cutoff=0.5) if self.comparisons <= COMPARISONS else []
 
 
 def _flows(graph: FlowGraph, names: _Names, entry: FlowEntry) -> list[int]:

@@ -10,6 +10,7 @@ Source: the paper, section II-A, for the roles; rules S7, S8 and S13 for what th
 from __future__ import annotations
 
 import hashlib
+import re
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from importlib.resources import files
@@ -41,6 +42,7 @@ FLOW_KEYS = ("from", "to", "only", "never", "note")
 OURS, SHIPPED_FILES = "rosprivacy:", ("standard", "infrastructure")
 STANDARD = f"{OURS}standard"
 EXACT = 1_000_000  # a name outranks every glob
+_WILD = re.compile(r"\[[!^]?\]?[^]]*\]|[*?]")
 SHIPPED, OWN = 0, 1  # tiers: a person's own word outranks what comes with the program
 
 
@@ -138,7 +140,7 @@ def specificity(name: str) -> int:
     >>> specificity("/robot/*") < specificity("/robot/cam*") < specificity("/a")
     True
     """
-    return sum(char not in "*?[]" for char in name) if is_pattern(name) else EXACT
+    return len(_WILD.sub("", name)) if is_pattern(name) else EXACT
 
 
 @dataclass
@@ -166,7 +168,7 @@ class _Reader:
         version = top.get("labels")
         if version is None:
             self.problem(top.line, "no 'labels: 1'", "say so on the first line: it is the format's version")
-        elif version.text != "1":
+        elif (version.kind, version.text) != ("number", "1"):
             self.problem(
                 version.line, f"label format {shown(version.text or version.kind)!r}", "this reads 'labels: 1'"
             )
@@ -218,6 +220,7 @@ class _Reader:
             for name in self._categories(value, "source"):
                 yield Statement("source", (name,), rank, place)
             return
+        self._not_empty(value, "source")
         for written, line, channels in value.entries:
             name = self._category(written, line)
             through = tuple(sorted({self._name(item) for item in self._list(channels, f"source of {shown(written)}")}))
@@ -230,6 +233,7 @@ class _Reader:
             for name in self._categories(value, "sanitizer"):
                 yield Statement("sanitizer", (name,), rank, place, Method.PSEUDONYMISE, stated=False)
             return
+        self._not_empty(value, "sanitizer")
         for written, line, method in value.entries:
             name = self._category(written, line)
             if method.kind == "empty":
@@ -241,6 +245,8 @@ class _Reader:
                 self.problem(method.line, what, f"one of {', '.join(Method)}")
 
     def _derives(self, value: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
+        if value.kind == "empty":
+            self.problem(value.line, "derives takes a list, not nothing", "write [{from: Video, to: FaceTemplate}]")
         for item in self._list(value, "derives"):
             if item.kind != "map":
                 self.problem(
@@ -281,12 +287,13 @@ class _Reader:
         ends = {key: self._name(value) for key, _, value in item.entries if key in ("from", "to")}
         rank = (self.tier, sum(specificity(name) for name in ends.values()))
         statements = tuple(self._restrictions(item, FLOW_KEYS, rank))
-        if len(ends) < len(("from", "to")) or not statements:
+        if len(ends) < len(("from", "to")) or not (item.get("only") or item.get("never")):
             self.problem(
                 item.line, "a flow needs from, to, and only or never", "write {from: /a, to: /b, never: [Video]}"
             )
             return
-        self.flows.append(FlowEntry(ends["from"], ends["to"], place, statements))
+        if statements:
+            self.flows.append(FlowEntry(ends["from"], ends["to"], place, statements))
 
     def _six_lists(self, top: Value) -> None:
         """The paper's JSON: six lists of names, one kind of data; there a sanitizer ends it (rule S8)."""
@@ -306,7 +313,10 @@ class _Reader:
     def _entries(self, value: Value, known: tuple[str, ...]) -> Iterable[tuple[str, int, Value]]:
         """The entries of a map, those with unknown keys reported."""
         for key, line, child in value.entries:
-            if key in known:
+            if key == "note" and key in known:
+                if child.kind != "text":
+                    self.problem(line, f"note takes text, not a {child.kind}", "write it, or remove it")
+            elif key in known:
                 yield key, line, child
             else:
                 close = get_close_matches(key, known, n=1)
@@ -317,6 +327,10 @@ class _Reader:
         if value.kind not in ("list", "empty"):
             self.problem(value.line, f"{what} takes a list, not a {value.kind}", "write […]")
         return value.items
+
+    def _not_empty(self, value: Value, what: str) -> None:
+        if not value.entries:
+            self.problem(value.line, f"{what} names no category", "name one, such as {Video: …}, or remove it")
 
     def _categories(self, value: Value, what: str) -> Iterable[str]:
         if value.kind == "empty" or (value.kind == "list" and not value.items):

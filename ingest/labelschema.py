@@ -39,7 +39,7 @@ def label_schema(categories: Iterable[Category]) -> dict[str, Any]:
             "topics": _section("channel", "As channels, for topics only."),
             "services": _section("channel", "As channels, for services only."),
             "actions": _section("channel", "As channels, for actions only."),
-            "flows": {"type": "array", "items": {"$ref": "#/$defs/flow"}},
+            "flows": {"type": ["array", "null"], "items": {"$ref": "#/$defs/flow"}},
         },
         "$defs": _definitions(list(categories)),
     }

@@ -17,10 +17,10 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import InputError, InputErrors, PolicyError, shown
 from rosprivacy.analysis.model import Diagnostic, Grant, Place, Policy, Profile, Severity
 from rosprivacy.ingest.names import resolve
-from rosprivacy.ingest.xinclude import MAX_BYTES, Documents, Item
+from rosprivacy.ingest.xinclude import MAX_BYTES, Documents, Item, has_text
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterator
 
 VERSIONS = ("0.1.0", "0.2.0")
 ROLES = {
@@ -88,11 +88,13 @@ class _Reader:
     profiles: list[Profile] = field(default_factory=list)
     grants: list[Grant] = field(default_factory=list)
     old: bool = False
+    namespace: str = ""
 
     def policy(self, root: Item) -> None:
         if root.tag != "policy":
             raise InputErrors([_not_a_policy(root)])
-        if "}" in str(root.element.tag):
+        self.namespace = root.namespace
+        if root.namespace:
             self._notice(root.place, "default namespace on <policy>: sros2 refuses it; read as if it had none")
         self._version(root)
         self._attributes(root, {"version"})
@@ -102,7 +104,7 @@ class _Reader:
         for extra in sections[1:]:
             self._problem(extra.place, f"second <{extra.tag}> under <policy>", "merge them into one")
         for section in sections[:1]:
-            self._section(section)
+            self._section(section, root.element.get("version"))
 
     def _version(self, root: Item) -> None:
         version = root.element.get("version")
@@ -111,13 +113,15 @@ class _Reader:
         elif version not in VERSIONS:
             self._problem(root.place, f"policy version {shown(repr(version))}", 'this reads version="0.2.0"')
 
-    def _section(self, section: Item) -> None:
+    def _section(self, section: Item, version: str | None) -> None:
         if section.tag == "profiles":
             self.old = True
             message = "policy format 0.1.0: no enclaves; each node is taken as an enclave of its own"
             self._notice(section.place, message)
             self._profiles(section, None)
             return
+        if version == VERSIONS[0]:
+            self._notice(section.place, "version 0.1.0 has no enclaves: read as 0.2.0")
         inner = {"enclaves": "enclave", "contexts": "context"}[section.tag]
         if section.tag == "contexts":
             self._notice(section.place, "<contexts> of a transitional format: read as <enclaves>")
@@ -159,7 +163,7 @@ class _Reader:
         if not namespace.startswith("/") and profile.element.get("ns") is not None:
             message = f"namespace {namespace!r} does not begin with /: its names are taken as sros2 writes them"
             self._warning(profile.place, message)
-        name = resolve(node, namespace, node) if not node.startswith(("/", "~")) else f"{namespace}/{node}"
+        name = namespace + node if namespace.endswith("/") else f"{namespace}/{node}"
         owner = Profile(name if enclave is None else enclave, name, profile.place)
         self.profiles.append(owner)
         for group in self._elements(profile, set(ROLES)):
@@ -185,13 +189,14 @@ class _Reader:
         for child in self.documents.children(item):
             self._problem(child.place, f"<{shown(child.tag)}> inside <{item.tag}>", "write the name as plain text")
         written = item.element.text or ""
-        if not written.strip():
-            self._warning(item.place, f"<{item.tag}> without a name: read as sros2 does, as {namespace}/")
         if "[:" in written or "[." in written or "[=" in written:
             self._problem(item.place, f"character class in {shown(repr(written))}", "write a range such as [a-z]")
         if self.old and written.startswith("~") and not written.startswith("~/"):
             written = f"~/{written[1:]}"  # 0.1.0 writes ~name for what 0.2.0 calls ~/name
-        return resolve(written, namespace, node)
+        name = resolve(written, namespace, node)
+        if not written.strip():
+            self._warning(item.place, f"<{item.tag}> without a name: read as sros2 does, as {name}")
+        return name
 
     def _rule(self, group: Item, role: str) -> bool:
         rule = str(group.element.get(role))
@@ -202,9 +207,11 @@ class _Reader:
 
     def _elements(self, parent: Item, allowed: set[str]) -> Iterator[Item]:
         """Children that belong here; what does not is a problem, and so is text between them."""
-        if _has_text(parent):
+        if has_text(parent):
             self._problem(parent.place, f"text between the elements of <{parent.tag}>", "remove it")
         for child in self.documents.children(parent):
+            if child.namespace not in ("", self.namespace):
+                self._notice(child.place, f"<{child.tag}> in a namespace of its own: read as if it had none")
             if child.tag in allowed:
                 yield child
             elif child.tag != "metadata":
@@ -231,12 +238,6 @@ class _Reader:
 
     def _notice(self, place: Place, message: str) -> None:
         self.diagnostics.append(Diagnostic(place, Severity.NOTICE, shown(message)))
-
-
-def _has_text(parent: Item) -> bool:
-    element = parent.element
-    texts: Iterable[str | None] = (element.text, *(child.tail for child in element))
-    return any(text and text.strip() for text in texts)
 
 
 def _misplaced(tag: str, parent: str, allowed: set[str]) -> tuple[str, str]:

@@ -7,17 +7,19 @@ In: policies, or a file saved before. Out: the same facts again, with file and l
 from __future__ import annotations
 
 import json
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.errors import GraphError, InputErrors
-from rosprivacy.analysis.model import Grant, Place, Policy, Profile
+from rosprivacy.analysis.errors import GraphError, InputErrors, shown
+from rosprivacy.analysis.model import Diagnostic, Grant, Place, Policy, Profile, Severity
 from rosprivacy.ingest.policy import ROLES
+from rosprivacy.ingest.regular import read_regular
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable
 
 FORMAT = "rosprivacy.graph/1"
+MAX_BYTES = 2**30
+AGAIN = "save it again with --save-graph"
 _ROLES = {role: kind for kind, roles in ROLES.values() for role in roles}
 
 
@@ -34,21 +36,31 @@ def read_saved(file: str) -> tuple[Policy, ...]:
     InputErrors
         If it is not such a file, or was changed so that it cannot be read.
     """
+
+    def fail(line: int, problem: str, hint: str) -> GraphError:
+        return GraphError(file, line, problem, hint)
+
     try:
-        data = json.loads(Path(file).read_bytes())
-    except OSError as error:
-        raise InputErrors([GraphError(file, 0, f"cannot be read: {error.strerror}", "correct the path")]) from None
-    except (ValueError, RecursionError) as error:
-        problem = GraphError(file, getattr(error, "lineno", 1), "not JSON", "save it again with --save-graph")
-        raise InputErrors([problem]) from None
-    if not isinstance(data, dict) or data.get("format") != FORMAT:
-        hint = "name a file written by --save-graph of this version"
-        raise InputErrors([GraphError(file, 1, f"not a saved graph ({FORMAT})", hint)])
-    try:
-        return tuple(_read_policy(policy) for policy in data["policies"])
+        return _read(file, fail)
+    except GraphError as error:
+        raise InputErrors([error]) from None
     except (KeyError, TypeError, ValueError, AttributeError) as error:
-        what = f"a damaged graph: {type(error).__name__} at {error}"
-        raise InputErrors([GraphError(file, 1, what, "save it again with --save-graph")]) from None
+        what = f"a damaged graph: {shown(f'{type(error).__name__} at {error}')}"
+        raise InputErrors([fail(1, what, AGAIN)]) from None
+
+
+def _read(file: str, fail: Callable[[int, str, str], GraphError]) -> tuple[Policy, ...]:
+    text = read_regular(file, MAX_BYTES, fail)
+    try:
+        data = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise fail(getattr(error, "lineno", 1), "not JSON", AGAIN) from None
+    if not isinstance(data, dict) or data.get("format") != FORMAT:
+        raise fail(1, f"not a saved graph ({FORMAT})", "name a file written by --save-graph of this version")
+    policies = tuple(_read_policy(policy) for policy in data["policies"])
+    if not policies:
+        raise fail(1, "a saved graph without policies", AGAIN)
+    return policies
 
 
 def _policy(policy: Policy) -> dict[str, Any]:
@@ -70,6 +82,10 @@ def _policy(policy: Policy) -> dict[str, Any]:
             }
             for grant in policy.grants
         ],
+        "diagnostics": [
+            {"severity": str(d.severity), "message": d.message, "file": d.place.file, "line": d.place.line}
+            for d in policy.diagnostics
+        ],
     }
 
 
@@ -87,8 +103,13 @@ def _read_policy(saved: dict[str, Any]) -> Policy:
         )
         for g in saved["grants"]
     ]
+    owners = {(profile.enclave, profile.node) for profile in profiles}
+    for grant in grants:
+        if (grant.enclave, grant.node) not in owners:
+            raise ValueError(f"grant of {grant.node}, which has no profile in {grant.enclave}")
     sources = tuple(sorted((_text(name), _text(digest)) for name, digest in saved["sources"].items()))
-    return Policy(_text(saved["file"]), sources, tuple(profiles), tuple(grants))
+    said = [Diagnostic(_place(d), Severity(d["severity"]), _text(d["message"])) for d in saved["diagnostics"]]
+    return Policy(_text(saved["file"]), sources, tuple(profiles), tuple(grants), tuple(said))
 
 
 def _place(saved: dict[str, Any]) -> Place:
@@ -101,4 +122,5 @@ def _place(saved: dict[str, Any]) -> Place:
 def _text(value: Any) -> str:
     if not isinstance(value, str):
         raise TypeError(repr(value))
+    value.encode()  # half a surrogate pair is no text
     return value

@@ -5,9 +5,10 @@ In: a flow graph. Out: YAML text that is a valid label file as it is (it says no
 
 from __future__ import annotations
 
-import json
 from collections import defaultdict
 from typing import TYPE_CHECKING
+
+import yaml
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping
@@ -32,6 +33,7 @@ HEADER = """\
 # Categories: {categories}
 labels: 1
 """
+LONGEST_KEY = 1000  # of YAML, without a question mark before it
 SCHEMA_FILE = "labels.schema.json"
 
 
@@ -63,7 +65,7 @@ def _nodes(graph: FlowGraph, standard: Collection[tuple[str, str]]) -> Iterator[
     for group, names in sorted(groups.items()):
         yield f"  # enclave {_comment(group)}"
         for name in names:
-            yield f"  {_key(name)}:{_doing(writes.get(name, set()), reads.get(name, set()))}"
+            yield f"  {_key(name)}{_doing(writes.get(name, set()), reads.get(name, set()))}"
 
 
 def _neighbours(
@@ -104,16 +106,19 @@ def _channels(graph: FlowGraph, standard: Collection[tuple[str, str]]) -> Iterat
     yield "\nchannels:"
     for group, names in sorted(groups.items()):
         yield f"  # {group}s" if " " not in group else f"  # {group} of one name"
-        yield from (f"  {_key(name)}:" for name in names)
+        yield from (f"  {_key(name)}" for name in names)
     if taken:
         yield "  # taken as mundane by the standard file; remove the # to say otherwise"
-        yield from (f"  # {_key(name)}: sensitive" for name in taken)
+        yield from (f"  # {_key(name)} sensitive" for name in taken)
 
 
 def _key(name: str) -> str:
-    """A name as a YAML key: JSON's quoting is YAML's too."""
+    """A name as a YAML key, with its colon."""
+    if not name.startswith(("/", "*", "?", "[")):  # sros2 does not repair a namespace without /; labels need one
+        name = ("?" if name[0] in "!^]" else f"[{name[0]}]") + name[1:]
     plain = name.isascii() and all(c.isalnum() or c in "/_-." for c in name)
-    return name if plain else json.dumps(name)
+    text = name if plain else yaml.dump(name, default_style='"', width=float("inf")).strip()
+    return f"{text}:" if len(text) < LONGEST_KEY else f"? {text}\n  :"
 
 
 def _comment(text: str) -> str:

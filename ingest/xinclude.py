@@ -12,6 +12,7 @@ from __future__ import annotations
 import hashlib
 import os
 import re
+import stat
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 NAMESPACES = ("http://www.w3.org/2001/XInclude", "http://www.w3.org/2003/XInclude")
+XML_BASE = "{http://www.w3.org/XML/1998/namespace}base"
 DEPTH = 32
 MAX_BYTES = 64 * 2**20
 
@@ -46,6 +48,11 @@ class Item:
         """The name without its namespace."""
         tag = str(self.element.tag)
         return tag.rpartition("}")[2]
+
+    @property
+    def namespace(self) -> str:
+        """The URI of the name's namespace, empty if it has none."""
+        return str(self.element.tag).rpartition("}")[0][1:]
 
     @property
     def place(self) -> Place:
@@ -84,9 +91,11 @@ class Documents:
             If it cannot be read or is not XML that we take.
         """
         try:
-            return Item(self._load(Path(file), file, Place(file, 0)), file, ((file, ""),))
+            return Item(self._load(Path(file).resolve(), file, Place(file, 0)), file, ((file, ""),))
         except PolicyError as error:
             raise InputErrors([error]) from None
+        except (OSError, RuntimeError, ValueError) as error:
+            raise InputErrors([_error(Place(file, 0), shown(str(error)), "name a file that can be read")]) from None
 
     def children(self, item: Item) -> list[Item]:
         """Return the child elements in document order, includes replaced by what they bring.
@@ -113,22 +122,20 @@ class Documents:
         place = include.place
         if include.tag != "include":
             raise _error(place, f"<{shown(include.tag)}> outside <xi:include>", "remove it")
+        if len(include.chain) > DEPTH:
+            raise _error(place, f"includes nested deeper than {DEPTH}", "include the file directly")
         attributes = include.element.attrib
         parse = str(attributes.get("parse", "xml"))
         if parse != "xml":
             what = f"include with parse={shown(repr(parse))}"
             raise _error(place, what, "only XML is included: remove the attribute, name an XML file")
         href, xpointer = str(attributes.get("href", "")), str(attributes.get("xpointer", ""))
-        if (include.file, href) not in self._targets:
-            self._targets[include.file, href] = self._target(href, include)
-        path, file = self._targets[include.file, href]
-        if path not in self._parsed and not path.exists():
+        path, file = self._target(href, include)
+        if path not in self._parsed and _stat(path, place) is None:
             yield from self._fallback(include, href)
             return
         if (file, xpointer) in include.chain or (not href and not xpointer):
             raise _error(place, f"include loop: {shown(file)} includes itself", "break the loop")
-        if len(include.chain) > DEPTH:
-            raise _error(place, f"includes nested deeper than {DEPTH}", "include the file directly")
         top = Item(self._load(path, file, place), file, (*include.chain, (file, xpointer)))
         chosen = self._select(top, xpointer, place) if xpointer else [top]
         if not chosen:
@@ -137,27 +144,40 @@ class Documents:
         yield from chosen
 
     def _target(self, href: str, include: Item) -> tuple[Path, str]:
-        """The file behind an href, symlinks resolved, refused unless inside the root."""
+        """The file behind an href: its real path, and as it is shown."""
+        key = (include.file, href)
+        if key not in self._targets:
+            self._targets[key] = self._resolve(href, include)
+        return self._targets[key]
+
+    def _resolve(self, href: str, include: Item) -> tuple[Path, str]:
+        """Resolve an href as a URI, by its text; then its symbolic links; refuse what is outside the root."""
+        place = include.place
+        if any(XML_BASE in element.attrib for element in (include.element, *include.element.iterancestors())):
+            raise _error(place, "xml:base is not read", "write the whole relative path in href")
         if not href:
-            return Path(include.file), include.file
-        if re.match(r"[A-Za-z][A-Za-z0-9+.-]*:|//", href) or "#" in href or "\0" in href:
-            raise _error(include.place, f"include of {shown(repr(href))}", "name a file by its relative path")
-        shown_path = os.path.normpath(os.path.join(os.path.dirname(include.file), unquote(href)))  # noqa: PTH118, PTH120 - lexical, to be shown as the user would write it
+            return Path(include.file).resolve(), include.file
+        if re.match(r"[A-Za-z][A-Za-z0-9+.-]*:|//", href) or "#" in href:
+            raise _error(place, f"include of {shown(repr(href))}", "name a file by its relative path")
+        file = os.path.normpath(os.path.join(os.path.dirname(include.file), unquote(href)))  # noqa: PTH118, PTH120 - by its text
         try:
-            path = Path(include.file).parent.joinpath(unquote(href)).resolve()
+            path = Path(file).resolve()
         except (OSError, RuntimeError, ValueError) as error:
-            raise _error(include.place, f"include of {shown(repr(href))}: {error}", "name another file") from None
+            raise _error(place, f"include of {shown(repr(href))}: {shown(str(error))}", "name another file") from None
         if not path.is_relative_to(self.root):
             what = f"include of {shown(repr(href))} leaves the folder {shown(str(self.root))}"
-            raise _error(include.place, what, "move the file inside it, or widen with --include-root")
-        return path, shown_path
+            raise _error(place, what, "move the file inside it, or widen with --include-root")
+        return path, file
 
     def _fallback(self, include: Item, href: str) -> Iterator[Item]:
         """XInclude 4.4: what stands in <xi:fallback> takes the place of a file that is not there."""
         fallbacks = [child for child in include.element if str(child.tag).rpartition("}")[2] == "fallback"]
         if not fallbacks:
             raise _error(include.place, f"included file {shown(repr(href))} not found", "correct the href")
-        yield from self.children(Item(fallbacks[0], include.file, include.chain))
+        fallback = Item(fallbacks[0], include.file, (*include.chain, (include.file, "fallback")))
+        if has_text(fallback):
+            raise _error(fallback.place, "text in <fallback>", "write elements, or remove it")
+        yield from self.children(fallback)
 
     def _select(self, top: Item, xpointer: str, place: Place) -> list[Item]:
         match = _XPOINTER.fullmatch(xpointer)
@@ -187,12 +207,31 @@ class Documents:
         return root
 
 
+def has_text(parent: Item) -> bool:
+    """Whether text other than white space stands between the children of an element."""
+    element = parent.element
+    texts = (element.text, *(child.tail for child in element))
+    return any(text and text.strip() for text in texts)
+
+
+def _stat(path: Path, place: Place) -> os.stat_result | None:
+    """None if the file is not there."""
+    try:
+        return path.stat()
+    except (FileNotFoundError, NotADirectoryError):
+        return None
+    except (OSError, ValueError) as error:
+        what = getattr(error, "strerror", None) or str(error)
+        raise _error(place, f"{shown(str(path))} cannot be read: {what}", "name another file") from None
+
+
 def _size(path: Path, file: str, place: Place) -> int:
-    if not path.exists():
+    found = _stat(path, place)
+    if found is None:
         raise _error(place, f"{shown(file)} not found", "correct the path")
-    if not path.is_file():
+    if not stat.S_ISREG(found.st_mode):
         raise _error(place, f"{shown(file)} is not a regular file", "name an XML file")
-    return path.stat().st_size
+    return found.st_size
 
 
 def _read(path: Path, place: Place) -> bytes:

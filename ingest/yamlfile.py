@@ -1,19 +1,21 @@
 """YAML or JSON from anybody -> values that know their line.
 
-In: a path. Out: a tree of ``Value``. Parsing is PyYAML's safe composer; JSON is checked by the standard library and
-then composed too, for its lines. Anchors, which can make a small file grow without end, are refused.
+In: a path. Out: a tree of ``Value``. YAML is PyYAML's, taken as events and not as its composed nodes: the composer
+recurses, and ends the process on a deep file. JSON is checked and its strings are read by the standard library, which
+knows no lines; these are found here. Anchors, which can make a small file grow without end, are refused.
 """
 
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
-from pathlib import Path
+import re
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import yaml
 
 from rosprivacy.analysis.errors import shown
+from rosprivacy.ingest.regular import read_regular
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -21,7 +23,11 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.errors import InputError
 
 MAX_BYTES = 64 * 2**20
+DEEPEST = 64
 _LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+_RESOLVER: Any = yaml.resolver.Resolver()
+_JSON_TOKEN = re.compile(r'[{}\[\]]|"(?:[^"\\]|\\.)*"|[^\s{}\[\]",:]+')
+_EMPTY = ("the file is empty", "write at least 'labels: 1'")
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +77,7 @@ def read(file: str, fail: Callable[[int, str, str], InputError]) -> tuple[Value,
     InputError
         Of the caller's kind.
     """
-    data = _bytes(file, fail)
+    data = read_regular(file, MAX_BYTES, fail)
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -83,72 +89,138 @@ def read(file: str, fail: Callable[[int, str, str], InputError]) -> tuple[Value,
 def parse(text: str, fail: Callable[[int, str, str], InputError]) -> Value:
     """Read YAML or JSON text; see ``read``."""
     if not text.strip():
-        raise fail(1, "the file is empty", "write at least 'labels: 1'")
-    if text.lstrip().startswith("{"):
-        text = _json_as_yaml(text)
+        raise fail(1, *_EMPTY)
+    builder = _Builder(fail)
+    if text.lstrip().startswith("{") and _is_json(text, fail):
+        _feed_json(text, builder)
+    else:
+        _feed_yaml(text, builder, fail)
+    if builder.top is None:
+        raise fail(1, *_EMPTY)
+    return builder.top
+
+
+@dataclass(slots=True)
+class _Open:
+    """A list or map that is not closed yet."""
+
+    line: int
+    kind: str
+    items: list[Value] = field(default_factory=list)
+    entries: dict[str, tuple[int, Value]] = field(default_factory=dict)
+    key: tuple[str, int] | None = None
+
+
+class _Builder:
+    """Puts values together from what a parser finds, one after the other, without recursion."""
+
+    def __init__(self, fail: Callable[[int, str, str], InputError]) -> None:
+        self.fail = fail
+        self.top: Value | None = None
+        self.open: list[_Open] = []
+
+    def scalar(self, line: int, kind: str, text: str) -> None:
+        """A scalar, or the key of a map."""
+        text = text.encode("utf-16", "surrogatepass").decode("utf-16", "replace")  # half a pair is none
+        here = self.open[-1] if self.open else None
+        if here and here.kind == "map" and here.key is None:
+            if text in here.entries:
+                what = f"{shown(text)!r} again, first in line {here.entries[text][0]}"
+                raise self.fail(line, what, "merge the two")
+            here.key = (text, line)
+        else:
+            self._add(Value(line, kind, text))
+
+    def begin(self, line: int, kind: str) -> None:
+        """A list or map begins."""
+        if self.open and self.open[-1].kind == "map" and self.open[-1].key is None:
+            raise self.fail(line, "a key that is not a name", "write a plain name before the colon")
+        if len(self.open) >= DEEPEST:
+            raise self.fail(line, "nested too deeply", "write it flatter")
+        self.open.append(_Open(line, kind))
+
+    def end(self) -> None:
+        """The list or map that began last is whole."""
+        done = self.open.pop()
+        entries = tuple((name, line, value) for name, (line, value) in done.entries.items())
+        self._add(Value(done.line, done.kind, items=tuple(done.items), entries=entries))
+
+    def _add(self, value: Value) -> None:
+        if not self.open:
+            self.top = value
+        elif (here := self.open[-1]).key is not None:
+            name, line = here.key
+            here.entries[name] = (line, value)
+            here.key = None
+        else:
+            here.items.append(value)
+
+
+def _feed_yaml(text: str, builder: _Builder, fail: Callable[[int, str, str], InputError]) -> None:
+    unprintable = yaml.reader.Reader.NON_PRINTABLE.search(text)
+    if unprintable:
+        line = text.count("\n", 0, unprintable.start()) + 1
+        raise fail(line, f"not YAML: control character {shown(unprintable[0])}", "remove it")
     try:
-        node = yaml.compose(text, Loader=_LOADER)
+        for event in yaml.parse(text, Loader=_LOADER):
+            _feed_event(event, builder, fail)
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         problem = error.problem or error.context or "not YAML"
         raise fail(mark.line + 1 if mark else 1, f"not YAML: {shown(problem)}", "correct the syntax") from None
     except (yaml.YAMLError, ValueError) as error:
-        raise fail(1, f"not YAML: {shown(str(error).splitlines()[0])}", "correct the syntax") from None
+        raise fail(1, f"not YAML: {shown(str(error))}", "correct the syntax") from None
     except RecursionError:
         raise fail(1, "nested too deeply", "write it flatter") from None
-    if node is None:
-        raise fail(1, "the file is empty", "write at least 'labels: 1'")
-    return _value(node, set(), fail)
 
 
-def _bytes(file: str, fail: Callable[[int, str, str], InputError]) -> bytes:
-    path = Path(file)
-    try:
-        if not path.exists():
-            raise fail(0, "file not found", "correct the path")
-        if not path.is_file():
-            raise fail(0, "not a regular file", "name a YAML or JSON file")
-        if path.stat().st_size > MAX_BYTES:
-            raise fail(0, f"more than {MAX_BYTES} bytes", "split the file")
-        return path.read_bytes()
-    except OSError as error:
-        raise fail(0, f"cannot be read: {error.strerror}", "check its permissions") from None
-
-
-def _json_as_yaml(text: str) -> str:
-    """JSON is YAML but for tabs between its tokens; inside its strings they cannot stand."""
-    try:
-        json.loads(text)
-    except (ValueError, RecursionError):
-        return text  # perhaps YAML's own {…}
-    return text.replace("\t", " ")
-
-
-def _value(node: yaml.Node, seen: set[int], fail: Callable[[int, str, str], InputError]) -> Value:
-    line = node.start_mark.line + 1
-    if isinstance(node, yaml.ScalarNode):
-        return Value(line, _scalar_kind(node.tag), _joined(node.value))
-    if id(node) in seen:
+def _feed_event(event: yaml.Event, builder: _Builder, fail: Callable[[int, str, str], InputError]) -> None:
+    line = event.start_mark.line + 1 if event.start_mark else 1
+    if getattr(event, "anchor", None):
         raise fail(line, "anchors and aliases are not read", "write the value out where it is used")
-    seen.add(id(node))
-    if isinstance(node, yaml.SequenceNode):
-        return Value(line, "list", items=tuple(_value(item, seen, fail) for item in node.value))
-    entries: dict[str, tuple[int, Value]] = {}
-    for key, value in node.value:
-        at = key.start_mark.line + 1
-        if not isinstance(key, yaml.ScalarNode):
-            raise fail(at, "a key that is not a name", "write a plain name before the colon")
-        name = _joined(key.value)
-        if name in entries:
-            raise fail(at, f"{shown(name)!r} again, first in line {entries[name][0]}", "merge the two")
-        entries[name] = (at, _value(value, seen, fail))
-    return Value(line, "map", entries=tuple((name, at, value) for name, (at, value) in entries.items()))
+    if isinstance(event, yaml.DocumentStartEvent) and builder.top is not None:
+        raise fail(line, "not YAML: a second document", "keep one")
+    if isinstance(event, yaml.ScalarEvent):
+        builder.scalar(line, _scalar_kind(event), event.value)
+    elif isinstance(event, yaml.SequenceStartEvent):
+        builder.begin(line, "list")
+    elif isinstance(event, yaml.MappingStartEvent):
+        builder.begin(line, "map")
+    elif isinstance(event, yaml.CollectionEndEvent):
+        builder.end()
 
 
-def _scalar_kind(tag: str) -> str:
+def _scalar_kind(event: yaml.ScalarEvent) -> str:
+    """What YAML's core rules take a scalar for."""
+    tag = event.tag
+    if tag in (None, "!"):
+        tag = _RESOLVER.resolve(yaml.ScalarNode, event.value, event.implicit)
     return {"tag:yaml.org,2002:str": "text", "tag:yaml.org,2002:null": "empty"}.get(tag, "number")
 
 
-def _joined(text: str) -> str:
-    """Two halves of a JSON surrogate pair are one character."""
-    return text.encode("utf-16", "surrogatepass").decode("utf-16", "replace")
+def _is_json(text: str, fail: Callable[[int, str, str], InputError]) -> bool:
+    """What begins with a brace may also be YAML's own {…}."""
+    try:
+        json.loads(text)
+    except RecursionError:
+        raise fail(1, "nested too deeply", "write it flatter") from None
+    except ValueError:
+        return False
+    return True
+
+
+def _feed_json(text: str, builder: _Builder) -> None:
+    """Walk over JSON that is known to be right."""
+    line, at = 1, 0
+    for token in _JSON_TOKEN.finditer(text):
+        line += text.count("\n", at, token.start())
+        at = token.start()
+        word = token[0]
+        if word in "{[":
+            builder.begin(line, "map" if word == "{" else "list")
+        elif word in "}]":
+            builder.end()
+        elif word.startswith('"'):
+            builder.scalar(line, "text", json.loads(word))
+        else:
+            builder.scalar(line, "empty" if word == "null" else "number", word)

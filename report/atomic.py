@@ -1,35 +1,63 @@
-"""Files are written whole or not at all: to a neighbour first, then renamed over the old one."""
+"""Files are written whole or not at all: to a neighbour first, then renamed over the old one.
+
+What is no regular file (a pipe, ``/dev/stdout``) cannot be replaced so and is written to.
+"""
 
 from __future__ import annotations
 
 import os
 import tempfile
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError
 
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
-def write_text(path: Path, text: str) -> None:
-    """Write UTF-8 text to a file in one step.
+
+def write_texts(texts: Mapping[Path, str]) -> None:
+    """Write UTF-8 texts to files, all of them or none.
 
     Raises
     ------
     InputError
-        If the folder is not there or cannot be written; what was at the path is then untouched.
+        If a folder is not there or a file cannot be written; what was at the paths is then untouched.
     """
+    staged: dict[str, Path] = {}
+    at = Path()
     try:
-        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name[:50]}.")
-        try:
-            with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as file:
-                file.write(text)
-            Path(temporary).chmod(path.stat().st_mode if path.exists() else 0o666 & ~_umask())
-            Path(temporary).replace(path)
-        except BaseException:
-            Path(temporary).unlink(missing_ok=True)
-            raise
-    except OSError as error:
+        for at, text in texts.items():
+            if at.exists() and not at.is_file() and not at.is_dir():
+                at.write_text(text, "utf-8", newline="\n")
+            else:
+                target = at.resolve()
+                staged[_stage(target, text)] = target
+        for temporary, at in staged.items():
+            Path(temporary).replace(at)
+    except (OSError, RuntimeError, ValueError) as error:
+        what = getattr(error, "strerror", None) or str(error)
         hint = "name a file in a folder that can be written"
-        raise InputError(str(path), 0, f"cannot be written: {error.strerror}", hint) from None
+        raise InputError(str(at), 0, f"cannot be written: {what}", hint) from None
+    finally:
+        for temporary in staged:
+            Path(temporary).unlink(missing_ok=True)
+
+
+def _stage(target: Path, text: str) -> str:
+    """Write a text beside its target, with the target's permissions; return where."""
+    if target.is_dir():
+        raise IsADirectoryError(0, "it is a folder")
+    mode = target.stat().st_mode if target.exists() else 0o666 & ~_umask()
+    handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name[:50]}.")
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as file:
+            file.write(text)
+        Path(temporary).chmod(mode)
+    except BaseException:
+        Path(temporary).unlink(missing_ok=True)
+        raise
+    return temporary
 
 
 def _umask() -> int:

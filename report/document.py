@@ -79,8 +79,12 @@ def document(
 
 
 def as_text(value: Any) -> str:
-    """Return JSON text that is the same for the same value, and ends with a newline."""
-    return json.dumps(value, indent=2, ensure_ascii=False) + "\n"
+    """Return JSON text that is the same for the same value, and ends with a newline.
+
+    What UTF-8 cannot say (a file name that is none) is escaped.
+    """
+    text = json.dumps(value, indent=2, ensure_ascii=False) + "\n"
+    return text.encode("utf-8", "backslashreplace").decode()
 
 
 def element_dict(element: Element) -> dict[str, Any]:

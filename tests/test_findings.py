@@ -301,3 +301,6 @@ def test_an_answer_about_some_categories_is_a_part_of_the_whole_answer(system: S
         return
     part = system.analyse(Options(categories={name}))
     assert part.findings == tuple(f for f in found.findings if f.category == name)
+    assert {q.element for q in part.open} == {q.element for q in found.open if name in q.categories}
+    frontier = {q.element for q in found.open if q.frontier}
+    assert {q.element for q in part.open if q.frontier} <= frontier

@@ -6,6 +6,7 @@ Exit codes: 0 no leak found, 1 leak, 2 bad input or usage, 3 database unreachabl
 
 from __future__ import annotations
 
+import os
 import sys
 from enum import StrEnum
 from pathlib import Path
@@ -14,12 +15,14 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 import rosprivacy
-from rosprivacy.analysis.errors import RosPrivacyError
+from rosprivacy.analysis.errors import InputError, RosPrivacyError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from rosprivacy.assembly import Result, Settings
+
+SIGPIPE = 13  # the module signal lacks it on Windows
 
 app = typer.Typer(
     name="rosprivacy",
@@ -153,12 +156,13 @@ def analyze(
         progress=_progress,
     )
     result = run(_named(policies, settings), tuple(labels or ()), settings)
+    texts = {}
     if save_graph:
         from rosprivacy.ingest.saved import as_dict
         from rosprivacy.report.document import as_text
 
-        _write(save_graph, as_text(as_dict(result.policies)))
-    _emit(_report(result, format, colour=output is None, quiet=quiet, verbose=verbose), output)
+        texts[save_graph] = as_text(as_dict(result.policies))
+    _emit(_report(result, format, colour=output is None, quiet=quiet, verbose=verbose), output, texts)
     raise typer.Exit(_exit_code(str(result.analysis.verdict), fail_on))
 
 
@@ -238,18 +242,30 @@ def _exit_code(verdict: str, fail_on: FailOn) -> int:
     return 4 if verdict == "undetermined" and fail_on is FailOn.undetermined else 0
 
 
-def _emit(text: str, output: Path | None) -> None:
+def _emit(text: str, output: Path | None, others: Mapping[Path, str] | None = None) -> None:
+    """Write the text to a file or to standard output, and other files with it."""
+    texts = {**(others or {}), **({output: text} if output else {})}
+    if texts:
+        from rosprivacy.report.atomic import write_texts
+
+        write_texts(texts)
     if output:
-        _write(output, text)
-    else:
-        sys.stdout.write(text)
+        return
+    try:
+        sys.stdout.buffer.write(text.encode(_encoding(text), "backslashreplace"))
+        sys.stdout.flush()
+    except BrokenPipeError:  # `| head`: end as a program does that knows nothing of pipes, not with a verdict
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        sys.exit(128 + SIGPIPE)
+    except OSError as error:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        hint = "free space, or write elsewhere"
+        raise InputError("standard output", 0, f"cannot be written: {error.strerror}", hint) from None
 
 
-def _write(path: Path, text: str) -> None:
-    """Write a file whole or not at all."""
-    from rosprivacy.report.atomic import write_text
-
-    write_text(path, text)
+def _encoding(text: str) -> str:
+    """JSON is UTF-8 wherever it goes; other text is what the terminal understands."""
+    return "utf-8" if text.startswith("{") else sys.stdout.encoding
 
 
 def _progress(files: Sequence[str]) -> Iterable[str]:

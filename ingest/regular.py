@@ -1,0 +1,45 @@
+"""A file that the user names -> its bytes: a regular file, of bounded size, or an error that says why not.
+
+A pipe would be waited for, a device read without end: neither is opened.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.errors import shown
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rosprivacy.analysis.errors import InputError
+
+
+def read_regular(file: str, max_bytes: int, fail: Callable[[int, str, str], InputError]) -> bytes:
+    """Read a file whole.
+
+    Parameters
+    ----------
+    fail
+        Makes the error of the caller's kind from line, problem and hint.
+
+    Raises
+    ------
+    InputError
+        Of the caller's kind.
+    """
+    path = Path(file)
+    try:
+        if not file:
+            raise fail(0, "no file named", "name a file")
+        if not path.exists():
+            raise fail(0, "file not found", "correct the path")
+        if not path.is_file():
+            raise fail(0, "not a regular file", "name a regular file")
+        if path.stat().st_size > max_bytes:
+            raise fail(0, f"more than {max_bytes} bytes", "split the file")
+        return path.read_bytes()
+    except (OSError, ValueError) as error:
+        what = getattr(error, "strerror", None) or str(error)
+        raise fail(0, f"cannot be read: {shown(what)}", "check the path and its permissions") from None

@@ -1,0 +1,239 @@
+"""Mutated policies and label files: a result, or one line for each problem; nothing else, and nothing opened outside.
+
+The mutations and ``Guard`` are in ``fuzz_corpus.py``, which does the same with real policies, by the thousand.
+"""
+
+from __future__ import annotations
+
+import json
+import runpy
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+import rosprivacy
+from rosprivacy.analysis.errors import InputErrors, LabelError
+from rosprivacy.ingest.labels import read_labels
+from rosprivacy.ingest.policy import read_policy
+from rosprivacy.ingest.saved import as_dict, read_saved
+from rosprivacy.ontology.vocabulary import load
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from random import Random
+
+FUZZ = runpy.run_path(str(Path(__file__).with_name("fuzz_corpus.py")))
+FACTORY = Path(__file__).resolve().parent.parent / "examples" / "factory"
+
+POLICY = """<?xml version="1.0" encoding="UTF-8"?>
+<policy version="0.2.0" xmlns:xi="http://www.w3.org/2001/XInclude">
+  <enclaves>
+    <enclave path="/robot">
+      <profiles type="x">
+        <profile ns="/" node="camera">
+          <xi:include href="node.xml" xpointer="xpointer(/profile/*)"/>
+          <topics publish="ALLOW" subscribe="DENY"><topic>image*</topic><topic>~/raw</topic></topics>
+          <services reply="ALLOW"><service>/snap</service></services>
+          <metadata><any/></metadata>
+        </profile>
+        <profile ns="/a" node="arm">
+          <!-- a comment -->
+          <topics subscribe="ALLOW"><topic>/image?[a-z]</topic><topic>/imagex</topic></topics>
+          <topics subscribe="DENY"><topic>/image?b</topic></topics>
+          <actions call="ALLOW" execute="DENY"><action>/spin</action><action>/s*</action></actions>
+          <services request="ALLOW"><service>/snap</service><service>/x/_action/send_goal</service></services>
+        </profile>
+      </profiles>
+    </enclave>
+    <enclave path="/other">
+      <profiles>
+        <profile ns="/a" node="arm"><topics publish="ALLOW"><topic>/x/_action/status</topic></topics></profile>
+      </profiles>
+      <profiles><profile ns="" node="b"/></profiles>
+    </enclave>
+  </enclaves>
+</policy>
+"""
+OLD = """<policy version="0.1.0"><profiles>
+<profile ns="/" node="a"><topics publish="ALLOW"><topic>~x</topic></topics></profile></profiles></policy>
+"""
+NAMES = "labels: 1\nnodes:\n  '*': {source: [Video], leak: [Voice], derives: [{from: Video, to: Voice}]}\n"
+SIX = '{\n\t"source": ["/robot_camera"],\n\t"leak": ["/archive_server"],\n\t"mundane": []\n}\n'
+
+
+WEEKDAYS = settings(
+    max_examples=100, deadline=None, database=None, derandomize=True, suppress_health_check=list(HealthCheck)
+)
+SUNDAYS = settings(WEEKDAYS, max_examples=5000, derandomize=False)
+DICE = st.randoms(use_true_random=True)  # seeded by hypothesis; spread more evenly than its own
+
+
+@pytest.fixture(scope="module")
+def root() -> Iterator[Path]:
+    """A folder with policies and hostile links, beside one that nobody may read."""
+    with tempfile.TemporaryDirectory() as folder:
+        root, outside = Path(folder, "root"), Path(folder, "outside")
+        root.mkdir()
+        FUZZ["hide"](outside)
+        FUZZ["plant"](root, outside)
+        (root / "node.xml").write_bytes((FACTORY / "node.xml").read_bytes())
+        (root / "names.yaml").write_text(NAMES)
+        yield root
+
+
+def never_crashes(root: Path, random: Random, kind: str, seeds: list[bytes], read: Callable[[Path], Any]) -> str:
+    """Write a mutated seed and read it; nothing outside is opened."""
+    outside = root.parent / "outside"
+    file = root / f"mutated.{kind}"
+    file.write_bytes(FUZZ["mutate"](random, random.choice(seeds), FUZZ["words"](kind, outside)))
+    with FUZZ["Guard"](outside) as guard:
+        result: str = FUZZ["outcome"](lambda: read(file))
+    assert guard.opened == []
+    return result
+
+
+def policies() -> list[bytes]:
+    return [POLICY.encode(), POLICY.encode(), OLD.encode(), (FACTORY / "before.policy.xml").read_bytes()]
+
+
+def labels() -> list[bytes]:
+    files = [path.read_bytes() for path in sorted(FACTORY.glob("*.labels.yaml"))]
+    return [*files, SIX.encode(), FUZZ["LABELS"].encode(), FUZZ["LABELS"].encode()]
+
+
+# ---------------------------------------------------------------- the net has no holes
+
+
+def test_the_seeds_are_good(root: Path) -> None:
+    for seed in policies():
+        (root / "seed.xml").write_bytes(seed)
+        assert read_policy(str(root / "seed.xml")).grants
+        rosprivacy.analyze([str(root / "seed.xml")], [str(root / "names.yaml")]).document()
+    for seed in labels():
+        (root / "seed.yaml").write_bytes(seed)
+        assert read_labels(str(root / "seed.yaml"), load()).entries
+
+
+def test_the_guard_sees_what_python_and_what_c_opens(root: Path) -> None:
+    from lxml import etree
+
+    with FUZZ["Guard"](root.parent / "outside") as guard:
+        (root / "link.xml").read_text()
+        assert len(guard.check()) > 0
+    with FUZZ["Guard"](root.parent / "outside") as guard:
+        etree.parse(str(root / "link.xml"))
+        assert guard.check() == ["secret.xml"]
+
+
+def test_an_outcome_is_accepted_or_refused_and_nothing_else() -> None:
+    def refuse(problem: str) -> None:
+        raise InputErrors([LabelError("f", 1, problem, "do")])
+
+    assert FUZZ["outcome"](lambda: None) == "accepted"
+    assert FUZZ["outcome"](lambda: refuse("bad")) == "refused"
+    with pytest.raises(AssertionError):
+        FUZZ["outcome"](lambda: refuse("two\nlines"))
+    with pytest.raises(AssertionError):
+        FUZZ["outcome"](lambda: ["/outside_the_root"])
+    with pytest.raises(ZeroDivisionError):
+        FUZZ["outcome"](lambda: 1 / 0)
+
+
+# ---------------------------------------------------------------- mutations
+
+
+def _policy(root: Path, random: Random) -> None:
+    never_crashes(root, random, "policy", policies(), lambda file: read_policy(str(file)))
+
+
+def _fragment(root: Path, random: Random) -> None:
+    (root / "p.xml").write_text(POLICY.replace("node.xml", "mutated.policy"))
+    seeds = [(FACTORY / "node.xml").read_bytes()]
+    never_crashes(root, random, "policy", seeds, lambda _: read_policy(str(root / "p.xml")))
+
+
+def _label(root: Path, random: Random) -> None:
+    vocabulary = load()
+    never_crashes(root, random, "label", labels(), lambda file: read_labels(str(file), vocabulary))
+
+
+def _analysis_of_policy(root: Path, random: Random) -> None:
+    def analyse(file: Path) -> Any:
+        view = random.choice(("declared", "enforced"))
+        return rosprivacy.analyze([str(file)], [str(root / "names.yaml")], view=view, paths="all").document()
+
+    never_crashes(root, random, "policy", policies(), analyse)
+
+
+def _analysis_of_label(root: Path, random: Random) -> None:
+    policy = str(FACTORY / "after.policy.xml")
+    never_crashes(root, random, "label", labels(), lambda file: rosprivacy.analyze([policy], [str(file)]).document())
+
+
+def _saved_graph(root: Path, random: Random) -> None:
+    (root / "p.xml").write_text(POLICY)
+    seed = json.dumps(as_dict([read_policy(str(root / "p.xml"))]), indent=1)
+
+    def add(file: Path) -> Any:
+        read_saved(str(file))
+        return rosprivacy.analyze([], [str(root / "names.yaml")], add=(str(file),)).document()
+
+    never_crashes(root, random, "label", [seed.encode()], add)
+
+
+TARGETS = [_policy, _fragment, _label, _analysis_of_policy, _analysis_of_label, _saved_graph]
+
+
+@pytest.mark.parametrize("target", TARGETS, ids=lambda target: target.__name__.strip("_"))
+def test_a_mutation_is_read_or_refused(root: Path, target: Callable[[Path, Random], None]) -> None:
+    @WEEKDAYS
+    @given(DICE)
+    def mutations(random: Random) -> None:
+        target(root, random)
+
+    mutations()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("target", TARGETS, ids=lambda target: target.__name__.strip("_"))
+def test_thousands_of_mutations_are_read_or_refused(root: Path, target: Callable[[Path, Random], None]) -> None:
+    @SUNDAYS
+    @given(DICE)
+    def mutations(random: Random) -> None:
+        target(root, random)
+
+    mutations()
+
+
+# ---------------------------------------------------------------- made from nothing
+
+
+@WEEKDAYS
+@given(st.binary(max_size=200))
+def test_any_bytes_are_refused_as_policy_and_labels(root: Path, data: bytes) -> None:
+    (root / "any").write_bytes(data)
+    assert FUZZ["outcome"](lambda: read_policy(str(root / "any"))) == "refused"
+    FUZZ["outcome"](lambda: read_labels(str(root / "any"), load()))
+
+
+XML_TEXT = st.text(st.characters(exclude_categories=["Cs", "Cc"], exclude_characters="\ufffe\uffff"), max_size=8)
+
+
+@WEEKDAYS
+@given(XML_TEXT, XML_TEXT, XML_TEXT, XML_TEXT)
+def test_any_names_are_carried_through_to_the_report(root: Path, ns: str, node: str, path: str, topic: str) -> None:
+    from xml.sax.saxutils import escape, quoteattr
+
+    head = f"<policy version='0.2.0'><enclaves><enclave path={quoteattr(path)}><profiles>"
+    profile = (
+        f"<profile ns={quoteattr(ns)} node={quoteattr(node)}><topics publish='ALLOW'><topic>{escape(topic)}</topic>"
+    )
+    tail = "</topics></profile></profiles></enclave></enclaves></policy>"
+    (root / "names.xml").write_text(head + profile + tail, "utf-8")
+    (root / "mundane.yaml").write_text("labels: 1\nchannels: {'*': mundane}")
+    files = [str(root / "names.xml")], [str(root / "names.yaml"), str(root / "mundane.yaml")]
+    FUZZ["outcome"](lambda: rosprivacy.analyze(*files).document())
