@@ -90,6 +90,7 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
         carried=_carried(found, mask, hierarchy),
         roles=_roles(found, mask),
         standard_channels=_standard_channels(found),
+        spread=found,
         unstated=tuple(_unstated(found)),
         diagnostics=() if sources else (_no_source(options),),
     )
@@ -141,7 +142,7 @@ def _findings_of(
                 continue
             if (i, dismissed) not in between:
                 stop = {} if dismissed else _leaks_of(found, i)
-                between[i, dismissed] = Between(net, chosen, source, i, stop)
+                between[i, dismissed] = Between(net, chosen, source, i, _relevant(found, i), stop)
             more = further(between[i, dismissed], leak, memory, options.paths, options.max_paths)
             yield leak, i, replace(finding, disjoint_paths=more.disjoint, paths=more.paths, bounded=more.bounded)
 
@@ -149,12 +150,23 @@ def _findings_of(
 def _search_free(net: Net, source: int, i: int, free: dict[int, Search]) -> None:
     """Search with the leaks of category i as ends; one search serves all categories that nothing is made into."""
     found, k = net.spread, len(net.spread.categories)
-    made = {after % k for pairs in found.derives.values() for before, after in pairs if after % k != before % k}
+    made = _made(found)
     together = [i] if i in made else [j for j in range(k) if j not in made]
     stop = {v: bits & sum(1 << j | 1 << j + k for j in together) for v, bits in found.leaks.items()}
     allowed = found.all_bits if i in made else sum(1 << j | 1 << j + k for j in together)
     result = search(net, [source], allowed, stop)
     free.update(dict.fromkeys(together, result))
+
+
+def _made(found: Spread) -> set[int]:
+    """Numbers of the categories that others are made into."""
+    k = len(found.categories)
+    return {after % k for pairs in found.derives.values() for before, after in pairs if after % k != before % k}
+
+
+def _relevant(found: Spread, i: int) -> int:
+    """Bits of what a category can be made of: its own, or for simplicity all."""
+    return found.all_bits if i in _made(found) else found.both(found.categories[i])
 
 
 def _leaks_of(found: Spread, i: int) -> dict[int, int]:

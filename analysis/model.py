@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from rosprivacy.analysis.spread import Spread
+
 KINDS = ("node", "action", "service", "topic")  # nodes first: flow.py sweeps nodes and channels in turn
 
 
@@ -405,6 +407,8 @@ class Analysis:
         Per vertex and emitted category the roles of nodes that hold, sorted; what labels decided.
     standard_channels
         Channels taken as mundane by the shipped file (rule S13).
+    spread
+        The fixpoint itself: what is at every vertex and along every flow.
     unstated
         (element, category) of sanitizers whose method no label states.
     """
@@ -417,5 +421,6 @@ class Analysis:
     carried: tuple[Carried, ...]
     roles: Mapping[Element, Mapping[str, tuple[str, ...]]]
     standard_channels: int
+    spread: Spread
     unstated: tuple[tuple[Element, str], ...] = ()
     diagnostics: tuple[Diagnostic, ...] = ()

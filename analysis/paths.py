@@ -6,7 +6,7 @@ source and the leak. A path is one over (element, category): where nothing is de
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import defaultdict, deque
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -52,75 +52,120 @@ class Between:
         The search whose reach they lie in.
     category
         Its number.
+    relevant
+        Bits of the categories that it can be made of, its own included.
     stop
         Vertex -> bits that are not followed on from there.
     """
 
-    def __init__(self, net: Net, way: Search, source: int, category: int, stop: Mapping[int, int]) -> None:
+    def __init__(
+        self, net: Net, way: Search, source: int, category: int, relevant: int, stop: Mapping[int, int]
+    ) -> None:
         self.net = net
         self.source = source
         self.category = category
+        self.relevant = relevant
         self.k = len(net.spread.categories)
         self.starts = way.begun.get(source, 0)
-        self.edges = sorted(set(self._edges(way, stop)))
+        self.emits = self.starts & net.spread.emits.get(source, 0)
+        self.back: dict[State, set[State]] = defaultdict(set)
+        for before, after in self._edges(way, stop):
+            self.back[after].add(before)
 
     def _edges(self, way: Search, stop: Mapping[int, int]) -> Iterable[tuple[State, State]]:
-        spread = self.net.spread
+        spread, everything = self.net.spread, self.net.spread.all_bits
         for index, target, passing in self.net.flows.get(self.source, ()):
             bits = (spread.emits.get(self.source, 0) | spread.flow_emits.get(index, 0)) & self.starts & passing
-            yield from (((self.source, SOURCE), self._state(target, bit)) for bit in bits_of(bits))
+            yield from (((self.source, SOURCE), state) for state in self._states(target, bits))
         for vertex, seen in way.seen.items():
-            for bit in bits_of(seen & ~stop.get(vertex, 0)):
-                here = self._state(vertex, bit)
-                leaving = 1 << bit & spread.keeps.get(vertex, spread.all_bits)
-                leaving |= sum(1 << after for before, after in spread.derives.get(vertex, ()) if before == bit)
-                for _, target, passing in self.net.flows.get(vertex, ()):
-                    yield from ((here, self._state(target, out)) for out in bits_of(leaving & passing))
+            for here in self._states(vertex, seen & ~stop.get(vertex, 0)):
+                arriving = seen & ~stop.get(vertex, 0) & self._both(here[1]) if here[1] != SOURCE else 0
+                leaving = arriving & spread.keeps.get(vertex, everything)
+                for before, after in spread.derives.get(vertex, ()):
+                    leaving |= (arriving >> before & 1) << after
+                for index, target, passing in self.net.flows.get(vertex, ()) if leaving else ():
+                    moved = leaving & passing
+                    if vertex == self.source:  # what it emits along a flow does not go there a second time
+                        moved &= ~spread.flow_emits.get(index, 0)
+                    yield from ((here, state) for state in self._states(target, moved))
 
-    def _state(self, vertex: int, bit: int) -> State:
-        if vertex == self.source and self.starts >> bit % self.k & 1:
-            return (vertex, SOURCE)
-        return (vertex, bit % self.k)
+    def _both(self, number: int) -> int:
+        return 1 << number | 1 << number + self.k
 
-    def to(self, leak: int, memory: dict[Any, Any]) -> tuple[list[list[int]], Any]:
-        """Return the paths to a leak that share no flow, as vertices, and the graph that they lie in.
+    def _states(self, vertex: int, bits: int) -> Iterable[State]:
+        """The states that data with some bits is in at a vertex, its two planes put together."""
+        bits &= self.relevant
+        either = (bits | bits >> self.k) & ((1 << self.k) - 1)
+        for number in bits_of(either):
+            begun = vertex == self.source and self.emits >> number & 1
+            yield (vertex, SOURCE if begun else number)
+
+    def to(self, leak: int, memory: dict[Any, Any]) -> tuple[list[list[int]], list[tuple[State, State]]]:
+        """Return the paths to a leak that share no flow, as vertices, and the edges that they lie among.
 
         Parameters
         ----------
         memory
             Answers for equal graphs: kinds of data often go the same ways.
         """
+        edges = self._leading_to(leak)
+        # one kind of data is like another where nothing is made into it
+        key = tuple(edges) if any(a[1] not in (SOURCE, self.category) for a, _ in edges) else _vertices(edges)
+        if key not in memory:
+            memory[key] = _disjoint(edges, (self.source, SOURCE), (leak, LEAK))
+        return memory[key], edges
+
+    def _leading_to(self, leak: int) -> list[tuple[State, State]]:
+        """The edges from which a leak can be reached, sorted."""
         pairs = self.net.spread.derives.get(leak, ())
         ends = {(leak, before % self.k) for before, after in pairs if after % self.k == self.category}
         ends.add((leak, self.category))
-        end = (leak, LEAK)
-        edges = [(a, end if b in ends else b) for a, b in self.edges if a not in ends and b[1] != SOURCE]
-        kept = _leading_to(end, edges)
-        number = {self.category: 0}
-        key = tuple((a[0], number.get(a[1], a[1] + 1), b[0], number.get(b[1], b[1] + 1)) for a, b in kept)
-        if key not in memory:
-            import networkx as nx  # noqa: PLC0415 - heavy, and only needed where there is a finding
+        edges: set[tuple[State, State]] = set()
+        reached, waiting = set(ends), list(ends)
+        while waiting:
+            after = waiting.pop()
+            for before in self.back.get(after, ()):
+                if before in ends:
+                    continue
+                edges.add((before, (leak, LEAK) if after in ends else after))
+                if before not in reached:
+                    reached.add(before)
+                    if before[1] != SOURCE:
+                        waiting.append(before)
+        return sorted(edges)
 
-            graph = nx.DiGraph(kept)
-            paths = [[state[0] for state in path] for path in nx.edge_disjoint_paths(graph, (self.source, SOURCE), end)]
-            memory[key] = sorted(paths, key=lambda path: (len(path), path)), graph
-        disjoint, graph = memory[key]
-        return disjoint, graph
+
+def _vertices(edges: list[tuple[State, State]]) -> tuple[tuple[int, int], ...]:
+    return tuple((a[0], b[0]) for a, b in edges)
 
 
-def _leading_to(end: State, edges: list[tuple[State, State]]) -> list[tuple[State, State]]:
-    """The edges from which the end can be reached, sorted."""
-    back: dict[State, list[State]] = defaultdict(list)
-    for a, b in edges:
-        back[b].append(a)
-    reached = {end}
-    waiting = [end]
-    while waiting:
-        for state in back.get(waiting.pop(), ()):
-            if state not in reached:
-                reached.add(state)
-                waiting.append(state)
-    return sorted({(a, b) for a, b in edges if b in reached and a in reached})
+def _disjoint(edges: list[tuple[State, State]], source: State, leak: State) -> list[list[int]]:
+    """The paths that share no flow, as vertices, shortest first."""
+    first, last = [b for a, b in edges if a == source], [a for a, b in edges if b == leak]
+    if len(first) == 1 or len(last) == 1:  # a flow that all paths share: the shortest is one of them
+        return [_shortest(edges, source, leak)]
+    import networkx as nx  # noqa: PLC0415 - heavy, and only needed where there may be several
+
+    paths = nx.edge_disjoint_paths(nx.DiGraph(edges), source, leak)
+    return sorted(([state[0] for state in path] for path in paths), key=lambda path: (len(path), path))
+
+
+def _shortest(edges: list[tuple[State, State]], source: State, leak: State) -> list[int]:
+    ahead: dict[State, list[State]] = defaultdict(list)
+    for before, after in edges:
+        ahead[before].append(after)
+    came: dict[State, State] = {}
+    waiting = deque([source])
+    while leak not in came:
+        here = waiting.popleft()
+        for after in ahead[here]:
+            if after not in came:
+                came[after] = here
+                waiting.append(after)
+    path = [leak]
+    while path[-1] != source:
+        path.append(came[path[-1]])
+    return [state[0] for state in reversed(path)]
 
 
 def further(between: Between, leak: int, memory: dict[Any, Any], asked: str, most: int) -> Paths:
@@ -133,15 +178,15 @@ def further(between: Between, leak: int, memory: dict[Any, Any], asked: str, mos
     most
         Bound on the list.
     """
-    disjoint, graph = between.to(leak, memory)
+    disjoint, edges = between.to(leak, memory)
     if asked == WITNESS:
         return Paths(len(disjoint))
     found: Iterable[list[int]] = disjoint
     if asked == ALL:
         import networkx as nx  # noqa: PLC0415 - as above
 
-        ends = next(s for s in graph if s[1] == SOURCE), next(s for s in graph if s[1] == LEAK)
-        found = ([state[0] for state in path] for path in nx.shortest_simple_paths(graph, *ends))
+        paths = nx.shortest_simple_paths(nx.DiGraph(edges), (between.source, SOURCE), (leak, LEAK))
+        found = ([state[0] for state in path] for path in paths)
     shown: dict[tuple[Element, ...], None] = {}
     for path in found:  # two ways of data that differs may be one way to the reader
         shown[_elements(between.net, path)] = None

@@ -50,6 +50,8 @@ class Spread:
         Channels taken as mundane on a shipped file's word alone (rule S13).
     arrives, leaves
         Vertex -> bits, where there are any.
+    sent
+        Vertex -> bits that leave along all of its flows.
     """
 
     graph: FlowGraph
@@ -66,6 +68,7 @@ class Spread:
     standard: set[int] = field(default_factory=set)
     arrives: dict[int, int] = field(default_factory=dict)
     leaves: dict[int, int] = field(default_factory=dict)
+    sent: dict[int, int] = field(default_factory=dict)
 
     @property
     def all_bits(self) -> int:
@@ -85,6 +88,15 @@ class Spread:
         """What arrives at or starts from a node, or is carried by a channel."""
         arrives, leaves = self.arrives.get(vertex, 0), self.leaves.get(vertex, 0)
         return arrives | leaves if self.graph.elements[vertex].is_node else leaves
+
+    def along(self, index: int) -> int:
+        """What goes along a flow and is taken up at its end."""
+        flow = self.graph.flows[index]
+        bits = self.sent.get(flow.source, 0) & self.flow_keeps.get(index, self.all_bits)
+        bits |= self.flow_emits.get(index, 0) & self.flow_keeps.get(index, self.all_bits)
+        if not self.graph.elements[flow.target].is_node:
+            bits &= self.keeps.get(flow.target, self.all_bits)
+        return bits
 
     def names(self, bits: int) -> tuple[str, ...]:
         """The categories of some bits, planes put together, in order."""
@@ -240,6 +252,7 @@ def _carry(found: Spread) -> None:
     arrives, leaves = fixpoint(edges, emitted, keep, np.array(derivations, np.int64))
     found.arrives = _as_numbers(arrives[:count])
     found.leaves = _as_numbers(leaves[:count])
+    found.sent = dict(found.leaves)
     for vertex, bits in found.flow_begins.items():  # through one channel only is still from here
         found.leaves[vertex] = found.leaves.get(vertex, 0) | bits
 

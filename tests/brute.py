@@ -40,6 +40,7 @@ class Brute:
     said: dict[int, list[Statement]]
     hierarchy: Hierarchy
     never: dict[tuple[int, int], set[str]] = field(default_factory=dict)  # of flows
+    along: set[tuple[int, int, Data]] = field(default_factory=set)  # what the last spread sent along flows
 
     def nearness(self, statement: Statement, category: str) -> int | None:
         """S7: steps up to what is named; negative if it is narrower and the role is one of *may*."""
@@ -119,14 +120,18 @@ class Brute:
                 present[source, data] = 0
                 leave(source, data, 0)
         arrived = set()
+        self.along = set()
         while leaving:
             vertex, data, level = leaving.popleft()
             for a, b in self.edges:
-                if a != vertex or (b, data) in arrived:
+                if a != vertex:
                     continue
                 if b not in self.nodes and self.kills(b, data[0]):
                     continue
                 if any(named in self.hierarchy.ancestors[data[0]] for named in self.never.get((a, b), ())):
+                    continue
+                self.along.add((a, b, data))
+                if (b, data) in arrived:
                     continue
                 arrived.add((b, data))
                 present.setdefault((b, data), level + 1)

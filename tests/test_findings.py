@@ -128,6 +128,22 @@ def test_what_is_carried_is_what_brute_force_reaches(system: System) -> None:
 
 
 @given(systems())
+def test_what_goes_along_each_flow_is_what_brute_force_sends(system: System) -> None:
+    found = analysed(system)
+    if found is None:
+        return
+    brute = system.brute()
+    brute.spread(brute.sources())
+    got = {
+        (*system.edges[index], (name, bool(plane)))
+        for index in range(len(system.edges))
+        for plane, names in enumerate(found.spread.planes(found.spread.along(index)))
+        for name in names
+    }
+    assert got == brute.along
+
+
+@given(systems())
 def test_findings_are_those_of_brute_force(system: System) -> None:
     """Rule S10: which (category, source, leak), in which form, dismissed or not, and how short a way."""
     found = analysed(system)

@@ -24,7 +24,7 @@ from rosprivacy.report.document import document
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
-    from rosprivacy.analysis.model import Analysis, Diagnostic, FlowGraph, Policy
+    from rosprivacy.analysis.model import Analysis, Bound, Diagnostic, FlowGraph, Policy
     from rosprivacy.ingest.labels import Labels
     from rosprivacy.ontology.vocabulary import Vocabulary
 
@@ -70,6 +70,7 @@ class Result:
     """An analysis and what it rests on."""
 
     analysis: Analysis
+    bound: Bound
     vocabulary: Vocabulary
     policies: tuple[Policy, ...]
     diagnostics: tuple[Diagnostic, ...]
@@ -98,7 +99,7 @@ def run(policies: tuple[str, ...], labels: tuple[str, ...], settings: Settings) 
     analysis = analyse(graph, bound, vocabulary.hierarchy, Options(asked, settings.paths, settings.max_paths))
     said = tuple(d for policy in system for d in policy.diagnostics) + diagnostics
     said += tuple(d for file in files for d in file.diagnostics)
-    return Result(analysis, vocabulary, system, said, _assumptions(graph, system, files, analysis, settings))
+    return Result(analysis, bound, vocabulary, system, said, _assumptions(graph, system, files, analysis, settings))
 
 
 def read_system(policies: tuple[str, ...], settings: Settings) -> tuple[tuple[Policy, ...], tuple[Diagnostic, ...]]:
