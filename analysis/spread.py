@@ -202,6 +202,7 @@ def _set_vertex(found: Spread, vertex: int, bound: Bound) -> None:
         pairs.update((i + plane, j + plane) for j in bits_of(after) for plane in (0, k))
         if fact.pseudonymises:
             pairs.add((i, i + k))
+            found.keeps[vertex] |= 1 << i + k  # what is pseudonymised already goes on so (rule S8)
         if fact.emits:
             emits |= after  # what a node makes of its own data leaves it like what it makes of others'
             emits |= 0 if fact.through else 1 << i

@@ -10,7 +10,6 @@ Source: the paper, section II-A, for the roles; rules S7, S8 and S13 for what th
 from __future__ import annotations
 
 import hashlib
-import re
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from importlib.resources import files
@@ -20,7 +19,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, shown
 from rosprivacy.analysis.model import Diagnostic, Method, Place, Severity, Statement
 from rosprivacy.ingest import yamlfile
-from rosprivacy.ingest.names import is_pattern
+from rosprivacy.ingest.names import LONGEST_NAME, is_pattern, literals
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -42,7 +41,6 @@ FLOW_KEYS = ("from", "to", "only", "never", "note")
 OURS, SHIPPED_FILES = "rosprivacy:", ("standard", "infrastructure")
 STANDARD = f"{OURS}standard"
 EXACT = 1_000_000  # a name outranks every glob
-_WILD = re.compile(r"\[[!^]?\]?[^]]*\]|[*?]")
 SHIPPED, OWN = 0, 1  # tiers: a person's own word outranks what comes with the program
 
 
@@ -140,7 +138,7 @@ def specificity(name: str) -> int:
     >>> specificity("/robot/*") < specificity("/robot/cam*") < specificity("/a")
     True
     """
-    return len(_WILD.sub("", name)) if is_pattern(name) else EXACT
+    return literals(name) if is_pattern(name) else EXACT
 
 
 @dataclass
@@ -187,6 +185,9 @@ class _Reader:
         for name, at, label in value.entries:
             if not name.startswith(("/", "*", "?", "[")):
                 self.problem(at, f"name {shown(name)!r} is not absolute", "begin it with /")
+                continue
+            if len(name) > LONGEST_NAME:
+                self.problem(at, f"a name of {len(name)} characters", f"no more than {LONGEST_NAME} are read")
                 continue
             rank = (self.tier, specificity(name))
             read = self._node if section == "nodes" else self._channel
@@ -358,6 +359,10 @@ class _Reader:
     def _name(self, value: Value) -> str:
         if value.kind != "text" or not value.text.startswith(("/", "*", "?", "[")):
             self.problem(value.line, f"{shown(value.text or value.kind)!r} is not an absolute name", "begin it with /")
+        elif len(value.text) > LONGEST_NAME:
+            what = f"a name of {len(value.text)} characters"
+            self.problem(value.line, what, f"no more than {LONGEST_NAME} are read")
+            return ""
         return value.text
 
     def problem(self, line: int, problem: str, hint: str) -> None:

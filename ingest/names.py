@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 WILDCARDS = frozenset("*?[")
 ACTION_SERVICES = ("cancel_goal", "get_result", "send_goal")
 ACTION_TOPICS = ("feedback", "status")
+LONGEST_NAME = 16_384  # characters; DDS takes 255, and a wildcard's cost grows with the square
 LARGEST_TABLE = 1_000_000  # cells of a comparison of two expressions; larger ones take the careful answer
 LAST_CHARACTER = 0x10FFFF
 
@@ -126,6 +127,15 @@ def dds_names(kind: str, name: str, leg: str) -> tuple[str, ...]:
 def is_pattern(name: str) -> bool:
     """Return whether DDS would read the name as a wildcard expression (rule S4)."""
     return not WILDCARDS.isdisjoint(name)
+
+
+def literals(pattern: str) -> int:
+    """Return how many characters of an expression stand for themselves.
+
+    >>> literals("/cam*"), literals("/[a-z]*")
+    (4, 1)
+    """
+    return sum(token is not None and len(token) == 1 and token[0][0] == token[0][1] for token in _tokens(pattern))
 
 
 def literal_prefix(pattern: str) -> str:

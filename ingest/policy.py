@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors, PolicyError, shown
 from rosprivacy.analysis.model import Diagnostic, Grant, Place, Policy, Profile, Severity
-from rosprivacy.ingest.names import resolve
+from rosprivacy.ingest.names import LONGEST_NAME, resolve
 from rosprivacy.ingest.xinclude import MAX_BYTES, Documents, Item, has_text
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Collection, Iterator
 
 VERSIONS = ("0.1.0", "0.2.0")
 ROLES = {
@@ -166,35 +166,42 @@ class _Reader:
         name = namespace + node if namespace.endswith("/") else f"{namespace}/{node}"
         owner = Profile(name if enclave is None else enclave, name, profile.place)
         self.profiles.append(owner)
-        for group in self._elements(profile, set(ROLES)):
+        for group in self._elements(profile, ROLES):
             self._group(group, owner, namespace, node)
 
     def _group(self, group: Item, owner: Profile, namespace: str, node: str) -> None:
         kind, roles = ROLES[group.tag]
-        self._attributes(group, set(roles))
+        self._attributes(group, roles)
         granted = [(role, self._rule(group, role)) for role in roles if group.element.get(role) is not None]
-        names = list(self._elements(group, {kind}))
+        names = list(self._elements(group, (kind,)))
         if not names:
             self._problem(group.place, f"<{group.tag}> is empty", f"add a <{kind}>, or remove it")
         if not granted:
             self._notice(group.place, f"<{group.tag}> without {' or '.join(roles)} grants nothing")
+        enclave, owned = owner.enclave, owner.node
         for item in names:
-            name = self._name(item, namespace, node)
-            self.grants += [
-                Grant(allow, role, kind, name, owner.enclave, owner.node, item.place) for role, allow in granted
-            ]
+            name, place = self._name(item, namespace, node), Place(item.file, item.element.sourceline or 0)
+            for role, allow in granted:
+                self.grants.append(Grant(allow, role, kind, name, enclave, owned, place))
 
     def _name(self, item: Item, namespace: str, node: str) -> str:
-        self._attributes(item, set())
-        for child in self.documents.children(item):
-            self._problem(child.place, f"<{shown(child.tag)}> inside <{item.tag}>", "write the name as plain text")
-        written = item.element.text or ""
-        if "[:" in written or "[." in written or "[=" in written:
+        element = item.element
+        if element.keys():
+            self._attributes(item, ())
+        if len(element):
+            for child in self.documents.children(item):
+                self._problem(child.place, f"<{shown(child.tag)}> inside <{item.tag}>", "write the name as plain text")
+        written = element.text or ""
+        if len(written) > LONGEST_NAME:
+            what = f"a name of {len(written)} characters"
+            self._problem(item.place, what, f"no more than {LONGEST_NAME} are read")
+            written = ""
+        if "[" in written and ("[:" in written or "[." in written or "[=" in written):
             self._problem(item.place, f"character class in {shown(repr(written))}", "write a range such as [a-z]")
         if self.old and written.startswith("~") and not written.startswith("~/"):
             written = f"~/{written[1:]}"  # 0.1.0 writes ~name for what 0.2.0 calls ~/name
         name = resolve(written, namespace, node)
-        if not written.strip():
+        if not written or written.isspace():
             self._warning(item.place, f"<{item.tag}> without a name: read as sros2 does, as {name}")
         return name
 
@@ -205,20 +212,21 @@ class _Reader:
             self._problem(group.place, what, "write ALLOW or DENY, in capitals")
         return rule == "ALLOW"
 
-    def _elements(self, parent: Item, allowed: set[str]) -> Iterator[Item]:
+    def _elements(self, parent: Item, allowed: Collection[str]) -> Iterator[Item]:
         """Children that belong here; what does not is a problem, and so is text between them."""
         if has_text(parent):
             self._problem(parent.place, f"text between the elements of <{parent.tag}>", "remove it")
         for child in self.documents.children(parent):
-            if child.namespace not in ("", self.namespace):
-                self._notice(child.place, f"<{child.tag}> in a namespace of its own: read as if it had none")
-            if child.tag in allowed:
+            tag = child.tag
+            if child.namespace and child.namespace != self.namespace:
+                self._notice(child.place, f"<{tag}> in a namespace of its own: read as if it had none")
+            if tag in allowed:
                 yield child
-            elif child.tag != "metadata":
+            elif tag != "metadata":
                 self._problem(child.place, *_misplaced(child.tag, parent.tag, allowed))
 
-    def _attributes(self, item: Item, allowed: set[str]) -> None:
-        for name in item.element.attrib:
+    def _attributes(self, item: Item, allowed: Collection[str]) -> None:
+        for name in item.element.keys():  # noqa: SIM118 - an element iterates over its children
             if name not in allowed and not str(name).startswith("{"):  # xml:base, xsi:… say nothing of grants
                 takes = " and ".join(sorted(allowed)) or "none"
                 what = f"unknown attribute {shown(repr(str(name)))} on <{item.tag}>"
@@ -240,7 +248,7 @@ class _Reader:
         self.diagnostics.append(Diagnostic(place, Severity.NOTICE, shown(message)))
 
 
-def _misplaced(tag: str, parent: str, allowed: set[str]) -> tuple[str, str]:
+def _misplaced(tag: str, parent: str, allowed: Collection[str]) -> tuple[str, str]:
     expected = " or ".join(f"<{name}>" for name in sorted(allowed))
     home = PARENTS.get(tag)
     where = f"it belongs in <{home}>; here comes" if home else "here comes"

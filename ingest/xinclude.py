@@ -35,24 +35,30 @@ _XPOINTER = re.compile(r"\s*xpointer\(\s*((?:/(?:\*|[\w.-]+))+)\s*\)\s*")
 _POSITION = re.compile(r", line \d+, column \d+$")
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)  # there is one for every element, and a frozen one takes three times as long to make
 class Item:
-    """An element, the file that it stands in (as shown to the user), and the includes that led to it."""
+    """An element, the file that it stands in (as shown to the user), and the includes that led to it.
+
+    Attributes
+    ----------
+    tag, namespace
+        The name without its namespace, and the URI of that, empty if it has none.
+    """
 
     element: etree._Element
+    tag: str
+    namespace: str
     file: str
-    chain: tuple[tuple[str, str], ...] = ()
+    chain: tuple[tuple[str, str], ...]
 
-    @property
-    def tag(self) -> str:
-        """The name without its namespace."""
-        tag = str(self.element.tag)
-        return tag.rpartition("}")[2]
-
-    @property
-    def namespace(self) -> str:
-        """The URI of the name's namespace, empty if it has none."""
-        return str(self.element.tag).rpartition("}")[0][1:]
+    @classmethod
+    def of(cls, element: etree._Element, file: str, chain: tuple[tuple[str, str], ...]) -> Item:
+        """Read the name of an element."""
+        name = str(element.tag)
+        if name[0] != "{":
+            return cls(element, name, "", file, chain)
+        namespace, _, tag = name[1:].rpartition("}")
+        return cls(element, tag, namespace, file, chain)
 
     @property
     def place(self) -> Place:
@@ -91,7 +97,7 @@ class Documents:
             If it cannot be read or is not XML that we take.
         """
         try:
-            return Item(self._load(Path(file).resolve(), file, Place(file, 0)), file, ((file, ""),))
+            return Item.of(self._load(Path(file).resolve(), file, Place(file, 0)), file, ((file, ""),))
         except PolicyError as error:
             raise InputErrors([error]) from None
         except (OSError, RuntimeError, ValueError) as error:
@@ -103,12 +109,17 @@ class Documents:
         A problem with an include is kept in ``problems``, and the rest is still read.
         """
         found = []
+        file, chain = item.file, item.chain
         for child in item.element:
-            tag = child.tag
-            if isinstance(tag, str) and tag.startswith("{") and tag[1:].partition("}")[0] in NAMESPACES:
-                found += self._include(Item(child, item.file, item.chain))
+            name = str(child.tag)
+            if name[0] != "{":  # as nearly all
+                found.append(Item(child, name, "", file, chain))
+                continue
+            inner = Item.of(child, file, chain)
+            if inner.namespace in NAMESPACES:
+                found += self._include(inner)
             else:
-                found.append(Item(child, item.file, item.chain))
+                found.append(inner)
         return found
 
     def _include(self, include: Item) -> list[Item]:
@@ -136,7 +147,7 @@ class Documents:
             return
         if (file, xpointer) in include.chain or (not href and not xpointer):
             raise _error(place, f"include loop: {shown(file)} includes itself", "break the loop")
-        top = Item(self._load(path, file, place), file, (*include.chain, (file, xpointer)))
+        top = Item.of(self._load(path, file, place), file, (*include.chain, (file, xpointer)))
         chosen = self._select(top, xpointer, place) if xpointer else [top]
         if not chosen:
             message = f"the include brings nothing: {xpointer} selects no element of {file}"
@@ -174,7 +185,7 @@ class Documents:
         fallbacks = [child for child in include.element if str(child.tag).rpartition("}")[2] == "fallback"]
         if not fallbacks:
             raise _error(include.place, f"included file {shown(repr(href))} not found", "correct the href")
-        fallback = Item(fallbacks[0], include.file, (*include.chain, (include.file, "fallback")))
+        fallback = Item.of(fallbacks[0], include.file, (*include.chain, (include.file, "fallback")))
         if has_text(fallback):
             raise _error(fallback.place, "text in <fallback>", "write elements, or remove it")
         yield from self.children(fallback)
@@ -208,10 +219,14 @@ class Documents:
 
 
 def has_text(parent: Item) -> bool:
-    """Whether text other than white space stands between the children of an element."""
+    """Whether there is text beside the child elements."""
     element = parent.element
-    texts = (element.text, *(child.tail for child in element))
-    return any(text and text.strip() for text in texts)
+    if (text := element.text) and not text.isspace():
+        return True
+    for child in element:  # noqa: SIM110 - any() with a generator takes twice as long, and this is asked of all
+        if (text := child.tail) and not text.isspace():
+            return True
+    return False
 
 
 def _stat(path: Path, place: Place) -> os.stat_result | None:

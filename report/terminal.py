@@ -13,7 +13,7 @@ from rich.text import Text
 from rosprivacy.analysis.errors import shown
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Collection, Iterable, Iterator, Mapping
 
     from rich.console import Console
 
@@ -71,6 +71,8 @@ def _summary(report: Mapping[str, Any]) -> str:
 
 
 def _findings(report: Mapping[str, Any]) -> Iterator[Line]:
+    roles = {(_key(said["element"]), said["category"]): said["roles"] for said in report["roles"]}
+    unreviewed = {(_key(question["element"]), name) for question in report["open"] for name in question["categories"]}
     for number, finding in enumerate(report["findings"], 1):
         source, leak = finding["source"], finding["leak"]
         form = "pseudonymised " if finding["pseudonymised"] else ""
@@ -80,14 +82,12 @@ def _findings(report: Mapping[str, Any]) -> Iterator[Line]:
         if finding["dismissed"]:
             through = ", ".join(_name(element) for element in finding["through"])
             yield f"   only through {through}, which has a finding of its own", "dim"
-        yield from _way(finding, report)
+        yield from _way(finding, roles, unreviewed)
         yield from _paths(finding)
 
 
-def _way(finding: Mapping[str, Any], report: Mapping[str, Any]) -> Iterator[Line]:
+def _way(finding: Mapping[str, Any], roles: Mapping[Any, Any], unreviewed: Collection[Any]) -> Iterator[Line]:
     """The witness, hop by hop: element, what labels say of it, policy line."""
-    roles = {(_key(said["element"]), said["category"]): said["roles"] for said in report["roles"]}
-    unreviewed = {(_key(question["element"]), name) for question in report["open"] for name in question["categories"]}
     witness, steps = finding["witness"], finding["steps"]
     data = [step["category"] for step in steps]
     for hop, element in enumerate(witness):

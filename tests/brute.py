@@ -83,6 +83,11 @@ class Brute:
                 return True
         return False
 
+    def only_hides(self, vertex: int, category: str) -> bool:
+        """Whether all that cleans it pseudonymises: what is pseudonymised already goes on so."""
+        sanitizers = [s for s in self.holding(vertex, category) if s.role == "sanitizer"]
+        return bool(sanitizers) and all(str(s.method) not in ENDS for s in sanitizers)
+
     def made(self, vertex: int, data: Data) -> set[Data]:
         """S8: derive, and what is made of that in turn; and pseudonymise."""
         category, hidden = data
@@ -137,7 +142,7 @@ class Brute:
                 present.setdefault((b, data), level + 1)
                 if stop(b, data[0]):
                     continue
-                if not self.kills(b, data[0]):
+                if not self.kills(b, data[0]) or (data[1] and self.only_hides(b, data[0])):
                     leave(b, data, level + 1)
                 for made in self.made(b, data):
                     present.setdefault((b, made), level + 1)

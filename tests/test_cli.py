@@ -777,3 +777,12 @@ def test_bad_input_is_refused_by_the_process_too(tmp_path: Path, policy_text: st
     there = everything(tmp_path)
     refused(run("analyze", "p.xml", "-l", "l.yaml", "-o", "r.json", cwd=tmp_path))
     assert everything(tmp_path) == there
+
+
+def test_closed_standard_output_does_not_end_in_a_traceback(before: Path, tmp_path: Path) -> None:  # rosprivacy … >&-
+    shell = '"$0" -m rosprivacy analyze -q "$@" >&-'
+    for options in ([], ["-o", str(tmp_path / "r.txt")]):
+        command = ["sh", "-c", shell, sys.executable, str(before), *options]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+        assert "Traceback" not in done.stderr
+        assert done.returncode in (0, 2)

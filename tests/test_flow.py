@@ -77,6 +77,13 @@ def test_a_long_chain_and_a_hub_are_carried_to_their_ends() -> None:
     assert leaves.sum() == count
 
 
+def test_what_is_put_in_is_left_as_it_is() -> None:
+    ends, emitted, keep, derivations = random_case(3, 50, 120, 1)
+    before = emitted.copy(), keep.copy(), derivations.copy()
+    fixpoint(Edges.of(50, ends[:, 0], ends[:, 1]), emitted, keep, derivations)
+    assert all(np.array_equal(a, b) for a, b in zip(before, (emitted, keep, derivations), strict=True))
+
+
 def test_a_graph_without_edges_or_bits() -> None:
     none = np.empty(0, np.int64)
     emitted = np.array([[1], [0]], np.uint64)

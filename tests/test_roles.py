@@ -89,6 +89,15 @@ def test_a_sanitizer(tmp_path: Path, label: str, after: set[str]) -> None:
     assert carries(result).get("mid", set()) == after
 
 
+def test_what_is_pseudonymised_twice_is_still_personal_data(tmp_path: Path) -> None:
+    """Rule S8, recital 26: it must not vanish at the second pseudonymiser."""
+    twice = "  /a: {sanitizer: {Biometric: pseudonymise}}\n  /b: {sanitizer: {Biometric: pseudonymise}}\n"
+    result = system(tmp_path, SOURCE + twice + "  /c: {leak: [Biometric]}\n")
+    assert carries(result)["out"] == {"~FaceTemplate"}
+    assert findings(result) == {("FaceTemplate", "camera", "c")}
+    assert result.analysis.findings[0].pseudonymised
+
+
 def test_a_sanitizer_of_a_narrower_category_does_not_clean_a_broader_one(tmp_path: Path) -> None:
     result = system(tmp_path, "nodes:\n  /camera: {source: [Biometric]}\n  /a: {sanitizer: {FaceTemplate: drop}}\n")
     assert carries(result)["mid"] == {"Biometric"}

@@ -251,6 +251,8 @@ def _emit(text: str, output: Path | None, others: Mapping[Path, str] | None = No
         write_texts(texts)
     if output:
         return
+    if sys.stdout is None:  # `>&-`
+        raise InputError("standard output", 0, "is closed", "open it, or name a file with --output")
     try:
         sys.stdout.buffer.write(text.encode(_encoding(text), "backslashreplace"))
         sys.stdout.flush()
