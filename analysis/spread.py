@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rosprivacy.analysis.edges import Edges
 from rosprivacy.analysis.errors import InputError, InputErrors
-from rosprivacy.analysis.flow import WORD, Edges, fixpoint
+from rosprivacy.analysis.flow import WORD, fixpoint
 from rosprivacy.analysis.roles import NOTHING_SAID, Facts, facts
 
 if TYPE_CHECKING:

@@ -10,7 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rosprivacy.analysis import flow
-from rosprivacy.analysis.flow import Edges, fixpoint
+from rosprivacy.analysis.edges import Edges
+from rosprivacy.analysis.flow import fixpoint
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -1,0 +1,137 @@
+"""Our whole command against the paper's method: TurtleBot3, 1, 3 and 24 kinds of data, fresh processes.
+
+The paper's method answers for one kind of data, so it runs once for each, one process after the other; ours runs once.
+Both sides get the same roles: for the first kind exactly those of the paper's own file (step 5), for the others a
+few elements play another role, so that neither side answers the same question twice.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from typing import TYPE_CHECKING
+
+from measure import REPOSITORY, compared, run, run_each, side_by_side
+from more_categories import extra_names
+
+from rosprivacy.ontology.vocabulary import load
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from measure import Line
+
+POLICY = "policies/ros-swg__turtlebot3_demo/policies/tb3_gazebo_policy.xml"
+STEP_5 = "categorizations/JonasWoh__ROS2PrivacyGraph/categorizations/categorization_turtlebot3_step_5.json"
+MANY = 24
+START = (
+    "out of reach while the command starts with typer and numpy: a bare typer program takes as long as one paper run"
+)
+BENCHMARKS = REPOSITORY / "benchmarks"
+
+SixLists = dict[str, list[str]]
+
+
+def compare(corpus: Path, folder: Path, *, quick: bool) -> Iterator[Line]:
+    """Time both sides for 1, 3 and 24 kinds of data.
+
+    Parameters
+    ----------
+    folder
+        For label files and reports.
+    """
+    base = json.loads((corpus / STEP_5).read_text("utf-8"))
+    policy = corpus / POLICY
+    first: list[list[float]] = []
+    for count in (1, 3, MANY):
+        names, extra = _categories(count)
+        lists = {name: six_lists(base, number) for number, name in enumerate(names)}
+        ours = _ours(policy, folder, lists, extra)
+        papers = [_paper(policy, folder, name, one) for name, one in lists.items()]
+        rounds = (2 if quick else 5) if count == MANY else (5 if quick else 15)
+        seconds = side_by_side(rounds, lambda: run(*ours), lambda: run_each(papers))  # noqa: B023 - called within the round
+        _check(folder, names)
+        what = f"(a) {count} kind{'s' if count > 1 else ''} of data: our command / the paper's, one by one"
+        note = f"{extra} of the {count} kinds are made up in memory: the ontology has too few" if extra else ""
+        yield compared(what, seconds, note=note)
+        if count == MANY:
+            first = side_by_side(rounds * 4, lambda: run(*ours), lambda: run(*papers[0]))  # noqa: B023 - as above
+    what = f"(a) {MANY} kinds with our command / ONE with the paper's"
+    yield compared(what, first, bound=1, goal=True, note=START)
+
+
+def _categories(count: int) -> tuple[list[str], int]:
+    """Return names of kinds of data of which none is broader than another, and how many of them are made up.
+
+    The paper's runs know nothing of each other, so no statement about one kind may hold for another.
+    """
+    ancestors = load().hierarchy.ancestors
+    inner = {above for name, up in ancestors.items() for above in up if above != name}
+    names = sorted(name for name in ancestors if name not in inner)[:count]
+    extra = count - len(names)
+    return names + extra_names(extra), extra
+
+
+def six_lists(base: SixLists, number: int) -> SixLists:
+    """Return the paper's categorization, from the second kind of data on with a few roles changed.
+
+    One conduit becomes a source, a leak or a sanitizer, and one mundane channel sensitive.
+    """
+    lists = {role: list(names) for role, names in base.items()}
+    if number:
+        conduits, mundane = base["conduit"], base["mundane"]
+        conduit = conduits[number % len(conduits)]
+        lists["conduit"].remove(conduit)
+        lists[("source", "leak", "sanitizer")[number // len(conduits) % 3]].append(conduit)
+        channel = mundane[number * 5 // 3 % len(mundane)]
+        lists["mundane"].remove(channel)
+        lists["sensitive"].append(channel)
+    return lists
+
+
+def label_file(lists: dict[str, SixLists]) -> str:
+    """Return one label file (JSON is YAML too) that says of every kind of data what its six lists say."""
+    nodes: dict[str, dict[str, object]] = {}
+    channels: dict[str, object] = {}
+    for role in ("source", "leak", "conduit"):
+        for name, of in _named(lists, role).items():
+            nodes.setdefault(name, {})[role] = of
+    for name, of in _named(lists, "sanitizer").items():
+        nodes.setdefault(name, {})["sanitizer"] = dict.fromkeys(of, "anonymise")
+    for name in _named(lists, "sensitive"):
+        channels[name] = "sensitive"
+    for name, of in _named(lists, "mundane").items():
+        channels[name] = "mundane" if len(of) == len(lists) else {"never": of}
+    return json.dumps({"labels": 1, "nodes": nodes, "channels": channels}, indent=1)
+
+
+def _named(lists: dict[str, SixLists], role: str) -> dict[str, list[str]]:
+    """Element -> the kinds of data for which it has a role."""
+    found: dict[str, list[str]] = {}
+    for category, one in lists.items():
+        for name in one[role]:
+            found.setdefault(name, []).append(category)
+    return found
+
+
+def _ours(policy: Path, folder: Path, lists: dict[str, SixLists], extra: int) -> list[str | Path]:
+    labels = folder / f"{len(lists)}.labels.yaml"
+    labels.write_text(label_file(lists), "utf-8")
+    program = [BENCHMARKS / "more_categories.py", str(extra)] if extra else ["-m", "rosprivacy"]
+    options = ["--fail-on", "never", "--output", folder / "report.txt"]
+    return [sys.executable, *program, "analyze", policy, "--labels", labels, *options]
+
+
+def _paper(policy: Path, folder: Path, name: str, lists: SixLists) -> list[str | Path]:
+    file = folder / f"{name}.json"
+    file.write_text(json.dumps(lists), "utf-8")
+    return [sys.executable, BENCHMARKS / "paper_method.py", policy, file]
+
+
+def _check(folder: Path, names: list[str]) -> None:
+    """Whether the report is about every kind of data: a run that answers less would be no measure."""
+    report = (folder / "report.txt").read_text("utf-8")
+    missing = [name for name in names if f"{name}: " not in report]
+    if missing:
+        sys.exit(f"no finding for {', '.join(missing)}")
