@@ -2,9 +2,8 @@
 
     python benchmarks/analyze.py [--quick]
 
-Prints medians and ratios with their bounds and goals; ends with 1 if a bound is missed.
-``--quick`` repeats less and takes a fleet of
-1,000 robots in place of 10,000.
+Prints medians and ratios with their bounds and goals; ends with 1 if a bound is missed. ``--quick`` repeats less and
+takes a fleet of 1,000 robots in place of 10,000.
 """
 
 from __future__ import annotations

@@ -47,7 +47,7 @@ def bind(graph: FlowGraph, labels: Sequence[Labels]) -> Bound:
                 elements[vertex] += entry.statements
             problems += _through(graph, leaving, entry, vertices, through)
         for flow in file.flows:
-            indices = _flows(graph, names, flow)
+            indices = _flows(graph, leaving, names, flow)
             if not indices:
                 problems.append(names.no_flow(flow))
             for index in indices:
@@ -114,9 +114,10 @@ class _Names:
         return get_close_matches(name, known, n=NEAREST, cutoff=0.5) if self.comparisons <= COMPARISONS else []
 
 
-def _flows(graph: FlowGraph, names: _Names, entry: FlowEntry) -> list[int]:
-    sources, targets = set(names.matching(entry.source)), set(names.matching(entry.target))
-    return [i for i, flow in enumerate(graph.flows) if flow.source in sources and flow.target in targets]
+def _flows(graph: FlowGraph, leaving: Mapping[int, Sequence[int]], names: _Names, entry: FlowEntry) -> list[int]:
+    targets = set(names.matching(entry.target))
+    sources = names.matching(entry.source)
+    return [index for source in sources for index in leaving.get(source, ()) if graph.flows[index].target in targets]
 
 
 def _leaving(graph: FlowGraph) -> dict[int, list[int]]:

@@ -115,8 +115,12 @@ class _Reader:
 
     def _section(self, section: Item, version: str | None) -> None:
         if section.tag == "profiles":
-            self.old = True
+            self.old = version == VERSIONS[0]
             message = "policy format 0.1.0: no enclaves; each node is taken as an enclave of its own"
+            if not self.old:
+                message = (
+                    "<profiles> without <enclaves>, as in format 0.1.0: each node is taken as an enclave of its own"
+                )
             self._notice(section.place, message)
             self._profiles(section, None)
             return

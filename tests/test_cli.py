@@ -522,7 +522,7 @@ def test_a_damaged_graph_is_refused(cli: Cli, tmp_path: Path, was: str, becomes:
 def test_a_graph_that_is_no_regular_file_is_refused_and_does_not_wait(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe")
     for name in ("none", ".", "pipe"):
-        refused(run("analyze", "--add", name, cwd=tmp_path, seconds=4))
+        refused(run("analyze", "--add", name, cwd=tmp_path, seconds=20))
 
 
 # ---------------------------------------------------------------- the labels command
@@ -786,3 +786,12 @@ def test_closed_standard_output_does_not_end_in_a_traceback(before: Path, tmp_pa
         done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
         assert "Traceback" not in done.stderr
         assert done.returncode in (0, 2)
+
+
+def test_a_first_label_file_does_not_take_the_place_of_one_that_is_there(
+    cli: Cli, before: Path, tmp_path: Path
+) -> None:
+    (tmp_path / "l.yaml").write_text("work")
+    (line,) = refused(cli("labels", "--init", before, "-o", "l.yaml", cwd=tmp_path))
+    assert "is there already" in line
+    assert (tmp_path / "l.yaml").read_text() == "work"

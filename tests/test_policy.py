@@ -472,3 +472,12 @@ def test_the_same_file_gives_the_same_policy(tmp_path: Path) -> None:  # S14
     text = policy(enclave(profile(TALK), profile(TALK, "/a")))
     assert read(tmp_path, text) == read(tmp_path, text)
     assert isinstance(read(tmp_path, text).profiles[0], Profile)
+
+
+def test_profiles_without_enclaves_keep_the_names_of_their_version(tmp_path: Path) -> None:  # 0.1.0: ~a is ~/a
+    body = '<topics publish="ALLOW"><topic>~a</topic></topics>'
+    for version, full in (("0.1.0", "/n/a"), ("0.2.0", "/na")):
+        text = f'<policy version="{version}"><profiles><profile ns="/" node="n">{body}</profile></profiles></policy>'
+        result = read(tmp_path, text)
+        assert [g.name for g in result.grants] == [full]
+        assert "0.1.0" in said(result)[0][2]

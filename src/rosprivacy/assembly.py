@@ -130,9 +130,9 @@ def _read_labels(labels: tuple[str, ...], vocabulary: Vocabulary, settings: Sett
     files: list[Labels] = []
     problems: list[InputError] = []
     standard = [settings.standard_channels] if settings.standard_channels else []
-    for file in [*standard, *dict.fromkeys(labels)]:
+    for file in dict.fromkeys([*standard, *labels]):
         try:
-            shipped = file in standard
+            shipped = file in standard and file not in labels  # named by the user, it is the user's own
             files.append(read_labels(file, vocabulary, category=settings.category, shipped=shipped))
         except InputErrors as error:
             problems += error.errors

@@ -72,7 +72,7 @@ def complete_category(incomplete: str) -> list[str]:
 
 Policies = Annotated[
     list[str] | None,
-    typer.Argument(metavar="POLICY...", help="SROS 2 policies: files, folders or globs.", show_default=False),
+    typer.Argument(metavar="POLICY", help="SROS 2 policies: files, folders or globs.", show_default=False),
 ]
 IncludeRoot = Annotated[
     Path | None,
@@ -192,6 +192,8 @@ def labels(
         max_bytes=max_bytes,
         progress=_progress,
     )
+    if init and output and output.is_file():
+        raise InputError(str(output), 0, "is there already", "a label file is work: name another, or remove it")
     _emit(_labels_text(policies, settings, init=init, schema=schema, standard=standard), output)
 
 
