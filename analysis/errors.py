@@ -23,6 +23,15 @@ def shown(text: str) -> str:
     return line if len(line) <= LONGEST_SHOWN else line[:LONGEST_SHOWN] + "…"
 
 
+def reason(error: Exception) -> str:
+    """Return why the system refused a file, fit for a message: its own words where it has some.
+
+    >>> reason(PermissionError(13, "Permission denied")), reason(ValueError("embedded null byte"))
+    ('Permission denied', 'embedded null byte')
+    """
+    return shown(getattr(error, "strerror", None) or str(error))
+
+
 class RosPrivacyError(Exception):
     """Base of all errors that this program raises on purpose."""
 

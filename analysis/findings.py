@@ -149,28 +149,21 @@ def _findings_of(
 
 def _search_free(net: Net, source: int, i: int, free: dict[int, Search]) -> None:
     """Search with the leaks of category i as ends; one search serves all categories that nothing is made into."""
-    found, k = net.spread, len(net.spread.categories)
-    made = _made(found)
-    together = [i] if i in made else [j for j in range(k) if j not in made]
-    stop = {v: bits & sum(1 << j | 1 << j + k for j in together) for v, bits in found.leaks.items()}
-    allowed = found.all_bits if i in made else sum(1 << j | 1 << j + k for j in together)
-    result = search(net, [source], allowed, stop)
+    found = net.spread
+    together = [i] if i in found.made else [j for j in range(len(found.categories)) if j not in found.made]
+    ends = sum(found.both(found.categories[j]) for j in together)
+    stop = {v: bits & ends for v, bits in found.leaks.items()}
+    result = search(net, [source], found.all_bits if i in found.made else ends, stop)
     free.update(dict.fromkeys(together, result))
-
-
-def _made(found: Spread) -> set[int]:
-    """Numbers of the categories that others are made into."""
-    k = len(found.categories)
-    return {after % k for pairs in found.derives.values() for before, after in pairs if after % k != before % k}
 
 
 def _relevant(found: Spread, i: int) -> int:
     """Bits of what a category can be made of: its own, or for simplicity all."""
-    return found.all_bits if i in _made(found) else found.both(found.categories[i])
+    return found.all_bits if i in found.made else found.both(found.categories[i])
 
 
 def _leaks_of(found: Spread, i: int) -> dict[int, int]:
-    both = 1 << i | 1 << i + len(found.categories)
+    both = found.both(found.categories[i])
     return {v: bits & both for v, bits in found.leaks.items() if bits & both}
 
 

@@ -49,6 +49,8 @@ class Spread:
         Vertex -> bits that it emits along single flows only.
     standard
         Channels taken as mundane on a shipped file's word alone (rule S13).
+    made
+        Numbers of the categories that others are made into.
     arrives, leaves
         Vertex -> bits, where there are any.
     sent
@@ -67,6 +69,7 @@ class Spread:
     flow_keeps: dict[int, int] = field(default_factory=dict)
     flow_begins: dict[int, int] = field(default_factory=dict)
     standard: set[int] = field(default_factory=set)
+    made: set[int] = field(default_factory=set)
     arrives: dict[int, int] = field(default_factory=dict)
     leaves: dict[int, int] = field(default_factory=dict)
     sent: dict[int, int] = field(default_factory=dict)
@@ -201,6 +204,7 @@ def _set_vertex(found: Spread, vertex: int, bound: Bound) -> None:
         fact = decided.get(category, NOTHING_SAID)
         after = sum(1 << number[to] for to in made.get(category, ()))
         pairs.update((i + plane, j + plane) for j in bits_of(after) for plane in (0, k))
+        found.made.update(bits_of(after))
         if fact.pseudonymises:
             pairs.add((i, i + k))
             found.keeps[vertex] |= 1 << i + k  # what is pseudonymised already goes on so (rule S8)

@@ -11,7 +11,7 @@ from glob import glob, has_magic
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.errors import InputError, InputErrors, PolicyError, shown
+from rosprivacy.analysis.errors import InputError, InputErrors, PolicyError, reason
 from rosprivacy.analysis.model import Diagnostic, Place, Policy, Severity
 from rosprivacy.ingest.policy import NotAPolicyError, read_policy
 from rosprivacy.ingest.xinclude import MAX_BYTES
@@ -80,8 +80,7 @@ def _expand(arguments: Iterable[str]) -> tuple[set[str], dict[str, set[str]], li
         try:
             files = _inside(argument)
         except (OSError, ValueError) as error:
-            what = getattr(error, "strerror", None) or str(error)
-            problems.append(PolicyError(argument or "''", 0, f"cannot be read: {shown(what)}", "name a policy"))
+            problems.append(PolicyError(argument or "''", 0, f"cannot be read: {reason(error)}", "name a policy"))
             continue
         if files is None:
             named.add(spelt.setdefault(os.path.abspath(argument), argument))  # noqa: PTH100 - by its text

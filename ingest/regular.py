@@ -8,7 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.errors import reason
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -41,5 +41,4 @@ def read_regular(file: str, max_bytes: int, fail: Callable[[int, str, str], Inpu
             raise fail(0, f"more than {max_bytes} bytes", "split the file")
         return path.read_bytes()
     except (OSError, ValueError) as error:
-        what = getattr(error, "strerror", None) or str(error)
-        raise fail(0, f"cannot be read: {shown(what)}", "check the path and its permissions") from None
+        raise fail(0, f"cannot be read: {reason(error)}", "check the path and its permissions") from None

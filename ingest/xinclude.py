@@ -20,7 +20,7 @@ from urllib.parse import unquote
 
 from lxml import etree
 
-from rosprivacy.analysis.errors import InputError, InputErrors, PolicyError, shown
+from rosprivacy.analysis.errors import InputError, InputErrors, PolicyError, reason, shown
 from rosprivacy.analysis.model import Diagnostic, Place, Severity
 
 if TYPE_CHECKING:
@@ -236,8 +236,7 @@ def _stat(path: Path, place: Place) -> os.stat_result | None:
     except (FileNotFoundError, NotADirectoryError):
         return None
     except (OSError, ValueError) as error:
-        what = getattr(error, "strerror", None) or str(error)
-        raise _error(place, f"{shown(str(path))} cannot be read: {what}", "name another file") from None
+        raise _error(place, f"{shown(str(path))} cannot be read: {reason(error)}", "name another file") from None
 
 
 def _size(path: Path, file: str, place: Place) -> int:

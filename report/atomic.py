@@ -10,7 +10,7 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.errors import InputError
+from rosprivacy.analysis.errors import InputError, reason
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -36,9 +36,8 @@ def write_texts(texts: Mapping[Path, str]) -> None:
         for temporary, at in staged.items():
             Path(temporary).replace(at)
     except (OSError, RuntimeError, ValueError) as error:
-        what = getattr(error, "strerror", None) or str(error)
         hint = "name a file in a folder that can be written"
-        raise InputError(str(at), 0, f"cannot be written: {what}", hint) from None
+        raise InputError(str(at), 0, f"cannot be written: {reason(error)}", hint) from None
     finally:
         for temporary in staged:
             Path(temporary).unlink(missing_ok=True)

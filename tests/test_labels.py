@@ -825,3 +825,12 @@ def test_a_file_that_the_user_names_is_his_own_even_if_it_is_the_standard_one(tm
         rosprivacy.analyze(
             [str(tmp_path / "p.xml")], [str(tmp_path / "s.yaml")], standard_channels=str(tmp_path / "s.yaml")
         )
+
+
+def test_the_report_lists_such_a_file_among_the_labels(tmp_path: Path) -> None:  # S12: what the answer rests on
+    (tmp_path / "s.yaml").write_text("labels: 1\nnodes: {/camera: conduit}")
+    (tmp_path / "p.xml").write_text(SYSTEM)
+    file = str(tmp_path / "s.yaml")
+    assumed = rosprivacy.analyze([str(tmp_path / "p.xml")], [file], standard_channels=file).document()["assumptions"]
+    assert [label["file"] for label in assumed["labels"]] == [file]
+    assert assumed["standard_channels"] is None

@@ -162,13 +162,13 @@ def _assumptions(
 ) -> dict[str, Any]:
     """What the answer rests on (rule S12)."""
     sources = sorted({source for policy in system for source in policy.sources})
-    hashes = [{"file": file.file, "sha256": file.sha256} for file in files]
-    standard = [entry for entry in hashes if entry["file"] == settings.standard_channels]
+    hashes = [(file, {"file": file.file, "sha256": file.sha256}) for file in files]
+    standard = [entry for file, entry in hashes if file.shipped and file.file == settings.standard_channels]
     return {
         "rosprivacy": rosprivacy.__version__,
         "view": graph.view,
         "policies": [{"file": name, "sha256": digest} for name, digest in sources],
-        "labels": [entry for entry in hashes if entry not in standard],
+        "labels": [entry for _, entry in hashes if entry not in standard],
         "standard_channels": {**standard[0], "taken": analysis.standard_channels} if standard else None,
         "unlabelled_node": "conduit, not reviewed",
         "unlabelled_channel": "sensitive, not reviewed",
