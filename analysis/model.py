@@ -14,7 +14,9 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.spread import Spread
 
-KINDS = ("node", "action", "service", "topic")  # nodes first: flow.py sweeps nodes and channels in turn
+CHANNELS = ("action", "service", "topic")
+NON_ROS = ("device", "display", "external-system", "person", "shared-memory", "side-channel", "storage")  # rule S9
+KINDS = ("node", *NON_ROS, *CHANNELS)  # channels last: flow.py sweeps them and the others in turn
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +56,11 @@ class Element:
     def is_node(self) -> bool:
         """Whether this is a ROS node."""
         return self.kind == "node"
+
+    @property
+    def is_channel(self) -> bool:
+        """Whether this is a topic, service or action: it only passes on; all others take part like nodes (rule S9)."""
+        return self.kind in CHANNELS
 
     @property
     def identity(self) -> tuple[str, str, str]:
@@ -196,6 +203,30 @@ class FlowGraph:
 
 
 @dataclass(frozen=True, slots=True)
+class Legal:
+    """That data of a category can be what a provision speaks of.
+
+    Attributes
+    ----------
+    iri, name, meaning
+        Of the provision; its meaning in one sentence of our own.
+    as_of
+        Date of the law, ``YYYY-MM-DD``.
+    verdict
+        ``always``, ``conditional`` or ``may-reveal``.
+    condition
+        When, where it is not always.
+    """
+
+    iri: str
+    name: str
+    meaning: str
+    as_of: str
+    verdict: str
+    condition: str = ""
+
+
+@dataclass(frozen=True, slots=True)
 class Category:
     """A kind of personal data.
 
@@ -215,6 +246,8 @@ class Category:
         Names of the direct broader categories (``skos:broader``), sorted.
     synonyms
         Other names that find it, sorted.
+    law
+        Provisions that it falls under itself, sorted; those of broader categories hold too.
     """
 
     name: str
@@ -224,6 +257,7 @@ class Category:
     definition: str
     broader: tuple[str, ...] = ()
     synonyms: tuple[str, ...] = ()
+    law: tuple[Legal, ...] = ()
 
 
 class Method(StrEnum):

@@ -44,7 +44,7 @@ def open_questions(net: Net, mask: int) -> tuple[OpenQuestion, ...]:
         element, bits = elements[vertex], everything & mask
         if not bits:
             continue
-        frontier = element.is_node and bool(present(first, vertex) & bits)
+        frontier = not element.is_channel and bool(present(first, vertex) & bits)
         question = OpenQuestion(element, found.names(bits), nearest.level(vertex, bits) or 0, frontier)
         known = merged.get(element.shown_as)  # the other side of a wildcard
         if known:
@@ -65,7 +65,7 @@ def _ends(found: Spread, open_bits: dict[int, int]) -> dict[int, int]:
     """Leaks and open nodes, beyond which nothing is on the frontier."""
     ends = dict(found.leaks)
     for vertex, bits in open_bits.items():
-        if found.graph.elements[vertex].is_node:
+        if not found.graph.elements[vertex].is_channel:
             ends[vertex] = ends.get(vertex, 0) | bits
     return {vertex: _both_planes(bits, found) for vertex, bits in ends.items() if bits}
 

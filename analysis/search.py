@@ -34,7 +34,7 @@ class Net:
         for index, flow in enumerate(graph.flows):
             if spread.leaves.get(flow.source):
                 passing = spread.flow_keeps.get(index, everything)
-                if not graph.elements[flow.target].is_node:  # a channel takes up only what it carries
+                if graph.elements[flow.target].is_channel:  # a channel takes up only what it carries
                     passing &= spread.keeps.get(flow.target, everything)
                 flows[flow.source].append((index, flow.target, passing))
         return cls(spread, flows)

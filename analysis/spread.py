@@ -89,16 +89,16 @@ class Spread:
         return 1 << i | 1 << i + len(self.categories)
 
     def present(self, vertex: int) -> int:
-        """What arrives at or starts from a node, or is carried by a channel."""
+        """What arrives at or starts from an element, or is carried by a channel."""
         arrives, leaves = self.arrives.get(vertex, 0), self.leaves.get(vertex, 0)
-        return arrives | leaves if self.graph.elements[vertex].is_node else leaves
+        return leaves if self.graph.elements[vertex].is_channel else arrives | leaves
 
     def along(self, index: int) -> int:
         """What goes along a flow and is taken up at its end."""
         flow = self.graph.flows[index]
         bits = self.sent.get(flow.source, 0) & self.flow_keeps.get(index, self.all_bits)
         bits |= self.flow_emits.get(index, 0) & self.flow_keeps.get(index, self.all_bits)
-        if not self.graph.elements[flow.target].is_node:
+        if self.graph.elements[flow.target].is_channel:
             bits &= self.keeps.get(flow.target, self.all_bits)
         return bits
 
@@ -253,7 +253,7 @@ def _carry(found: Spread) -> None:
         emitted[count + number] = _words(found.flow_emits.get(index, 0), words)
         keep[count + number] = _words(found.flow_keeps.get(index, found.all_bits), words)
     derivations = [(vertex, *pair) for vertex, pairs in found.derives.items() for pair in pairs]
-    nodes = sum(element.is_node for element in graph.elements)
+    nodes = sum(not element.is_channel for element in graph.elements)
     edges = Edges.of(count + len(special), np.array(sources, np.int64), np.array(targets, np.int64), nodes)
     arrives, leaves = fixpoint(edges, emitted, keep, np.array(derivations, np.int64))
     found.arrives = _as_numbers(arrives[:count])

@@ -1,8 +1,8 @@
 """Turtle -> the categories, how they are found by name, and their hierarchy (rule S7).
 
-In: ``categories.ttl``, read by rdflib. Out: a ``Vocabulary``. What was read is kept in the user's cache folder under
-the hash of the file, so that rdflib is imported only after a change; the cache may be deleted at any time, and a
-damaged one is not used.
+In: ``categories.ttl`` and ``law.ttl``, read by rdflib. Out: a ``Vocabulary``. What was read is kept in the user's cache
+folder under the hash of the files, so that rdflib is imported only after a change; the cache may be deleted at any
+time, and a damaged one is not used.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import InputErrors, OntologyError
 from rosprivacy.analysis.hierarchy import Hierarchy
-from rosprivacy.analysis.model import Category
+from rosprivacy.analysis.model import Category, Legal
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -31,7 +31,8 @@ if TYPE_CHECKING:
 
 TOP = "PersonalData"
 NAMESPACE = "urn:x-rosprivacy:"
-CACHE_FORMAT = 1
+SHIPPED = ("categories.ttl", "law.ttl")
+CACHE_FORMAT = 2
 _IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 
@@ -107,7 +108,8 @@ def load(cache: Path | None = None) -> Vocabulary:
     InputErrors
         If the ontology breaks its own rules.
     """
-    data = files("rosprivacy.ontology").joinpath("categories.ttl").read_bytes()
+    folder_here = files("rosprivacy.ontology")
+    data = b"\n".join(folder_here.joinpath(name).read_bytes() for name in SHIPPED)
     key = hashlib.sha256(data).hexdigest()
     folder = cache or _cache_folder()
     path = folder / f"categories-{CACHE_FORMAT}-{key[:16]}.json"
@@ -159,7 +161,35 @@ def _category(graph: Graph, subject: Node, concepts: set[Node]) -> Category:
         definition="".join(texts(SKOS.definition)[:1]),
         broader=tuple(sorted(_local_name(str(up)) for up in graph.objects(subject, SKOS.broader) if up in concepts)),
         synonyms=tuple(texts(SKOS.altLabel)),
+        law=tuple(_law(graph, subject)),
     )
+
+
+def _law(graph: Graph, subject: Node) -> Iterable[Legal]:
+    """The provisions that a category falls under, by name."""
+    from rdflib import SKOS, URIRef  # noqa: PLC0415 - as above
+
+    def text(node: Node | None, predicate: Node) -> str:
+        value = graph.value(node, predicate) if node is not None else None
+        return "" if value is None else str(value)
+
+    def ours(name: str) -> URIRef:
+        return URIRef(f"{NAMESPACE}{name}")
+
+    found = []
+    for link in graph.objects(subject, ours("fallsUnder")):
+        provision = graph.value(link, ours("provision"))
+        found.append(
+            Legal(
+                iri=str(provision),
+                name=text(provision, ours("identifier")),
+                meaning=text(provision, SKOS.definition),
+                as_of=text(provision, ours("asOf")),
+                verdict=text(link, ours("verdict")),
+                condition=text(link, ours("condition")),
+            )
+        )
+    return sorted(found, key=lambda legal: legal.name)
 
 
 def _problems(categories: list[Category], file: str) -> Iterable[OntologyError]:
@@ -197,7 +227,14 @@ def _cached(path: Path, key: str) -> tuple[Category, ...] | None:
         if kept["key"] != key or kept["digest"] != _digest(kept["categories"]):
             return None
         return tuple(
-            Category(**{**c, "broader": tuple(c["broader"]), "synonyms": tuple(c["synonyms"])})
+            Category(
+                **{
+                    **c,
+                    "broader": tuple(c["broader"]),
+                    "synonyms": tuple(c["synonyms"]),
+                    "law": tuple(Legal(**legal) for legal in c["law"]),
+                }
+            )
             for c in kept["categories"]
         )
     except (OSError, ValueError, KeyError, TypeError):

@@ -61,7 +61,7 @@ def document(
             {"element": element_dict(element), "category": category, "roles": list(roles)}
             for element, said in analysis.roles.items()
             for category, roles in sorted(said.items())
-            if element.is_node
+            if not element.is_channel
         ],
         "flows": len(graph.flows),
         "denied_flows": len(graph.denied),

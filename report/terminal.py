@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from rich.text import Text
 
 from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.model import CHANNELS
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -24,7 +25,7 @@ VERDICTS = {
 }
 VERBS = {
     "publish": "publishes", "subscribe": "is read by", "request": "request", "reply": "reply",
-    "call": "call", "execute": "execute", "matches": "wildcard covers",
+    "call": "call", "execute": "execute", "matches": "wildcard covers", "flow": "goes to",
 }  # fmt: skip
 SHOWN = 12  # open elements of a kind, without --verbose
 Line = tuple[str, str]  # text, style
@@ -126,8 +127,11 @@ def _review(report: Mapping[str, Any], *, verbose: bool) -> Iterator[Line]:
     """Open elements in the order of review: nodes on the frontier, then channels, then what lies behind."""
     groups = (
         ("Review next (nodes that data reaches first)", [q for q in report["open"] if q["frontier"]]),
-        ("Channels not reviewed", [q for q in report["open"] if q["element"]["kind"] != "node"]),
-        ("Nodes behind those", [q for q in report["open"] if q["element"]["kind"] == "node" and not q["frontier"]]),
+        ("Channels not reviewed", [q for q in report["open"] if q["element"]["kind"] in CHANNELS]),
+        (
+            "Nodes behind those",
+            [q for q in report["open"] if q["element"]["kind"] not in CHANNELS and not q["frontier"]],
+        ),
     )
     for title, questions in groups:
         if not questions:
@@ -154,6 +158,9 @@ def _assumed(report: Mapping[str, Any]) -> Iterator[Line]:
         yield f"   {channels} taken as mundane (rosprivacy labels --standard)", ""
     else:
         yield "   no standard channels taken as mundane", ""
+    if "database" in assumptions:
+        robots = _count(assumptions["database"]["robots"], "robot")
+        yield f"   {robots} in the database, as loaded from these files and changed there since", ""
     for file in assumptions["labels"]:
         yield f"   labels {shown(file['file'])} (sha256 {file['sha256'][:12]})", ""
     if not assumptions["labels"]:

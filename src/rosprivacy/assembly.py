@@ -5,12 +5,15 @@ In: what a user names. Out: a ``Result``.
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass, field
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import rosprivacy
 from rosprivacy.analysis.errors import InputError, InputErrors, OntologyError, shown
 from rosprivacy.analysis.findings import MAX_PATHS, Options, analyse
+from rosprivacy.analysis.model import Diagnostic, Place, Severity
 from rosprivacy.analysis.paths import WITNESS
 from rosprivacy.ingest.binding import bind
 from rosprivacy.ingest.files import read_policies
@@ -22,10 +25,13 @@ from rosprivacy.ontology.vocabulary import TOP, load
 from rosprivacy.report.document import document
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
-    from rosprivacy.analysis.model import Analysis, Bound, Diagnostic, FlowGraph, Policy
+    from neo4j import Driver
+
+    from rosprivacy.analysis.model import Analysis, Bound, FlowGraph, Policy
     from rosprivacy.ingest.labels import Labels
+    from rosprivacy.ingest.rows import RobotRows
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 
@@ -102,6 +108,77 @@ def run(policies: tuple[str, ...], labels: tuple[str, ...], settings: Settings) 
     return Result(analysis, bound, vocabulary, system, said, _assumptions(graph, system, files, analysis, settings))
 
 
+def run_stored(driver: Driver, settings: Settings) -> Result:
+    """Analyse what is in the database, with what people added to it, and write the answer back.
+
+    Raises
+    ------
+    InputErrors
+        With every element, flow and role that cannot be understood.
+    DatabaseError
+        If the server refuses, or a robot was loaded meanwhile.
+    """
+    from rosprivacy.ingest.stored import read_stored  # noqa: PLC0415 - only where there is a database
+    from rosprivacy.ingest.writeback import write_back  # noqa: PLC0415
+
+    vocabulary = load()
+    asked = _asked(vocabulary, settings.categories)
+    stored = read_stored(driver, vocabulary)
+    everything = Options(None, settings.paths, settings.max_paths)
+    analysis = analyse(stored.graph, stored.bound, vocabulary.hierarchy, everything)
+    write_back(driver, stored, analysis, vocabulary)
+    if asked is not None:
+        chosen = Options(asked, settings.paths, settings.max_paths)
+        analysis = analyse(stored.graph, stored.bound, vocabulary.hierarchy, chosen)
+    said, assumptions = _remembered(stored.robots.values(), stored.graph, analysis, settings)
+    return Result(analysis, stored.bound, vocabulary, (), said, assumptions)
+
+
+def robot_of(name: str, result: Result) -> RobotRows:
+    """Return the rows of a robot for the database; what the answer rests on goes with it."""
+    from rosprivacy.ingest.rows import robot_rows  # noqa: PLC0415
+
+    more = {
+        "assumptions": json.dumps(result.assumptions, sort_keys=True),
+        "diagnostics": json.dumps([_as_dict(diagnostic) for diagnostic in result.diagnostics]),
+    }
+    return robot_rows(name, result.analysis, result.bound, result.vocabulary, more)
+
+
+def _as_dict(diagnostic: Diagnostic) -> dict[str, Any]:
+    place = diagnostic.place
+    return {"file": place.file, "line": place.line, "severity": diagnostic.severity, "message": diagnostic.message}
+
+
+def _remembered(
+    robots: Iterable[Mapping[str, Any]], graph: FlowGraph, analysis: Analysis, settings: Settings
+) -> tuple[tuple[Diagnostic, ...], dict[str, Any]]:
+    """What the robots were loaded with, put together (rule S12)."""
+    loaded = [json.loads(robot["assumptions"]) for robot in robots if robot.get("assumptions")]
+    files: dict[str, list[dict[str, str]]] = {}
+    for kind in ("policies", "labels"):
+        named = {(entry["file"], entry["sha256"]) for entry in chain.from_iterable(said[kind] for said in loaded)}
+        files[kind] = [{"file": name, "sha256": digest} for name, digest in sorted(named)]
+    standard = [said["standard_channels"] for said in loaded]
+    distinct = {(entry["file"], entry["sha256"]) for entry in standard if entry}
+    taken = [{"file": name, "sha256": digest} for name, digest in sorted(distinct)]
+    diagnostics = {
+        Diagnostic(Place(d["file"], d["line"]), Severity(d["severity"]), d["message"])
+        for robot in robots
+        for d in json.loads(robot.get("diagnostics") or "[]")
+    }
+    assumptions = {
+        **_own_assumptions(graph, settings),
+        **files,
+        "standard_channels": {**taken[0], "taken": analysis.standard_channels} if taken else None,
+        "database": {"robots": len(loaded)},
+    }
+    if len(taken) > 1 or (taken and not all(standard)):
+        message = "robots were loaded with different files of standard channels; one of them is named"
+        diagnostics.add(Diagnostic(Place("the database", 0), Severity.WARNING, message))
+    return tuple(sorted(diagnostics, key=lambda d: (d.place.file, d.place.line, d.message))), assumptions
+
+
 def read_system(policies: tuple[str, ...], settings: Settings) -> tuple[tuple[Policy, ...], tuple[Diagnostic, ...]]:
     """Read policies and the saved graphs that they add to."""
     saved = [policy for file in settings.add for policy in read_saved(file)]
@@ -165,11 +242,17 @@ def _assumptions(
     hashes = [(file, {"file": file.file, "sha256": file.sha256}) for file in files]
     standard = [entry for file, entry in hashes if file.shipped and file.file == settings.standard_channels]
     return {
-        "rosprivacy": rosprivacy.__version__,
-        "view": graph.view,
+        **_own_assumptions(graph, settings),
         "policies": [{"file": name, "sha256": digest} for name, digest in sources],
         "labels": [entry for _, entry in hashes if entry not in standard],
         "standard_channels": {**standard[0], "taken": analysis.standard_channels} if standard else None,
+    }
+
+
+def _own_assumptions(graph: FlowGraph, settings: Settings) -> dict[str, Any]:
+    return {
+        "rosprivacy": rosprivacy.__version__,
+        "view": graph.view,
         "unlabelled_node": "conduit, not reviewed",
         "unlabelled_channel": "sensitive, not reviewed",
         "categories_asked": list(settings.categories) or "all",

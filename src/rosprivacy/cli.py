@@ -6,23 +6,36 @@ Exit codes: 0 no leak found, 1 leak, 2 bad input or usage, 3 database unreachabl
 
 from __future__ import annotations
 
-import os
 import sys
-from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 import rosprivacy
+from rosprivacy import cli_db, cli_graph
 from rosprivacy.analysis.errors import InputError, RosPrivacyError
+from rosprivacy.cli_options import (
+    FailOn,
+    Format,
+    IncludeRoot,
+    LabelFiles,
+    MaxBytes,
+    NoStandard,
+    Output,
+    PathsShown,
+    Policies,
+    Server,
+    SixLists,
+    Standard,
+    View,
+    ViewChosen,
+    complete_category,
+)
+from rosprivacy.cli_output import emit, progress_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
-
     from rosprivacy.assembly import Result, Settings
-
-SIGPIPE = 13  # the module signal lacks it on Windows
 
 app = typer.Typer(
     name="rosprivacy",
@@ -31,60 +44,10 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-
-
-class Format(StrEnum):
-    """Of the report."""
-
-    text = "text"
-    json = "json"
-
-
-class View(StrEnum):
-    """Rule S6."""
-
-    declared = "declared"
-    enforced = "enforced"
-
-
-class PathsShown(StrEnum):
-    """Which paths to list for a finding."""
-
-    witness = "witness"
-    disjoint = "disjoint"
-    all = "all"
-
-
-class FailOn(StrEnum):
-    """Which verdicts end with an exit code other than 0."""
-
-    leak = "leak"
-    undetermined = "undetermined"
-    never = "never"
-
-
-def complete_category(incomplete: str) -> list[str]:
-    """Return the categories that begin so, for shell completion."""
-    from rosprivacy.ontology.vocabulary import load
-
-    return [name for name in load().categories if name.casefold().startswith(incomplete.casefold())]
-
-
-Policies = Annotated[
-    list[str] | None,
-    typer.Argument(metavar="POLICY", help="SROS 2 policies: files, folders or globs.", show_default=False),
-]
-IncludeRoot = Annotated[
-    Path | None,
-    typer.Option(help="Folder that includes may read from; by default the policy's own.", show_default=False),
-]
-MaxBytes = Annotated[int, typer.Option(min=1, help="Bound on a policy with all that it includes.")]
-Output = Annotated[Path | None, typer.Option("--output", "-o", help="Write to this file instead.", show_default=False)]
-Standard = Annotated[
-    str,
-    typer.Option("--standard-channels", metavar="FILE", help="Label file of the standard ROS channels."),
-]
-NoStandard = Annotated[bool, typer.Option("--no-standard-channels", help="Take no channel as mundane by itself.")]
+app.add_typer(cli_db.app, name="db", help="The private Neo4j: start it, stop it, see where it is.")
+app.command()(cli_graph.load)
+app.command()(cli_graph.unload)
+app.command()(cli_graph.query)
 
 
 @app.callback(invoke_without_command=True)
@@ -100,12 +63,11 @@ def root(
 @app.command()
 def analyze(
     policies: Policies = None,
-    labels: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--labels", "-l", metavar="FILE", help="Label file, YAML or JSON; may be repeated.", show_default=False
-        ),
-    ] = None,
+    labels: LabelFiles = None,
+    from_database: Annotated[
+        bool, typer.Option("--from-database", help="Analyse what is in Neo4j, and write the answer back there.")
+    ] = False,
+    neo4j: Server = None,
     add: Annotated[
         list[str] | None,
         typer.Option(metavar="GRAPH.json", help="Add to a graph saved before; may be repeated.", show_default=False),
@@ -126,10 +88,8 @@ def analyze(
             help="Answer for this category and narrower ones only; may be repeated.",
         ),
     ] = None,
-    category: Annotated[
-        str, typer.Option(metavar="NAME", autocompletion=complete_category, help="What a six-list JSON is about.")
-    ] = "PersonalData",
-    view: Annotated[View, typer.Option(help="What nodes declare, or what DDS enforces per enclave.")] = View.declared,
+    category: SixLists = "PersonalData",
+    view: ViewChosen = View.declared,
     paths: Annotated[PathsShown, typer.Option(help="Ways to list for each finding.")] = PathsShown.witness,
     max_paths: Annotated[int, typer.Option(min=1, help="Bound on the listed ways of a finding.")] = 100,
     standard_channels: Standard = "rosprivacy:standard",
@@ -153,16 +113,26 @@ def analyze(
         max_paths=max_paths,
         include_root=str(include_root) if include_root else None,
         max_bytes=max_bytes,
-        progress=_progress,
+        progress=progress_of,
     )
-    result = run(_named(policies, settings), tuple(labels or ()), settings)
+    if from_database:
+        if policies or labels or add or save_graph:
+            raise typer.BadParameter(
+                "--from-database takes what is in the database: no POLICY, --labels, --add, --save-graph"
+            )
+        from rosprivacy.assembly import run_stored
+
+        with cli_graph.driver_of(neo4j) as driver:
+            result = run_stored(driver, settings)
+    else:
+        result = run(_named(policies, settings), tuple(labels or ()), settings)
     texts = {}
     if save_graph:
         from rosprivacy.ingest.saved import as_dict
         from rosprivacy.report.document import as_text
 
         texts[save_graph] = as_text(as_dict(result.policies))
-    _emit(_report(result, format, colour=output is None, quiet=quiet, verbose=verbose), output, texts)
+    emit(_report(result, format, colour=output is None, quiet=quiet, verbose=verbose), output, texts)
     raise typer.Exit(_exit_code(str(result.analysis.verdict), fail_on))
 
 
@@ -190,11 +160,11 @@ def labels(
         standard_channels=None if no_standard_channels else standard_channels,
         include_root=str(include_root) if include_root else None,
         max_bytes=max_bytes,
-        progress=_progress,
+        progress=progress_of,
     )
     if init and output and output.is_file():
         raise InputError(str(output), 0, "is there already", "a label file is work: name another, or remove it")
-    _emit(_labels_text(policies, settings, init=init, schema=schema, standard=standard), output)
+    emit(_labels_text(policies, settings, init=init, schema=schema, standard=standard), output)
 
 
 def _labels_text(policies: list[str] | None, settings: Settings, *, init: bool, schema: bool, standard: bool) -> str:
@@ -242,45 +212,6 @@ def _exit_code(verdict: str, fail_on: FailOn) -> int:
     if verdict == "leak" and fail_on is not FailOn.never:
         return 1
     return 4 if verdict == "undetermined" and fail_on is FailOn.undetermined else 0
-
-
-def _emit(text: str, output: Path | None, others: Mapping[Path, str] | None = None) -> None:
-    """Write the text to a file or to standard output, and other files with it."""
-    texts = {**(others or {}), **({output: text} if output else {})}
-    if texts:
-        from rosprivacy.report.atomic import write_texts
-
-        write_texts(texts)
-    if output:
-        return
-    if sys.stdout is None:  # `>&-`
-        raise InputError("standard output", 0, "is closed", "open it, or name a file with --output")
-    try:
-        sys.stdout.buffer.write(text.encode(_encoding(text), "backslashreplace"))
-        sys.stdout.flush()
-    except BrokenPipeError:  # `| head`: end as a program does that knows nothing of pipes, not with a verdict
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        sys.exit(128 + SIGPIPE)
-    except OSError as error:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        hint = "free space, or write elsewhere"
-        raise InputError("standard output", 0, f"cannot be written: {error.strerror}", hint) from None
-
-
-def _encoding(text: str) -> str:
-    """JSON is UTF-8 wherever it goes; other text is what the terminal understands."""
-    return "utf-8" if text.startswith("{") else sys.stdout.encoding
-
-
-def _progress(files: Sequence[str]) -> Iterable[str]:
-    """Show a bar on a terminal when there is much to read."""
-    many = 20
-    if len(files) < many or not sys.stderr.isatty():
-        return files
-    from rich.console import Console
-    from rich.progress import track
-
-    return track(files, description="Reading policies", console=Console(stderr=True), transient=True)
 
 
 def main() -> None:

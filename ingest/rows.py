@@ -1,0 +1,221 @@
+"""Analysis -> the rows that Neo4j takes: one robot's elements, flows, roles and findings, as plain values.
+
+In: the analysis of one robot and the statements that it rests on. Out: ``RobotRows``, whose digest says whether
+anything differs from what was loaded before. The properties are those of ``schema.py``; a test holds this.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.ingest.ids import category_labels, element_id, enclave_id
+from rosprivacy.ingest.results import Names, Roles, element_results, finding_rows, flow_results, origin_rows
+from rosprivacy.ingest.schema import KIND_LABELS, LEG, WILDCARD
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+    from rosprivacy.analysis.model import Analysis, Bound, Element, Flow, Grant, Statement
+    from rosprivacy.ontology.vocabulary import Vocabulary
+
+Row = dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class RobotRows:
+    """What is written of one robot.
+
+    Attributes
+    ----------
+    robot
+        Its name.
+    properties
+        Of the ``Robot``, its digest and counts among them.
+    elements
+        ``id``, ``labels``, ``properties``.
+    enclaves
+        ``id``, ``properties``.
+    memberships, flows, derived
+        ``source``, ``target`` (ids), ``properties``.
+    roles
+        By role: ``source`` (id), ``target`` (IRI), ``properties``.
+    findings
+        ``id``, ``source``, ``target`` (ids), ``category`` (IRI), ``properties``.
+    across
+        ``source`` (id of the finding), ``target`` (id of the element), ``properties``.
+    """
+
+    robot: str
+    properties: Row
+    elements: list[Row]
+    enclaves: list[Row]
+    memberships: list[Row]
+    flows: list[Row]
+    roles: dict[str, list[Row]]
+    derived: list[Row]
+    findings: list[Row]
+    across: list[Row]
+
+    @property
+    def digest(self) -> str:
+        """SHA-256 of everything else."""
+        return str(self.properties["digest"])
+
+    @property
+    def size(self) -> int:
+        """Number of rows, for batches and progress."""
+        lists = (self.elements, self.memberships, self.flows, self.derived, self.findings, self.across)
+        return sum(map(len, (*lists, *self.roles.values())))
+
+
+def robot_rows(
+    robot: str, analysis: Analysis, bound: Bound, vocabulary: Vocabulary, more: Mapping[str, Any] | None = None
+) -> RobotRows:
+    """Return the rows of one robot.
+
+    Parameters
+    ----------
+    robot
+        Name in the database.
+    analysis
+        Of all categories, not of a choice.
+    bound
+        The statements that it rests on.
+    more
+        Further properties of the ``Robot``.
+
+    Raises
+    ------
+    InputErrors
+        If a category's label cannot be one.
+    """
+    graph = analysis.graph
+    labels = category_labels(vocabulary)
+    names, roles = Names(analysis.spread, vocabulary, labels), Roles(vocabulary, labels)
+    ids = [element_id(robot, element) for element in graph.elements]
+    by_element = dict(zip(graph.elements, ids, strict=True))
+    enclaves = sorted({profile.enclave for profile in graph.profiles})
+    found, across = finding_rows(analysis, vocabulary, by_element, dict.fromkeys(graph.elements, robot))
+    parts: dict[str, Any] = {
+        "elements": list(_elements(robot, ids, element_results(analysis, bound, names, roles), graph.elements)),
+        "enclaves": [{"id": enclave_id(robot, e), "properties": {"path": e, "robot": robot}} for e in enclaves],
+        "memberships": list(_memberships(robot, analysis)),
+        "flows": list(_flows(robot, analysis, bound, names, ids)),
+        "roles": _roles(robot, bound, vocabulary, ids),
+        "derived": list(origin_rows(analysis, ids, [robot] * len(ids))),
+        "findings": found,
+        "across": across,
+    }
+    properties: Row = {
+        "verdict": str(analysis.verdict),
+        "view": graph.view,
+        "elements": len(parts["elements"]),
+        "flows": len(parts["flows"]),
+        "roles": sum(map(len, parts["roles"].values())),
+        **(more or {}),
+    }
+    text = json.dumps([robot, properties, parts], sort_keys=True)
+    return RobotRows(robot, {**properties, "digest": hashlib.sha256(text.encode()).hexdigest()}, **parts)
+
+
+def kind_labels(element: Element) -> list[str]:
+    """Return the labels that say what an element is.
+
+    >>> from rosprivacy.analysis.model import Element
+    >>> kind_labels(Element("service", "/add", leg="request"))
+    ['Service', 'Leg']
+    """
+    return [KIND_LABELS[element.kind], *([LEG] if element.leg else ()), *([WILDCARD] if element.pattern else ())]
+
+
+def _elements(
+    robot: str, ids: Sequence[str], results: Iterable[tuple[Row, list[str]]], elements: Sequence[Element]
+) -> Iterator[Row]:
+    for element, key, (properties, labels) in zip(elements, ids, results, strict=True):
+        known = {
+            "name": element.name,
+            "robot": robot,
+            "kind": element.kind,
+            "leg": element.leg or None,
+            "side": element.side or None,
+            "without": list(element.without) or None,
+        }
+        yield {"id": key, "labels": [*kind_labels(element), *labels], "properties": {**known, **properties}}
+
+
+def _memberships(robot: str, analysis: Analysis) -> Iterator[Row]:
+    """A node in an enclave, once; the first of its profiles there is named."""
+    seen = set()
+    nodes = {element.name: element_id(robot, element) for element in analysis.graph.elements if element.is_node}
+    for profile in analysis.graph.profiles:
+        if (profile.enclave, profile.node) not in seen:
+            seen.add((profile.enclave, profile.node))
+            place = {"file": profile.place.file, "line": profile.place.line, "robot": robot}
+            yield {"source": nodes[profile.node], "target": enclave_id(robot, profile.enclave), "properties": place}
+
+
+def _flows(robot: str, analysis: Analysis, bound: Bound, names: Names, ids: Sequence[str]) -> Iterator[Row]:
+    results = flow_results(analysis, names)
+    for index, (flow, result) in enumerate(zip(analysis.graph.flows, results, strict=True)):
+        said = _restrictions(bound.flows.get(index, ()))
+        yield _flow(robot, flow, ids, {"decision": "allow", **result, **said})
+    for flow in analysis.graph.denied:
+        denied_by = [str(grant.place) for grant in flow.denials]
+        yield _flow(robot, flow, ids, {"decision": "deny", "carries": [], "denied_by": denied_by})
+
+
+def _flow(robot: str, flow: Flow, ids: Sequence[str], properties: Row) -> Row:
+    known: Row = {"role": flow.role, "robot": robot}
+    if flow.grants:
+        known |= _grant(flow.grants[0])
+        further = [json.dumps(_grant(grant), sort_keys=True) for grant in flow.grants[1:]]
+        known["further"] = further or None
+    return {"source": ids[flow.source], "target": ids[flow.target], "properties": known | properties}
+
+
+def _grant(grant: Grant) -> Row:
+    place = grant.place
+    return {"file": place.file, "line": place.line, "enclave": grant.enclave, "profile": grant.node}
+
+
+def _restrictions(said: Sequence[Statement]) -> Row:
+    """What labels say of a flow: all ``never`` hold, and of ``only`` the one of the highest rank (rule S8)."""
+    never = sorted({name for statement in said if statement.role == "never" for name in statement.categories})
+    only = [statement for statement in said if statement.role == "only"]
+    best = max(only, key=lambda statement: statement.rank, default=None)
+    return {"never": never or None, "only": sorted(best.categories) if best else None}
+
+
+def _roles(robot: str, bound: Bound, vocabulary: Vocabulary, ids: Sequence[str]) -> dict[str, list[Row]]:
+    """One relationship per category that a statement names; one about every category goes to those at the top."""
+    rows: dict[str, list[Row]] = {}
+    top = [category.name for category in vocabulary.categories.values() if not category.broader]
+    for vertex, said in bound.elements.items():
+        for statement in said:
+            properties: Row = {
+                "file": statement.place.file,
+                "line": statement.place.line,
+                "tier": statement.rank[0],
+                "specificity": statement.rank[1],
+                "every": None if statement.categories else True,
+                "robot": robot,
+                **_particulars(statement),
+            }
+            named = [statement.to] if statement.role == "derivation" else statement.categories or top
+            for name in named:
+                iri = vocabulary.categories[name].iri
+                rows.setdefault(statement.role, []).append(
+                    {"source": ids[vertex], "target": iri, "properties": properties}
+                )
+    return rows
+
+
+def _particulars(statement: Statement) -> Row:
+    if statement.role == "source":
+        return {"through": list(statement.through) or None}
+    if statement.role == "sanitizer":
+        return {"method": str(statement.method) if statement.method else None, "stated": statement.stated}
+    return {"of": statement.categories[0]} if statement.role == "derivation" else {}

@@ -1,0 +1,323 @@
+"""The graph in Neo4j, declared once: kinds of nodes and relationships, their properties and what they mean.
+
+In: nothing. Out: tables, from which the constraints, the statements that write rows and the tables of
+``docs/database.md`` are derived. Identifiers in Cypher come from here and from the ontology only, checked and quoted;
+values are always parameters.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+_IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+STRING, INTEGER, BOOLEAN, STRINGS = "STRING", "INTEGER", "BOOLEAN", "LIST<STRING>"
+
+
+@dataclass(frozen=True, slots=True)
+class Property:
+    """A property: name, type as Cypher calls it, meaning."""
+
+    name: str
+    type: str
+    meaning: str
+
+
+@dataclass(frozen=True, slots=True)
+class NodeKind:
+    """A kind of node.
+
+    Attributes
+    ----------
+    label
+        Its first label.
+    key
+        The property that identifies it; there is a uniqueness constraint on it.
+    labels
+        Further labels that such nodes can carry, for the documentation.
+    """
+
+    label: str
+    key: str
+    meaning: str
+    properties: tuple[Property, ...]
+    labels: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class RelationshipKind:
+    """A kind of relationship between two kinds of nodes."""
+
+    type: str
+    source: str
+    target: str
+    meaning: str
+    properties: tuple[Property, ...] = ()
+
+
+KIND_LABELS = {
+    "node": "RosNode",
+    "topic": "Topic",
+    "service": "Service",
+    "action": "Action",
+    "storage": "Storage",
+    "external-system": "ExternalSystem",
+    "shared-memory": "SharedMemory",
+    "side-channel": "SideChannel",
+    "device": "Device",
+    "display": "Display",
+    "person": "Person",
+}
+LEG, WILDCARD = "Leg", "Wildcard"
+
+_OURS = Property("robot", STRING, "whose load wrote it; absent on what people add")
+_PLACE = (
+    Property("file", STRING, "of the label"),
+    Property("line", INTEGER, "of the label"),
+    Property("tier", INTEGER, "rank: 1 for a person's own label, 0 for one that comes with the program"),
+    Property("specificity", INTEGER, "rank: the more of the name is spelt out, the higher"),
+    Property("every", BOOLEAN, "the label names no category: it holds for every one"),
+    _OURS,
+)
+_BROAD = "; broader kinds are named too"
+
+ELEMENT = NodeKind(
+    "Element",
+    "id",
+    "Anything that data can be at.",
+    (
+        Property("id", STRING, "unique: robot, kind, name, leg and side"),
+        Property("name", STRING, "fully qualified ROS name"),
+        Property("robot", STRING, "name of its robot"),
+        Property("kind", STRING, f"one of {', '.join(KIND_LABELS)}"),
+        Property("leg", STRING, "of a service or action: request or response"),
+        Property("side", STRING, "of a wildcard: write or read"),
+        Property("without", STRINGS, "of a wildcard: DDS expressions that a DENY takes out of it"),
+        Property("carries", STRINGS, f"kinds of data that get here{_BROAD}"),
+        Property("pseudonymised", STRINGS, f"kinds of data that get here pseudonymised{_BROAD}"),
+        Property("begins", STRINGS, "kinds that it brings in"),
+        Property("leaks", STRINGS, "kinds that it lets out, if they come"),
+        Property("sanitizes", STRINGS, "kinds that it cleans, if they come"),
+        Property("stops", STRINGS, "kinds that some source brings in and that do not go on from here"),
+        Property("open", STRINGS, "kinds that get here and that no label covers"),
+        Property("frontier", BOOLEAN, "open, and reached before any other open node: to be reviewed first"),
+        Property("distance", INTEGER, "of an open element: flows from the nearest source"),
+    ),
+    f"the kind, one of {', '.join(f'`{label}`' for label in KIND_LABELS.values())}; `{LEG}` on the request and the "
+    f"response of a service or action, `{WILDCARD}` on a name with wildcards. And for each category, here `Biometric`: "
+    "`Biometric` where it gets to, `BiometricSource` where it begins (at a source, or at a node that makes it of other "
+    "data), `BiometricLeak`, `BiometricSanitizer`; the labels of broader categories too",
+)
+ROBOT = NodeKind(
+    "Robot",
+    "name",
+    "A robot that was loaded.",
+    (
+        Property("name", STRING, "unique"),
+        Property("verdict", STRING, "leak, undetermined or no-leak-found"),
+        Property("view", STRING, "declared or enforced"),
+        Property("version", INTEGER, "how often it was written"),
+        Property("digest", STRING, "of what was loaded; absent when the database was analysed since"),
+        Property("elements", INTEGER, "how many were loaded"),
+        Property("flows", INTEGER, "how many were loaded"),
+        Property("roles", INTEGER, "how many relationships of labels were loaded"),
+        Property("assumptions", STRING, "JSON: what the answer rests on"),
+        Property("diagnostics", STRING, "JSON: what its policies and labels were read with"),
+    ),
+)
+ENCLAVE = NodeKind(
+    "Enclave",
+    "id",
+    "A security enclave: all nodes in it share one certificate.",
+    (
+        Property("id", STRING, "unique: robot and path"),
+        Property("path", STRING, "of the SROS 2 enclave"),
+        Property("robot", STRING, "name of its robot"),
+    ),
+)
+CATEGORY = NodeKind(
+    "DataCategory",
+    "iri",
+    "A kind of personal data.",
+    (
+        Property("iri", STRING, "unique"),
+        Property("name", STRING, "short name, as in label files"),
+        Property("label", STRING, "stem of the labels of elements"),
+        Property("title", STRING, "in English"),
+        Property("definition", STRING, "one sentence"),
+    ),
+)
+PROVISION = NodeKind(
+    "LegalProvision",
+    "iri",
+    "A provision that findings point to.",
+    (
+        Property("iri", STRING, "unique"),
+        Property("name", STRING, "short, such as GDPR Art. 9(1) health"),
+        Property("title", STRING, "its meaning in one sentence, in our words"),
+        Property("as_of", STRING, "date of the law"),
+    ),
+)
+FINDING = NodeKind(
+    "Finding",
+    "id",
+    "A kind of data reaches a leak.",
+    (
+        Property("id", STRING, "unique: robot and pattern"),
+        Property("pattern", STRING, "made from category, source and leak: the same on every robot"),
+        Property("robot", STRING, "name of its robot"),
+        Property("kind", STRING, "disclosure"),
+        Property("category", STRING, "name of the category that arrives"),
+        Property("source", STRING, "name of the source"),
+        Property("leak", STRING, "name of the leak"),
+        Property("pseudonymised", BOOLEAN, "it arrives in pseudonymised form only"),
+        Property("dismissed", BOOLEAN, "every way goes through another leak of the category"),
+        Property("disjoint_paths", INTEGER, "ways that share no flow"),
+    ),
+)
+NODES = (ELEMENT, ROBOT, ENCLAVE, CATEGORY, PROVISION, FINDING)
+
+FLOWS_TO = RelationshipKind(
+    "FLOWS_TO",
+    "Element",
+    "Element",
+    "A step along which data can go.",
+    (
+        Property("role", STRING, "publish, subscribe, request, reply, call, execute, or matches for a wildcard"),
+        Property("decision", STRING, "allow, or deny where a DENY takes an ALLOW back"),
+        Property("carries", STRINGS, f"kinds of data that go along it{_BROAD}"),
+        Property("passes", STRINGS, "kinds that had come to its start and go on; absent where there are none"),
+        Property("begins", STRINGS, "kinds that its start brings in; absent where there are none"),
+        Property("made", STRINGS, "kinds that its start makes of what comes to it; absent where there are none"),
+        Property("stops", STRINGS, "kinds that some source brings in and that do not go along it; absent as above"),
+        Property("file", STRING, "of the policy line behind it"),
+        Property("line", INTEGER, "of the policy line behind it"),
+        Property("enclave", STRING, "of the profile that the line stands in"),
+        Property("profile", STRING, "node of that profile"),
+        Property("further", STRINGS, "JSON: file, line, enclave and profile of further policy lines behind it"),
+        Property("denied_by", STRINGS, "of a denied flow: file:line of the DENY"),
+        Property("only", STRINGS, "a label: it carries these at most"),
+        Property("never", STRINGS, "a label: it does not carry these"),
+        _OURS,
+    ),
+)
+ROLES = {
+    "source": RelationshipKind(
+        "SOURCE_OF",
+        "Element",
+        "DataCategory",
+        "It brings the category in.",
+        (*_PLACE, Property("through", STRINGS, "only through these channels")),
+    ),
+    "leak": RelationshipKind("LEAKS", "Element", "DataCategory", "It lets the category out.", _PLACE),
+    "sanitizer": RelationshipKind(
+        "SANITIZES",
+        "Element",
+        "DataCategory",
+        "It cleans the category.",
+        (
+            *_PLACE,
+            Property("method", STRING, "anonymise, aggregate, drop or pseudonymise; absent counts as the last"),
+            Property("stated", BOOLEAN, "whether the label states the method"),
+        ),
+    ),
+    "conduit": RelationshipKind("PASSES", "Element", "DataCategory", "Reviewed: it passes the category on.", _PLACE),
+    "derivation": RelationshipKind(
+        "DERIVES",
+        "Element",
+        "DataCategory",
+        "It makes the category of another.",
+        (*_PLACE, Property("of", STRING, "name of the category that it is made of")),
+    ),
+    "mundane": RelationshipKind("NEVER_HAS", "Element", "DataCategory", "A mundane channel.", _PLACE),
+    "sensitive": RelationshipKind("MAY_HAVE", "Element", "DataCategory", "A channel, reviewed.", _PLACE),
+    "only": RelationshipKind(
+        "HAS_ONLY", "Element", "DataCategory", "A channel carries what is named so at most.", _PLACE
+    ),
+    "never": RelationshipKind("HAS_NOT", "Element", "DataCategory", "A channel does not carry the category.", _PLACE),
+}
+DERIVES_FROM = RelationshipKind(
+    "DERIVES_FROM",
+    "Element",
+    "Element",
+    "What the first makes of other data comes from the second, a source.",
+    (
+        Property("category", STRING, "name of the category that is made"),
+        Property("way", STRINGS, "names of the elements from the source to it, both included"),
+        Property("policy", STRINGS, "file:line of the policy line behind each step of the way"),
+        Property("past_leak", BOOLEAN, "every way there goes through a leak of that category"),
+        _OURS,
+    ),
+)
+IN_ENCLAVE = RelationshipKind(
+    "IN_ENCLAVE",
+    "Element",
+    "Enclave",
+    "The node has a profile in the enclave.",
+    (Property("file", STRING, "of the profile"), Property("line", INTEGER, "of the profile"), _OURS),
+)
+FALLS_UNDER = RelationshipKind(
+    "FALLS_UNDER",
+    "DataCategory",
+    "LegalProvision",
+    "Data of the category can be what the provision speaks of.",
+    (
+        Property("verdict", STRING, "always, conditional or may-reveal"),
+        Property("condition", STRING, "when, where it is not always"),
+    ),
+)
+ACROSS = RelationshipKind(
+    "ACROSS",
+    "Finding",
+    "Element",
+    "An element of its shortest way.",
+    (
+        Property("step", INTEGER, "0 for the source"),
+        Property("category", STRING, "the kind of data with which the way gets here"),
+        Property("pseudonymised", BOOLEAN, "in which form"),
+        Property("file", STRING, "of the policy line behind the step to here"),
+        Property("line", INTEGER, "of the policy line behind the step to here"),
+    ),
+)
+RELATIONSHIPS = (
+    FLOWS_TO,
+    *ROLES.values(),
+    DERIVES_FROM,
+    RelationshipKind("OF_ROBOT", "Element", "Robot", "Whose element it is."),
+    IN_ENCLAVE,
+    RelationshipKind("BROADER", "DataCategory", "DataCategory", "The second is broader (skos:broader)."),
+    FALLS_UNDER,
+    RelationshipKind("OF_CATEGORY", "Finding", "DataCategory", "What arrives."),
+    RelationshipKind("FROM", "Finding", "Element", "The source."),
+    RelationshipKind("TO", "Finding", "Element", "The leak."),
+    ACROSS,
+)
+SUFFIXES = ("", "Source", "Leak", "Sanitizer")
+RESERVED = frozenset({kind.label for kind in NODES} | set(KIND_LABELS.values()) | {LEG, WILDCARD})
+
+
+def quoted(identifier: str) -> str:
+    """Return an identifier for Cypher; only plain ones are taken, whatever the ontology says.
+
+    >>> quoted("BiometricLeak")
+    '`BiometricLeak`'
+    """
+    if not _IDENTIFIER.fullmatch(identifier):
+        raise ValueError(f"not an identifier: {identifier!r}")
+    return f"`{identifier}`"
+
+
+def constraints() -> list[str]:
+    """Return the statements that make keys unique and look-ups quick; they may be run again and again."""
+    statements = [
+        f"CREATE CONSTRAINT {quoted(f'{kind.label}_{kind.key}')} IF NOT EXISTS "
+        f"FOR (n:{quoted(kind.label)}) REQUIRE n.{quoted(kind.key)} IS UNIQUE"
+        for kind in NODES
+    ]
+    statements += [
+        f"CREATE INDEX {quoted(f'{kind.label}_robot')} IF NOT EXISTS FOR (n:{quoted(kind.label)}) ON (n.`robot`)"
+        for kind in (ELEMENT, ENCLAVE, FINDING)
+    ]
+    # A text index takes names of any length.
+    statements.append("CREATE TEXT INDEX `Element_name` IF NOT EXISTS FOR (n:`Element`) ON (n.`name`)")
+    return statements

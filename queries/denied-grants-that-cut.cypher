@@ -1,0 +1,44 @@
+// name: denied-grants-that-cut
+// kind: path
+// description: Which DENY lines keep a kind of data from a leak that it would go on to, if they were not there?
+// param otherwise: boolean, also leaks that data of the kind gets to anyway; takes longer, default false
+// param robot: string, only this robot; all of them if it is empty, default ""
+// returns robot: string, name of the robot
+// returns category: string, the kind of data that is at the start of the denied flow
+// returns start: string, name of the element that has it
+// returns end: string, name of the element that the DENY keeps it from
+// returns leak: string, name of the first leak on the way on, if nothing is made of the data before
+// returns denied_by: list of string, file:line of the DENY
+// returns allowed_by: string, file:line of the ALLOW that it takes back
+// returns reached: boolean, whether data of that kind gets to the leak anyway
+// returns path: list of string, names on a shortest way from the start to the leak
+// order: robot, category, start, end, leak
+MATCH (c:DataCategory)<-[:SOURCE_OF|DERIVES]-(:Element)
+WITH collect(DISTINCT c.name) AS emitted
+MATCH (:DataCategory)<-[:LEAKS]-(leak:Element)
+WITH DISTINCT leak, emitted
+UNWIND [k IN leak.leaks WHERE k IN emitted] AS category
+WITH leak, category, EXISTS { (leak)<-[:TO]-(:Finding {category: category}) } AS reached
+WHERE $otherwise OR NOT reached
+CALL (leak, category) {
+  RETURN leak AS b, [leak.name] AS way
+UNION
+  MATCH p = ANY SHORTEST (b:Element WHERE EXISTS { ()-[:FLOWS_TO {decision: 'deny'}]->(b) })
+            ((x)-[f:FLOWS_TO WHERE coalesce(f.decision, 'allow') <> 'deny' AND NOT category IN coalesce(f.stops, [])
+                               AND NOT category IN coalesce(x.stops + x.leaks, [])]->()){1,}(leak)
+  RETURN b, [n IN nodes(p) | n.name] AS way
+}
+MATCH (a:Element)-[d:FLOWS_TO {decision: 'deny'}]->(b)
+WHERE ($robot = '' OR d.robot = $robot)
+  AND (NOT category IN coalesce(a.stops, [])
+       AND EXISTS { ()-[i:FLOWS_TO]->(a) WHERE category IN i.passes OR category IN i.begins OR category IN i.made }
+    OR EXISTS { (a)-[:DERIVES_FROM {category: category}]->(:Element) }
+    OR category IN a.begins
+       AND any(name IN coalesce(COLLECT { MATCH (a)-[s:SOURCE_OF]->(:DataCategory {name: category})
+                                          RETURN s.through ORDER BY coalesce(s.tier, 2) DESC,
+                                                            coalesce(s.specificity, 1000000) DESC LIMIT 1 }[0], ['*'])
+               WHERE CASE WHEN name CONTAINS '[' OR name CONTAINS '\\' THEN true  // such names are not looked into
+                     ELSE b.name =~ '\\Q' + replace(replace(name, '*', '\\E.*\\Q'), '?', '\\E.\\Q') + '\\E' END))
+RETURN d.robot AS robot, category, a.name AS start, b.name AS end, leak.name AS leak, d.denied_by AS denied_by,
+       d.file + ':' + d.line AS allowed_by, reached, [a.name] + way AS path
+ORDER BY robot, category, start, end, leak

@@ -1,0 +1,40 @@
+// name: leak-paths-of-category
+// kind: path
+// description: Which sources of a category, or of a narrower one, reach which leaks, and along which shortest way?
+// param category: string, a category's name, such as Biometric
+// returns robot: string, name of the source's robot
+// returns category: string, the kind of data that arrives
+// returns source: string, where the data comes in
+// returns leak: string, where it gets out
+// returns path: list of string, names in the order of the flow, source first
+// returns policy: list of string, file:line of the policy line behind each step
+// order: robot, category, source, leak
+MATCH (:DataCategory {name: $category})<-[:BROADER*0..]-(c:DataCategory)<-[:SOURCE_OF|DERIVES]-(start:Element)
+WITH DISTINCT c.name AS kind, start
+CALL (kind, start) {
+  WITH * WHERE kind IN start.begins AND kind IN start.leaks
+  RETURN start AS source, start AS leak, [start.name] AS path, [] AS policy
+UNION
+  MATCH p = ANY SHORTEST (start)-[first:FLOWS_TO WHERE kind IN first.begins]->()
+            ((x)-[f:FLOWS_TO WHERE kind IN f.passes AND NOT kind IN x.leaks]->()){0,}
+            (leak:Element WHERE kind IN leak.leaks)
+  RETURN start AS source, leak, [n IN nodes(p) | n.name] AS path,
+         [r IN relationships(p) | coalesce(r.file + ':' + r.line, 'wildcard')] AS policy
+UNION
+  MATCH (start)-[d:DERIVES_FROM {category: kind, past_leak: false}]->(source)
+  WHERE kind IN start.leaks
+  RETURN source, start AS leak, d.way AS path, d.policy AS policy
+UNION
+  MATCH (start)-[d:DERIVES_FROM {category: kind, past_leak: false}]->(source)
+  WHERE NOT kind IN start.leaks
+  MATCH p = ANY SHORTEST (start)-[first:FLOWS_TO WHERE kind IN first.made]->()
+            ((x)-[f:FLOWS_TO WHERE kind IN f.passes AND NOT kind IN x.leaks]->()){0,}
+            (leak:Element WHERE kind IN leak.leaks)
+  RETURN source, leak, d.way + [n IN nodes(p)[1..] | n.name] AS path,
+         d.policy + [r IN relationships(p) | coalesce(r.file + ':' + r.line, 'wildcard')] AS policy
+}
+WITH kind, source, leak, path, policy ORDER BY size(path), path
+WITH kind, source, leak, collect({path: path, policy: policy})[0] AS way
+RETURN source.robot AS robot, kind AS category, source.name AS source, leak.name AS leak,
+       way.path AS path, way.policy AS policy
+ORDER BY robot, category, source, leak

@@ -1,0 +1,16 @@
+// name: leak-paths
+// kind: path
+// description: Which sources reach which leaks, in every category, and along which shortest way? One for each finding.
+// returns robot: string, name of the source's robot
+// returns category: string, the kind of data that arrives
+// returns source: string, where the data comes in
+// returns leak: string, where it gets out
+// returns path: list of string, names in the order of the flow, source first
+// returns policy: list of string, file:line of the policy line behind each step
+// order: robot, category, source, leak
+MATCH (f:Finding {dismissed: false})-[a:ACROSS]->(n:Element)
+WITH f, a, n ORDER BY a.step
+WITH f, collect(n.name) AS path,
+     collect(CASE WHEN a.step = 0 THEN null WHEN a.file IS NULL THEN 'wildcard' ELSE a.file + ':' + a.line END) AS policy
+RETURN f.robot AS robot, f.category AS category, f.source AS source, f.leak AS leak, path, policy
+ORDER BY robot, category, source, leak

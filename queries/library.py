@@ -1,0 +1,232 @@
+"""The query pack: ``.cypher`` files with a header that says what is asked, with which parameters, and what comes back.
+
+In: the files of this folder. Out: ``Query``, checked on reading. The header stands in comments, so that a file can be
+pasted into the Neo4j Browser as it is.
+
+    // name: the file's stem
+    // kind: path, table or count
+    // description: the question, in one sentence
+    // param NAME: TYPE, meaning          (with ', default VALUE' at the end if it may be left out)
+    // returns COLUMN: TYPE, meaning      (one for each, in the order of RETURN)
+    // order: columns of the final ORDER BY
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import dataclass
+from difflib import get_close_matches
+from importlib.resources import files
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.errors import QueryError, shown
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+KINDS = ("path", "table", "count")
+KEYS = ("name", "kind", "description", "order")
+COLUMN_TYPES = ("string", "integer", "boolean", "list of string")
+_LINE = re.compile(r"// (?:(name|kind|description|order)|(param|returns) ([a-z][a-z_0-9]*)): (.+)")
+_PARAMETER = re.compile(r"\$([A-Za-z_][A-Za-z_0-9]*)")
+_WRITES = re.compile(r"\b(CREATE|MERGE|DELETE|SET|REMOVE|DROP|FOREACH|LOAD)\b", re.IGNORECASE)
+_TEXT = re.compile(r"'(?:[^'\\]|\\.)*'|\"(?:[^\"\\]|\\.)*\"|//[^\n]*|/\*.*?\*/", re.DOTALL)
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """A parameter or a column.
+
+    Attributes
+    ----------
+    type
+        One of ``COLUMN_TYPES``.
+    default
+        Of a parameter that may be left out; None for one that may not.
+    """
+
+    name: str
+    type: str
+    meaning: str
+    default: str | int | bool | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Query:
+    """A question with its Cypher.
+
+    Attributes
+    ----------
+    order
+        Columns by which the rows are sorted.
+    text
+        The whole file.
+    """
+
+    name: str
+    kind: str
+    description: str
+    parameters: tuple[Field, ...]
+    columns: tuple[Field, ...]
+    order: tuple[str, ...]
+    text: str
+
+    def values(self, given: Mapping[str, str]) -> dict[str, Any]:
+        """Return the values of all parameters from text such as the command line gives.
+
+        Raises
+        ------
+        QueryError
+            With every parameter that is unknown, missing or not of its type.
+        """
+        known = {field.name: field for field in self.parameters}
+        problems = []
+        for name in sorted(set(given) - set(known)):
+            close = get_close_matches(name, known, n=1)
+            hint = f"did you mean {close[0]!r}?" if close else f"it takes {', '.join(known) or 'none'}"
+            problems.append(f"{self.name}: unknown parameter {shown(name)!r}; {hint}")
+        values: dict[str, Any] = {}
+        for name, field in known.items():
+            if name not in given and field.default is None:
+                problems.append(f"{self.name}: {name} is missing; write {name}=…, {field.meaning}")
+                continue
+            try:
+                values[name] = _value(field, given[name]) if name in given else field.default
+            except ValueError:
+                what = f"{shown(given[name])!r} is not of the type {field.type}"
+                problems.append(f"{self.name}: {name}: {what}; {field.meaning}")
+        if problems:
+            raise QueryError("\n".join(problems))
+        return values
+
+
+def _value(field: Field, text: str) -> str | int | bool | list[str]:
+    if field.type == "integer":
+        return int(text)
+    if field.type == "boolean":
+        if text not in ("true", "false"):
+            raise ValueError(text)
+        return text == "true"
+    if field.type == "list of string":
+        return [part for part in text.split(",") if part]
+    return text
+
+
+def pack() -> dict[str, Query]:
+    """Return the queries that come with the program, by name, sorted.
+
+    >>> "leak-paths-of-category" in pack()
+    True
+    """
+    folder = files("rosprivacy.queries")
+    texts = {item.name: item.read_text("utf-8") for item in folder.iterdir() if item.name.endswith(".cypher")}
+    queries = [parse(name.removesuffix(".cypher"), text) for name, text in sorted(texts.items())]
+    return {query.name: query for query in queries}
+
+
+def find(name: str) -> Query:
+    """Return the query of that name.
+
+    Raises
+    ------
+    QueryError
+        If there is none, with the nearest names.
+    """
+    queries = pack()
+    if name not in queries:
+        close = get_close_matches(name, queries, n=3, cutoff=0.4)
+        hint = f"did you mean {' or '.join(close)}?" if close else "see them with rosprivacy query"
+        raise QueryError(f"{shown(name)}: there is no such query; {hint}")
+    return queries[name]
+
+
+def parse(stem: str, text: str) -> Query:
+    """Read a query with its header, and check one against the other.
+
+    Raises
+    ------
+    QueryError
+        With every fault: a key unknown, missing or twice, a parameter that is declared or used only, a column that is
+        not returned, no order, something that writes.
+    """
+    header = [line for line in text.splitlines() if line.startswith("//")]
+    head: dict[str, str] = {}
+    fields: dict[str, list[Field]] = {"param": [], "returns": []}
+    problems: list[str] = []
+
+    def problem(what: str) -> None:
+        problems.append(f"{stem}.cypher: {what}")
+
+    for line in header:
+        match = _LINE.fullmatch(line)
+        if not match:
+            problem(f"{line!r} is no line of a header; see queries/library.py")
+            continue
+        key, kind, name, rest = match.groups()
+        if key:
+            if key in head:
+                problem(f"{key} stands twice; keep one")
+            head[key] = rest
+        else:
+            try:
+                fields[kind].append(_field(name, rest))
+            except ValueError:
+                problem(f"{line!r}: the type is one of {', '.join(COLUMN_TYPES)}; write 'TYPE, meaning'")
+    for key in KEYS:
+        if key not in head:
+            problem(f"{key} is missing; add // {key}: …")
+    if problems:
+        raise QueryError("\n".join(problems))
+    order = tuple(part.strip() for part in head["order"].split(","))
+    query = Query(
+        head["name"], head["kind"], head["description"], tuple(fields["param"]), tuple(fields["returns"]), order, text
+    )
+    problems = [f"{stem}.cypher: {what}" for what in _faults(query, stem)]
+    if problems:
+        raise QueryError("\n".join(problems))
+    return query
+
+
+def _field(name: str, rest: str) -> Field:
+    type_, comma, meaning = rest.partition(", ")
+    if type_ not in COLUMN_TYPES or not comma:
+        raise ValueError(rest)
+    meaning, _, default = meaning.partition(", default ")
+    return Field(name, type_, meaning, json.loads(default) if default else None)
+
+
+def _faults(query: Query, stem: str) -> Iterator[str]:
+    body = _TEXT.sub("", query.text)
+    if query.name != stem:
+        yield f"name is {query.name!r}; write the file's own"
+    if query.kind not in KINDS:
+        yield f"kind is {query.kind!r}; one of {', '.join(KINDS)}"
+    declared = [field.name for field in query.parameters]
+    for name in sorted({*declared} ^ {*_PARAMETER.findall(body)}):
+        yield f"${name} is {'not used' if name in declared else 'not declared'}; header and query must agree"
+    columns = [field.name for field in query.columns]
+    if _returned(body) != columns:
+        yield f"RETURN gives {', '.join(_returned(body))}, the header says {', '.join(columns)}; make them agree"
+    if re.findall(r"\bORDER BY ([^\n;]+)\s*;?\s*\Z", body) != [", ".join(query.order)]:
+        yield f"the last line is not ORDER BY {', '.join(query.order)}; rows need a stable order"
+    if not set(query.order) <= {*columns, *(f"{column} DESC" for column in columns)}:
+        yield "order names what is not a column; use columns"
+    if _WRITES.search(body):
+        yield f"{_WRITES.search(body).group()} writes; a query only reads"  # type: ignore[union-attr]  # just found
+
+
+def _returned(body: str) -> list[str]:
+    """The names of the columns of the last RETURN that stands in no subquery."""
+    while "{" in body and (outside := re.sub(r"\{[^{}]*\}", "", body)) != body:
+        body = outside
+    last = re.split(r"\bRETURN\b(?:\s+DISTINCT\b)?", body)[-1]
+    last = re.split(r"\bORDER BY\b|\bLIMIT\b|;", last)[0]
+    parts, depth = [""], 0
+    for character in last:
+        depth += (character in "([{") - (character in ")]}")
+        if character == "," and not depth:
+            parts.append("")
+        else:
+            parts[-1] += character
+    return [re.split(r"\bAS\b", part)[-1].strip() for part in parts]

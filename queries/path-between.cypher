@@ -1,0 +1,27 @@
+// name: path-between
+// kind: path
+// description: Is there a way from one element to another along what the policies allow, whatever goes along it?
+// param from: string, name of the element where it starts
+// param to: string, name of the element where it ends
+// param robot: string, only this robot; all of them if it is empty, default ""
+// returns robot: string, name of the robot of the start
+// returns steps: integer, flows on a shortest way
+// returns path: list of string, names in the order of the flow
+// returns carries: list of string, for each step the kinds of data that go along it, broader ones too; empty for none
+// returns policy: list of string, file:line of the policy line behind each step
+// order: robot
+MATCH (a:Element {name: $from})
+WHERE $robot = '' OR a.robot = $robot
+CALL (a) {
+  MATCH p = ANY SHORTEST (a)(()-[f:FLOWS_TO WHERE coalesce(f.decision, 'allow') <> 'deny']->()){1,}
+            (b:Element WHERE b.name + '' = $to)  // by index, Neo4j would pair each start with each end
+  RETURN p ORDER BY length(p), b.id LIMIT 1
+}
+WITH a, p ORDER BY length(p), a.id
+WITH a.robot AS robot, collect(p)[0] AS p
+RETURN robot, length(p) AS steps, [n IN nodes(p) | n.name] AS path,
+       [r IN relationships(p) | reduce(text = '', c IN coalesce(r.carries, [])
+                                       | text + CASE text WHEN '' THEN '' ELSE ', ' END + c)] AS carries,
+       [r IN relationships(p) | coalesce(r.file + ':' + r.line,
+                                         CASE r.role WHEN 'matches' THEN 'wildcard' ELSE 'by hand' END)] AS policy
+ORDER BY robot

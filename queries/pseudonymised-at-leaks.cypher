@@ -1,0 +1,18 @@
+// name: pseudonymised-at-leaks
+// kind: path
+// description: Which data reaches a leak in pseudonymised form only, which is personal data still, and who did that?
+// param robot: string, only this robot; all of them if it is empty, default ""
+// returns robot: string, name of the robot
+// returns category: string, the kind of data that arrives
+// returns source: string, where the data comes in
+// returns leak: string, where it gets out
+// returns by: list of string, who pseudonymises it on the shortest way
+// returns path: list of string, names in the order of the flow, source first
+// order: robot, category, source, leak
+MATCH (f:Finding {pseudonymised: true, dismissed: false})-[a:ACROSS]->(e:Element)
+WHERE $robot = '' OR f.robot = $robot
+WITH f, a, e ORDER BY a.step
+WITH f, collect(e.name) AS path, collect(a.pseudonymised) AS after
+RETURN f.robot AS robot, f.category AS category, f.source AS source, f.leak AS leak,
+       [i IN range(1, size(path) - 1) WHERE after[i] AND NOT after[i - 1] | path[i - 1]] AS by, path
+ORDER BY robot, category, source, leak

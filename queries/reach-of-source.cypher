@@ -1,0 +1,34 @@
+// name: reach-of-source
+// kind: path
+// description: Where does the data of one source get to, and as which kind of data?
+// param source: string, name of the source, such as /camera
+// param robot: string, only this robot; all of them if it is empty, default ""
+// returns robot: string, name of the source's robot
+// returns category: string, the kind of data that gets there, from the source or made of its data on the way
+// returns steps: integer, flows on the way there; 0 for the source itself
+// returns kind: string, kind of the element
+// returns element: string, name of the element
+// returns path: list of string, names in the order of the flow, source first
+// order: robot, category, steps, kind, element
+MATCH (start:Element {name: $source})
+WHERE $robot = '' OR start.robot = $robot
+CALL (start) {
+  UNWIND start.begins AS category
+  RETURN category, start AS origin, [start.name] AS way, false AS made
+UNION
+  MATCH (origin:Element)-[d:DERIVES_FROM]->(start)
+  RETURN d.category AS category, origin, d.way AS way, true AS made
+}
+CALL (category, origin, way, made) {
+  RETURN origin AS element, way AS path
+UNION
+  MATCH p = ANY SHORTEST (origin)-[first:FLOWS_TO
+                                   WHERE category IN CASE WHEN made THEN first.made ELSE first.begins END]->()
+            (()-[f:FLOWS_TO WHERE category IN f.passes]->()){0,}(element:Element)
+  RETURN element, way + [n IN nodes(p)[1..] | n.name] AS path
+}
+WITH start.robot AS robot, category, element.kind + coalesce(' ' + element.leg, '') AS kind, element.name AS element,
+     path ORDER BY size(path), path
+WITH robot, category, kind, element, collect(path)[0] AS path
+RETURN robot, category, size(path) - 1 AS steps, kind, element, path
+ORDER BY robot, category, steps, kind, element

