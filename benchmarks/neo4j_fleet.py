@@ -13,6 +13,7 @@ from rosprivacy.analysis.model import (
     Flow,
     FlowGraph,
     Grant,
+    Legal,
     Method,
     Place,
     Profile,
@@ -28,13 +29,16 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.rows import RobotRows
 
 ROBOTS, MODELS, NODES, TOPICS, FLOWS, KINDS = 1000, 10, 30, 50, 180, 24
+DERIVED = 8  # one in so many kinds is made into another somewhere
 READ = 0.3  # of the other flows so many are written, the rest read
 NAMES = tuple(f"Kind{number:02}" for number in range(KINDS))
 BROADER = ("PersonalData", "Biometric", "Location")
+LAW = (Legal("urn:bench:law", "GDPR Art. 9(1)", "some data are special", "2026-01-01", "conditional", "sometimes"),)
 VOCABULARY = Vocabulary.of(
     [
         Category("PersonalData", "urn:bench:PersonalData", "PersonalData", "all", "all"),
-        *(Category(n, f"urn:bench:{n}", n, n, n, ("PersonalData",)) for n in BROADER[1:]),
+        Category("Biometric", "urn:bench:Biometric", "Biometric", "some", "some", ("PersonalData",), law=LAW),
+        Category("Location", "urn:bench:Location", "Location", "some", "some", ("PersonalData",)),
         *(Category(n, f"urn:bench:{n}", n, n, n, (BROADER[i % 3],)) for i, n in enumerate(NAMES)),
     ]
 )
@@ -49,7 +53,7 @@ def fleet(robots: int = ROBOTS) -> Iterator[RobotRows]:
 
 
 def model(number: int) -> tuple[Analysis, Bound]:
-    """One robot: every kind has a source, most have leaks and sanitizers."""
+    """One robot: every kind has a source, a leak and a sanitizer, some are made into others."""
     some = random.Random(number)  # noqa: S311 - the same each time
     nodes = [Element("node", f"/part{i:02}/node_of_model_{number}") for i in range(NODES)]
     topics = [Element("topic", f"/part{i % NODES:02}/topic_{i:02}_of_model_{number}") for i in range(TOPICS)]
@@ -67,13 +71,15 @@ def model(number: int) -> tuple[Analysis, Bound]:
     )
     said: dict[int, list[Statement]] = {}
     for i, name in enumerate(NAMES):
-        three = some.sample(range(NODES), 3)
+        four = some.sample(range(NODES), 4)
+        method = (Method.ANONYMISE, Method.PSEUDONYMISE)[i % 2]
         statements = (
             Statement("source", (name,), (1, 9), Place("fleet.labels.yaml", i)),
             Statement("leak", (name,), (1, 9), Place("fleet.labels.yaml", i)),
-            Statement("sanitizer", (name,), (1, 9), Place("fleet.labels.yaml", i), Method.ANONYMISE),
+            Statement("sanitizer", (name,), (1, 9), Place("fleet.labels.yaml", i), method),
+            Statement("derivation", (name,), (1, 9), Place("fleet.labels.yaml", i), to=NAMES[i - 1]),
         )
-        for node, statement in zip(three, statements, strict=True):
+        for node, statement in zip(four, statements if i % DERIVED == 0 else statements[:3], strict=False):
             said.setdefault(node, []).append(statement)
     bound = Bound({vertex: tuple(statements) for vertex, statements in sorted(said.items())})
     graph = FlowGraph(elements, flows, (), tuple(sorted(profiles, key=lambda p: (p.enclave, p.node))))

@@ -26,7 +26,9 @@ UNION
   MATCH p = ANY SHORTEST (b:Element WHERE EXISTS { ()-[:FLOWS_TO {decision: 'deny'}]->(b) })
             ((x)-[f:FLOWS_TO WHERE coalesce(f.decision, 'allow') <> 'deny' AND NOT category IN coalesce(f.stops, [])
                                AND NOT category IN coalesce(x.stops + x.leaks, [])]->()){1,}(leak)
-  RETURN b, [n IN nodes(p) | n.name] AS way
+  RETURN b, [b.name] + [r IN relationships(p)  // the two sides of a wildcard are shown as one
+                        WHERE r.role IS NULL OR r.role <> 'matches' OR startNode(r).name <> endNode(r).name
+                        | endNode(r).name] AS way
 }
 MATCH (a:Element)-[d:FLOWS_TO {decision: 'deny'}]->(b)
 WHERE ($robot = '' OR d.robot = $robot)

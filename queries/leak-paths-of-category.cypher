@@ -18,8 +18,11 @@ UNION
   MATCH p = ANY SHORTEST (start)-[first:FLOWS_TO WHERE kind IN first.begins]->()
             ((x)-[f:FLOWS_TO WHERE kind IN f.passes AND NOT kind IN x.leaks]->()){0,}
             (leak:Element WHERE kind IN leak.leaks)
-  RETURN start AS source, leak, [n IN nodes(p) | n.name] AS path,
-         [r IN relationships(p) | coalesce(r.file + ':' + r.line, 'wildcard')] AS policy
+  WITH *, [r IN relationships(p)  // the two sides of a wildcard are shown as one
+           WHERE r.role IS NULL OR r.role <> 'matches' OR startNode(r).name <> endNode(r).name] AS steps
+  RETURN start AS source, leak, [start.name] + [r IN steps | endNode(r).name] AS path,
+         [r IN steps | coalesce(r.file + ':' + r.line, CASE r.role WHEN 'matches' THEN 'wildcard' ELSE 'by hand' END)]
+         AS policy
 UNION
   MATCH (start)-[d:DERIVES_FROM {category: kind, past_leak: false}]->(source)
   WHERE kind IN start.leaks
@@ -30,11 +33,14 @@ UNION
   MATCH p = ANY SHORTEST (start)-[first:FLOWS_TO WHERE kind IN first.made]->()
             ((x)-[f:FLOWS_TO WHERE kind IN f.passes AND NOT kind IN x.leaks]->()){0,}
             (leak:Element WHERE kind IN leak.leaks)
-  RETURN source, leak, d.way + [n IN nodes(p)[1..] | n.name] AS path,
-         d.policy + [r IN relationships(p) | coalesce(r.file + ':' + r.line, 'wildcard')] AS policy
+  WITH *, [r IN relationships(p)
+           WHERE r.role IS NULL OR r.role <> 'matches' OR startNode(r).name <> endNode(r).name] AS steps
+  RETURN source, leak, d.way + [r IN steps | endNode(r).name] AS path,
+         d.policy + [r IN steps | coalesce(r.file + ':' + r.line,
+                                           CASE r.role WHEN 'matches' THEN 'wildcard' ELSE 'by hand' END)] AS policy
 }
 WITH kind, source, leak, path, policy ORDER BY size(path), path
 WITH kind, source, leak, collect({path: path, policy: policy})[0] AS way
 RETURN source.robot AS robot, kind AS category, source.name AS source, leak.name AS leak,
-       way.path AS path, way.policy AS policy
+       way.path AS path, [line IN way.policy | CASE line WHEN '' THEN 'wildcard' ELSE line END] AS policy
 ORDER BY robot, category, source, leak

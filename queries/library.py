@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import json
 import re
+from contextlib import suppress
 from dataclasses import dataclass
 from difflib import get_close_matches
 from importlib.resources import files
@@ -27,7 +28,8 @@ if TYPE_CHECKING:
 
 KINDS = ("path", "table", "count")
 KEYS = ("name", "kind", "description", "order")
-COLUMN_TYPES = ("string", "integer", "boolean", "list of string")
+COLUMN_TYPES = {"string": str, "integer": int, "boolean": bool, "list of string": list}
+LARGEST = 2**63 - 1  # integers of Cypher have 64 bits
 _LINE = re.compile(r"// (?:(name|kind|description|order)|(param|returns) ([a-z][a-z_0-9]*)): (.+)")
 _PARAMETER = re.compile(r"\$([A-Za-z_][A-Za-z_0-9]*)")
 _WRITES = re.compile(r"\b(CREATE|MERGE|DELETE|SET|REMOVE|DROP|FOREACH|LOAD)\b", re.IGNORECASE)
@@ -49,7 +51,7 @@ class Field:
     name: str
     type: str
     meaning: str
-    default: str | int | bool | None = None
+    default: str | int | bool | list[str] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +104,10 @@ class Query:
 
 
 def _value(field: Field, text: str) -> str | int | bool | list[str]:
+    text.encode()  # what the command line could not decode is a ValueError
     if field.type == "integer":
+        if abs(int(text)) > LARGEST:
+            raise ValueError(text)
         return int(text)
     if field.type == "boolean":
         if text not in ("true", "false"):
@@ -121,8 +126,8 @@ def pack() -> dict[str, Query]:
     """
     folder = files("rosprivacy.queries")
     texts = {item.name: item.read_text("utf-8") for item in folder.iterdir() if item.name.endswith(".cypher")}
-    queries = [parse(name.removesuffix(".cypher"), text) for name, text in sorted(texts.items())]
-    return {query.name: query for query in queries}
+    queries = [parse(name.removesuffix(".cypher"), text) for name, text in texts.items()]
+    return {query.name: query for query in sorted(queries, key=lambda query: query.name)}
 
 
 def find(name: str) -> Query:
@@ -171,8 +176,8 @@ def parse(stem: str, text: str) -> Query:
         else:
             try:
                 fields[kind].append(_field(name, rest))
-            except ValueError:
-                problem(f"{line!r}: the type is one of {', '.join(COLUMN_TYPES)}; write 'TYPE, meaning'")
+            except ValueError as error:
+                problem(f"{line!r}: {error}")
     for key in KEYS:
         if key not in head:
             problem(f"{key} is missing; add // {key}: …")
@@ -191,9 +196,17 @@ def parse(stem: str, text: str) -> Query:
 def _field(name: str, rest: str) -> Field:
     type_, comma, meaning = rest.partition(", ")
     if type_ not in COLUMN_TYPES or not comma:
-        raise ValueError(rest)
-    meaning, _, default = meaning.partition(", default ")
-    return Field(name, type_, meaning, json.loads(default) if default else None)
+        raise ValueError(f"the type is one of {', '.join(COLUMN_TYPES)}; write 'TYPE, meaning'")
+    meaning, _, text = meaning.partition(", default ")
+    if not text:
+        return Field(name, type_, meaning)
+    default: Any = None
+    with suppress(ValueError):
+        default = json.loads(text)
+    of_its_type = type(default) is COLUMN_TYPES[type_]
+    if not of_its_type:
+        raise ValueError(f"the default is no {type_}; write it as JSON")
+    return Field(name, type_, meaning, default)
 
 
 def _faults(query: Query, stem: str) -> Iterator[str]:
@@ -202,6 +215,9 @@ def _faults(query: Query, stem: str) -> Iterator[str]:
         yield f"name is {query.name!r}; write the file's own"
     if query.kind not in KINDS:
         yield f"kind is {query.kind!r}; one of {', '.join(KINDS)}"
+    for fields in (query.parameters, query.columns):
+        names = [field.name for field in fields]
+        yield from (f"{name} stands twice; keep one" for name in sorted({n for n in names if names.count(n) > 1}))
     declared = [field.name for field in query.parameters]
     for name in sorted({*declared} ^ {*_PARAMETER.findall(body)}):
         yield f"${name} is {'not used' if name in declared else 'not declared'}; header and query must agree"

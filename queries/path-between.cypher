@@ -3,6 +3,7 @@
 // description: Is there a way from one element to another along what the policies allow, whatever goes along it?
 // param from: string, name of the element where it starts
 // param to: string, name of the element where it ends
+// param mundane: boolean, also through channels that a label calls mundane, such as /parameter_events, default false
 // param robot: string, only this robot; all of them if it is empty, default ""
 // returns robot: string, name of the robot of the start
 // returns steps: integer, flows on a shortest way
@@ -13,15 +14,22 @@
 MATCH (a:Element {name: $from})
 WHERE $robot = '' OR a.robot = $robot
 CALL (a) {
-  MATCH p = ANY SHORTEST (a)(()-[f:FLOWS_TO WHERE coalesce(f.decision, 'allow') <> 'deny']->()){1,}
+  MATCH p = ANY SHORTEST (a)(()-[f:FLOWS_TO WHERE coalesce(f.decision, 'allow') <> 'deny']->
+              (x WHERE $mundane OR NOT EXISTS {
+                (x)-[m:NEVER_HAS]->(:DataCategory)
+                WHERE NOT EXISTS { (x)-[o:MAY_HAVE|HAS_ONLY]->(:DataCategory)
+                                   WHERE coalesce(o.tier, 2) * 10000000 + coalesce(o.specificity, 1000000)
+                                         > coalesce(m.tier, 2) * 10000000 + coalesce(m.specificity, 1000000) } })){1,}
             (b:Element WHERE b.name + '' = $to)  // by index, Neo4j would pair each start with each end
   RETURN p ORDER BY length(p), b.id LIMIT 1
 }
 WITH a, p ORDER BY length(p), a.id
 WITH a.robot AS robot, collect(p)[0] AS p
-RETURN robot, length(p) AS steps, [n IN nodes(p) | n.name] AS path,
-       [r IN relationships(p) | reduce(text = '', c IN coalesce(r.carries, [])
-                                       | text + CASE text WHEN '' THEN '' ELSE ', ' END + c)] AS carries,
-       [r IN relationships(p) | coalesce(r.file + ':' + r.line,
-                                         CASE r.role WHEN 'matches' THEN 'wildcard' ELSE 'by hand' END)] AS policy
+WITH robot, nodes(p)[0].name AS start, [r IN relationships(p)  // the two sides of a wildcard are shown as one
+     WHERE r.role IS NULL OR r.role <> 'matches' OR startNode(r).name <> endNode(r).name] AS steps
+RETURN robot, size(steps) AS steps, [start] + [r IN steps | endNode(r).name] AS path,
+       [r IN steps | reduce(text = '', c IN coalesce(r.carries, [])
+                            | text + CASE text WHEN '' THEN '' ELSE ', ' END + c)] AS carries,
+       [r IN steps | coalesce(r.file + ':' + r.line, CASE r.role WHEN 'matches' THEN 'wildcard' ELSE 'by hand' END)]
+       AS policy
 ORDER BY robot

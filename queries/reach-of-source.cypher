@@ -25,7 +25,9 @@ UNION
   MATCH p = ANY SHORTEST (origin)-[first:FLOWS_TO
                                    WHERE category IN CASE WHEN made THEN first.made ELSE first.begins END]->()
             (()-[f:FLOWS_TO WHERE category IN f.passes]->()){0,}(element:Element)
-  RETURN element, way + [n IN nodes(p)[1..] | n.name] AS path
+  RETURN element, way + [r IN relationships(p)  // the two sides of a wildcard are shown as one
+                         WHERE r.role IS NULL OR r.role <> 'matches' OR startNode(r).name <> endNode(r).name
+                         | endNode(r).name] AS path
 }
 WITH start.robot AS robot, category, element.kind + coalesce(' ' + element.leg, '') AS kind, element.name AS element,
      path ORDER BY size(path), path

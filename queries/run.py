@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.errors import DatabaseError as OurDatabaseError
 from rosprivacy.analysis.errors import QueryError, shown
 
 if TYPE_CHECKING:
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 LIMIT = 1000
 TIMEOUT = 60.0  # seconds
 LONGEST_REASON = 400
+WAY = "path"  # the column of the pack that names elements in the order of the flow
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +64,9 @@ def run(
     Raises
     ------
     QueryError
-        If the server refuses it: it writes, is not Cypher, lacks a parameter or takes too long.
+        If the server refuses it: it writes, is not Cypher, lacks a parameter, or takes too long or too much memory.
+    DatabaseError
+        If the server cannot answer for a reason of its own.
     """
     import neo4j  # noqa: PLC0415 - light start
 
@@ -101,18 +105,23 @@ def plain(value: Any) -> Any:
     return value if isinstance(value, str | int | float | bool | None) else str(value)
 
 
-def as_cell(value: Any) -> str:
+def as_cell(value: Any, column: str = WAY) -> str:
     """Return a value as a reader of a table sees it.
 
-    >>> as_cell(["/camera", "/video"]), as_cell(None), as_cell(True)
-    ('/camera -> /video', '', 'true')
+    Parameters
+    ----------
+    column
+        Its name: the names on a way stand in the order of the flow, other lists have no direction.
+
+    >>> as_cell(["/camera", "/video"], "path"), as_cell(["r1", "r2"], "robots"), as_cell(None), as_cell(True)
+    ('/camera -> /video', 'r1, r2', '', 'true')
     """
     if value is None:
         return ""
     if isinstance(value, str):
         return value
     if isinstance(value, list) and all(isinstance(item, str) for item in value):
-        return " -> ".join(value)
+        return (" -> " if column == WAY else ", ").join(value)
     return json.dumps(value, ensure_ascii=False, sort_keys=True)
 
 
@@ -134,4 +143,8 @@ def _refusals(timeout: float | None) -> Iterator[None]:
             raise QueryError(f"the query took longer than {timeout:g} s; {hint}") from None
         if isinstance(error, ClientError | DatabaseError):
             raise QueryError(f"the server refuses the query: {what}; correct it") from None
-        raise
+        if "OutOfMemory" in code:
+            raise QueryError(f"the query needs more memory than the server gives: {what}; ask for less") from None
+        raise OurDatabaseError(f"the server cannot answer now: {what}; try again") from None
+    except (OverflowError, UnicodeError) as error:  # before anything is sent
+        raise QueryError(f"the query or a value cannot be sent: {shown(str(error))}; correct it") from None

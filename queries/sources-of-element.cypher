@@ -25,9 +25,11 @@ UNION
   WITH DISTINCT e, category
   MATCH p = ANY SHORTEST (start:Element)-[first:FLOWS_TO WHERE category IN first.begins OR category IN first.made]->()
             (()-[f:FLOWS_TO WHERE category IN f.passes]->()){0,}(e)
-  WITH category, start, relationships(p)[0] AS first, [n IN nodes(p) | n.name] AS names,
-       [r IN relationships(p) | coalesce(r.file + ':' + r.line,
-                                         CASE r.role WHEN 'matches' THEN 'wildcard' ELSE 'by hand' END)] AS lines
+  WITH category, start, [r IN relationships(p)  // the two sides of a wildcard are shown as one
+       WHERE r.role IS NULL OR r.role <> 'matches' OR startNode(r).name <> endNode(r).name] AS steps
+  WITH category, start, steps[0] AS first, [start.name] + [r IN steps | endNode(r).name] AS names,
+       [r IN steps | coalesce(r.file + ':' + r.line, CASE r.role WHEN 'matches' THEN 'wildcard' ELSE 'by hand' END)]
+       AS lines
   CALL (category, start, first, names, lines) {
     WITH * WHERE category IN first.begins
     RETURN start.name AS source, names AS path, lines AS policy

@@ -4,13 +4,13 @@
 // param mundane: boolean, also lines about channels that a label calls mundane, default false
 // param robot: string, only this robot; all of them if it is empty, default ""
 // returns robot: string, name of the robot
-// returns policy: string, file:line of the policy line
 // returns enclave: string, enclave that the line is for
 // returns node: string, node that the line is for
 // returns role: string, what it allows: publish, subscribe, request, reply, call or execute
+// returns policy: string, file:line of the policy line
 // returns channels: list of string, names of the channels
 // returns further: integer, how many further lines allow the same, so that this one alone changes nothing
-// order: robot, policy, enclave, node, role
+// order: robot, enclave, node, role, policy
 MATCH (a:Element)-[f:FLOWS_TO]->(b:Element)
 WHERE f.file IS NOT NULL AND coalesce(f.decision, 'allow') <> 'deny' AND ($robot = '' OR f.robot = $robot)
 WITH f.robot AS robot, f.file AS file, f.line AS line, f.enclave AS enclave, f.profile AS node, f.role AS role,
@@ -35,5 +35,5 @@ WHERE NOT EXISTS {
   MATCH (end:!Topic&!Service&!Action)-[g:FLOWS_TO]-()
   WHERE g.further IS NOT NULL AND size(g.carries) > 0 AND any(other IN g.further WHERE other ENDS WITH here)
 }
-RETURN robot, file + ':' + line AS policy, enclave, node, role, channels, further
-ORDER BY robot, policy, enclave, node, role
+RETURN robot, enclave, node, role, file + ':' + line AS policy, channels, further
+ORDER BY robot, enclave, node, role, policy

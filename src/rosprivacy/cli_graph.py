@@ -199,7 +199,7 @@ def _text(rows: Rows, form: RowFormat, *, wide: bool) -> str:
     if form is RowFormat.json:
         objects = [dict(zip(rows.columns, row, strict=True)) for row in rows.rows]
         return json.dumps(objects, indent=2, ensure_ascii=False) + "\n"
-    cells = [[as_cell(value) for value in row] for row in rows.rows]
+    cells = [[as_cell(*cell) for cell in zip(row, rows.columns, strict=True)] for row in rows.rows]
     if form is RowFormat.csv:
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")

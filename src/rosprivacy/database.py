@@ -204,6 +204,9 @@ def open_driver(to: Connection) -> Iterator[neo4j.Driver]:
     except (DriverError, Neo4jError) as error:
         if verified:
             raise
+        if "AuthenticationRateLimit" in str(getattr(error, "code", "")):
+            problem = "user name or password was not accepted several times, so the server lets nobody in for a while"
+            raise DatabaseError(f"{place}: {problem}; check {to.origin}, then try again") from error
         raise DatabaseError(f"{place}: {_first_line(error)}; check the address and the server") from error
 
 

@@ -1,0 +1,173 @@
+"""The fleet in Neo4j: loading it against bare writes, asking it against the query that comes to mind first.
+
+    python benchmarks/graph_database.py [--quick]
+
+Starts a private Neo4j in a folder of its own and ends with 1 if a bound is missed. ``--quick`` takes 100 robots in
+place of 1,000. (Not named ``neo4j.py``: as a script it would hide the driver of that name.)
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+import time
+from dataclasses import replace
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
+
+import neo4j
+from measure import Line, compared, print_header, print_line
+from neo4j_fleet import NAMES, ROBOTS, VOCABULARY, fleet
+
+from rosprivacy import database
+from rosprivacy.ingest.neo4j import BATCH, load
+from rosprivacy.ingest.schema import ACROSS, DERIVES_FROM, FLOWS_TO, IN_ENCLAVE, ROLES
+from rosprivacy.ingest.statements import create_relationships
+from rosprivacy.queries.library import pack
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from neo4j import Driver
+
+    from rosprivacy.ingest.rows import RobotRows
+
+ROUNDS = 2
+FEW = 100
+ASKED = NAMES[::8]  # kinds of data whose leak paths are asked for
+PATIENCE = 300.0  # seconds for the naive query
+SLOWEST_LEAK_PATHS, SLOWEST = 2.0, 5.0  # seconds of server time
+WIPE = "MATCH (n) CALL (n) { DETACH DELETE n } IN TRANSACTIONS OF 2000 ROWS"
+NAIVE = "MATCH p = (:{0}Source)-[:FLOWS_TO*1..8]->(:{0}Leak) RETURN p"
+# What writes the same as `load` with nothing asked first: no lock, no digest, no test of what is there.
+BARE_ROBOTS = "UNWIND $rows AS row CREATE (r:Robot) SET r = row.properties SET r.name = row.robot"
+BARE_ELEMENTS = (
+    "UNWIND $rows AS row MATCH (r:Robot {name: row.properties.robot}) "
+    "CREATE (n:Element {id: row.id}) SET n += row.properties SET n:$(row.labels) "
+    "CREATE (n)-[:OF_ROBOT {robot: row.properties.robot}]->(r)"
+)
+BARE_ENCLAVES = "UNWIND $rows AS row CREATE (n:Enclave {id: row.id}) SET n += row.properties"
+BARE_FINDINGS = (
+    "UNWIND $rows AS row MATCH (a:Element {id: row.source}) MATCH (b:Element {id: row.target}) "
+    "MATCH (c:DataCategory {iri: row.category}) CREATE (f:Finding {id: row.id}) SET f += row.properties "
+    "CREATE (f)-[:FROM]->(a) CREATE (f)-[:TO]->(b) CREATE (f)-[:OF_CATEGORY]->(c)"
+)
+ASKED_FOR = {
+    "category": NAMES[5], "first": NAMES[0], "second": NAMES[1], "source": "/part00/node_of_model_0",
+    "from": "/part00/node_of_model_0", "to": "/part01/node_of_model_0", "leak": "/part01/node_of_model_0",
+    "element": "/part02/node_of_model_0",
+}  # fmt: skip
+
+
+def bare(driver: Driver, robots: list[RobotRows]) -> None:
+    """Write rows with ``UNWIND … CREATE`` in batches of the same size, after the same constraints and categories."""
+    load(driver, [], VOCABULARY)
+    parts: list[tuple[str, list[Any]]] = [
+        (BARE_ROBOTS, [{"robot": rows.robot, "properties": rows.properties} for rows in robots]),
+        (BARE_ELEMENTS, [row for rows in robots for row in rows.elements]),
+        (BARE_ENCLAVES, [row for rows in robots for row in rows.enclaves]),
+        (create_relationships(IN_ENCLAVE), [row for rows in robots for row in rows.memberships]),
+        (create_relationships(FLOWS_TO), [row for rows in robots for row in rows.flows]),
+        *(
+            (create_relationships(kind), [row for rows in robots for row in rows.roles.get(name, ())])
+            for name, kind in ROLES.items()
+        ),
+        (create_relationships(DERIVES_FROM), [row for rows in robots for row in rows.derived]),
+        (BARE_FINDINGS, [row for rows in robots for row in rows.findings]),
+        (create_relationships(ACROSS), [row for rows in robots for row in rows.across]),
+    ]
+    with driver.session() as session:
+        for statement, rows in parts:
+            for start in range(0, len(rows), BATCH):
+                session.execute_write(
+                    lambda transaction, part: transaction.run(statement, rows=part).consume(),  # noqa: B023 - at once
+                    rows[start : start + BATCH],
+                )
+
+
+def writing(driver: Driver, robots: int) -> Iterator[Line]:
+    """Load, bare writes of the same rows, and a load that finds nothing to change."""
+    begin = time.perf_counter()
+    rows = list(fleet(robots))
+    making = time.perf_counter() - begin
+    load(driver, rows[:20], VOCABULARY)  # warms the server up
+    sides: list[list[float]] = [[], []]
+    again: list[float] = []
+    for number in range(ROUNDS):
+        for side in (number % 2, 1 - number % 2):
+            with driver.session() as session:
+                session.run(WIPE).consume()
+            sides[side].append(timed((lambda: load(driver, rows, VOCABULARY), lambda: bare(driver, rows))[side]))
+            if side == 0:
+                again.append(timed(lambda: load(driver, rows, VOCABULARY)))
+    with driver.session() as session:
+        session.run(WIPE).consume()
+    load(driver, rows, VOCABULARY)
+    count = sum(len(r.elements) for r in rows), sum(len(r.flows) for r in rows), sum(len(r.findings) for r in rows)
+    note = "{:,} elements, {:,} flows, {:,} findings".format(*count)
+    yield compared(f"load {robots:,} robots / bare UNWIND … CREATE", sides, 1.5, note=note)
+    whole = [[seconds + making for seconds in side] for side in (again, sides[0])]
+    note = f"the analysis and its rows, {making:.1f} s of Python, are on both sides"
+    yield compared("load them again unchanged / first load", whole, 1 / 3, note=note)
+
+
+def asking(driver: Driver) -> Iterator[Line]:
+    """Leak paths of a kind against the naive query, then each question alone."""
+    query = pack()["leak-paths-of-category"]
+    sides: list[list[float]] = [[], []]
+    for kind in ASKED:
+        ours = served(driver, query.text, query.values({"category": kind}))
+        sides[0].append(min(ours, served(driver, query.text, query.values({"category": kind}))))
+        sides[1].append(served(driver, NAIVE.format(kind), {}))
+    yield compared("leak-paths-of-category / MATCH …[:FLOWS_TO*1..8]…", sides, 1 / 20)
+    yield within("the slowest of them", max(sides[0]), SLOWEST_LEAK_PATHS)
+    for name, query in pack().items():
+        given = {field.name: ASKED_FOR[field.name] for field in query.parameters if field.default is None}
+        values = query.values(given)
+        served(driver, query.text, values)
+        yield within(f"query {name}", served(driver, query.text, values), SLOWEST)
+
+
+def within(what: str, seconds: float, bound: float) -> Line:
+    """Return the line for seconds of server time; the ratio is to the seconds that it may take."""
+    return replace(Line(what, f"{seconds * 1000:.0f} ms", f"{bound:.0f} s", seconds / bound), bound=1.0)
+
+
+def served(driver: Driver, text: str, values: dict[str, Any]) -> float:
+    """Return the seconds that the server took until it had all rows."""
+    asked = neo4j.Query(text, timeout=PATIENCE)
+    with driver.session(default_access_mode=neo4j.READ_ACCESS) as session:
+        result = session.run(asked, values)
+        for _ in result:
+            pass
+        summary = result.consume()
+    return ((summary.result_available_after or 0) + (summary.result_consumed_after or 0)) / 1000
+
+
+def timed(work: Callable[[], object]) -> float:
+    begin = time.perf_counter()
+    work()
+    return time.perf_counter() - begin
+
+
+def main() -> int:
+    """Print the table; return the exit code."""
+    parser = argparse.ArgumentParser(description="Measured claims about the database, as ratios.")
+    parser.add_argument("--quick", action="store_true", help=f"{FEW} robots")
+    robots = FEW if parser.parse_args().quick else ROBOTS
+    for name in ("NEO4J_URI", "NEO4J_USERNAME", "NEO4J_PASSWORD"):
+        os.environ.pop(name, None)
+    with TemporaryDirectory(ignore_cleanup_errors=True) as folder:
+        os.environ["ROSPRIVACY_DATA"] = folder
+        try:
+            with database.open_driver(database.start()) as driver:
+                print_header()
+                met = [print_line(line).met for part in (writing(driver, robots), asking(driver)) for line in part]
+        finally:
+            database.stop()
+    return 0 if all(met) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
