@@ -30,6 +30,7 @@ ROOT = Path(__file__).resolve().parent.parent
 HOME = ROOT / "examples" / "care-home"
 POLICY, LABELS = HOME / "care-home.policy.xml", HOME / "care-home.labels.yaml"
 LOAD = ("load", POLICY, "--labels", LABELS, "--robot", "h1")
+GUESS = "bad guess"
 LOCKED = 6  # seconds; after three wrong passwords the server lets nobody in for 5
 ADD_STORAGE = """
 MATCH (uplink:Element {name: '/recorder'})
@@ -194,14 +195,12 @@ class TestNoServer:
     def test_a_wrong_password_is_3_and_says_where_it_came_from(self, private_neo4j: Connection) -> None:
         """Again and again too: the server then lets nobody in for some seconds, which pass before other tests go on."""
         for _ in range(5):
-            done = run(
-                "query", "robots", "--neo4j", private_neo4j.uri, NEO4J_USERNAME="neo4j", NEO4J_PASSWORD="bad guess"
-            )
+            done = run("query", "robots", "--neo4j", private_neo4j.uri, NEO4J_USERNAME="neo4j", NEO4J_PASSWORD=GUESS)
             assert (done.returncode, done.stdout) == (3, "")
             assert len(lines(done)) == 1
             assert "accepted" in done.stderr
             assert "NEO4J_PASSWORD" in done.stderr
-            assert "bad guess" not in done.stderr
+            assert GUESS not in done.stderr
         with pytest.raises(DatabaseError, match="lets nobody in for a while"), database.open_driver(private_neo4j):
             pass
         time.sleep(LOCKED)
