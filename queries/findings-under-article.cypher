@@ -2,7 +2,7 @@
 // kind: table
 // description: To which findings, not counting dismissed ones, can an article of the GDPR apply?
 // param article: string, number of the article, such as 9, 9(1) or 10, default "9"
-// param robot: string, only this robot; all of them if it is empty, default ""
+// param robot: robot, only this robot; all of them if it is empty, default ""
 // returns provision: string, short name of the provision
 // returns verdict: string, whether the data falls under it: always, conditional or may-reveal
 // returns condition: string, when; absent where it always does

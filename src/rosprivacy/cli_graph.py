@@ -139,11 +139,12 @@ def query(
 ) -> None:
     """Ask the database: one of the questions that come with the program, or Cypher of your own, which only reads."""
     from rosprivacy.queries.library import find, pack
-    from rosprivacy.queries.run import run
+    from rosprivacy.queries.run import check_names, run
 
     given = list(values or ())
     if (cypher is not None) + (file is not None) + (name is not None and "=" not in name) > 1:
         raise typer.BadParameter("name a question, or give --cypher, or --file")
+    asked = None
     if cypher is None and file is None:
         if name is None:
             emit(_listed(pack().values()), output)
@@ -157,6 +158,8 @@ def query(
         text = cypher if cypher is not None else _read(file)
         parameters = dict(_pairs([*([name] if name else []), *given]))
     with driver_of(neo4j) as driver:
+        if asked:
+            check_names(driver, asked, parameters)
         rows = run(driver, text, parameters, limit=limit, timeout=timeout)
     emit(_text(rows, format, wide=output is not None), output)
     if rows.more:
