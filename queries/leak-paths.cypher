@@ -10,10 +10,10 @@
 // returns path: list of string, names in the order of the flow, source first
 // returns policy: list of string, file:line of the policy line behind each step
 // order: robot, category, source, leak
-MATCH (f:Finding {dismissed: false})
-WHERE ($robot = '' OR f.robot = $robot)
-  AND ($category = ''
-       OR EXISTS { (f)-[:OF_CATEGORY]->(:DataCategory)-[:BROADER*0..]->(:DataCategory {name: $category}) })
+MATCH (c:DataCategory)
+WHERE $category = '' OR EXISTS { (c)-[:BROADER*0..]->(:DataCategory {name: $category}) }
+MATCH (c)<-[:OF_CATEGORY]-(f:Finding {dismissed: false})
+WHERE $robot = '' OR f.robot = $robot
 MATCH (f)-[a:ACROSS]->(n:Element)
 WITH f, a, n ORDER BY a.step
 WITH f, collect(n.name) AS path,
