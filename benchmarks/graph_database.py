@@ -108,7 +108,7 @@ def writing(driver: Driver, robots: int) -> Iterator[Line]:
     yield compared(f"load {robots:,} robots / bare UNWIND … CREATE", sides, 1.5, note=note)
     yield compared("load them again unchanged / first load", [again, sides[0]], 1 / 3)
     both = [[a + b for a, b in zip(part, making, strict=True)] for part in (again, sides[0])]
-    yield compared("the same with the analysis and the making of the rows on both sides", both, 1 / 3)
+    yield compared("the same with the analysis and the making of the rows on both sides", both)
 
 
 def wipe(driver: Driver) -> None:

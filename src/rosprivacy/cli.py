@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 import rosprivacy
-from rosprivacy import cli_db, cli_graph
+from rosprivacy import cli_categories, cli_db, cli_graph
 from rosprivacy.analysis.errors import InputError, RosPrivacyError
 from rosprivacy.cli_options import (
     FailOn,
@@ -22,6 +22,7 @@ from rosprivacy.cli_options import (
     LabelFiles,
     MaxBytes,
     NoStandard,
+    Ontologies,
     Output,
     PathsShown,
     Policies,
@@ -48,6 +49,7 @@ app.add_typer(cli_db.app, name="db", help="The private Neo4j: start it, stop it,
 app.command()(cli_graph.load)
 app.command()(cli_graph.unload)
 app.command()(cli_graph.query)
+app.command()(cli_categories.categories)
 
 
 @app.callback(invoke_without_command=True)
@@ -88,6 +90,14 @@ def analyze(
             help="Answer for this category and narrower ones only; may be repeated.",
         ),
     ] = None,
+    article9: Annotated[
+        bool, typer.Option("--article9", help="Answer for what can fall under Article 9(1) GDPR only.")
+    ] = False,
+    data_type: Annotated[
+        list[str] | None,
+        typer.Option(metavar="TYPE", show_default=False, help="Answer for video, audio, … only; may be repeated."),
+    ] = None,
+    ontology: Ontologies = None,
     category: SixLists = "PersonalData",
     view: ViewChosen = View.declared,
     paths: Annotated[PathsShown, typer.Option(help="Ways to list for each finding.")] = PathsShown.witness,
@@ -107,6 +117,9 @@ def analyze(
         add=tuple(add or ()),
         view=view.value,
         categories=tuple(categories or ()),
+        article9=article9,
+        data_types=tuple(data_type or ()),
+        ontologies=tuple(ontology or ()),
         category=category,
         standard_channels=None if no_standard_channels else standard_channels,
         paths=paths.value,

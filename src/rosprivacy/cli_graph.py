@@ -19,6 +19,7 @@ from rosprivacy.cli_options import (
     LabelFiles,
     MaxBytes,
     NoStandard,
+    Ontologies,
     Output,
     Policies,
     Server,
@@ -59,6 +60,7 @@ def load(
     labels: LabelFiles = None,
     robot: Annotated[str, typer.Option(metavar="NAME", help="What the robot is called in the database.")] = "robot",
     neo4j: Server = None,
+    ontology: Ontologies = None,
     category: SixLists = "PersonalData",
     view: ViewChosen = View.declared,
     standard_channels: Standard = "rosprivacy:standard",
@@ -74,6 +76,7 @@ def load(
         raise typer.BadParameter("name at least one policy: a file, a folder or a glob", param_hint="POLICY")
     settings = Settings(
         view=view.value,
+        ontologies=tuple(ontology or ()),
         category=category,
         standard_channels=None if no_standard_channels else standard_channels,
         include_root=str(include_root) if include_root else None,

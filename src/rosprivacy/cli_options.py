@@ -80,3 +80,12 @@ Server = Annotated[
         help="Neo4j to use; by default that of NEO4J_URI, else the private one. The password stands in NEO4J_PASSWORD.",
     ),
 ]
+Ontologies = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--ontology",
+        metavar="FILE.ttl",
+        show_default=False,
+        help="More categories, in Turtle, beside those that come with the program; may be repeated.",
+    ),
+]
