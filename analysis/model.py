@@ -248,6 +248,8 @@ class Category:
         Other names that find it, sorted.
     law
         Provisions that it falls under itself, sorted; those of broader categories hold too.
+    same_as, within
+        IRIs of other vocabularies: the same concept, broader ones; sorted.
     """
 
     name: str
@@ -258,6 +260,8 @@ class Category:
     broader: tuple[str, ...] = ()
     synonyms: tuple[str, ...] = ()
     law: tuple[Legal, ...] = ()
+    same_as: tuple[str, ...] = ()
+    within: tuple[str, ...] = ()
 
 
 class Method(StrEnum):

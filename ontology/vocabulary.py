@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 TOP = "PersonalData"
 NAMESPACE = "urn:x-rosprivacy:"
 SHIPPED = ("categories.ttl", "law.ttl")
-CACHE_FORMAT = 2
+CACHE_FORMAT = 3
 _IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 
@@ -162,6 +162,8 @@ def _category(graph: Graph, subject: Node, concepts: set[Node]) -> Category:
         broader=tuple(sorted(_local_name(str(up)) for up in graph.objects(subject, SKOS.broader) if up in concepts)),
         synonyms=tuple(texts(SKOS.altLabel)),
         law=tuple(_law(graph, subject)),
+        same_as=tuple(sorted(str(same) for same in graph.objects(subject, SKOS.exactMatch))),
+        within=tuple(sorted(str(up) for up in graph.objects(subject, SKOS.broader) if up not in concepts)),
     )
 
 
@@ -233,6 +235,8 @@ def _cached(path: Path, key: str) -> tuple[Category, ...] | None:
                     "broader": tuple(c["broader"]),
                     "synonyms": tuple(c["synonyms"]),
                     "law": tuple(Legal(**legal) for legal in c["law"]),
+                    "same_as": tuple(c["same_as"]),
+                    "within": tuple(c["within"]),
                 }
             )
             for c in kept["categories"]
