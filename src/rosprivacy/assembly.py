@@ -26,6 +26,7 @@ from rosprivacy.report.document import document
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
+    from datetime import datetime
 
     from neo4j import Driver
 
@@ -86,6 +87,14 @@ class Result:
         """Return the JSON document of the contract."""
         vocabulary = self.vocabulary
         return document(self.analysis, vocabulary.categories, vocabulary.hierarchy, self.diagnostics, self.assumptions)
+
+    def linked_data(self, form: str, when: datetime | None = None) -> str:
+        """Return the findings as RDF, in ``turtle`` or ``json-ld``; ``when`` is the time of the run, if it is to be told."""
+        from rosprivacy.report.rdf import rdf_graph  # noqa: PLC0415 - rdflib, only where it is used
+        from rosprivacy.report.serialise import SERIALISERS  # noqa: PLC0415
+
+        graph = rdf_graph(self.analysis, self.vocabulary, self.diagnostics, self.assumptions, when)
+        return SERIALISERS[form](graph)
 
 
 def run(policies: tuple[str, ...], labels: tuple[str, ...], settings: Settings) -> Result:
