@@ -70,13 +70,13 @@ def emitted_by(analysis: Analysis) -> dict[Element, set[str]]:
     return {element: categories for element, categories in emitted.items() if categories}
 
 
-def legal_of(finding: Finding, vocabulary: Vocabulary) -> tuple[tuple[str, Legal], ...]:
-    """Return what the ontology states of a finding's category: (the category that it is stated of, the provision).
+def legal_of(finding: Finding, vocabulary: Vocabulary) -> tuple[tuple[Legal, tuple[str, ...]], ...]:
+    """Return what the ontology states of a finding's category: each provision, with the categories it is stated of.
 
     A category of which nothing is stated takes what is stated of its nearest broader ones.
     """
     for level in _levels(finding.category, vocabulary):
-        found = [(name, legal) for name in level for legal in vocabulary.categories[name].law]
+        found = [(legal, (name,)) for name in level for legal in vocabulary.categories[name].law]
         if found:
             return tuple(found)
     return ()

@@ -25,14 +25,17 @@ if TYPE_CHECKING:
     from rosprivacy.report.things import Things
 
 NO_VERDICT = "Labels are a person's word, and a way can be lawful. This is no legal verdict."
-FILES = ("policies", "labels", "standard_channels")  # the assumptions that name files
 
 
 def files_read(assumptions: Mapping[str, Any]) -> list[tuple[str, str, str]]:
-    """Return (assumption, file, SHA-256) of the files that an answer rests on, in order."""
-    entries = [(kind, assumptions.get(kind) or []) for kind in FILES]
-    rows = [(kind, entry) for kind, found in entries for entry in ([found] if isinstance(found, dict) else found)]
-    return [(kind, entry["file"], entry["sha256"]) for kind, entry in rows]
+    """Return (assumption, file, SHA-256) of every file that an assumption names, sorted."""
+    entries = ((name, entry) for name, value in assumptions.items() for entry in _entries(value))
+    return sorted((name, entry["file"], entry["sha256"]) for name, entry in entries)
+
+
+def _entries(value: Any) -> list[Mapping[str, Any]]:
+    found = value if isinstance(value, list) else [value]
+    return [entry for entry in found if isinstance(entry, dict) and {"file", "sha256"} <= entry.keys()]
 
 
 def by_path(assumptions: Mapping[str, Any]) -> dict[str, tuple[URIRef, ...]]:
@@ -108,9 +111,10 @@ def _tool(run: URIRef, assumptions: Mapping[str, Any]) -> Iterator[Triple]:
 
 
 def _assumptions(answer: URIRef, assumptions: Mapping[str, Any]) -> Iterator[Triple]:
-    """Every assumption of the document that is no list of files; what is not text stands there as JSON."""
-    said = {name: value for name, value in assumptions.items() if name not in FILES[:2]}
-    for name, value in sorted(said.items()):
+    """Every assumption of the document but lists of files; what is not text stands there as JSON."""
+    for name, value in sorted(assumptions.items()):
+        if isinstance(value, list) and _entries(value):
+            continue
         iri = below(answer, "assumption", name)
         shown = value if isinstance(value, str) else json.dumps(value, ensure_ascii=False, sort_keys=True)
         yield from about(answer, (RP.assumes, [iri]))

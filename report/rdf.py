@@ -7,6 +7,7 @@ which ``serialise.py`` writes. Nothing here is a legal verdict: a provision is o
 from __future__ import annotations
 
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from rdflib import RDF, RDFS, SKOS, XSD, Graph, Literal
@@ -24,6 +25,7 @@ from rosprivacy.report.terms import (
     Triple,
     about,
     below,
+    duration,
     finding_iri,
     foreign,
     listed,
@@ -42,11 +44,13 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Analysis, Diagnostic, Element, Finding
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.report.facts import Change
+    from rosprivacy.report.things import Stated
 
 PREFIXES: dict[str, object] = {
     "dpv": DPV, "risk": RISK, "pd": "https://w3id.org/dpv/pd#", "eu-gdpr": "https://w3id.org/dpv/legal/eu/gdpr#",
     "rp": OWN, "prov": PROV, "rdf": RDF, "rdfs": RDFS, "skos": SKOS, "xsd": XSD,
 }  # fmt: skip
+NOTHING: Mapping[Any, Any] = MappingProxyType({})
 STORED = "storage-limitation"
 OF_KIND = {"disclosure": DPV.Disclose, STORED: DPV.Store, "third-country-transfer": DPV.CrossBorderTransfer}
 AT_LEAK = {"storage": DPV.Store, "external-system": DPV.Transfer}
@@ -61,7 +65,10 @@ def rdf_graph(
     vocabulary: Vocabulary,
     diagnostics: Iterable[Diagnostic],
     assumptions: Mapping[str, Any],
+    *,
     when: datetime | None = None,
+    stated: Stated = NOTHING,
+    accepted: Mapping[str, str] = NOTHING,
 ) -> Graph:
     """Return the findings of an analysis, its verdict and where they come from, as RDF.
 
@@ -71,14 +78,19 @@ def rdf_graph(
         As for ``document``.
     when
         The time of the run, if it is to be told; None leaves every time out.
+    stated
+        (robot, kind, name) of a storage or recipient -> what people stated of it: ``retention``, ``country``,
+        ``encrypted``, ``operator``, ``role``, ``basis``.
+    accepted
+        Id of a finding -> why a person accepted it.
 
     Notes
     -----
     Takes time linear in the hops of all witnesses and paths.
     """
     told = document(analysis, vocabulary.categories, vocabulary.hierarchy, diagnostics, assumptions)
-    things = Things(vocabulary, by_path(told["assumptions"]))
-    findings = _Findings.of(analysis, vocabulary, things)
+    things = Things(vocabulary, by_path(told["assumptions"]), stated)
+    findings = _Findings.of(analysis, vocabulary, things, stated, accepted)
     graph = Graph(bind_namespaces="none")
     for prefix, namespace in PREFIXES.items():
         graph.bind(prefix, str(namespace))
@@ -107,15 +119,25 @@ class _Findings:
     analysis: Analysis
     vocabulary: Vocabulary
     things: Things
+    stated: Stated
+    accepted: Mapping[str, str]
     emitted: Mapping[Element, set[str]]
     unstated: frozenset[tuple[object, str]]
     unreviewed: frozenset[tuple[object, str]]
 
     @classmethod
-    def of(cls, analysis: Analysis, vocabulary: Vocabulary, things: Things) -> _Findings:
+    def of(
+        cls,
+        analysis: Analysis,
+        vocabulary: Vocabulary,
+        things: Things,
+        stated: Stated,
+        accepted: Mapping[str, str],
+    ) -> _Findings:
         unstated = frozenset((element.shown_as, category) for element, category in analysis.unstated)
         unreviewed = frozenset((q.element.shown_as, category) for q in analysis.open for category in q.categories)
-        return cls(analysis, vocabulary, things, emitted_by(analysis), unstated, unreviewed)
+        emitted = emitted_by(analysis)
+        return cls(analysis, vocabulary, things, stated, accepted, emitted, unstated, unreviewed)
 
     def triples(self, finding: Finding) -> Iterator[Triple]:
         """Everything about a finding."""
@@ -133,6 +155,7 @@ class _Findings:
             (RP.pseudonymised, [Literal(finding.pseudonymised)]),
             (RP.dismissed, [Literal(finding.dismissed)]),
             (RP.through, [things.element(element) for element in finding.through]),
+            (RP.accepted, [text(self.accepted[finding.id])] if finding.id in self.accepted else []),
             (RP.disjointPaths, [Literal(finding.disjoint_paths)]),
             (DPV.hasDataSource, [source]),
             (DPV.hasPersonalData, self._data(finding)),
@@ -182,21 +205,22 @@ class _Findings:
     def _leak(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:
         """Who receives the data, and how they are kept: whoever stands behind a leak, as software receives nothing."""
         leak = finding.leak
-        at = self.things.element(leak)
+        known, name, at = self.stated.get(leak.identity, {}), shown(leak.name), self.things.element(leak)
         if finding.kind != STORED:
             recipient = named("recipient", *leak.identity)
-            label = text(f"whoever receives what {shown(leak.name)} lets out", "en")
+            label = shown(known["operator"]) if "operator" in known else f"whoever receives what {name} lets out"
             yield iri, DPV.hasRecipient, recipient
-            yield from about(recipient, (RDF.type, [DPV.Recipient]), (RDFS.label, [label]), (RP.at, [at]))
+            yield from about(recipient, (RDF.type, [DPV.Recipient]), (RDFS.label, [text(label)]), (RP.at, [at]))
         if leak.kind == "storage":
-            condition = named("storage-duration", *leak.identity)
-            label = text(f"how long {shown(leak.name)} keeps data is not stated", "en")
+            condition, kept = named("storage-duration", *leak.identity), known.get("retention")
+            label = f"{name} keeps data for {shown(kept)}" if kept else f"how long {name} keeps data is not stated"
             yield iri, DPV.hasStorageCondition, condition
-            yield from about(condition, (RDF.type, [DPV.StorageDuration]), (RDFS.label, [label]), (RP.at, [at]))
-            yield condition, RP.stated, Literal(lexical_or_value=False)
+            yield from about(condition, (RDF.type, [DPV.StorageDuration]), (RDFS.label, [text(label)]), (RP.at, [at]))
+            yield from about(condition, (RP.stated, [Literal(bool(kept))]))
+            yield from about(condition, (DPV.hasDuration, [duration(kept)] if kept else []))
 
     def _law(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:
-        for number, (name, legal) in enumerate(legal_of(finding, self.vocabulary), 1):
+        for number, (legal, names) in enumerate(legal_of(finding, self.vocabulary), 1):
             link = below(iri, "law", number)
             yield iri, RP.fallsUnder, link
             yield from about(
@@ -204,7 +228,7 @@ class _Findings:
                 (RP.provision, [self.things.provision(legal)]),
                 (RP.verdict, [text(legal.verdict)]),
                 (RP.condition, [text(legal.condition, "en")] if legal.condition else []),
-                (RP.statedOf, self.things.categories([name])),
+                (RP.statedOf, self.things.categories(names)),
             )
 
     def _witness(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:

@@ -35,9 +35,9 @@ class _Turtle(TurtleSerializer):
 
     def orderSubjects(self) -> list[Node]:  # noqa: N802 - rdflib's name
         """The answer first, then findings, then what they consist of, by IRI."""
-        first = [*self.store.subjects(RDF.type, RP.Analysis), *sorted(self.store.subjects(RDF.type, RP.Finding))]
-        others = sorted(subject for subject in self._subjects if isinstance(subject, URIRef))
-        return list(dict.fromkeys([*first, *others]))
+        first = [set(self.store.subjects(RDF.type, kind)) for kind in (RP.Analysis, RP.Finding)]
+        named = [subject for subject in self._subjects if isinstance(subject, URIRef)]
+        return sorted(named, key=lambda subject: (*(subject not in kind for kind in first), str(subject)))
 
     def label(self, node: Node, position: int) -> str:
         if not isinstance(node, Literal) or node.datatype in _PLAIN:

@@ -10,7 +10,7 @@ import re
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
-from rdflib import RDF, BNode, Literal, Namespace, URIRef
+from rdflib import RDF, XSD, BNode, Literal, Namespace, URIRef
 from rdflib.namespace import ClosedNamespace
 
 if TYPE_CHECKING:
@@ -40,6 +40,7 @@ DPV_CLASSES = (
 )
 DPV_PROPERTIES = (
     "hasDataSource",
+    "hasDuration",
     "hasPersonalData",
     "hasProcessing",
     "hasRecipient",
@@ -53,6 +54,7 @@ DPV = ClosedNamespace("https://w3id.org/dpv#", [*DPV_CLASSES, *DPV_PROPERTIES])
 RISK = ClosedNamespace("https://w3id.org/dpv/risk#", list(RISKS))
 
 LONGEST = 500  # characters of a name in an IRI; a longer one stands there as its hash; `=` is never left in a name
+_DURATION = re.compile(r"-?P(?=.)(\d+Y)?(\d+M)?(\d+D)?(T(?=.)(\d+H)?(\d+M)?(\d+(\.\d+)?S)?)?", re.ASCII)
 _NOT_IN_IRIS = re.compile(r'[\x00-\x20<>"{}|\\^`\x7f-\x9f]')
 
 
@@ -98,6 +100,11 @@ def line_iri(grant: Grant) -> URIRef:
 def file_iri(file: str, sha256: str) -> URIRef:
     """Return the IRI of a file that was read; another content is another file."""
     return named("file", sha256, file)
+
+
+def duration(value: str) -> Literal:
+    """Return how long data is kept: typed where XML Schema knows the form (it has no weeks), else as it was written."""
+    return Literal(value, datatype=XSD.duration, normalize=False) if _DURATION.fullmatch(value) else text(value)
 
 
 def about(subject: Node, *said: tuple[Node, Iterable[Node]]) -> list[Triple]:

@@ -5,6 +5,7 @@ In: facts of the model. Out: their IRIs at once, their descriptions at the end.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from rdflib import RDF, SKOS, XSD, Literal
@@ -12,7 +13,7 @@ from rdflib import RDF, SKOS, XSD, Literal
 from rosprivacy.report.terms import RP, Triple, about, element_iri, foreign, line_iri, text
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Iterator
 
     from rdflib import URIRef
 
@@ -26,6 +27,10 @@ CLASSES = {
 }  # fmt: skip
 
 
+Stated = Mapping[tuple[str, str, str], Mapping[str, str]]
+STATED = ("country", "encrypted", "operator", "role", "basis", "retention")
+
+
 class Things:
     """What was named so far.
 
@@ -33,12 +38,15 @@ class Things:
     ----------
     files
         Path -> IRIs of the files that were read there.
+    stated
+        (robot, kind, name) -> what people stated of an element.
     """
 
-    def __init__(self, vocabulary: Vocabulary, files: Mapping[str, tuple[URIRef, ...]]) -> None:
+    def __init__(self, vocabulary: Vocabulary, files: Mapping[str, tuple[URIRef, ...]], stated: Stated) -> None:
         self._categories = vocabulary.categories
         self._ancestors = vocabulary.hierarchy.ancestors
         self._files = files
+        self._stated = stated
         self._elements: dict[URIRef, Element] = {}
         self._lines: dict[URIRef, Grant] = {}
         self._provisions: dict[URIRef, Legal] = {}
@@ -72,6 +80,8 @@ class Things:
         """Describe all that was named, and the categories that are broader."""
         for iri, element in self._elements.items():
             yield from _element(iri, element)
+            known = self._stated.get(element.identity, {})
+            yield from about(iri, *((RP[what], [text(known[what])]) for what in STATED if known.get(what)))
         for iri, grant in self._lines.items():
             yield from _line(iri, grant, self._files.get(grant.place.file, ()))
         for iri, legal in self._provisions.items():

@@ -26,7 +26,6 @@ from rosprivacy.report.document import document
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
-    from datetime import datetime
 
     from neo4j import Driver
 
@@ -88,12 +87,12 @@ class Result:
         vocabulary = self.vocabulary
         return document(self.analysis, vocabulary.categories, vocabulary.hierarchy, self.diagnostics, self.assumptions)
 
-    def linked_data(self, form: str, when: datetime | None = None) -> str:
-        """Return the findings as RDF, in ``turtle`` or ``json-ld``; ``when`` is the time of the run, if it is to be told."""
+    def linked_data(self, form: str, **more: Any) -> str:
+        """Return the findings as RDF, in ``turtle`` or ``json-ld``; ``more`` as for ``rdf_graph``."""
         from rosprivacy.report.rdf import rdf_graph  # noqa: PLC0415 - rdflib, only where it is used
         from rosprivacy.report.serialise import SERIALISERS  # noqa: PLC0415
 
-        graph = rdf_graph(self.analysis, self.vocabulary, self.diagnostics, self.assumptions, when)
+        graph = rdf_graph(self.analysis, self.vocabulary, self.diagnostics, self.assumptions, **more)
         return SERIALISERS[form](graph)
 
 

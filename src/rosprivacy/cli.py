@@ -200,7 +200,7 @@ def _report(result: Result, form: Format, *, colour: bool, quiet: bool, verbose:
     if form in (Format.turtle, Format.json_ld):
         from rosprivacy.clock import source_date
 
-        return result.linked_data(form.value, source_date(os.environ))
+        return result.linked_data(form.value, when=source_date(os.environ))
     from io import StringIO
 
     from rich.console import Console

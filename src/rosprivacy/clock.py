@@ -1,4 +1,4 @@
-"""The one time that a report may tell: ``SOURCE_DATE_EPOCH``, so that the same input gives the same bytes (rule S14)."""
+"""The one time that a report may tell, ``SOURCE_DATE_EPOCH``: the same input gives the same bytes (rule S14)."""
 
 from __future__ import annotations
 
