@@ -198,7 +198,7 @@ class _Findings:
             (RDF.type, [DPV.Pseudonymisation]),
             (RDFS.label, [text(f"pseudonymisation at {shown(change.element.name)}", "en")]),
             (RP.at, [self.things.element(change.element)]),
-            (RP.category, self.things.categories(names)),
+            (RP.cleans, self.things.categories(names)),
             (RP.stated, [Literal(not unstated)]),
         )
 
