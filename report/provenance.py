@@ -66,7 +66,7 @@ def provenance(
         answer,
         (RDF.type, [RP.Analysis, PROV.Entity]),
         (RDFS.comment, [text(NO_VERDICT, "en")]),
-        (RP.verdict, [text(document["verdict"])]),
+        (RP.outcome, [text(document["verdict"])]),
         (RP.view, [text(document["view"])]),
         (RP.followed, things.categories(analysis.emitted)),
         (RP.found, [finding_iri(finding) for finding in analysis.findings]),

@@ -150,7 +150,7 @@ class _Findings:
             (RP.id, [Literal(finding.id)]),
             (RP.kind, [Literal(finding.kind)]),
             (RP.category, things.categories([finding.category])),
-            (RP.source, [source]),
+            (RP.dataSource, [source]),
             (RP.leak, [leak]),
             (RP.pseudonymised, [Literal(finding.pseudonymised)]),
             (RP.dismissed, [Literal(finding.dismissed)]),

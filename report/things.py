@@ -28,7 +28,10 @@ CLASSES = {
 
 
 Stated = Mapping[tuple[str, str, str], Mapping[str, str]]
-STATED = ("country", "encrypted", "operator", "role", "basis", "retention")
+STATED = {
+    "country": RP.country, "encrypted": RP.encrypted, "operator": RP.operator, "role": RP.operatorRole,
+    "basis": RP.transferBasis, "retention": RP.retention,
+}  # fmt: skip
 
 
 class Things:
@@ -81,7 +84,7 @@ class Things:
         for iri, element in self._elements.items():
             yield from _element(iri, element)
             known = self._stated.get(element.identity, {})
-            yield from about(iri, *((RP[what], [text(known[what])]) for what in STATED if known.get(what)))
+            yield from about(iri, *((term, [text(known[what])]) for what, term in STATED.items() if known.get(what)))
         for iri, grant in self._lines.items():
             yield from _line(iri, grant, self._files.get(grant.place.file, ()))
         for iri, legal in self._provisions.items():

@@ -97,7 +97,7 @@ def row(graph: Graph, finding: Node, law: Node) -> tuple[str, ...]:
 
     return (
         value(finding, RP.category).removeprefix(OWN),
-        value(finding, RP.source, RP.name),
+        value(finding, RP.dataSource, RP.name),
         value(finding, RP.leak, RP.name),
         value(law, RP.provision, RP.identifier),
         value(law, RP.verdict),

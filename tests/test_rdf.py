@@ -27,6 +27,7 @@ from rosprivacy.report.facts import legal_of
 from rosprivacy.report.rdf import rdf_graph
 from rosprivacy.report.serialise import SERIALISERS, as_turtle
 from rosprivacy.report.terms import DPV, DPV_CLASSES, DPV_PROPERTIES, RISK, RISKS, RP, element_iri, named
+from rosprivacy.report.things import STATED
 from tests.test_cases import CASES
 from tests.test_findings import PARENTS, System, analysed, statement, systems
 
@@ -153,7 +154,7 @@ def finding_told(graph: Graph, iri: Node, names: dict[str, str]) -> dict[str, An
     told = {
         **{key: value(graph, iri, RP[key]) for key in ("id", "kind", "pseudonymised", "dismissed")},
         "category": names[value(graph, iri, RP.category)],
-        "source": element_told(graph, graph.value(iri, RP.source)),  # type: ignore[arg-type]
+        "source": element_told(graph, graph.value(iri, RP.dataSource)),  # type: ignore[arg-type]
         "leak": element_told(graph, graph.value(iri, RP.leak)),  # type: ignore[arg-type]
         "disjoint_paths": value(graph, iri, RP.disjointPaths),
         "through": [element_told(graph, element) for element in graph.objects(iri, RP.through)],
@@ -209,7 +210,7 @@ class TestAgainstTheDocument:
         result = result_of(case)
         graph, document = strict(result.linked_data(form), form), result.document()
         (answer,) = graph.subjects(RDF.type, RP.Analysis)
-        assert value(graph, answer, RP.verdict) == document["verdict"]
+        assert value(graph, answer, RP.outcome) == document["verdict"]
         assert value(graph, answer, RP.view) == document["view"]
         names = {category.iri: name for name, category in result.vocabulary.categories.items()}
         followed = {names[str(iri)] for iri in graph.objects(answer, RP.followed)}
@@ -384,6 +385,7 @@ class TestShapesCanFail:
         ("predicate", "wrong"),
         [
             (RP.verdict, Literal("compliant")),
+            (RP.outcome, Literal("safe")),
             (RP.pseudonymised, Literal("no")),
             (RP.kind, Literal("violation")),
             (RP.id, Literal("59DC")),
@@ -452,7 +454,7 @@ class TestOutsideRos:
         assert kept == Literal("P30D", datatype=XSD.duration)
         assert value(graph, bucket, DPV.hasStorageCondition, RP.stated) is True
         assert value(graph, cloud, DPV.hasRecipient, RDFS.label) == "Cloud Ltd"
-        told = {what: value(graph, cloud, RP.leak, RP[what]) for what in ("operator", "role", "country", "basis")}
+        told = {what: value(graph, cloud, RP.leak, STATED[what]) for what in ("operator", "role", "country", "basis")}
         assert told == stated[CLOUD.identity]
         assert problems(graph) == ""
 
