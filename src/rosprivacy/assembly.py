@@ -96,6 +96,14 @@ class Result:
         vocabulary = self.vocabulary
         return document(self.analysis, vocabulary.categories, vocabulary.hierarchy, self.diagnostics, self.assumptions)
 
+    def linked_data(self, form: str, **more: Any) -> str:
+        """Return the findings as RDF, in ``turtle`` or ``json-ld``; ``more`` as for ``rdf_graph``."""
+        from rosprivacy.report.rdf import rdf_graph  # noqa: PLC0415 - rdflib, only where it is used
+        from rosprivacy.report.serialise import SERIALISERS  # noqa: PLC0415
+
+        graph = rdf_graph(self.analysis, self.vocabulary, self.diagnostics, self.assumptions, **more)
+        return SERIALISERS[form](graph)
+
 
 def run(policies: tuple[str, ...], labels: tuple[str, ...], settings: Settings) -> Result:
     """Read everything, analyse it, and keep what the answer rests on.

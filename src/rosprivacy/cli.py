@@ -6,6 +6,7 @@ Exit codes: 0 no leak found, 1 leak, 2 bad input or usage, 3 database unreachabl
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -209,6 +210,10 @@ def _report(result: Result, form: Format, *, colour: bool, quiet: bool, verbose:
 
     if form is Format.json:
         return as_text(result.document())
+    if form in (Format.turtle, Format.json_ld):
+        from rosprivacy.clock import source_date
+
+        return result.linked_data(form.value, when=source_date(os.environ))
     from io import StringIO
 
     from rich.console import Console

@@ -14,6 +14,8 @@ class Format(StrEnum):
 
     text = "text"
     json = "json"
+    turtle = "turtle"
+    json_ld = "json-ld"
 
 
 class View(StrEnum):
