@@ -1,6 +1,6 @@
 """The categories, how they are found by name, and their hierarchy (rule S7).
 
-In: ``categories.ttl``, ``law.ttl`` and ``dpv.ttl``, and users' own files. Out: a ``Vocabulary``. What was read is kept
+In: the shipped Turtle files (all but the shapes) and users' own files. Out: a ``Vocabulary``. What was read is kept
 under the hash of all files (``cache.py``), so that rdflib is imported only after a change.
 """
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 LARGEST = 4 * 2**20  # bytes of a user's file
 TOP = "PersonalData"
-SHIPPED = ("categories.ttl", "law.ttl", "dpv.ttl")
+SHIPPED = ("categories.ttl", "law.ttl", "elements.ttl", "dpv.ttl")
 PREFIXES = {
     "rp:": "urn:x-rosprivacy:",
     "dpv:": "https://w3id.org/dpv#",
