@@ -196,6 +196,10 @@ def _report(result: Result, form: Format, *, colour: bool, quiet: bool, verbose:
 
     if form is Format.json:
         return as_text(result.document())
+    if form in (Format.sarif, Format.cnil_pia):
+        from rosprivacy import formats
+
+        return as_text(formats.sarif_log(result) if form is Format.sarif else formats.pia_file(result))
     from io import StringIO
 
     from rich.console import Console

@@ -14,6 +14,8 @@ class Format(StrEnum):
 
     text = "text"
     json = "json"
+    sarif = "sarif"
+    cnil_pia = "cnil-pia"
 
 
 class View(StrEnum):
