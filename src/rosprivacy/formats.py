@@ -9,14 +9,12 @@ import os
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.errors import InputError, shown
+from rosprivacy.clock import source_date
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rosprivacy.assembly import Result
-
-EPOCH = "SOURCE_DATE_EPOCH"
 
 
 def sarif_log(result: Result, accepted: Mapping[str, str] | None = None) -> dict[str, Any]:
@@ -45,22 +43,6 @@ def sarif_log(result: Result, accepted: Mapping[str, str] | None = None) -> dict
     )
 
 
-def now() -> datetime:
-    """Return the time that a file is dated with: ``SOURCE_DATE_EPOCH`` if it is set, else the clock's (rule S14).
-
-    Raises
-    ------
-    InputError
-        If ``SOURCE_DATE_EPOCH`` is no number of seconds.
-    """
-    given = os.environ.get(EPOCH)
-    try:
-        return datetime.fromtimestamp(int(given), UTC) if given else datetime.now(UTC)
-    except (ValueError, OverflowError, OSError):
-        hint = "set it to seconds since 1970, or unset it"
-        raise InputError(EPOCH, 0, f"{shown(given or '')!r} is no time", hint) from None
-
-
 def pia_file(
     result: Result,
     accepted: Mapping[str, str] | None = None,
@@ -74,11 +56,16 @@ def pia_file(
         Id of a finding -> why a person accepted it.
     stated
         (robot, kind, name) of a storage or recipient -> what people stated of it.
+
+    Raises
+    ------
+    InputError
+        If ``SOURCE_DATE_EPOCH`` is no time; without it the file is dated now, since the tool wants a date (rule S14).
     """
     from rosprivacy.report.cnil import cnil_pia  # noqa: PLC0415 - light start
 
     vocabulary = result.vocabulary
-    created = now().isoformat(timespec="milliseconds").replace("+00:00", "Z")
+    created = (source_date(os.environ) or datetime.now(UTC)).isoformat(timespec="milliseconds").replace("+00:00", "Z")
     return cnil_pia(
         result.analysis,
         result.bound,
