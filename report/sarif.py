@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.model import Place, Severity
 from rosprivacy.report.inventory import law_of
 from rosprivacy.report.places import Places, in_a_file, to_review
-from rosprivacy.report.sarif_flows import flows_between, prose, text, ways_left_out
+from rosprivacy.report.sarif_flows import flows_between, further_ways, prose, text
 from rosprivacy.report.sarif_results import LAW, ROOT, Files, Results
 from rosprivacy.report.sarif_rules import NO_VERDICT, NOTHING_FOLLOWED, RULES, UNREVIEWED, descriptors, rule_of
 
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
 SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 MAX_RESULTS = 25_000
+MAX_LOCATIONS = 200_000  # of ways in the whole file, some 120 MB
 MAX_NOTIFICATIONS = 1_000
 LEVELS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.NOTICE: "note"}
 NOTHING: Mapping[str, str] = {}
@@ -71,8 +72,8 @@ def sarif(
         between=flows_between(analysis),
         accepted=accepted,
     )
-    results = list(islice(made.all(), MAX_RESULTS))
-    notices = [*_about(analysis, len(results)), *_said((*diagnostics, *analysis.diagnostics), files)]
+    results = list(_within(islice(made.all(), MAX_RESULTS)))
+    notices = [*_about(analysis, results), *_said((*diagnostics, *analysis.diagnostics), files)]
     driver = {
         "name": "rosprivacy",
         "version": str(assumptions.get("rosprivacy", "")),
@@ -98,6 +99,19 @@ def sarif(
         },
     }
     return {"$schema": SCHEMA, "version": "2.1.0", "runs": [run]}
+
+
+def _within(results: Iterable[dict[str, Any]]) -> Iterator[dict[str, Any]]:
+    """Results whose ways together have no more locations than the bound: further ways go first, then the witness."""
+    room = MAX_LOCATIONS
+    for result in results:
+        kept = []
+        for flow in result.get("codeFlows", ()):
+            room -= len(flow["threadFlows"][0]["locations"])
+            if room < 0:
+                break
+            kept.append(flow)
+        yield {**result, "codeFlows": kept} if kept else {k: v for k, v in result.items() if k != "codeFlows"}
 
 
 def _taxonomy(taxa: Sequence[Legal]) -> dict[str, Any]:
@@ -135,18 +149,19 @@ def _artifacts(assumptions: Mapping[str, Any], files: Files) -> Iterator[dict[st
             yield {"location": location, "roles": [role], "hashes": {"sha-256": entry["sha256"]}}
 
 
-def _about(analysis: Analysis, shown_results: int) -> Iterator[dict[str, Any]]:
+def _about(analysis: Analysis, results: Sequence[Mapping[str, Any]]) -> Iterator[dict[str, Any]]:
     """The verdict with what is open, and what was left out of the file."""
     unreviewed = f"{len(analysis.open)} elements that data reaches are not reviewed"
     yield _notice(
         "note" if not analysis.open else "warning", "verdict", f"{analysis.verdict}; {unreviewed}. {NO_VERDICT}"
     )
-    left_out = len(analysis.findings) + len(to_review(analysis)) - shown_results
+    left_out = len(analysis.findings) + len(to_review(analysis)) - len(results)
     if left_out > 0:
         yield _notice("warning", "bound", f"{left_out} results are left out: a viewer takes {MAX_RESULTS} at most.")
-    ways = sum(ways_left_out(finding) for finding in analysis.findings)
+    ways = sum(1 + further_ways(finding) for finding in analysis.findings)
+    ways -= sum(len(result.get("codeFlows", ())) for result in results)
     if ways:
-        yield _notice("note", "bound", f"{ways} further ways of findings are left out; --format json lists them.")
+        yield _notice("note", "bound", f"{ways} ways of findings are left out; --format json lists them.")
     bounded = sum(finding.bounded for finding in analysis.findings)
     if bounded:
         yield _notice("note", "bound", f"{bounded} findings have more ways than were looked for (--max-paths).")

@@ -73,9 +73,9 @@ def flows_between(analysis: Analysis) -> dict[Pair, Flow]:
     return found
 
 
-def ways_left_out(finding: Finding) -> int:
-    """Return how many further ways of a finding are not in its ``codeFlows``."""
-    return max(0, len(_others(finding)) - (MAX_FLOWS - 1))
+def further_ways(finding: Finding) -> int:
+    """Return how many ways of a finding are known beside its witness."""
+    return len(_others(finding))
 
 
 def flows_of(

@@ -14,21 +14,28 @@ from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from html.parser import HTMLParser
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 import rosprivacy
+from rosprivacy import database
 from rosprivacy.analysis.findings import analyse
 from rosprivacy.analysis.model import Bound, Category, Element, Flow, FlowGraph, Method, Place, Statement
+from rosprivacy.assembly import Settings, robot_of, run_stored
 from rosprivacy.formats import pia_file
+from rosprivacy.ingest.neo4j import load as load_robots
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.report import cnil_answers
 from rosprivacy.report.cnil import cnil_pia
 from tests.test_findings import HIERARCHY, PARENTS, System, analysed, systems
-from tests.test_sarif import HOSTILE, analyze, small_system
+from tests.test_sarif import HOSTILE, analyze, checked, log_of, physical, small_system, way
+from tests.test_stored import ADD_STORAGE
+
+if TYPE_CHECKING:
+    from rosprivacy.database import Connection
 
 ROOT = Path(__file__).resolve().parent.parent
 CARE_HOME = (["care-home/care-home.policy.xml"], ["care-home/care-home.labels.yaml"])
@@ -382,3 +389,22 @@ def test_without_being_told_it_is_dated_now(monkeypatch: pytest.MonkeyPatch) -> 
     monkeypatch.delenv("SOURCE_DATE_EPOCH", raising=False)
     made = imported(pia_file(analyze(*CARE_HOME))).pia["created_at"]
     assert abs((made - datetime.now(UTC)).total_seconds()) < 60
+
+
+@pytest.mark.database
+def test_what_people_added_in_the_database_is_in_both_formats(neo4j_server: Connection) -> None:
+    """A finding whose last step no policy line allows is at the last line before it."""
+    vocabulary = load()
+    with database.open_driver(neo4j_server) as driver:
+        driver.execute_query("MATCH (n) DETACH DELETE n")
+        load_robots(driver, [robot_of("care", analyze(*CARE_HOME))], vocabulary)
+        driver.execute_query(ADD_STORAGE)
+        result = run_stored(driver, Settings())
+        driver.execute_query("MATCH (n) DETACH DELETE n")
+    run = checked(log_of(result))
+    (found,) = [r for r in run["results"] if "storage footage bucket" in r["message"]["text"]]
+    assert physical(found["locations"][0]) == ("examples/care-home/care-home.policy.xml", 118)
+    last = way(found)[-1]
+    assert last["message"]["text"] == "pseudonymised Video goes from /recorder to storage footage bucket."
+    tool = imported(pia_file(result))
+    assert "storage footage bucket: pseudonymised Video; retention: not stated" in seen(tool, 215)

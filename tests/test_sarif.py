@@ -371,8 +371,17 @@ def test_further_ways_are_further_code_flows_up_to_a_bound(tmp_path: Path) -> No
     left_out = (
         len([path for path in result.analysis.findings[0].paths if path != result.analysis.findings[0].witness]) - 9
     )
-    assert f"{left_out} further ways of findings are left out; --format json lists them." in texts
+    assert f"{left_out} ways of findings are left out; --format json lists them." in texts
     assert "1 findings have more ways than were looked for (--max-paths)." in texts
+
+
+def test_a_file_with_too_many_ways_keeps_every_finding(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The first of the care home's three ways has 7 elements, the others 6 and 3."""
+    monkeypatch.setattr(sarif_module, "MAX_LOCATIONS", 10)
+    run = checked(log_of(analyze(*CARE_HOME)))
+    assert [len(way(r)) if "codeFlows" in r else 0 for r in run["results"]] == [7, 0, 0]
+    texts = [notice["message"]["text"] for notice in run["invocations"][0]["toolExecutionNotifications"]]
+    assert "2 ways of findings are left out; --format json lists them." in texts
 
 
 def test_a_very_long_way_keeps_its_ends(tmp_path: Path) -> None:
