@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.legal import MAY_REVEAL
 from rosprivacy.analysis.model import KINDS
 from rosprivacy.report.markup import (
     Html,
@@ -26,7 +27,7 @@ from rosprivacy.report.markup import (
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping
 
-    from rosprivacy.analysis.model import Analysis, Carried, Element, Finding, Legal
+    from rosprivacy.analysis.model import Analysis, Carried, Element, Finding
     from rosprivacy.report.inventory import Cleaning, Kind
 
     Stated = Mapping[tuple[str, str, str], Mapping[str, str]]
@@ -82,7 +83,7 @@ def _data_of(kind: Kind, known: Known) -> Iterator[Html]:
         [
             *_lines("Brought in by", kind.sources),
             *(_line("Made", _made(element, of)) for element, of in kind.made),
-            *(_line("Law to check", _law(legal)) for legal in kind.law),
+            *_law(kind),
             _line("Recipients that it can reach", _recipients(kind)),
             _line("Kept in", some(stored, NAMES) or Html("no storage is stated")),
             Html("Persons concerned, purpose, who has access: to be completed."),
@@ -245,9 +246,20 @@ def _cleaning(cleaning: Cleaning) -> Html:
     return joined(escaped(_name(cleaning.element)), Html(": "), escaped(f"{cleaning.method}{still}{taken}"))
 
 
-def _law(legal: Legal) -> Html:
-    condition = f": {prose(legal.condition)}" if legal.condition else ""
-    return Html(f"{escaped(legal.name)} ({escaped(legal.verdict)}{condition}), law as of {escaped(legal.as_of)}")
+def _law(kind: Kind) -> Iterator[Html]:
+    """What a person has to look up; of what such data may only reveal, the names."""
+    for legal in kind.law:
+        if legal.verdict != MAY_REVEAL:
+            condition = f": {prose(legal.condition)}" if legal.condition else ""
+            said = f"{escaped(legal.name)} ({escaped(legal.verdict)}{condition}), law as of {escaped(legal.as_of)}"
+            yield _line("Law to check", Html(said))
+    revealed = list(dict.fromkeys(legal.name for legal in kind.law if legal.verdict == MAY_REVEAL))
+    if revealed:
+        yield _line("May reveal what these speak of", some(revealed, NAMES))
+    if kind.category.article9 == "no":
+        yield _line("Not Article 9 GDPR by itself", prose(kind.category.reason))
+    if kind.category.article9 == "unknown":
+        yield Html("Whether Article 9 GDPR applies to such data is not stated: to be completed.")
 
 
 def _recipients(kind: Kind) -> Html:

@@ -10,6 +10,7 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.model import ARTICLE_9_VERDICTS
 from rosprivacy.report.places import deciding
 
 if TYPE_CHECKING:
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.model import Analysis, Bound, Category, Element, Finding, Legal
+
+_STRENGTH = {verdict: number for number, verdict in enumerate(ARTICLE_9_VERDICTS)}
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +45,7 @@ class Kind:
     Attributes
     ----------
     law
-        Provisions of the category and of broader ones, nearest first.
+        Provisions that a person has to look at, what holds always first.
     sources
         Elements that bring it in.
     made
@@ -75,7 +78,7 @@ def kinds_of(
     return tuple(
         Kind(
             category=categories[name],
-            law=law_of(name, categories, hierarchy),
+            law=law_of(categories[name]),
             sources=_distinct(e for e, said in analysis.roles.items() if "source" in said.get(name, ())),
             made=tuple(dict.fromkeys((element, of) for element, of, to in made if to == name)),
             reached=_distinct(reached[name]),
@@ -87,13 +90,10 @@ def kinds_of(
     )
 
 
-def law_of(name: str, categories: Mapping[str, Category], hierarchy: Hierarchy) -> tuple[Legal, ...]:
-    """Return the provisions of a category and of all broader ones; of one provision the nearest word holds (S7)."""
-    found: dict[str, Legal] = {}
-    for above in (name, *hierarchy.broader(name)):
-        for legal in categories[above].law:
-            found.setdefault(legal.iri, legal)
-    return tuple(found.values())
+def law_of(category: Category) -> tuple[Legal, ...]:
+    """Return the provisions of a category, what holds always first; the same said twice once."""
+    distinct = {(legal.iri, legal.verdict, legal.condition): legal for legal in category.law}.values()
+    return tuple(sorted(distinct, key=lambda legal: (_STRENGTH.get(legal.verdict, len(_STRENGTH)), legal.name)))
 
 
 def cleanings(analysis: Analysis, bound: Bound, hierarchy: Hierarchy) -> Iterator[Cleaning]:

@@ -58,7 +58,7 @@ def sarif(
         Id of a finding -> why a person accepted it (reason, owner, until when). Only decisions that hold now.
     """
     files = Files(root)
-    law = {name: law_of(name, categories, hierarchy) for name in analysis.emitted}
+    law = {name: law_of(categories[name]) for name in analysis.emitted}
     taxa = sorted({legal.iri: legal for said in law.values() for legal in said}.values(), key=lambda legal: legal.name)
     found = (rule_of(finding.kind) for finding in analysis.findings)
     rules = {rule.id: rule for rule in (*RULES, *found, UNREVIEWED, NOTHING_FOLLOWED)}
@@ -66,6 +66,7 @@ def sarif(
         analysis,
         Places.of(analysis, bound, hierarchy, assumptions),
         files,
+        categories,
         law,
         taxa={legal.iri: number for number, legal in enumerate(taxa)},
         rules={name: number for number, name in enumerate(rules)},
@@ -139,7 +140,7 @@ def _artifacts(assumptions: Mapping[str, Any], files: Files) -> Iterator[dict[st
     standard = assumptions.get("standard_channels")
     read = {
         "analysisTarget": assumptions.get("policies") or (),
-        "userSpecifiedConfiguration": assumptions.get("labels") or (),
+        "userSpecifiedConfiguration": [*(assumptions.get("labels") or ()), *(assumptions.get("ontologies") or ())],
         "toolSpecifiedConfiguration": [standard] if standard else [],
     }
     for role, entries in read.items():

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.legal import MAY_REVEAL, turned_special
 from rosprivacy.analysis.model import Verdict
 from rosprivacy.report.artifacts import uri_of
 from rosprivacy.report.places import NOWHERE, of_step, to_review
@@ -17,10 +18,10 @@ from rosprivacy.report.sarif_flows import flows_of, logical, named, prose, text
 from rosprivacy.report.sarif_rules import NOTHING_FOLLOWED, UNREVIEWED, rule_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
-    from rosprivacy.analysis.model import Analysis, Element, Finding, Flow, Legal, OpenQuestion, Place
+    from rosprivacy.analysis.model import Analysis, Category, Element, Finding, Flow, Legal, OpenQuestion, Place
     from rosprivacy.report.places import Places
 
 ROOT = "%SRCROOT%"
@@ -54,7 +55,7 @@ class Results:
     Attributes
     ----------
     law
-        Category -> the provisions that it and broader ones fall under.
+        Category -> the provisions that a person has to look at, what holds always first.
     taxa, rules
         Numbers of provisions by IRI, and of rules by id.
     between
@@ -66,6 +67,7 @@ class Results:
     analysis: Analysis
     places: Places
     files: Files
+    categories: Mapping[str, Category]
     law: Mapping[str, tuple[Legal, ...]]
     taxa: Mapping[str, int]
     rules: Mapping[str, int]
@@ -92,7 +94,7 @@ class Results:
             "ruleId": rule.id,
             "ruleIndex": self.rules[rule.id],
             "level": "note" if finding.dismissed else rule.level,
-            "message": {"text": _message(finding, law, place)},
+            "message": {"text": _message(finding, law, turned_special(finding, self.categories), place)},
             "locations": [self._location(finding.leak, place)],
             "codeFlows": flows_of(finding, self.between, self.places, self.files.physical),
             "partialFingerprints": _fingerprints(finding.id),
@@ -100,7 +102,8 @@ class Results:
         if related := self._related(finding, place):
             result["relatedLocations"] = related
         if law:
-            result["taxa"] = [reference(legal, self.taxa[legal.iri]) for legal in law]
+            distinct = {legal.iri: legal for legal in law}.values()
+            result["taxa"] = [reference(legal, self.taxa[legal.iri]) for legal in distinct]
         if finding.id in self.accepted:
             why = prose(self.accepted[finding.id])
             result["suppressions"] = [{"kind": "external", "status": "accepted", "justification": why}]
@@ -109,6 +112,7 @@ class Results:
             "pseudonymised": finding.pseudonymised,
             "dismissed": finding.dismissed,
             "disjointPaths": finding.disjoint_paths,
+            "article9": self.categories[finding.category].article9,
             "law": [{"provision": legal.name, "verdict": legal.verdict, "condition": legal.condition} for legal in law],
         }
         return result
@@ -177,7 +181,7 @@ def _fingerprints(digest: str) -> dict[str, str]:
     return {"primaryLocationLineHash": f"{digest}:1", "rosprivacyFinding/v1": digest}
 
 
-def _message(finding: Finding, law: Iterable[Legal], place: Place) -> str:
+def _message(finding: Finding, law: Sequence[Legal], turned: Element | None, place: Place) -> str:
     """What a viewer shows; some show the first sentence only."""
     category, source, leak = text(finding.category), named(finding.source), named(finding.leak)
     said = [f"{category} can get from {source} to {leak}: a path to assess."]
@@ -185,14 +189,25 @@ def _message(finding: Finding, law: Iterable[Legal], place: Place) -> str:
         said = [f"{source} brings {category} in and lets it out itself: a path to assess."]
     if finding.pseudonymised:
         said.append("It arrives pseudonymised, which is still personal data.")
+    if turned is not None:
+        said.append(f"{named(turned)} makes such data of other data.")
     if finding.dismissed:
         through = ", ".join(named(element) for element in finding.through)
         said.append(f"Every way there goes through {through}, which has a finding of its own.")
     if finding.disjoint_paths > 1:
         said.append(f"{finding.disjoint_paths} ways share no step.")
-    for legal in law:
-        condition = f": {legal.condition}" if legal.condition else ""
-        said.append(f"To be checked: {text(legal.name)} ({text(legal.verdict)}{prose(condition)}).")
+    said += _to_check(law)
     if place == NOWHERE:
         said.append("No file says so: it stands in the database.")
     return " ".join([*said, f"Finding {finding.id}."])
+
+
+def _to_check(law: Sequence[Legal]) -> list[str]:
+    """What a person has to look up; of what such data may only reveal, the names."""
+    strong = [legal for legal in law if legal.verdict != MAY_REVEAL]
+    weak = [text(legal.name) for legal in law if legal.verdict == MAY_REVEAL]
+    said = []
+    for legal in strong:
+        condition = f": {legal.condition}" if legal.condition else ""
+        said.append(f"To be checked: {text(legal.name)} ({text(legal.verdict)}{prose(condition)}).")
+    return [*said, f"It may reveal what these speak of: {', '.join(dict.fromkeys(weak))}."] if weak else said

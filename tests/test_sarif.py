@@ -144,6 +144,19 @@ def test_provisions_are_a_taxonomy_and_a_question_to_check(care_home: dict[str, 
     assert re.fullmatch(r"\d{4}-\d\d-\d\d", taxonomy["version"])
 
 
+def test_what_data_may_only_reveal_is_named_in_short(tmp_path: Path) -> None:
+    result = small_system(tmp_path, {"/a": "{source: [Location]}"}, last="leak: [Location]")
+    (found, *_) = checked(log_of(result, at=tmp_path))["results"]
+    assert "It may reveal what these speak of: GDPR Art. 9(1)." in found["message"]["text"]
+    assert "To be checked" not in found["message"]["text"]
+    assert found["properties"]["article9"] == "may-reveal"
+    assert len({taxon["id"] for taxon in found["taxa"]}) == len(found["taxa"])
+
+
+def test_where_data_become_special_is_said(care_home: dict[str, Any]) -> None:
+    assert "/face_recognizer makes such data of other data." in care_home["results"][0]["message"]["text"]
+
+
 def test_the_labels_at_both_ends_are_related(care_home: dict[str, Any]) -> None:
     for result in care_home["results"]:
         assert [r["message"]["text"].split(" is labelled ")[1] for r in result["relatedLocations"]] == [

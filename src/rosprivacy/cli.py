@@ -6,6 +6,7 @@ Exit codes: 0 no leak found, 1 leak, 2 bad input or usage, 3 database unreachabl
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -13,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 import rosprivacy
-from rosprivacy import cli_db, cli_graph
+from rosprivacy import cli_categories, cli_db, cli_graph
 from rosprivacy.analysis.errors import InputError, RosPrivacyError
 from rosprivacy.cli_options import (
     FailOn,
@@ -22,6 +23,7 @@ from rosprivacy.cli_options import (
     LabelFiles,
     MaxBytes,
     NoStandard,
+    Ontologies,
     Output,
     PathsShown,
     Policies,
@@ -48,6 +50,7 @@ app.add_typer(cli_db.app, name="db", help="The private Neo4j: start it, stop it,
 app.command()(cli_graph.load)
 app.command()(cli_graph.unload)
 app.command()(cli_graph.query)
+app.command()(cli_categories.categories)
 
 
 @app.callback(invoke_without_command=True)
@@ -88,6 +91,14 @@ def analyze(
             help="Answer for this category and narrower ones only; may be repeated.",
         ),
     ] = None,
+    article9: Annotated[
+        bool, typer.Option("--article9", help="Answer for what can fall under Article 9(1) GDPR only.")
+    ] = False,
+    data_type: Annotated[
+        list[str] | None,
+        typer.Option(metavar="TYPE", show_default=False, help="Answer for video, audio, … only; may be repeated."),
+    ] = None,
+    ontology: Ontologies = None,
     category: SixLists = "PersonalData",
     view: ViewChosen = View.declared,
     paths: Annotated[PathsShown, typer.Option(help="Ways to list for each finding.")] = PathsShown.witness,
@@ -107,6 +118,9 @@ def analyze(
         add=tuple(add or ()),
         view=view.value,
         categories=tuple(categories or ()),
+        article9=article9,
+        data_types=tuple(data_type or ()),
+        ontologies=tuple(ontology or ()),
         category=category,
         standard_channels=None if no_standard_channels else standard_channels,
         paths=paths.value,
@@ -196,6 +210,10 @@ def _report(result: Result, form: Format, *, colour: bool, quiet: bool, verbose:
 
     if form is Format.json:
         return as_text(result.document())
+    if form in (Format.turtle, Format.json_ld):
+        from rosprivacy.clock import source_date
+
+        return result.linked_data(form.value, when=source_date(os.environ))
     if form in (Format.sarif, Format.cnil_pia):
         from rosprivacy import formats
 
