@@ -214,6 +214,10 @@ def _report(result: Result, form: Format, *, colour: bool, quiet: bool, verbose:
         from rosprivacy.clock import source_date
 
         return result.linked_data(form.value, when=source_date(os.environ))
+    if form in (Format.sarif, Format.cnil_pia):
+        from rosprivacy import formats
+
+        return as_text(formats.sarif_log(result) if form is Format.sarif else formats.pia_file(result))
     from io import StringIO
 
     from rich.console import Console

@@ -16,6 +16,8 @@ class Format(StrEnum):
     json = "json"
     turtle = "turtle"
     json_ld = "json-ld"
+    sarif = "sarif"
+    cnil_pia = "cnil-pia"
 
 
 class View(StrEnum):
