@@ -130,13 +130,13 @@ def _law(finding: Mapping[str, Any], report: Mapping[str, Any]) -> Iterator[Line
     if finding["special_from"]:
         yield f"   {_name(finding['special_from'])} makes such data of other data", ""
     for legal in finding["law"]:
-        condition = f": {shown(legal['condition'])}" if legal["condition"] else ""
+        condition = f": {_whole(legal['condition'])}" if legal["condition"] else ""
         yield f"   {shown(legal['provision'])}, {MAY[legal['verdict']]}{condition}", "magenta"
     if finding["article9"] == "unknown":
         yield "   the ontology does not say whether Article 9 GDPR applies to such data", "yellow"
     if finding["article9"] == "no":
         reasons = {category["name"]: category["reason"] for category in report["categories"]}
-        yield f"   not Article 9 GDPR by itself: {shown(reasons.get(finding['category'], ''))}", "dim"
+        yield f"   not Article 9 GDPR by itself: {_whole(reasons.get(finding['category'], ''))}", "dim"
 
 
 def _review(report: Mapping[str, Any], *, verbose: bool) -> Iterator[Line]:
@@ -212,6 +212,11 @@ def _count(number: int, thing: str) -> str:
 
 def _key(element: Mapping[str, Any]) -> tuple[str, ...]:
     return (element["robot"], element["kind"], element["name"], element.get("leg", ""))
+
+
+def _whole(text: str) -> str:
+    """A sentence of the ontology; anybody's ontology can be used, so it is made printable."""
+    return "".join(c if c.isprintable() else " " for c in text)
 
 
 def _name(element: Mapping[str, Any]) -> str:

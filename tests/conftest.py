@@ -135,6 +135,15 @@ def corpus() -> Path:
 
 
 @pytest.fixture(scope="session")
+def dpv() -> Path:
+    """The Turtle files of the Data Privacy Vocabulary 2.3; never copied into the project."""
+    folder = Path(os.environ.get("ROSPRIVACY_DPV", ROOT.parent / "shared" / "dpv"))
+    if not folder.is_dir():
+        pytest.skip(f"NO DPV at {folder}: set ROSPRIVACY_DPV; our terms were checked against ontology/dpv.ttl only")
+    return folder
+
+
+@pytest.fixture(scope="session")
 def examples() -> Path:
     """The systems that we wrote."""
     return ROOT / "examples"
