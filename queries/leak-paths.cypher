@@ -8,7 +8,7 @@
 // returns path: list of string, names in the order of the flow, source first
 // returns policy: list of string, file:line of the policy line behind each step
 // order: robot, category, source, leak
-MATCH (f:Finding {dismissed: false})-[a:ACROSS]->(n:Element)
+MATCH (f:Finding {kind: 'disclosure', dismissed: false})-[a:ACROSS]->(n:Element)
 WITH f, a, n ORDER BY a.step
 WITH f, collect(n.name) AS path,
      collect(CASE WHEN a.step = 0 THEN null WHEN a.file IS NULL THEN 'wildcard' ELSE a.file + ':' + a.line END) AS policy

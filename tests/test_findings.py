@@ -28,7 +28,8 @@ from rosprivacy.analysis.model import (
     Statement,
     Verdict,
 )
-from rosprivacy.analysis.outside import ADEQUATE, INSIDE, PARTLY, THIRD, Outside, by_kind
+from rosprivacy.analysis.outside import NOWHERE, Outside, by_kind
+from rosprivacy.ingest.countries import countries
 from tests.brute import Brute
 
 if TYPE_CHECKING:
@@ -93,10 +94,11 @@ def facts(draw: st.DrawFn, names: tuple[str, ...]) -> tuple[str, Outside]:
     duration = st.sampled_from([parse(text) for text in ("P10D", "P30D", "P31D", "P1M", "P6M", "P1Y")])
     about = st.sampled_from(("", *names))
     stated = st.dictionaries(about, duration, max_size=2).map(lambda found: tuple(sorted(found.items())))
-    country = draw(st.sampled_from([("", ""), ("DE", INSIDE), ("JP", ADEQUATE), ("US", PARTLY), ("CN", THIRD)]))
+    country = draw(st.sampled_from(["", "DE", "JP", "US", "CN"]))
     return draw(st.sampled_from(("storage", "storage", *NON_ROS))), Outside(
-        draw(stated), draw(stated), draw(st.sampled_from([None, None, True, False, parse("P30D")])), *country,
-        transfer=draw(st.sampled_from(["", "", "standard-clauses"])),
+        draw(stated), draw(stated), draw(st.sampled_from([None, None, True, False, parse("P30D")])),
+        transfer=draw(st.sampled_from(["", "", "standard-clauses"])), place=NOWHERE, encrypted=None,
+        **(countries().place(country) if country else {}),
     )  # fmt: skip
 
 
