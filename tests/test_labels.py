@@ -474,8 +474,22 @@ FULL: dict[str, Any] = {
     "topics": {"/t": "sensitive"},
     "services": {"*": {"never": ["Video"]}},
     "actions": {},
-    "flows": [{"from": "/a", "to": "/b", "only": ["Video"], "never": ["Voice"], "note": "x"}],
-}
+    "limits": {"Video": "P30D"},
+    "elements": {
+        "bucket": {
+            "kind": "storage", "retention": "P30D", "backups": "P7D", "encrypted": True, "country": "DE",
+            "operator": "x", "recipient": "processor", "transfer": "adequacy", "conduit": ["Video"], "note": "x",
+        },
+        "disk": {"kind": "storage", "retention": {"Video": "P1Y"}, "backups": False, "leak": ["Voice"]},
+        "ring": {"kind": "shared-memory", "between": ["/a", "/b"]},
+        "cloud": {"kind": "external-system", "sanitizer": {"Video": "drop"}},
+        "microphone": {"kind": "device", "source": ["Voice"]},
+    },
+    "flows": [
+        {"from": "/a", "to": "/b", "only": ["Video"], "never": ["Voice"], "note": "x"},
+        {"from": "/a", "to": "bucket"},
+    ],
+}  # fmt: skip
 OTHERS: tuple[Any, ...] = (
     None, 0, 1, 2, 1.5, True, "", "1", "x", "Video", "/x", "conduit", "mundane", "drop", [], {}, [None], [1], [[]],
     [{}], ["Video"], ["/x"], {"Video": None}, {"Video": ["/x"]}, {"Video": "drop"}, {"Video": []}, {"/x": None},
@@ -504,7 +518,7 @@ def changed(way: tuple[Any, ...], other: Any) -> Any:
 
 
 def test_the_schema_accepts_what_uses_every_key(tmp_path: Path) -> None:
-    assert len(told(read(tmp_path, json.dumps(FULL)))) == 16
+    assert len(told(read(tmp_path, json.dumps(FULL)))) == 20
     assert validator().is_valid(FULL)
 
 
@@ -525,7 +539,7 @@ def test_the_reader_and_the_schema_agree_on_a_wrong_type_anywhere(tmp_path: Path
             assert not validator().is_valid(document), f"valid, but not read: {shown}"
 
 
-@pytest.mark.parametrize("key", ["labels", "nodes", "channels", "topics", "services", "actions", "flows"])
+@pytest.mark.parametrize("key", ["labels", "nodes", "channels", "topics", "services", "actions", "limits", "flows"])
 def test_only_the_version_is_required(tmp_path: Path, key: str) -> None:
     document = {name: value for name, value in FULL.items() if name != key}
     assert validator().is_valid(document) == (key != "labels")
