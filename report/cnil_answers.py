@@ -196,8 +196,9 @@ def threats(known: Known) -> list[str]:
 
 def _threat(finding: Finding, known: Known) -> str:
     what = f"{_form(finding)}{finding.category} can get from {_name(finding.source)} to {_name(finding.leak)}"
+    why = harmless(f"; {finding.reason}") if finding.reason else ""
     decided = f", accepted: {known.accepted[finding.id]}" if finding.id in known.accepted else ""
-    return f"{harmless(what)} (path to assess {finding.id}{harmless(decided)})"
+    return f"{harmless(what)}{why} (path to assess {finding.id}{harmless(decided)})"
 
 
 def _line(what: str, said: Html) -> Html:
