@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
+from itertools import islice, pairwise
 from typing import TYPE_CHECKING
 
 from hypothesis import given
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from tests.brute import Brute, Data
 
-MOST_WAYS = 2000
+MOST_STEPS = 500  # per finding
 State = tuple[int, "Data"]
 
 
@@ -51,7 +51,7 @@ class Walks:
                 yield b
 
     def simple(self, source: int) -> Iterator[list[int]]:
-        """Ways that meet no state twice, as vertices."""
+        """Ways that meet no state twice, as vertices; empty ones for steps that come to no leak."""
         for data in self.brute.emitted(source):
             yield from self._on([source], {data}, {(source, data)})
 
@@ -59,8 +59,7 @@ class Walks:
         for data in leaving:
             for target in self.flows(way[-1], data):
                 if (target, data) not in met:
-                    if self.arrives(target, data):
-                        yield [*way, target]
+                    yield [*way, target] if self.arrives(target, data) else []
                     yield from self._on([*way, target], self.leaving(target, data), {*met, (target, data)})
 
 
@@ -75,7 +74,7 @@ def test_every_way_without_a_circle_is_in(system: System) -> None:
         got = ways(net, finding.category, sources=[source], leaks=[leak], past_leaks=finding.dismissed)
         flows = {system.edges[flow] for flow in got}
         walks = Walks(brute, finding.category, leak, past_leaks=finding.dismissed)
-        for _, way in zip(range(MOST_WAYS), walks.simple(source), strict=False):
+        for way in islice(walks.simple(source), MOST_STEPS):
             assert set(pairwise(way)) <= flows
         assert set(pairwise(number[element] for element in finding.witness)) <= flows
         assert not finding.steps or min(got.values()) == len(finding.steps)
