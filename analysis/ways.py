@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.search import Net
 
 State = tuple[int, int, int]  # what (below), vertex or flow, bit
-ARRIVED, SENT = 0, 1  # data arrives at a vertex, or starts there; it starts along one flow only
+ARRIVED, STARTED, SENT = 0, 1, 2  # data arrives at a vertex; starts there; starts there along one flow only
 BEGIN, END = (-1, 0, 0), (-2, 0, 0)
 NO_FLOW = -1
 Edge = tuple[State, State, int]  # before, after, flow or ``NO_FLOW``
@@ -89,7 +89,7 @@ class _States:
 
     def edges(self, starts: Collection[int], leaks: Collection[int] | None) -> list[Edge]:
         """Return what can be reached from some vertices, to END where it comes to a leak."""
-        edges: list[Edge] = list(self._begin(starts))
+        edges: list[Edge] = list(self._begin(starts, leaks))
         waiting = deque(dict.fromkeys(after for _, after, _ in edges))
         seen = set(waiting)
         while waiting:
@@ -103,13 +103,17 @@ class _States:
                     waiting.append(after)
         return edges
 
-    def _begin(self, starts: Collection[int]) -> Iterator[Edge]:
-        """What starts at a vertex and what comes back there are one state, so that circles are seen as such."""
+    def _begin(self, starts: Collection[int], leaks: Collection[int] | None) -> Iterator[Edge]:
+        """Where what comes back goes on again, or ends, it is one state with what starts: circles are seen as such."""
         found = self._net.spread
         for vertex in sorted(starts):
+            stop, keeps = self._stop.get(vertex, 0), found.keeps.get(vertex, found.all_bits)
+            alike = stop if leaks is None or vertex in leaks else 0
+            alike |= keeps & ~stop
             for bit in bits_of(found.emits.get(vertex, 0) & self._relevant):
-                self._starts.add((ARRIVED, vertex, bit))
-                yield BEGIN, (ARRIVED, vertex, bit), NO_FLOW
+                state = (ARRIVED if alike >> bit & 1 else STARTED, vertex, bit)
+                self._starts.add(state)
+                yield BEGIN, state, NO_FLOW
             for flow, _, passing in self._net.flows.get(vertex, ()):
                 for bit in bits_of(found.flow_emits.get(flow, 0) & self._relevant & passing):
                     yield BEGIN, (SENT, flow, bit), NO_FLOW
@@ -119,7 +123,8 @@ class _States:
         if what == SENT:
             yield where, (ARRIVED, self._net.spread.graph.flows[where].target, bit)
             return
-        leaving = self._leaving(where, bit) | (1 << bit if state in self._starts else 0)
+        leaving = self._leaving(where, bit) if what == ARRIVED else 0
+        leaving |= 1 << bit if state in self._starts else 0
         for flow, target, passing in self._net.flows.get(where, ()) if leaving else ():
             for moved in bits_of(leaving & passing):
                 yield flow, (ARRIVED, target, moved)
