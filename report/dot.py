@@ -8,7 +8,7 @@ from __future__ import annotations
 from html import escape
 from typing import TYPE_CHECKING
 
-from rosprivacy.report.looks import INK, LINE_LOOKS, SHAPES, TEXT, Entry, box_look, legend
+from rosprivacy.report.looks import INK, LINE_LOOKS, PALE, SHAPES, TEXT, Entry, box_look, legend
 from rosprivacy.report.wording import broken, printable, shortened
 
 if TYPE_CHECKING:
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from rosprivacy.report.picture import Box, Line, Picture
 
 FONT = "Helvetica,Arial,sans-serif"
+SIZE = 11  # of letters, in points
 LONGEST_NOTE = 110
 FOLDED_NAMES = 3
 COLUMNS = 3
@@ -33,7 +34,7 @@ def dot(picture: Picture, *, direction: str = "LR", legend: bool = True) -> str:
         Whether title, notes and legend stand below it.
     """
     caption = f"label=<{_caption(picture)}>, " if legend else ""
-    text = f'fontname="{FONT}", fontsize=11'
+    text = f'fontname="{FONT}", fontsize={SIZE}'
     place = f"labelloc=b, labeljust=l, rankdir={direction}, nodesep=0.22, ranksep=0.4, pad=0.1"
     rows = [
         "digraph rosprivacy {",
@@ -130,6 +131,7 @@ def _box(picture: Picture, box: Box) -> str:
         f'fillcolor="{look.colour}"',
         f"penwidth={look.width:g}",
         *(["peripheries=2"] if look.double else []),
+        *([f'fontcolor="{INK}"'] if look.colour == PALE else []),
         f"id={picture.keys[box.key]}",
         f"tooltip={quoted(hover(picture, box))}",
     ]
@@ -160,7 +162,7 @@ def _caption(picture: Picture) -> str:
     entries = legend(picture)
     for at in range(0, len(entries), COLUMNS):
         cells = [
-            f'<TD ALIGN="CENTER">{_sample(entry)}</TD><TD ALIGN="LEFT">{escape(entry.words)}</TD>'
+            f'<TD ALIGN="CENTER">{_sample(entry)}</TD><TD ALIGN="LEFT">{escape(entry.in_words)}</TD>'
             for entry in entries[at : at + COLUMNS]
         ]
         cells += ["<TD></TD><TD></TD>"] * (COLUMNS - len(cells))

@@ -121,11 +121,17 @@ PSEUDONYMISED = "dashed: only pseudonymised"
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """One line of a legend: how it looks, what it means."""
+    """One line of a legend: how it looks, what it means; a box if it has a shape, else a line."""
 
     look: Look
     words: str
     shape: Shape | None = None
+
+    @property
+    def in_words(self) -> str:
+        """With the shape in words too, for legends that cannot draw it."""
+        kind = self.look in KIND_LOOKS.values() or not self.look.words
+        return f"{self.words} ({self.shape.words})" if kind and self.shape and self.shape.words else self.words
 
 
 def box_look(view: str, look: str) -> Look:
@@ -141,16 +147,11 @@ def legend(picture: Picture) -> list[Entry]:
         used = {box.look for box in picture.boxes} | ({OPEN} if any(box.open for box in picture.boxes) else set())
         entries += [Entry(look, look.words, SHAPES["node"]) for name, look in ROLE_LOOKS.items() if name in used]
         blank = Look("", PALE)
-        entries += [Entry(blank, _kind_words(kind), SHAPES[kind]) for kind in kinds]
+        entries += [Entry(blank, KIND_LOOKS[kind].words, SHAPES[kind]) for kind in kinds]
     else:
-        entries += [Entry(KIND_LOOKS[kind], _kind_words(kind), SHAPES[kind]) for kind in kinds]
+        entries += [Entry(KIND_LOOKS[kind], KIND_LOOKS[kind].words, SHAPES[kind]) for kind in kinds]
     drawn = {line.look for line in picture.lines}
     entries += [Entry(look, look.words) for name, look in LINE_LOOKS.items() if name in drawn]
     if any(line.pseudonymised for line in picture.lines):
         entries.append(Entry(Look("", INK, style="dashed"), PSEUDONYMISED))
     return entries
-
-
-def _kind_words(kind: str) -> str:
-    words = SHAPES[kind].words
-    return f"{KIND_LOOKS[kind].words} ({words})" if words else KIND_LOOKS[kind].words

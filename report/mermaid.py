@@ -6,10 +6,11 @@ number, so that no name can end a label, begin a tag, or be read as a word of th
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.report.dot import label_lines, paired
-from rosprivacy.report.looks import INK, KIND_LOOKS, LINE_LOOKS, ROLE_LOOKS, SHAPES, TEXT, legend
+from rosprivacy.report.looks import INK, KIND_LOOKS, LINE_LOOKS, PSEUDONYMISED, ROLE_LOOKS, SHAPES, TEXT, legend
 from rosprivacy.report.picture import PRIVACY
 from rosprivacy.report.wording import printable, shortened
 
@@ -32,7 +33,7 @@ def mermaid(picture: Picture, *, direction: str = "LR") -> str:
     ]
     groups = sorted({box.group for box in picture.boxes if box.group})
     for number, group in enumerate(groups):
-        rows.append(f'  subgraph g{number}["{label(shortened(group, 60))}"]')
+        rows += [f'  subgraph g{number}["{label(shortened(group, 60))}"]', f"    direction {direction}"]
         rows += [f"    {_box(picture, box)}" for box in picture.boxes if box.group == group]
         rows.append("  end")
     rows += [f"  {_box(picture, box)}" for box in picture.boxes if not box.group]
@@ -94,6 +95,7 @@ def _legend(picture: Picture, drawn: int) -> Iterator[str]:
     if not entries:
         return
     yield 'subgraph legend["Legend"]'
+    yield "  direction LR"
     boxes = [entry for entry in entries if entry.shape is not None]
     looks = ROLE_LOOKS if picture.view == PRIVACY else KIND_LOOKS
     names = {look.words: name for name, look in looks.items()}
@@ -103,13 +105,20 @@ def _legend(picture: Picture, drawn: int) -> Iterator[str]:
         known = names.get(entry.look.words)
         style = f":::{_class(known)}" if known else ""
         yield f'  l{number}{before}"{label(entry.words)}"{after}{style}'
-    styles = []
-    for number, line in enumerate(sorted({line.look for line in picture.lines})):
-        sample = next(one for one in picture.lines if one.look == line)
-        yield f'  s{number}((" ")) {_arrow(sample, both=False)} t{number}["{label(LINE_LOOKS[line].words)}"]'
-        styles.append(f"linkStyle {drawn + number} {_stroke(sample)}")
+    samples = [
+        next(one for one in picture.lines if one.look == look) for look in sorted({a.look for a in picture.lines})
+    ]
+    rows = [(replace(sample, pseudonymised=False), LINE_LOOKS[sample.look].words) for sample in samples]
+    if any(line.pseudonymised for line in picture.lines):
+        rows.append((replace(samples[0], pseudonymised=True), PSEUDONYMISED))
+    for number, (sample, words) in enumerate(rows):
+        yield f'  s{number}((" ")) {_arrow(sample, both=False)} t{number}["{label(words)}"]'
     yield "end"
-    yield from styles
+    for number, (sample, _) in enumerate(rows):
+        yield f"linkStyle {drawn + number} {_stroke(sample)}"
+    for number, entry in enumerate(boxes):
+        if entry.look.style == "dashed":
+            yield f"class l{number} Unreviewed"
 
 
 def _classes(picture: Picture) -> Iterator[str]:

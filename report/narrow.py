@@ -143,7 +143,8 @@ def folded(picture: Picture) -> Picture:
             carries=tuple(sorted(carries)),
             places=tuple(sorted(places, key=lambda place: (place.file, place.line))),
         )
-    return replace(picture, boxes=boxes, lines=sorted_lines(lines.values()))
+    core = frozenset(first[key] for key in picture.core)
+    return replace(picture, boxes=boxes, lines=sorted_lines(lines.values()), core=core)
 
 
 def _covering(picture: Picture) -> Picture:
@@ -162,7 +163,7 @@ def _covering(picture: Picture) -> Picture:
 
 
 def without_loose_ends(picture: Picture) -> Picture:
-    """Return the picture without channels that only one node uses, or none; wildcards stay."""
+    """Return the picture without channels that no more than one node names; wildcards stay, though they cover some."""
     users: dict[Key, set[Key]] = defaultdict(set)
     channels = {box.key for box in picture.boxes if box.is_channel}
     for line in picture.lines:
@@ -175,7 +176,7 @@ def without_loose_ends(picture: Picture) -> Picture:
     names = sum(len(box.names) for box in picture.boxes if box.key in loose)
     return picture.kept(
         {box.key for box in picture.boxes} - loose,
-        f"Not drawn: {counted(names, 'channel')} that one node uses, or none",
+        f"Not drawn: {counted(names, 'channel')} that no more than one node names, wildcards apart",
     )
 
 

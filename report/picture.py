@@ -124,6 +124,8 @@ class Picture:
         What a reader has to know to read it: what was left out, what it rests on.
     ways
         The shortest ways to leaks in words, for readers who do not see the picture.
+    core
+        What lies on these ways: no smaller picture leaves it out.
     """
 
     view: str
@@ -132,6 +134,7 @@ class Picture:
     lines: tuple[Line, ...]
     notes: tuple[str, ...] = ()
     ways: tuple[str, ...] = ()
+    core: frozenset[Key] = frozenset()
     keys: Mapping[Key, str] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -141,7 +144,8 @@ class Picture:
         """Return the picture of some boxes and the lines between them."""
         boxes = tuple(box for box in self.boxes if box.key in keys)
         lines = tuple(line for line in self.lines if line.source in keys and line.target in keys)
-        return replace(self, boxes=boxes, lines=lines, notes=(*self.notes, *([note] if note else [])))
+        notes = (*self.notes, *([note] if note else []))
+        return replace(self, boxes=boxes, lines=lines, notes=notes, core=self.core & {box.key for box in boxes})
 
     def noted(self, *notes: str) -> Picture:
         """Return the picture with something more to know."""

@@ -6,17 +6,19 @@ lines and of text on the paper is that of the page's own text, so that it is see
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from lxml import etree
 
-from rosprivacy.report.dot import hover, line_hover, paired
-from rosprivacy.report.looks import INK
+from rosprivacy.report.dot import FONT, SIZE, hover, line_hover, paired
+from rosprivacy.report.looks import INK, PALE
 from rosprivacy.report.wording import printable, sentences
 
 if TYPE_CHECKING:
     from rosprivacy.report.picture import Picture
 
+_DECIMALS = re.compile(r"-?\d+\.\d+")
 NAMESPACE = "http://www.w3.org/2000/svg"
 TITLE, DESCRIPTION = f"{{{NAMESPACE}}}title", f"{{{NAMESPACE}}}desc"
 INKS = frozenset({"black", INK})
@@ -42,12 +44,29 @@ def inline(data: bytes, picture: Picture, prefix: str) -> str:
         for attribute in ("stroke", "fill"):
             if element.get(attribute) in INKS:
                 element.set(attribute, "currentColor")
+            elif element.get(attribute) == PALE:  # what nobody reviewed has the page's colour, so that its dashes show
+                element.set(attribute, "none")
         if element.tag == f"{{{NAMESPACE}}}text" and element.get("fill") is None:
             element.set("fill", "currentColor")
+        _lighten(element)
     width = root.attrib.pop("width")
     root.attrib.pop("height", None)
-    root.set("style", f"width:100%;max-width:{width};height:auto")
+    root.set("style", f"width:100%;max-width:{width};height:auto;font:{SIZE}px {FONT}")
     return etree.tostring(root, encoding="unicode")
+
+
+def _lighten(element: etree._Element) -> None:
+    """Take out what is said once for the whole picture, and what nobody sees: a page may hold hundreds."""
+    for attribute in ("d", "points", "x", "y", "cx", "cy", "rx", "ry"):
+        value = element.get(attribute)
+        if value is not None:
+            element.set(attribute, _DECIMALS.sub(lambda number: f"{float(number[0]):.1f}", value))
+    if element.tag == f"{{{NAMESPACE}}}text":
+        element.attrib.pop("font-family", None)
+        if float(element.get("font-size", "0")) == SIZE:
+            element.attrib.pop("font-size")
+        if "  " not in (element.text or ""):
+            element.attrib.pop("{http://www.w3.org/XML/1998/namespace}space", None)
 
 
 def alt_text(picture: Picture) -> str:

@@ -167,37 +167,56 @@ def privacy_view(analysis: Analysis) -> Picture:
     title = f"Where {what} can go ({analysis.graph.view}): {VERDICTS[analysis.verdict]}"
     notes = (f"{findings}, {open_count} not reviewed", *reached.left_out())
     shown = tuple(in_words(finding) for finding in open_findings)
-    return Picture(PRIVACY, title, sorted_boxes(boxes.values()), lines.made(), notes, shown)
+    core = _core(open_findings)
+    return Picture(PRIVACY, title, sorted_boxes(boxes.values()), lines.made(), notes, shown, core)
+
+
+class FindingViews:
+    """Pictures of findings; what they share is made once.
+
+    Notes
+    -----
+    O(flows) to begin with, and per finding what ``ways`` takes.
+    """
+
+    def __init__(self, analysis: Analysis) -> None:
+        self._analysis = analysis
+        self._net = Net.of(analysis.spread)
+        self._number = {element: vertex for vertex, element in enumerate(analysis.graph.elements)}
+        self._reached: dict[str, Reached] = {}
+
+    def of(self, finding: Finding) -> Picture:
+        """Return the ways of one finding, from its source to its leak: the shortest, and the longer ones.
+
+        A dismissed one shows its ways through other leaks. What else the data reaches is in the privacy view.
+        """
+        category, graph = finding.category, self._analysis.graph
+        reached = self._reached.setdefault(category, Reached(self._analysis, {category}))
+        source, leak = self._number[finding.source], self._number[finding.leak]
+        lengths = {}
+        if finding.steps:
+            lengths = ways(self._net, category, sources=[source], leaks=[leak], past_leaks=finding.dismissed)
+        keys = {element.identity for element in finding.witness}
+        for index in lengths:
+            keys |= set(_ends(self._analysis, graph.flows[index]))
+        boxes = {box.key: box for box in reached.boxes(keys)}
+        lines = _data_lines(reached, boxes, lengths, lengths, _pairs([finding]))
+        form = "pseudonymised " if finding.pseudonymised else ""
+        ends = f"{shortened(finding.source.name, 60)} to {shortened(finding.leak.name, 60)}"
+        title = f"How {form}{category} can get from {ends} ({graph.view})"
+        notes = [f"Finding {finding.id}"]
+        if finding.dismissed:
+            through = listed((element.name for element in finding.through), longest=60)
+            notes.append(f"Only through {through}, which has a finding of its own")
+        if finding.disjoint_paths > 1:
+            notes.append(f"{finding.disjoint_paths} ways share no flow")
+        ordered = sorted_boxes(boxes.values())
+        return Picture(PRIVACY, title, ordered, lines.made(), tuple(notes), (in_words(finding),), _core([finding]))
 
 
 def finding_view(analysis: Analysis, finding: Finding) -> Picture:
-    """Return the ways of one finding, from its source to its leak: the shortest, and the longer ones.
-
-    A dismissed one shows its ways through other leaks. What else the data reaches is in the privacy view.
-    """
-    reached = Reached(analysis, {finding.category})
-    graph = analysis.graph
-    number = {element: vertex for vertex, element in enumerate(graph.elements)}
-    source, leak = number[finding.source], number[finding.leak]
-    net, past = Net.of(analysis.spread), finding.dismissed
-    lengths = {}
-    if finding.steps:
-        lengths = ways(net, finding.category, sources=[source], leaks=[leak], past_leaks=past)
-    keys = {element.identity for element in finding.witness}
-    for index in lengths:
-        keys |= set(_ends(analysis, graph.flows[index]))
-    boxes = {box.key: box for box in reached.boxes(keys)}
-    lines = _data_lines(reached, boxes, lengths, lengths, _pairs([finding]))
-    form = "pseudonymised " if finding.pseudonymised else ""
-    ends = f"{shortened(finding.source.name, 60)} to {shortened(finding.leak.name, 60)}"
-    title = f"How {form}{finding.category} can get from {ends} ({graph.view})"
-    notes = [f"Finding {finding.id}"]
-    if past:
-        through = listed((element.name for element in finding.through), longest=60)
-        notes.append(f"Only through {through}, which has a finding of its own")
-    if finding.disjoint_paths > 1:
-        notes.append(f"{finding.disjoint_paths} ways share no flow")
-    return Picture(PRIVACY, title, sorted_boxes(boxes.values()), lines.made(), tuple(notes), (in_words(finding),))
+    """Return the ways of one finding, see ``FindingViews``."""
+    return FindingViews(analysis).of(finding)
 
 
 def bounded(picture: Picture, most: int) -> Picture:
@@ -211,12 +230,15 @@ def bounded(picture: Picture, most: int) -> Picture:
     what = "the shortest ways"
     for length in sorted({line.length for line in picture.lines if line.length}):
         more = [line for line in picture.lines if 0 < line.length <= length or line.look == SHORTEST]
-        if len(_joined(more)) > most:
+        if len(_joined(more) | picture.core) > most:
             break
-        lines, what = more, f"ways of up to {counted(length, 'step')}"
-    kept = _joined(lines) or {box.key for box in picture.boxes[:most]}
-    left = counted(len(picture.boxes) - len(kept), "element")
-    return replace(picture.kept(kept, f"Not drawn: {left} beside the {what}"), lines=tuple(lines))
+        lines, what = more, f"the ways of up to {counted(length, 'step')}"
+    kept = _joined(lines) | picture.core
+    left = len(picture.boxes) - len(kept)
+    if not left and len(lines) == len(picture.lines):
+        return picture
+    note = f"Not drawn: {counted(left, 'element')} beside {what}" if left else f"Not drawn: what is beside {what}"
+    return replace(picture.kept(kept, note), lines=tuple(lines))
 
 
 def _joined(lines: Iterable[Line]) -> set[Key]:
@@ -226,6 +248,10 @@ def _joined(lines: Iterable[Line]) -> set[Key]:
 def _pairs(findings: Iterable[Finding]) -> set[tuple[Key, Key]]:
     """The steps of the shortest ways."""
     return {(step.source.identity, step.target.identity) for finding in findings for step in finding.steps}
+
+
+def _core(findings: Iterable[Finding]) -> frozenset[Key]:
+    return frozenset(element.identity for finding in findings for element in finding.witness)
 
 
 def _data_lines(

@@ -27,7 +27,7 @@ def emit(text: str, output: Path | None, others: Mapping[Path, str] | None = Non
 
 
 def emit_bytes(data: bytes, output: Path | None) -> None:
-    """Write what is no text of the terminal (a picture, or UTF-8 whatever the terminal) to a file or standard output."""
+    """Write what is not text in the terminal's own encoding to a file or to standard output."""
     if not output:
         _print(data)
         return

@@ -106,7 +106,7 @@ def graph(
     ] = None,
     fold: Annotated[bool, typer.Option("--fold", help="Draw channels with the same ends as one.")] = False,
     loose_ends: Annotated[
-        bool, typer.Option("--loose-ends/--no-loose-ends", help="Draw channels that only one node uses.")
+        bool, typer.Option("--loose-ends/--no-loose-ends", help="Draw channels that only one node names.")
     ] = True,
     cluster: Annotated[Cluster, typer.Option(help="Draw together what belongs together.")] = Cluster.none,
     direction: Annotated[Direction, typer.Option(help="Where data goes on the paper.")] = Direction.right,
