@@ -82,7 +82,7 @@ def _described(data: bytes, picture: Picture, prefix: str) -> etree._Element:
     root = etree.fromstring(data, parser)
     tips = {picture.keys[box.key]: hover(picture, box) for box in picture.boxes}
     tips |= {f"e{number}": line_hover(line) for number, (line, _) in enumerate(paired(picture))}
-    for group in root.iter(f"{{{NAMESPACE}}}g"):
+    for group in list(root.iter(f"{{{NAMESPACE}}}g")):
         _unlink(group)
         title = group.find(TITLE)
         if title is None:
