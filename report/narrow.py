@@ -101,6 +101,9 @@ def within(picture: Picture, starts: Collection[Key], steps: int) -> set[Key]:
     for _ in range(steps):
         level = {there for here in level for there in beside[here]} - kept
         kept = kept | level
+    channels = {box.key: box.pattern for box in picture.boxes if box.is_channel}
+    for key in [key for key in kept if channels.get(key)]:  # a wildcard says nothing without those who use it
+        kept = kept | {there for there in beside[key] if there not in channels}
     return kept
 
 
@@ -117,10 +120,12 @@ def _nearest(name: str, names: Iterable[str]) -> str:
 def folded(picture: Picture) -> Picture:
     """Return the picture with channels of one kind that have the same ends, lines and role drawn as one box.
 
-    Every name is kept; the box names the first ones and how many more there are. In the ROS graph view a wildcard says
-    how many names it covers, in place of a line to each.
+    Every name is kept; the box names the first ones and how many more there are. No line goes from a wildcard to each
+    name that it covers: it says how many there are.
     """
-    picture = _covering(picture)
+    lines_kept = tuple(line for line in picture.lines if line.look != MATCHES)
+    if len(lines_kept) < len(picture.lines):
+        picture = replace(picture, lines=lines_kept).noted("Not drawn: lines from wildcards to what they cover")
     joins: dict[Key, set[tuple[object, ...]]] = defaultdict(set)
     for line in picture.lines:
         joins[line.source].add(("to", line.target, line.look, line.pseudonymised, line.length, line.roles))
@@ -145,21 +150,6 @@ def folded(picture: Picture) -> Picture:
         )
     core = frozenset(first[key] for key in picture.core)
     return replace(picture, boxes=boxes, lines=sorted_lines(lines.values()), core=core)
-
-
-def _covering(picture: Picture) -> Picture:
-    covered: dict[Key, set[Key]] = defaultdict(set)
-    for line in picture.lines:
-        if line.look == MATCHES:
-            covered[line.source].add(line.target)
-            covered[line.target].add(line.source)
-    boxes = tuple(
-        replace(box, words=(*box.words, f"covers {counted(len(covered[box.key]), 'name')}"))
-        if box.pattern and covered[box.key]
-        else box
-        for box in picture.boxes
-    )
-    return replace(picture, boxes=boxes, lines=tuple(line for line in picture.lines if line.look != MATCHES))
 
 
 def without_loose_ends(picture: Picture) -> Picture:

@@ -49,14 +49,23 @@ def ros_view(analysis: Analysis, denials: Iterable[Grant] = (), *, standard: boo
     graph = analysis.graph
     hidden = set() if standard else {graph.elements[vertex].identity for vertex in analysis.spread.standard}
     boxes = {e.identity: Box.of(e, e.kind) for e in graph.elements if e.identity not in hidden}
+    covered: dict[Key, set[Key]] = defaultdict(set)
     lines = _Lines(boxes)
     for flow in graph.flows:
+        if flow.role == "matches":
+            one, other = _ends(analysis, flow)
+            covered[one].add(other)
+            covered[other].add(one)
         lines.add(*_ends(analysis, flow), MATCHES if flow.role == "matches" else ALLOWED, flow.role, flow.grants)
     for flow in graph.denied:
         lines.add(*_ends(analysis, flow), DENIED, flow.role, flow.denials)
     for grant in denials:
         if not grant.allow:
             _deny(lines, grant, graph.elements[0].robot if graph.elements else "")
+    for key in boxes.keys() & covered.keys():
+        if boxes[key].pattern:
+            words = f"covers {counted(len(covered[key] - {key}), 'name')}"
+            boxes[key] = replace(boxes[key], words=(words,))
     title = f"ROS graph ({graph.view}): {_inventory(boxes)}"
     notes = _left_out(hidden)
     return Picture(ROS, title, sorted_boxes(boxes.values()), lines.made(), notes)

@@ -308,3 +308,15 @@ def test_a_picture_without_graphviz_needs_no_graphviz() -> None:
         )
         assert done.stdout.startswith(start)
     assert rosprivacy.__version__
+
+
+def test_the_pictures_of_the_documentation_are_shown_there_and_can_be_read_on_a_page() -> None:
+    """Letters of 11 points on a picture of 1,100 are 9 dots high on a page of 900."""
+    page = (ROOT / "docs" / "views.md").read_text("utf-8")
+    files = sorted((ROOT / "docs" / "pictures").glob("*.svg"))
+    assert files
+    for file in files:
+        assert f"](pictures/{file.name})" in page
+        root = check_svg(file.read_bytes())
+        if not file.stem.endswith("-all"):
+            assert int(str(root.get("width")).removesuffix("pt")) <= 1100, file.name

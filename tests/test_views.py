@@ -191,6 +191,7 @@ def test_a_folded_wildcard_says_how_much_it_covers() -> None:
     box = next(box for box in picture.boxes if box.names == ("/camera/*",))
     assert box.words == ("covers 1 name",)
     assert not [line for line in picture.lines if line.look == "matches"]
+    assert picture.notes[-1] == "Not drawn: lines from wildcards to what they cover"
 
 
 def test_loose_ends_are_left_out_and_counted_but_never_a_wildcard() -> None:
@@ -204,6 +205,11 @@ def test_a_neighbourhood_is_what_is_within_some_lines() -> None:
     picture = narrow.around(ros(factory(2)), ["/navigator"], 1)
     assert names_of(picture.boxes) == {"/navigator", "/robot_video", "/new_pose"}
     assert picture.notes[-1] == "Drawn: within 1 step of /navigator; 3 of 11 elements"
+
+
+def test_a_wildcard_near_by_brings_those_who_use_it() -> None:
+    picture = narrow.around(ros(care_home()), ["/blur"], 2)
+    assert {"/camera/*", "/recorder"} <= names_of(picture.boxes)
 
 
 def test_names_that_nothing_has_are_errors_with_the_nearest() -> None:
