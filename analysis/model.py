@@ -202,6 +202,10 @@ class FlowGraph:
     view: str = "declared"
 
 
+ARTICLE_9 = "GDPR Art. 9(1)"
+ARTICLE_9_VERDICTS = ("always", "conditional", "may-reveal", "no", "unknown")
+
+
 @dataclass(frozen=True, slots=True)
 class Legal:
     """That data of a category can be what a provision speaks of.
@@ -216,6 +220,12 @@ class Legal:
         ``always``, ``conditional`` or ``may-reveal``.
     condition
         When, where it is not always.
+    sources
+        Names of the provisions and guidelines that the verdict rests on, sorted.
+    stated_of
+        Name of the category that the ontology says it of: this one, a broader one, or narrower ones.
+    translations
+        Language -> ``meaning`` and ``condition`` in it.
     """
 
     iri: str
@@ -224,6 +234,18 @@ class Legal:
     as_of: str
     verdict: str
     condition: str = ""
+    sources: tuple[str, ...] = ()
+    stated_of: str = ""
+    translations: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+
+    @property
+    def special(self) -> bool:
+        """Whether it is Article 9(1) GDPR."""
+        return self.name == ARTICLE_9 or self.name.startswith(f"{ARTICLE_9} ")
+
+    def text(self, what: str, language: str) -> str:
+        """Return its ``meaning`` or ``condition`` in a language, in English if there is no translation."""
+        return self.translations.get(language, {}).get(what) or str(getattr(self, what))
 
 
 @dataclass(frozen=True, slots=True)
@@ -245,9 +267,23 @@ class Category:
     broader
         Names of the direct broader categories (``skos:broader``), sorted.
     synonyms
-        Other names that find it, sorted.
+        Other names that find it, in any language, sorted.
     law
-        Provisions that it falls under itself, sorted; those of broader categories hold too.
+        Provisions that it falls under, sorted by name.
+    reason
+        Why it does not fall under Article 9(1), where the ontology says so.
+    stated_of
+        Names of the categories that ``law`` and ``reason`` are stated of; empty as read from the ontology.
+    data_types
+        How it is represented: image, audio, position, …, sorted.
+    gdpr
+        Name of the provision that defines its GDPR category.
+    same_as, within
+        IRIs of other vocabularies: the same concept, broader ones; sorted.
+    note
+        For readers of the ontology.
+    translations
+        Language -> ``title``, ``definition`` and ``reason`` in it.
     """
 
     name: str
@@ -258,6 +294,25 @@ class Category:
     broader: tuple[str, ...] = ()
     synonyms: tuple[str, ...] = ()
     law: tuple[Legal, ...] = ()
+    reason: str = ""
+    stated_of: tuple[str, ...] = ()
+    data_types: tuple[str, ...] = ()
+    gdpr: str = ""
+    same_as: tuple[str, ...] = ()
+    within: tuple[str, ...] = ()
+    note: str = ""
+    translations: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+
+    @property
+    def article9(self) -> str:
+        """The strongest verdict under Article 9(1) GDPR: one of ``ARTICLE_9_VERDICTS``."""
+        verdicts = {legal.verdict for legal in self.law if legal.special}
+        stated = "no" if self.reason else "unknown"
+        return next((verdict for verdict in ARTICLE_9_VERDICTS[:3] if verdict in verdicts), stated)
+
+    def text(self, what: str, language: str) -> str:
+        """Return its ``title``, ``definition`` or ``reason`` in a language, in English if there is no translation."""
+        return self.translations.get(language, {}).get(what) or str(getattr(self, what))
 
 
 class Method(StrEnum):

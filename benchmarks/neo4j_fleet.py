@@ -39,7 +39,10 @@ VOCABULARY = Vocabulary.of(
         Category("PersonalData", "urn:bench:PersonalData", "PersonalData", "all", "all"),
         Category("Biometric", "urn:bench:Biometric", "Biometric", "some", "some", ("PersonalData",), law=LAW),
         Category("Location", "urn:bench:Location", "Location", "some", "some", ("PersonalData",)),
-        *(Category(n, f"urn:bench:{n}", n, n, n, (BROADER[i % 3],)) for i, n in enumerate(NAMES)),
+        *(
+            Category(n, f"urn:bench:{n}", n, n, n, (BROADER[i % 3],), data_types=(("video", "audio")[i % 2],))
+            for i, n in enumerate(NAMES)
+        ),
     ]
 )
 

@@ -351,9 +351,11 @@ class _Reader:
         """The category's name; rule S11: one that is not there is an error with the nearest."""
         category = self.vocabulary.find(written)
         if category is None:
-            nearest = ", ".join(self.vocabulary.nearest(written))
-            self.problem(line, f"unknown category {shown(written)!r}", f"did you mean one of: {nearest}?")
+            self.problem(line, f"unknown category {shown(written)!r}", self.vocabulary.hint(written))
             return ""
+        if new := self.vocabulary.respelt_as(written):
+            message = f"{shown(written)} is a former spelling; DPV spells it {new}"
+            self.diagnostics.append(Diagnostic(Place(self.file, line), Severity.NOTICE, message))
         return category.name
 
     def _name(self, value: Value) -> str:

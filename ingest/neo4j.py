@@ -155,7 +155,15 @@ def _write_vocabulary(transaction: ManagedTransaction, vocabulary: Vocabulary) -
     rows = [
         {
             "id": c.iri,
-            "properties": {"name": c.name, "label": c.label, "title": c.title, "definition": c.definition},
+            "properties": {
+                "name": c.name,
+                "label": c.label,
+                "title": c.title,
+                "definition": c.definition,
+                "article9": c.article9,
+                "data_types": list(c.data_types),
+                "gdpr": c.gdpr or None,
+            },
         }
         for c in categories.values()
     ]
@@ -174,7 +182,12 @@ def _write_vocabulary(transaction: ManagedTransaction, vocabulary: Vocabulary) -
         {
             "source": iri,
             "target": legal.iri,
-            "properties": {"verdict": legal.verdict, "condition": legal.condition or None},
+            "properties": {
+                "verdict": legal.verdict,
+                "condition": legal.condition or None,
+                "stated_of": legal.stated_of,
+                "sources": list(legal.sources),
+            },
         }
         for iri, legal in law
     ]

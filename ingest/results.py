@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import LabelError
 from rosprivacy.analysis.findings import finding_id
+from rosprivacy.analysis.legal import turned_special
 from rosprivacy.analysis.origins import origins
 from rosprivacy.analysis.roles import facts
 
@@ -207,6 +208,7 @@ def finding_rows(
             "pseudonymised": finding.pseudonymised,
             "dismissed": finding.dismissed,
             "disjoint_paths": finding.disjoint_paths,
+            "special_from": turned.name if (turned := turned_special(finding, vocabulary.categories)) else None,
         }
         rows.append(
             {

@@ -145,6 +145,9 @@ CATEGORY = NodeKind(
         Property("label", STRING, "stem of the labels of elements"),
         Property("title", STRING, "in English"),
         Property("definition", STRING, "one sentence"),
+        Property("article9", STRING, "strongest verdict under Art. 9(1): always, conditional, may-reveal, no, unknown"),
+        Property("data_types", STRINGS, "how it is represented, such as video"),
+        Property("gdpr", STRING, "short name of the provision that defines its GDPR category"),
     ),
 )
 PROVISION = NodeKind(
@@ -173,6 +176,7 @@ FINDING = NodeKind(
         Property("pseudonymised", BOOLEAN, "it arrives in pseudonymised form only"),
         Property("dismissed", BOOLEAN, "every way goes through another leak of the category"),
         Property("disjoint_paths", INTEGER, "ways that share no flow"),
+        Property("special_from", STRING, "element that makes a special category of other data; absent if none does"),
     ),
 )
 NODES = (ELEMENT, ROBOT, ENCLAVE, CATEGORY, PROVISION, FINDING)
@@ -264,6 +268,8 @@ FALLS_UNDER = RelationshipKind(
     (
         Property("verdict", STRING, "always, conditional or may-reveal"),
         Property("condition", STRING, "when, where it is not always"),
+        Property("stated_of", STRING, "category, or broader or narrower ones, that the ontology says it of"),
+        Property("sources", STRINGS, "what the verdict rests on"),
     ),
 )
 ACROSS = RelationshipKind(

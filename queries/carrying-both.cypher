@@ -1,9 +1,9 @@
 // name: carrying-both
 // kind: table
 // description: Which elements do two kinds of data both get to, such as voice and location?
-// param first: string, a category's name; narrower ones count too
-// param second: string, another one
-// param robot: string, only this robot; all of them if it is empty, default ""
+// param first: category, a category's name; narrower ones count too
+// param second: category, another one
+// param robot: robot, only this robot; all of them if it is empty, default ""
 // returns robot: string, name of the robot
 // returns kind: string, kind of the element
 // returns element: string, name of the element

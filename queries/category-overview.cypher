@@ -1,7 +1,7 @@
 // name: category-overview
 // kind: count
 // description: For each kind of data that comes in, how many sources, sanitizers, leaks, findings and open elements?
-// param robot: string, only this robot; all of them if it is empty, default ""
+// param robot: robot, only this robot; all of them if it is empty, default ""
 // returns category: string, name of the category; what is said of narrower ones counts too
 // returns sources: integer, elements that bring it in or make it of other data
 // returns sanitizers: integer, elements that clean it

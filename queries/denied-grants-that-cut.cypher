@@ -2,7 +2,7 @@
 // kind: path
 // description: Which DENY lines keep a kind of data from a leak that it would go on to, if they were not there?
 // param otherwise: boolean, also leaks that data of the kind gets to anyway; takes longer, default false
-// param robot: string, only this robot; all of them if it is empty, default ""
+// param robot: robot, only this robot; all of them if it is empty, default ""
 // returns robot: string, name of the robot
 // returns category: string, the kind of data that is at the start of the denied flow
 // returns start: string, name of the element that has it

@@ -1,7 +1,7 @@
 // name: derivations
 // kind: path
 // description: Which node makes one kind of data of another, from which source, along which way?
-// param robot: string, only this robot; all of them if it is empty, default ""
+// param robot: robot, only this robot; all of them if it is empty, default ""
 // returns robot: string, name of the robot
 // returns category: string, the kind of data that is made
 // returns of: list of string, the categories of which labels say that the node makes it

@@ -1,7 +1,7 @@
 // name: enclave-neighbours-of-sanitizers
 // kind: table
 // description: Which nodes share an enclave with a sanitizer, so that they could take its data and pass it on?
-// param robot: string, only this robot; all of them if it is empty, default ""
+// param robot: robot, only this robot; all of them if it is empty, default ""
 // returns robot: string, name of the robot
 // returns enclave: string, path of the enclave
 // returns sanitizer: string, name of the sanitizer

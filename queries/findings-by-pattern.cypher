@@ -1,7 +1,7 @@
 // name: findings-by-pattern
 // kind: table
 // description: Which findings, not counting dismissed ones, do how many robots have in common?
-// param category: string, only this category and narrower ones; all of them if it is empty, default ""
+// param category: category, only this category and narrower ones; all of them if it is empty, default ""
 // returns robots: integer, how many robots have it
 // returns category: string, the kind of data that arrives
 // returns source: string, where the data comes in

@@ -1,7 +1,7 @@
 // name: findings-by-robot
 // kind: count
 // description: How many findings does each robot have, by kind of data?
-// param robot: string, only this robot; all of them if it is empty, default ""
+// param robot: robot, only this robot; all of them if it is empty, default ""
 // returns robot: string, name of the robot
 // returns verdict: string, of the whole robot
 // returns category: string, the kind of data that arrives

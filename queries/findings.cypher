@@ -1,8 +1,8 @@
 // name: findings
 // kind: table
 // description: What was found: which kind of data gets from which source to which leak, on which robot?
-// param robot: string, only this robot; all of them if it is empty, default ""
-// param category: string, only this category and narrower ones; all of them if it is empty, default ""
+// param robot: robot, only this robot; all of them if it is empty, default ""
+// param category: category, only this category and narrower ones; all of them if it is empty, default ""
 // returns robot: string, name of the robot
 // returns verdict: string, of the whole robot: leak, undetermined or no-leak-found
 // returns kind: string, kind of finding, such as disclosure

@@ -1,8 +1,8 @@
 // name: labels-of-element
 // kind: table
 // description: What do labels say of one element, on which line, and which word counts more?
-// param element: string, name of a node, topic, service, action or other element
-// param robot: string, only this robot; all of them if it is empty, default ""
+// param element: element, name of a node, topic, service, action or other element
+// param robot: robot, only this robot; all of them if it is empty, default ""
 // returns robot: string, name of the robot
 // returns kind: string, kind of the element
 // returns tier: integer, 2 if added in the database, 1 if in your own files, 0 if it came with the program

@@ -1,7 +1,7 @@
 // name: leak-paths-of-category
 // kind: path
 // description: Which sources of a category, or of a narrower one, reach which leaks, and along which shortest way?
-// param category: string, a category's name, such as Biometric
+// param category: category, a category's name, such as Biometric
 // returns robot: string, name of the source's robot
 // returns category: string, the kind of data that arrives
 // returns source: string, where the data comes in

@@ -1,7 +1,7 @@
 // name: leaks-behind-leaks
 // kind: path
 // description: Which leaks does a kind of data reach only through another leak of it, so that they were dismissed?
-// param robot: string, only this robot; all of them if it is empty, default ""
+// param robot: robot, only this robot; all of them if it is empty, default ""
 // returns robot: string, name of the robot
 // returns category: string, the kind of data that arrives
 // returns source: string, where the data comes in

@@ -1,7 +1,7 @@
 // name: leaks-not-reached
 // kind: table
 // description: Which leaks does no data get to of the kind that their label names?
-// param robot: string, only this robot; all of them if it is empty, default ""
+// param robot: robot, only this robot; all of them if it is empty, default ""
 // returns robot: string, name of the robot
 // returns leak: string, name of the leak
 // returns category: string, the kind that the label names; no narrower or broader one gets there either

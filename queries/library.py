@@ -29,6 +29,9 @@ if TYPE_CHECKING:
 KINDS = ("path", "table", "count")
 KEYS = ("name", "kind", "description", "order")
 COLUMN_TYPES = {"string": str, "integer": int, "boolean": bool, "list of string": list}
+# Of parameters: a name that must be in the database, with where it stands there (rule S11: never silence).
+NAMES = {"category": ("DataCategory", "name"), "robot": ("Robot", "name"), "element": ("Element", "name")}
+TYPES = {**COLUMN_TYPES, **dict.fromkeys(NAMES, str)}
 LARGEST = 2**63 - 1  # integers of Cypher have 64 bits
 _LINE = re.compile(r"// (?:(name|kind|description|order)|(param|returns) ([a-z][a-z_0-9]*)): (.+)")
 _PARAMETER = re.compile(r"\$([A-Za-z_][A-Za-z_0-9]*)")
@@ -43,7 +46,7 @@ class Field:
     Attributes
     ----------
     type
-        One of ``COLUMN_TYPES``.
+        One of ``TYPES``; of a column, one of ``COLUMN_TYPES``.
     default
         Of a parameter that may be left out; None for one that may not.
     """
@@ -175,7 +178,7 @@ def parse(stem: str, text: str) -> Query:
             head[key] = rest
         else:
             try:
-                fields[kind].append(_field(name, rest))
+                fields[kind].append(_field(name, rest, TYPES if kind == "param" else COLUMN_TYPES))
             except ValueError as error:
                 problem(f"{line!r}: {error}")
     for key in KEYS:
@@ -193,17 +196,17 @@ def parse(stem: str, text: str) -> Query:
     return query
 
 
-def _field(name: str, rest: str) -> Field:
+def _field(name: str, rest: str, types: Mapping[str, type]) -> Field:
     type_, comma, meaning = rest.partition(", ")
-    if type_ not in COLUMN_TYPES or not comma:
-        raise ValueError(f"the type is one of {', '.join(COLUMN_TYPES)}; write 'TYPE, meaning'")
+    if type_ not in types or not comma:
+        raise ValueError(f"the type is one of {', '.join(types)}; write 'TYPE, meaning'")
     meaning, _, text = meaning.partition(", default ")
     if not text:
         return Field(name, type_, meaning)
     default: Any = None
     with suppress(ValueError):
         default = json.loads(text)
-    of_its_type = type(default) is COLUMN_TYPES[type_]
+    of_its_type = type(default) is types[type_]
     if not of_its_type:
         raise ValueError(f"the default is no {type_}; write it as JSON")
     return Field(name, type_, meaning, default)

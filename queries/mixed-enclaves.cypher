@@ -1,7 +1,7 @@
 // name: mixed-enclaves
 // kind: table
 // description: Which enclaves hold a source and a leak of one kind of data, or a sanitizer beside one of these?
-// param robot: string, only this robot; all of them if it is empty, default ""
+// param robot: robot, only this robot; all of them if it is empty, default ""
 // returns robot: string, name of the robot
 // returns enclave: string, path of the enclave
 // returns category: string, a kind of data that begins at one of its nodes, or gets to it

@@ -1,7 +1,7 @@
 // name: open-elements
 // kind: table
 // description: Which elements does personal data get to that no label covers, those on the most leak paths first?
-// param robot: string, only this robot; all of them if it is empty, default ""
+// param robot: robot, only this robot; all of them if it is empty, default ""
 // returns findings: integer, how many findings have it on their shortest way, without dismissed ones
 // returns frontier: boolean, whether data gets to it before any other open node
 // returns distance: integer, flows from the nearest source

@@ -1,10 +1,10 @@
 // name: path-between
 // kind: path
 // description: Is there a way from one element to another along what the policies allow, whatever goes along it?
-// param from: string, name of the element where it starts
-// param to: string, name of the element where it ends
+// param from: element, name of the element where it starts
+// param to: element, name of the element where it ends
 // param mundane: boolean, also through channels that a label calls mundane, such as /parameter_events, default false
-// param robot: string, only this robot; all of them if it is empty, default ""
+// param robot: robot, only this robot; all of them if it is empty, default ""
 // returns robot: string, name of the robot of the start
 // returns steps: integer, flows on a shortest way
 // returns path: list of string, names in the order of the flow

@@ -1,7 +1,7 @@
 // name: pseudonymised-at-leaks
 // kind: path
 // description: Which data reaches a leak in pseudonymised form only, which is personal data still, and who did that?
-// param robot: string, only this robot; all of them if it is empty, default ""
+// param robot: robot, only this robot; all of them if it is empty, default ""
 // returns robot: string, name of the robot
 // returns category: string, the kind of data that arrives
 // returns source: string, where the data comes in

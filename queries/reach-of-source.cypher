@@ -1,8 +1,8 @@
 // name: reach-of-source
 // kind: path
 // description: Where does the data of one source get to, and as which kind of data?
-// param source: string, name of the source, such as /camera
-// param robot: string, only this robot; all of them if it is empty, default ""
+// param source: element, name of the source, such as /camera
+// param robot: robot, only this robot; all of them if it is empty, default ""
 // returns robot: string, name of the source's robot
 // returns category: string, the kind of data that gets there, from the source or made of its data on the way
 // returns steps: integer, flows on the way there; 0 for the source itself

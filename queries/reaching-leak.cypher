@@ -1,8 +1,8 @@
 // name: reaching-leak
 // kind: path
 // description: Which sources reach one leak, with which kind of data?
-// param leak: string, name of the leak, such as /uplink
-// param robot: string, only this robot; all of them if it is empty, default ""
+// param leak: element, name of the leak, such as /uplink
+// param robot: robot, only this robot; all of them if it is empty, default ""
 // returns robot: string, name of the robot
 // returns category: string, the kind of data that arrives
 // returns source: string, where the data comes in

@@ -1,7 +1,7 @@
 // name: review-next
 // kind: table
 // description: Which open nodes should a person review next, as data gets to them before any other open node?
-// param robot: string, only this robot; all of them if it is empty, default ""
+// param robot: robot, only this robot; all of them if it is empty, default ""
 // returns distance: integer, flows from the nearest source
 // returns findings: integer, how many findings have it on their shortest way, without dismissed ones
 // returns kind: string, kind of the element

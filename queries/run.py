@@ -8,15 +8,19 @@ from __future__ import annotations
 import json
 from contextlib import contextmanager
 from dataclasses import dataclass
+from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import DatabaseError as OurDatabaseError
 from rosprivacy.analysis.errors import QueryError, shown
+from rosprivacy.queries.library import NAMES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from neo4j import Driver
+
+    from rosprivacy.queries.library import Query
 
 LIMIT = 1000
 TIMEOUT = 60.0  # seconds
@@ -83,6 +87,31 @@ def run(
                 return Rows(columns, tuple(rows), more=True)
             rows.append(tuple(plain(value) for value in record.values()))
         return Rows(columns, tuple(rows))
+
+
+def check_names(driver: Driver, query: Query, values: Mapping[str, Any]) -> None:
+    """See that the names that a question is asked about are in the database.
+
+    Raises
+    ------
+    QueryError
+        For each that is not, with the nearest that are: a mistyped name must not look like an answer (rule S11).
+    """
+    problems = []
+    for field in query.parameters:
+        asked = values[field.name]
+        if field.type not in NAMES or not asked:
+            continue
+        label, key = NAMES[field.type]
+        known = f"MATCH (n:{label} {{{key}: $name}}) RETURN n.{key} LIMIT 1"
+        if not run(driver, known, {"name": asked}).rows:
+            rows = run(driver, f"MATCH (n:{label}) RETURN DISTINCT n.{key}", limit=None).rows
+            names = sorted(str(name) for (name,) in rows)
+            close = get_close_matches(asked, names, n=3, cutoff=0.5)
+            hint = f"did you mean {' or '.join(map(shown, close))}?" if close else f"{len(names):,} others are there"
+            problems.append(f"{query.name}: no {field.type} {shown(asked)!r} is in the database; {hint}")
+    if problems:
+        raise QueryError("\n".join(problems))
 
 
 def plain(value: Any) -> Any:

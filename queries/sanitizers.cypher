@@ -1,7 +1,7 @@
 // name: sanitizers
 // kind: table
 // description: Which sanitizers clean which kind of data, how, and who else reads the same channels uncleaned?
-// param robot: string, only this robot; all of them if it is empty, default ""
+// param robot: robot, only this robot; all of them if it is empty, default ""
 // returns robot: string, name of the robot
 // returns sanitizer: string, name of the sanitizer
 // returns category: string, a kind of data that it cleans: one that its label names, or one that gets to it

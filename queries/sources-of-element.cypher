@@ -1,8 +1,8 @@
 // name: sources-of-element
 // kind: path
 // description: From which sources does the data come that gets to one element, and along which way?
-// param element: string, name of a node, topic, service, action or other element
-// param robot: string, only this robot; all of them if it is empty, default ""
+// param element: element, name of a node, topic, service, action or other element
+// param robot: robot, only this robot; all of them if it is empty, default ""
 // returns robot: string, name of the element's robot
 // returns kind: string, kind of the element
 // returns category: string, the kind of data that gets here

@@ -1,7 +1,7 @@
 // name: storages
 // kind: table
 // description: Which storages are there, and which kinds of data do they hold?
-// param robot: string, only this robot; all of them if it is empty, default ""
+// param robot: robot, only this robot; all of them if it is empty, default ""
 // returns robot: string, name of the robot
 // returns storage: string, name of the storage
 // returns holds: list of string, kinds of data that get there

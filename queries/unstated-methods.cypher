@@ -1,7 +1,7 @@
 // name: unstated-methods
 // kind: table
 // description: Which sanitizers have a label that does not say how they clean, so that what they pass on still counts?
-// param robot: string, only this robot; all of them if it is empty, default ""
+// param robot: robot, only this robot; all of them if it is empty, default ""
 // returns robot: string, name of the robot
 // returns sanitizer: string, name of the sanitizer
 // returns category: string, the kind of data that the label names

@@ -2,7 +2,7 @@
 // kind: table
 // description: Which policy lines allow something along which no personal data goes, candidates for a person to remove?
 // param mundane: boolean, also lines about channels that a label calls mundane, default false
-// param robot: string, only this robot; all of them if it is empty, default ""
+// param robot: robot, only this robot; all of them if it is empty, default ""
 // returns robot: string, name of the robot
 // returns enclave: string, enclave that the line is for
 // returns node: string, node that the line is for

@@ -8,11 +8,13 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.legal import turned_special
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from rosprivacy.analysis.hierarchy import Hierarchy
-    from rosprivacy.analysis.model import Analysis, Category, Diagnostic, Element, Finding, Grant, Step
+    from rosprivacy.analysis.model import Analysis, Category, Diagnostic, Element, Finding, Grant, Legal, Step
 
 FORMAT = "rosprivacy.analysis/1"
 
@@ -39,7 +41,7 @@ def document(
         "verdict": str(analysis.verdict),
         "view": graph.view,
         "categories": [_category(categories[name], hierarchy) for name in analysis.emitted],
-        "findings": [_finding(finding) for finding in analysis.findings],
+        "findings": [_finding(finding, categories) for finding in analysis.findings],
         "open": [
             {
                 "element": element_dict(question.element),
@@ -103,10 +105,50 @@ def element_dict(element: Element) -> dict[str, Any]:
 
 
 def _category(category: Category, hierarchy: Hierarchy) -> dict[str, Any]:
-    return {"name": category.name, "iri": category.iri, "broader": hierarchy.broader(category.name)}
+    return {
+        "name": category.name,
+        "iri": category.iri,
+        "broader": hierarchy.broader(category.name),
+        "title": category.title,
+        "definition": category.definition,
+        "data_types": list(category.data_types),
+        "gdpr": category.gdpr,
+        "article9": category.article9,
+        "reason": category.reason,
+        "law": [_legal(legal) for legal in category.law],
+    }
 
 
-def _finding(finding: Finding) -> dict[str, Any]:
+def law_of(finding: Finding, categories: Mapping[str, Category]) -> dict[str, Any]:
+    """Return what a person has to look up about a finding's data: no verdict on the system.
+
+    ``article9`` is the strongest of the verdicts under Article 9(1) GDPR, ``special_from`` the element that makes a
+    special category of data that were none.
+    """
+    category, turned = categories[finding.category], turned_special(finding, categories)
+    return {
+        "article9": category.article9,
+        "special_from": element_dict(turned) if turned else None,
+        "law": [
+            {"provision": legal.name, "verdict": legal.verdict, "condition": legal.condition} for legal in category.law
+        ],
+    }
+
+
+def _legal(legal: Legal) -> dict[str, Any]:
+    return {
+        "provision": legal.name,
+        "iri": legal.iri,
+        "meaning": legal.meaning,
+        "verdict": legal.verdict,
+        "condition": legal.condition,
+        "stated_of": legal.stated_of,
+        "sources": list(legal.sources),
+        "as_of": legal.as_of,
+    }
+
+
+def _finding(finding: Finding, categories: Mapping[str, Category]) -> dict[str, Any]:
     shown = {
         "id": finding.id,
         "kind": finding.kind,
@@ -119,6 +161,7 @@ def _finding(finding: Finding) -> dict[str, Any]:
         "disjoint_paths": finding.disjoint_paths,
         "through": [element_dict(element) for element in finding.through],
         "dismissed": finding.dismissed,
+        **law_of(finding, categories),
     }
     if finding.paths:
         shown["paths"] = [[element_dict(element) for element in path] for path in finding.paths]

@@ -27,6 +27,7 @@ VERBS = {
     "publish": "publishes", "subscribe": "is read by", "request": "request", "reply": "reply",
     "call": "call", "execute": "execute", "matches": "wildcard covers", "flow": "goes to",
 }  # fmt: skip
+MAY = {"always": "applies", "conditional": "can apply", "may-reveal": "may be revealed"}  # to the data, not the system
 SHOWN = 12  # open elements of a kind, without --verbose
 Line = tuple[str, str]  # text, style
 
@@ -85,6 +86,7 @@ def _findings(report: Mapping[str, Any]) -> Iterator[Line]:
             yield f"   only through {through}, which has a finding of its own", "dim"
         yield from _way(finding, roles, unreviewed)
         yield from _paths(finding)
+        yield from _law(finding, report)
 
 
 def _way(finding: Mapping[str, Any], roles: Mapping[Any, Any], unreviewed: Collection[Any]) -> Iterator[Line]:
@@ -121,6 +123,20 @@ def _paths(finding: Mapping[str, Any]) -> Iterator[Line]:
         yield "   way: " + " -> ".join(_name(element) for element in path), ""
     if finding.get("paths_bounded"):
         yield f"   … there are more ways; the bound is {len(finding['paths'])} (--max-paths)", "yellow"
+
+
+def _law(finding: Mapping[str, Any], report: Mapping[str, Any]) -> Iterator[Line]:
+    """What a person has to look up about the data that arrives; where it became what it is."""
+    if finding["special_from"]:
+        yield f"   {_name(finding['special_from'])} makes such data of other data", ""
+    for legal in finding["law"]:
+        condition = f": {_whole(legal['condition'])}" if legal["condition"] else ""
+        yield f"   {shown(legal['provision'])}, {MAY[legal['verdict']]}{condition}", "magenta"
+    if finding["article9"] == "unknown":
+        yield "   the ontology does not say whether Article 9 GDPR applies to such data", "yellow"
+    if finding["article9"] == "no":
+        reasons = {category["name"]: category["reason"] for category in report["categories"]}
+        yield f"   not Article 9 GDPR by itself: {_whole(reasons.get(finding['category'], ''))}", "dim"
 
 
 def _review(report: Mapping[str, Any], *, verbose: bool) -> Iterator[Line]:
@@ -167,6 +183,13 @@ def _assumed(report: Mapping[str, Any]) -> Iterator[Line]:
         yield "   no labels", ""
     if assumptions["categories_asked"] != "all":
         yield f"   only {', '.join(assumptions['categories_asked'])} and narrower categories", ""
+    if assumptions["data_types_asked"] != "all":
+        yield f"   only data that is {' or '.join(assumptions['data_types_asked'])}", ""
+    if assumptions["article9_only"]:
+        yield "   only what can fall under Article 9(1) GDPR, or of which that is not known", ""
+    for file in assumptions["ontologies"]:
+        yield f"   more categories of {shown(file['file'])} (sha256 {file['sha256'][:12]})", ""
+    yield f"   law as of {assumptions['law_as_of']}", ""
     for taken in assumptions["sanitizers_without_method"]:
         method = f"sanitizer {_name(taken['element'])} states no method for {taken['category']}"
         yield f"   {method}: taken as pseudonymise, the data is still personal", "yellow"
@@ -189,6 +212,11 @@ def _count(number: int, thing: str) -> str:
 
 def _key(element: Mapping[str, Any]) -> tuple[str, ...]:
     return (element["robot"], element["kind"], element["name"], element.get("leg", ""))
+
+
+def _whole(text: str) -> str:
+    """A sentence of the ontology; anybody's ontology can be used, so it is made printable."""
+    return "".join(c if c.isprintable() else " " for c in text)
 
 
 def _name(element: Mapping[str, Any]) -> str:

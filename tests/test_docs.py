@@ -18,12 +18,14 @@ import typer
 from rosprivacy.cli import app
 from rosprivacy.ingest.labels import read_labels
 from rosprivacy.ingest.schema import NODES, RELATIONSHIPS, Property
-from rosprivacy.ontology.vocabulary import load
+from rosprivacy.ontology.vocabulary import TOP, load
 from rosprivacy.queries.library import pack
+from rosprivacy.report import categories
 
 ROOT = Path(__file__).resolve().parent.parent
 COMMAND_LINE = ROOT / "docs" / "command-line.md"
 DATABASE = ROOT / "docs" / "database.md"
+CATEGORIES = ROOT / "docs" / "categories.md"
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md"]
 
 HEAD = """\
@@ -93,6 +95,12 @@ def database_page(text: str) -> str:
     return text
 
 
+def categories_page(text: str) -> str:
+    """The page with the tree as the program prints it."""
+    tree = f"```text\n{categories.tree(load(), TOP)}```"
+    return re.sub(r"```text\n.*?```", lambda _: tree, text, count=1, flags=re.DOTALL)
+
+
 def test_the_schema_and_the_query_tables_are_those_of_the_program() -> None:
     text = DATABASE.read_text("utf-8")
     assert text == database_page(text)
@@ -133,11 +141,17 @@ def test_the_readmes_first_finding_is_what_is_printed() -> None:
         assert line == "…" or line in done.stdout.splitlines(), line
 
 
-def test_the_categories_that_are_named_are_those_of_the_ontology() -> None:
-    text = (ROOT / "docs" / "labels.md").read_text("utf-8")
-    listed = re.search(r"Names come from the ontology \((.*?)\)", text)
-    assert listed
-    assert set(re.findall(r"`(\w+)`", listed[1])) == set(load().categories)
+def test_the_list_of_categories_is_that_of_the_ontology() -> None:
+    text = CATEGORIES.read_text("utf-8")
+    assert text == categories_page(text)
+
+
+@pytest.mark.parametrize("block", blocks(ROOT / "docs" / "categories.md", "turtle"))
+def test_the_ontologies_that_are_shown_are_read(block: str, tmp_path: Path) -> None:
+    file = tmp_path / "mine.ttl"
+    file.write_text(block, "utf-8")
+    found = load(tmp_path / "cache", [str(file)])
+    assert len(found.categories) > len(load().categories)
 
 
 def test_no_registry_is_named() -> None:
@@ -147,5 +161,6 @@ def test_no_registry_is_named() -> None:
 
 
 if __name__ == "__main__":
+    CATEGORIES.write_text(categories_page(CATEGORIES.read_text("utf-8")), "utf-8")
     COMMAND_LINE.write_text(command_line(), "utf-8")
     DATABASE.write_text(database_page(DATABASE.read_text("utf-8")), "utf-8")

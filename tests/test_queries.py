@@ -51,6 +51,9 @@ PARENTS = {
 }
 
 
+TYPES = {"Video": ("video",), "Voice": ("audio",), "FaceTemplate": ("template",), "Location": ("position",)}
+
+
 def under(name: str, verdict: str, condition: str = "") -> tuple[Legal, ...]:
     return (Legal(f"urn:test:{name}", name, name, "2026-01-01", verdict, condition),)
 
@@ -62,7 +65,8 @@ LAW = {
     "Video": under("GDPR Art. 90", "always"),
 }
 VOCABULARY = Vocabulary.of(
-    Category(name, f"urn:test:{name}", name, name, name, up, law=LAW.get(name, ())) for name, up in PARENTS.items()
+    Category(name, f"urn:test:{name}", name, name, name, up, law=LAW.get(name, ()), data_types=TYPES.get(name, ()))
+    for name, up in PARENTS.items()
 )
 
 

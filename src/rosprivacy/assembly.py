@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from neo4j import Driver
 
-    from rosprivacy.analysis.model import Analysis, Bound, FlowGraph, Policy
+    from rosprivacy.analysis.model import Analysis, Bound, Category, FlowGraph, Policy
     from rosprivacy.ingest.labels import Labels
     from rosprivacy.ingest.rows import RobotRows
     from rosprivacy.ontology.vocabulary import Vocabulary
@@ -47,6 +47,12 @@ class Settings:
         ``declared`` or ``enforced``, rule S6.
     categories
         Names; the answer is about these and narrower ones. Empty for all.
+    article9
+        Answer only for kinds that fall or may fall under Article 9(1) GDPR, or of which that is not known.
+    data_types
+        Answer only for kinds that are represented so, such as video. Empty for all.
+    ontologies
+        Users' own, beside the shipped one.
     category
         What the paper's six lists are about.
     standard_channels
@@ -62,6 +68,9 @@ class Settings:
     add: tuple[str, ...] = ()
     view: str = DECLARED
     categories: tuple[str, ...] = ()
+    article9: bool = False
+    data_types: tuple[str, ...] = ()
+    ontologies: tuple[str, ...] = ()
     category: str = TOP
     standard_channels: str | None = STANDARD
     paths: str = WITNESS
@@ -87,6 +96,14 @@ class Result:
         vocabulary = self.vocabulary
         return document(self.analysis, vocabulary.categories, vocabulary.hierarchy, self.diagnostics, self.assumptions)
 
+    def linked_data(self, form: str, **more: Any) -> str:
+        """Return the findings as RDF, in ``turtle`` or ``json-ld``; ``more`` as for ``rdf_graph``."""
+        from rosprivacy.report.rdf import rdf_graph  # noqa: PLC0415 - rdflib, only where it is used
+        from rosprivacy.report.serialise import SERIALISERS  # noqa: PLC0415
+
+        graph = rdf_graph(self.analysis, self.vocabulary, self.diagnostics, self.assumptions, **more)
+        return SERIALISERS[form](graph)
+
 
 def run(policies: tuple[str, ...], labels: tuple[str, ...], settings: Settings) -> Result:
     """Read everything, analyse it, and keep what the answer rests on.
@@ -96,8 +113,8 @@ def run(policies: tuple[str, ...], labels: tuple[str, ...], settings: Settings) 
     InputErrors
         With every problem of the input, one line each.
     """
-    vocabulary = load()
-    asked = _asked(vocabulary, settings.categories)
+    vocabulary = load(ontologies=settings.ontologies)
+    asked = _asked(vocabulary, settings)
     system, diagnostics = read_system(policies, settings)
     graph = build(system, settings.view)
     files = _read_labels(labels, vocabulary, settings)
@@ -105,7 +122,8 @@ def run(policies: tuple[str, ...], labels: tuple[str, ...], settings: Settings) 
     analysis = analyse(graph, bound, vocabulary.hierarchy, Options(asked, settings.paths, settings.max_paths))
     said = tuple(d for policy in system for d in policy.diagnostics) + diagnostics
     said += tuple(d for file in files for d in file.diagnostics)
-    return Result(analysis, bound, vocabulary, system, said, _assumptions(graph, system, files, analysis, settings))
+    rests_on = {**_own_assumptions(graph, settings, vocabulary), **_assumptions(system, files, analysis, settings)}
+    return Result(analysis, bound, vocabulary, system, said, rests_on)
 
 
 def run_stored(driver: Driver, settings: Settings) -> Result:
@@ -121,8 +139,8 @@ def run_stored(driver: Driver, settings: Settings) -> Result:
     from rosprivacy.ingest.stored import read_stored  # noqa: PLC0415 - only where there is a database
     from rosprivacy.ingest.writeback import write_back  # noqa: PLC0415
 
-    vocabulary = load()
-    asked = _asked(vocabulary, settings.categories)
+    vocabulary = load(ontologies=settings.ontologies)
+    asked = _asked(vocabulary, settings)
     stored = read_stored(driver, vocabulary)
     everything = Options(None, settings.paths, settings.max_paths)
     analysis = analyse(stored.graph, stored.bound, vocabulary.hierarchy, everything)
@@ -130,7 +148,8 @@ def run_stored(driver: Driver, settings: Settings) -> Result:
     if asked is not None:
         chosen = Options(asked, settings.paths, settings.max_paths)
         analysis = analyse(stored.graph, stored.bound, vocabulary.hierarchy, chosen)
-    said, assumptions = _remembered(stored.robots.values(), stored.graph, analysis, settings)
+    said, remembered = _remembered(stored.robots.values(), analysis)
+    assumptions = {**_own_assumptions(stored.graph, settings, vocabulary), **remembered}
     return Result(analysis, stored.bound, vocabulary, (), said, assumptions)
 
 
@@ -151,7 +170,7 @@ def _as_dict(diagnostic: Diagnostic) -> dict[str, Any]:
 
 
 def _remembered(
-    robots: Iterable[Mapping[str, Any]], graph: FlowGraph, analysis: Analysis, settings: Settings
+    robots: Iterable[Mapping[str, Any]], analysis: Analysis
 ) -> tuple[tuple[Diagnostic, ...], dict[str, Any]]:
     """What the robots were loaded with, put together (rule S12)."""
     loaded = [json.loads(robot["assumptions"]) for robot in robots if robot.get("assumptions")]
@@ -168,7 +187,6 @@ def _remembered(
         for d in json.loads(robot.get("diagnostics") or "[]")
     }
     assumptions = {
-        **_own_assumptions(graph, settings),
         **files,
         "standard_channels": {**taken[0], "taken": analysis.standard_channels} if taken else None,
         "database": {"robots": len(loaded)},
@@ -218,44 +236,62 @@ def _read_labels(labels: tuple[str, ...], vocabulary: Vocabulary, settings: Sett
     return files
 
 
-def _asked(vocabulary: Vocabulary, names: tuple[str, ...]) -> set[str] | None:
-    """The categories that the answer is about, narrower ones included."""
-    asked: set[str] = set()
+def _asked(vocabulary: Vocabulary, settings: Settings) -> set[str] | None:
+    """The categories that the answer is about, narrower ones included; None for all."""
+    if not (settings.categories or settings.article9 or settings.data_types):
+        return None
+    asked = set(vocabulary.categories)
     problems = []
-    for name in names:
-        category = vocabulary.find(name)
-        if category is None:
-            hint = f"did you mean one of: {', '.join(vocabulary.nearest(name))}?"
-            problems.append(OntologyError("--categories", 0, f"unknown category {shown(name)!r}", hint))
-        else:
-            asked |= vocabulary.with_narrower(category.name)
+    if settings.categories:
+        asked = set()
+        for name in settings.categories:
+            category = vocabulary.find(name)
+            if category is None:
+                what = f"unknown category {shown(name)!r}"
+                problems.append(OntologyError("--categories", 0, what, vocabulary.hint(name)))
+            else:
+                asked |= vocabulary.with_narrower(category.name)
+    known = sorted({kind for category in vocabulary.categories.values() for kind in category.data_types})
+    for kind in settings.data_types:
+        if kind not in known:
+            hint = f"it is one of: {', '.join(known)}"
+            problems.append(OntologyError("--data-type", 0, f"unknown data type {shown(kind)!r}", hint))
     if problems:
         raise InputErrors(problems)
-    return asked if names else None
+    return {name for name in asked if _chosen(vocabulary.categories[name], settings)}
+
+
+def _chosen(category: Category, settings: Settings) -> bool:
+    """Whether the filters keep a category; what is not known of it is kept, since silence would look like an answer."""
+    types = not settings.data_types or not category.data_types or set(category.data_types) & set(settings.data_types)
+    return bool(types) and (not settings.article9 or category.article9 != "no")
 
 
 def _assumptions(
-    graph: FlowGraph, system: tuple[Policy, ...], files: list[Labels], analysis: Analysis, settings: Settings
+    system: tuple[Policy, ...], files: list[Labels], analysis: Analysis, settings: Settings
 ) -> dict[str, Any]:
     """What the answer rests on (rule S12)."""
     sources = sorted({source for policy in system for source in policy.sources})
     hashes = [(file, {"file": file.file, "sha256": file.sha256}) for file in files]
     standard = [entry for file, entry in hashes if file.shipped and file.file == settings.standard_channels]
     return {
-        **_own_assumptions(graph, settings),
         "policies": [{"file": name, "sha256": digest} for name, digest in sources],
         "labels": [entry for _, entry in hashes if entry not in standard],
         "standard_channels": {**standard[0], "taken": analysis.standard_channels} if standard else None,
     }
 
 
-def _own_assumptions(graph: FlowGraph, settings: Settings) -> dict[str, Any]:
+def _own_assumptions(graph: FlowGraph, settings: Settings, vocabulary: Vocabulary) -> dict[str, Any]:
     return {
         "rosprivacy": rosprivacy.__version__,
         "view": graph.view,
+        "ontologies": [{"file": name, "sha256": digest} for name, digest in vocabulary.sources],
+        "law_as_of": vocabulary.law_as_of,
         "unlabelled_node": "conduit, not reviewed",
         "unlabelled_channel": "sensitive, not reviewed",
         "categories_asked": list(settings.categories) or "all",
+        "article9_only": settings.article9,
+        "data_types_asked": list(settings.data_types) or "all",
         "paths": settings.paths,
         "max_paths": settings.max_paths,
     }

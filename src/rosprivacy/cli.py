@@ -6,6 +6,7 @@ Exit codes: 0 no leak found, 1 leak, 2 bad input or usage, 3 database unreachabl
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -13,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 import rosprivacy
-from rosprivacy import cli_db, cli_graph, cli_views
+from rosprivacy import cli_categories, cli_db, cli_graph, cli_views
 from rosprivacy.analysis.errors import InputError, RosPrivacyError
 from rosprivacy.cli_options import (
     FailOn,
@@ -22,6 +23,7 @@ from rosprivacy.cli_options import (
     LabelFiles,
     MaxBytes,
     NoStandard,
+    Ontologies,
     Output,
     PathsShown,
     Policies,
@@ -49,6 +51,7 @@ app.command()(cli_graph.load)
 app.command()(cli_graph.unload)
 app.command()(cli_graph.query)
 app.command()(cli_views.graph)
+app.command()(cli_categories.categories)
 
 
 @app.callback(invoke_without_command=True)
@@ -89,6 +92,14 @@ def analyze(
             help="Answer for this category and narrower ones only; may be repeated.",
         ),
     ] = None,
+    article9: Annotated[
+        bool, typer.Option("--article9", help="Answer for what can fall under Article 9(1) GDPR only.")
+    ] = False,
+    data_type: Annotated[
+        list[str] | None,
+        typer.Option(metavar="TYPE", show_default=False, help="Answer for video, audio, … only; may be repeated."),
+    ] = None,
+    ontology: Ontologies = None,
     category: SixLists = "PersonalData",
     view: ViewChosen = View.declared,
     paths: Annotated[PathsShown, typer.Option(help="Ways to list for each finding.")] = PathsShown.witness,
@@ -108,6 +119,9 @@ def analyze(
         add=tuple(add or ()),
         view=view.value,
         categories=tuple(categories or ()),
+        article9=article9,
+        data_types=tuple(data_type or ()),
+        ontologies=tuple(ontology or ()),
         category=category,
         standard_channels=None if no_standard_channels else standard_channels,
         paths=paths.value,
@@ -197,6 +211,14 @@ def _report(result: Result, form: Format, *, colour: bool, quiet: bool, verbose:
 
     if form is Format.json:
         return as_text(result.document())
+    if form in (Format.turtle, Format.json_ld):
+        from rosprivacy.clock import source_date
+
+        return result.linked_data(form.value, when=source_date(os.environ))
+    if form in (Format.sarif, Format.cnil_pia):
+        from rosprivacy import formats
+
+        return as_text(formats.sarif_log(result) if form is Format.sarif else formats.pia_file(result))
     from io import StringIO
 
     from rich.console import Console

@@ -19,6 +19,7 @@ from rosprivacy.cli_options import (
     LabelFiles,
     MaxBytes,
     NoStandard,
+    Ontologies,
     Output,
     Policies,
     Server,
@@ -59,6 +60,7 @@ def load(
     labels: LabelFiles = None,
     robot: Annotated[str, typer.Option(metavar="NAME", help="What the robot is called in the database.")] = "robot",
     neo4j: Server = None,
+    ontology: Ontologies = None,
     category: SixLists = "PersonalData",
     view: ViewChosen = View.declared,
     standard_channels: Standard = "rosprivacy:standard",
@@ -74,6 +76,7 @@ def load(
         raise typer.BadParameter("name at least one policy: a file, a folder or a glob", param_hint="POLICY")
     settings = Settings(
         view=view.value,
+        ontologies=tuple(ontology or ()),
         category=category,
         standard_channels=None if no_standard_channels else standard_channels,
         include_root=str(include_root) if include_root else None,
@@ -139,11 +142,12 @@ def query(
 ) -> None:
     """Ask the database: one of the questions that come with the program, or Cypher of your own, which only reads."""
     from rosprivacy.queries.library import find, pack
-    from rosprivacy.queries.run import run
+    from rosprivacy.queries.run import check_names, run
 
     given = list(values or ())
     if (cypher is not None) + (file is not None) + (name is not None and "=" not in name) > 1:
         raise typer.BadParameter("name a question, or give --cypher, or --file")
+    asked = None
     if cypher is None and file is None:
         if name is None:
             emit(_listed(pack().values()), output)
@@ -157,6 +161,8 @@ def query(
         text = cypher if cypher is not None else _read(file)
         parameters = dict(_pairs([*([name] if name else []), *given]))
     with driver_of(neo4j) as driver:
+        if asked:
+            check_names(driver, asked, parameters)
         rows = run(driver, text, parameters, limit=limit, timeout=timeout)
     emit(_text(rows, format, wide=output is not None), output)
     if rows.more:

@@ -14,6 +14,10 @@ class Format(StrEnum):
 
     text = "text"
     json = "json"
+    turtle = "turtle"
+    json_ld = "json-ld"
+    sarif = "sarif"
+    cnil_pia = "cnil-pia"
 
 
 class View(StrEnum):
@@ -78,5 +82,14 @@ Server = Annotated[
         metavar="URI",
         show_default=False,
         help="Neo4j to use; by default that of NEO4J_URI, else the private one. The password stands in NEO4J_PASSWORD.",
+    ),
+]
+Ontologies = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--ontology",
+        metavar="FILE.ttl",
+        show_default=False,
+        help="More categories, in Turtle, beside those that come with the program; may be repeated.",
     ),
 ]

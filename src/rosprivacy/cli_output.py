@@ -53,8 +53,8 @@ def _print(text: str | bytes) -> None:
 
 
 def _encoding(text: str) -> str:
-    """JSON is UTF-8 wherever it goes; other text is what the terminal understands."""
-    return "utf-8" if text.startswith("{") else sys.stdout.encoding
+    """JSON and Turtle are UTF-8 wherever they go; other text is what the terminal understands."""
+    return "utf-8" if text.startswith(("{", "@prefix")) else sys.stdout.encoding
 
 
 def progress_of(files: Sequence[str]) -> Iterable[str]:

@@ -80,7 +80,9 @@ def _remembered(listing: Path) -> list[Path]:
 def _fetch() -> Iterator[Path]:
     with extra():
         import jgo  # noqa: PLC0415
+        import truststore  # noqa: PLC0415
         from jgo.config import GlobalSettings  # noqa: PLC0415
+    truststore.inject_into_ssl()  # as pip does: what the system trusts, such as a company's own authority
     settings = GlobalSettings.load()
     try:
         artifacts = jgo.resolve(LIBRARIES, repositories=settings.repositories)

@@ -1,0 +1,118 @@
+"""What the law says of categories, closed over the hierarchy; where on a way data become a special category.
+
+In: categories with what the ontology states of each. Out: the same with what follows for narrower and broader ones. It
+gives no verdict on a system: a provision is one that a person has to look at.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.model import ARTICLE_9
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from rosprivacy.analysis.hierarchy import Hierarchy
+    from rosprivacy.analysis.model import Category, Element, Finding, Legal
+
+SPECIAL = ("always", "conditional")
+MAY_REVEAL = "may-reveal"
+
+
+def close(categories: Mapping[str, Category], hierarchy: Hierarchy) -> dict[str, Category]:
+    """Return the categories with all that follows from what is stated of them.
+
+    A category of which nothing is stated takes what is stated of its nearest broader ones. A category with a narrower
+    one under a provision may reveal it, since data of it may be of the narrower kind (rule S7): where something
+    stronger is not stated of it already.
+
+    Complexity: O(categories x depth x statements).
+    """
+    stated = {name: _inherited(category, categories, hierarchy) for name, category in categories.items()}
+    narrower: dict[str, list[Category]] = {name: [] for name in categories}
+    for name, category in stated.items():
+        for above in hierarchy.broader(name):
+            narrower[above].append(category)
+    return {name: _with_narrower(category, narrower[name]) for name, category in stated.items()}
+
+
+def _own(category: Category) -> tuple[Legal, ...]:
+    return tuple(legal for legal in category.law if legal.stated_of in ("", category.name))
+
+
+def _says_something(category: Category) -> bool:
+    return category.stated_of in ((), (category.name,)) and bool(_own(category) or category.reason)
+
+
+def _inherited(category: Category, categories: Mapping[str, Category], hierarchy: Hierarchy) -> Category:
+    """The category with its own statements, or with those of the nearest broader ones that have some."""
+    if _says_something(category):
+        own = tuple(replace(legal, stated_of=category.name) for legal in _own(category))
+        return replace(category, law=own, stated_of=(category.name,))
+    above = [categories[name] for name in hierarchy.broader(category.name) if _says_something(categories[name])]
+    nearest = [up for up in above if not any(up.name in hierarchy.broader(other.name) for other in above)]
+    law = {
+        (legal.iri, legal.verdict, up.name): replace(legal, stated_of=up.name) for up in nearest for legal in _own(up)
+    }
+    reasons = sorted({up.reason for up in nearest if up.reason})
+    translations = category.translations
+    if len(reasons) == 1:
+        up = next(up for up in nearest if up.reason)
+        translations = {
+            language: {**texts, "reason": up.text("reason", language)} for language, texts in translations.items()
+        }
+    return replace(
+        category,
+        law=tuple(law[key] for key in sorted(law)),
+        reason="; ".join(reasons),
+        stated_of=tuple(up.name for up in nearest),
+        gdpr=category.gdpr or next((up.gdpr for up in nearest if up.gdpr), ""),
+        translations=translations,
+    )
+
+
+def _with_narrower(category: Category, narrower: Iterable[Category]) -> Category:
+    """The category with what it may reveal because data of it may be of a narrower kind."""
+    covered = {legal.name for legal in category.law}
+    found: dict[str, list[tuple[Category, Legal]]] = {}
+    for kind in sorted(narrower, key=lambda kind: kind.name):
+        for legal in kind.law:
+            if legal.name not in covered and not (legal.special and ARTICLE_9 in covered):
+                found.setdefault(legal.name, []).append((kind, legal))
+    more = [_may_reveal(kinds) for _, kinds in sorted(found.items())]
+    return replace(category, law=tuple(sorted((*category.law, *more), key=lambda legal: (legal.name, legal.stated_of))))
+
+
+def _may_reveal(kinds: list[tuple[Category, Legal]]) -> Legal:
+    """What is said of narrower kinds, as said of the broad one: it holds if the data are of one of these."""
+    legal = kinds[0][1]
+    languages = {"en", *(language for kind, _ in kinds for language in kind.translations)}
+    conditions = {
+        language: ", ".join(dict.fromkeys(kind.text("title", language) for kind, _ in kinds)) for language in languages
+    }
+    translations = {
+        language: {**legal.translations.get(language, {}), "condition": f"⊇ {conditions[language]}"}
+        for language in sorted(languages - {"en"})
+    }
+    return replace(
+        legal,
+        verdict=MAY_REVEAL,
+        condition=f"if the data are of a narrower kind: {conditions['en']}",
+        stated_of=", ".join(dict.fromkeys(kind.name for kind, _ in kinds)),
+        sources=(),
+        translations=translations,
+    )
+
+
+def turned_special(finding: Finding, categories: Mapping[str, Category]) -> Element | None:
+    """Return the element of the witness that makes a special category of data that are none; None if nothing does.
+
+    A face recogniser makes face templates, which can fall under Article 9(1), of video, which does not (recital 51).
+    """
+    elements = [*(step.source for step in finding.steps), finding.leak]
+    kinds = [*(step.category for step in finding.steps), finding.category]
+    special = [categories[kind].article9 in SPECIAL for kind in kinds]
+    changes = [i for i in range(1, len(kinds)) if special[i] and not special[i - 1]]
+    return elements[changes[-1]] if changes and special[-1] else None

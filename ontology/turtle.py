@@ -1,0 +1,157 @@
+"""Turtle -> categories with what the law says of each; read by rdflib, which is heavy: import this where it is used.
+
+In: text. Out: an rdflib graph, and ``Category`` facts as the files state them; what follows for broader and narrower
+ones is for ``analysis/legal.py``.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from rdflib import RDF, SKOS, Graph, Namespace
+
+from rosprivacy.analysis.errors import InputErrors, OntologyError, shown
+from rosprivacy.analysis.model import Category, Legal
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from rdflib.term import Node
+
+RP = Namespace("urn:x-rosprivacy:")
+ENGLISH = "en"
+_LOCAL = re.compile(r"[#/:]")
+
+
+def read(turtle: str, file: str) -> Graph:
+    """Return the triples of a Turtle text.
+
+    Raises
+    ------
+    InputErrors
+        If it is not Turtle.
+    """
+    graph = Graph(bind_namespaces="none")
+    try:
+        graph.parse(data=turtle, format="turtle")
+    except Exception as error:  # noqa: BLE001 - rdflib raises its own and plain exceptions alike
+        line = getattr(error, "lines", 0)
+        said = shown(" ".join(str(getattr(error, "message", error)).split()))
+        raise InputErrors(
+            [OntologyError(file, line + 1 if line else 0, f"not Turtle: {said}", "correct the syntax")]
+        ) from None
+    return graph
+
+
+def categories_of(graph: Graph, subjects: Iterable[Node] | None = None) -> tuple[Category, ...]:
+    """Return the categories of a graph, sorted by IRI: every ``skos:Concept`` of the scheme or with an ``rp:label``.
+
+    Parameters
+    ----------
+    subjects
+        Only these; all by default.
+    """
+    ours = category_subjects(graph)
+    chosen = ours if subjects is None else list(subjects)
+    same = _by_match(graph, set(ours))
+    return tuple(_category(graph, subject, set(ours), same) for subject in sorted(chosen, key=str))
+
+
+def category_subjects(graph: Graph) -> list[Node]:
+    """Return what is meant as a category."""
+    concepts = set(graph.subjects(RDF.type, SKOS.Concept))
+    labelled = set(graph.subjects(RP.label, None)) | set(graph.subjects(SKOS.inScheme, RP.Categories))
+    return sorted(concepts & labelled, key=str)
+
+
+def respelt_of(graph: Graph) -> dict[str, str]:
+    """Return former spellings of DPV terms -> IRIs of today."""
+    return {str(old): str(term) for term, old in graph.subject_objects(RP.formerly)}
+
+
+def local_name(iri: str) -> str:
+    """Return the last part of an IRI.
+
+    >>> local_name("https://w3id.org/dpv/pd#Picture")
+    'Picture'
+    """
+    return _LOCAL.split(iri)[-1]
+
+
+def _by_match(graph: Graph, ours: set[Node]) -> dict[Node, str]:
+    """IRIs of other vocabularies -> names of the categories that are the same."""
+    matches = graph.subject_objects(SKOS.exactMatch)
+    return {other: local_name(str(subject)) for subject, other in matches if subject in ours and other not in ours}
+
+
+def _texts(graph: Graph, subject: Node, predicate: Node) -> dict[str, list[str]]:
+    """Language -> values, sorted; without a language counts as English."""
+    found: dict[str, list[str]] = {}
+    for value in sorted(graph.objects(subject, predicate), key=str):
+        found.setdefault(getattr(value, "language", None) or ENGLISH, []).append(str(value))
+    return found
+
+
+def _first(graph: Graph, subject: Node, predicate: Node) -> dict[str, str]:
+    return {language: values[0] for language, values in _texts(graph, subject, predicate).items()}
+
+
+def _translated(**texts: dict[str, str]) -> dict[str, dict[str, str]]:
+    """By language, English left out: it is the fact itself."""
+    languages = sorted({language for values in texts.values() for language in values} - {ENGLISH})
+    return {
+        language: {what: values[language] for what, values in texts.items() if language in values}
+        for language in languages
+    }
+
+
+def _category(graph: Graph, subject: Node, ours: set[Node], same: dict[Node, str]) -> Category:
+    title, definition = _first(graph, subject, SKOS.prefLabel), _first(graph, subject, SKOS.definition)
+    reason = _first(graph, subject, RP.reason)
+    parents = set(graph.objects(subject, SKOS.broader))
+    broader = {local_name(str(up)) for up in parents if up in ours}
+    broader |= {same[up] for up in parents if up in same}
+    own = local_name(str(subject))
+    names = [*_texts(graph, subject, SKOS.altLabel).values(), [t for lang, t in title.items() if lang != ENGLISH]]
+    gdpr = graph.value(subject, RP.gdprCategory)
+    return Category(
+        name=own,
+        iri=str(subject),
+        label=_first(graph, subject, RP.label).get(ENGLISH, ""),
+        title=title.get(ENGLISH, ""),
+        definition=definition.get(ENGLISH, ""),
+        broader=tuple(sorted(broader - {own})),
+        synonyms=tuple(sorted({name for some in names for name in some})),
+        law=tuple(sorted(_law(graph, subject, own), key=lambda legal: (legal.name, legal.verdict))),
+        reason=reason.get(ENGLISH, ""),
+        data_types=tuple(sorted(str(value) for value in graph.objects(subject, RP.dataType))),
+        gdpr="" if gdpr is None else _identifier(graph, gdpr),
+        same_as=tuple(sorted(str(other) for other in graph.objects(subject, SKOS.exactMatch))),
+        within=tuple(sorted(str(up) for up in parents if up not in ours)),
+        note=_first(graph, subject, SKOS.note).get(ENGLISH, ""),
+        translations=_translated(title=title, definition=definition, reason=reason),
+    )
+
+
+def _law(graph: Graph, subject: Node, own: str) -> Iterator[Legal]:
+    for link in graph.objects(subject, RP.fallsUnder):
+        provision = graph.value(link, RP.provision)
+        if provision is None:
+            continue
+        meaning, condition = _first(graph, provision, SKOS.definition), _first(graph, link, RP.condition)
+        yield Legal(
+            iri=str(provision),
+            name=_identifier(graph, provision),
+            meaning=meaning.get(ENGLISH, ""),
+            as_of=str(graph.value(provision, RP.asOf) or ""),
+            verdict=str(graph.value(link, RP.verdict) or ""),
+            condition=condition.get(ENGLISH, ""),
+            sources=tuple(sorted(_identifier(graph, source) for source in graph.objects(link, RP.source))),
+            stated_of=own,
+            translations=_translated(meaning=meaning, condition=condition),
+        )
+
+
+def _identifier(graph: Graph, provision: Node) -> str:
+    return str(graph.value(provision, RP.identifier) or local_name(str(provision)))

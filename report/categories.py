@@ -1,0 +1,123 @@
+"""Categories -> text: the hierarchy as a tree, or one category with all that the ontology says of it.
+
+In: a vocabulary and a language. Out: lines of plain text. What comes from the ontology is in that language where it
+has a translation, else in English.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.errors import shown
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rosprivacy.analysis.model import Category, Legal
+    from rosprivacy.ontology.vocabulary import Vocabulary
+
+LANGUAGES = ("en", "de", "fr")
+WORDS = {
+    "en": {
+        "definition": "Definition", "names": "Also", "broader": "Broader", "narrower": "Narrower",
+        "label": "Neo4j label", "data": "Data types", "gdpr": "GDPR", "article9": "Article 9(1)", "law": "Law",
+        "because": "because", "source": "source", "stated": "said of", "as of": "law as of", "same": "Same as",
+        "within": "Part of",
+        "note": "Note", "above": "see above", "iri": "IRI",
+        "always": "always", "conditional": "on a condition", "may-reveal": "may reveal it", "no": "no",
+        "unknown": "not known",
+    },
+    "de": {
+        "definition": "Definition", "names": "Auch", "broader": "Weiter", "narrower": "Enger", "label": "Neo4j-Label",
+        "data": "Datentypen", "gdpr": "DSGVO", "article9": "Artikel 9(1)", "law": "Recht", "because": "denn",
+        "source": "Quelle", "stated": "gesagt von", "as of": "Rechtsstand", "same": "Dasselbe wie",
+        "within": "Teil von", "note": "Hinweis", "above": "siehe oben", "iri": "IRI",
+        "always": "immer", "conditional": "unter einer Bedingung", "may-reveal": "kann sie erkennen lassen",
+        "no": "nein", "unknown": "nicht bekannt",
+    },
+    "fr": {
+        "definition": "Définition", "names": "Aussi", "broader": "Plus large", "narrower": "Plus étroit",
+        "label": "Label Neo4j", "data": "Types de données", "gdpr": "RGPD", "article9": "Article 9(1)", "law": "Droit",
+        "because": "car", "source": "source", "stated": "dit de", "as of": "état du droit", "same": "Identique à",
+        "within": "Partie de", "note": "Remarque", "above": "voir plus haut", "iri": "IRI",
+        "always": "toujours", "conditional": "sous condition", "may-reveal": "peut les révéler", "no": "non",
+        "unknown": "inconnu",
+    },
+}  # fmt: skip
+
+
+def tree(vocabulary: Vocabulary, top: str, language: str = "en") -> str:
+    """Return a category with all narrower ones, each with its name, its title, and Article 9(1) where it can apply.
+
+    A category below two others is shown below both, with what is narrower only once.
+    """
+    below: dict[str, list[str]] = {name: [] for name in vocabulary.categories}
+    for name, category in vocabulary.categories.items():
+        for up in category.broader:
+            below[up].append(name)
+    done: set[str] = set()
+
+    def lines(name: str, first: str, rest: str) -> Iterator[str]:
+        again = name in done and below[name]
+        done.add(name)
+        yield first + _entry(vocabulary.categories[name], language, again=bool(again))
+        children = [] if again else sorted(below[name])
+        for number, child in enumerate(children, 1):
+            last = number == len(children)
+            yield from lines(child, rest + ("└── " if last else "├── "), rest + ("    " if last else "│   "))
+
+    return "".join(f"{line}\n" for line in lines(top, "", ""))
+
+
+def _entry(category: Category, language: str, *, again: bool) -> str:
+    words = WORDS[language]
+    verdict = f"  [{words['article9']}: {words[category.article9]}]" if category.article9 != "no" else ""
+    return f"{category.name}  {shown(category.text('title', language))}{verdict}" + (
+        f"  ({words['above']})" if again else ""
+    )
+
+
+def details(vocabulary: Vocabulary, category: Category, language: str = "en") -> str:
+    """Return all that the ontology says of a category."""
+    words = WORDS[language]
+    narrower = [other.name for other in vocabulary.categories.values() if category.name in other.broader]
+    reason = category.text("reason", language)
+    rows = [
+        ("", f"{category.name}: {category.text('title', language)}"),
+        ("definition", category.text("definition", language)),
+        ("names", ", ".join(category.synonyms)),
+        ("broader", ", ".join(vocabulary.hierarchy.broader(category.name))),
+        ("narrower", ", ".join(narrower)),
+        ("article9", words[category.article9] + (f", {words['because']} {reason}" if reason else "")),
+        *(("law", _legal(legal, category, language)) for legal in category.law),
+        ("gdpr", category.gdpr),
+        ("data", ", ".join(category.data_types)),
+        ("label", category.label),
+        ("iri", category.iri),
+        ("same", ", ".join(category.same_as)),
+        ("within", ", ".join(category.within)),
+        ("note", category.note),
+    ]
+    width = max(len(words[key]) for key, value in rows if key and value) + 2
+    return "".join(
+        f"{words[key] + ':':<{width}}{_printable(value)}\n" if key else f"{_printable(value)}\n"
+        for key, value in rows
+        if value
+    )
+
+
+def _legal(legal: Legal, category: Category, language: str) -> str:
+    words = WORDS[language]
+    condition = legal.text("condition", language)
+    parts = [
+        f"{legal.name}, {words[legal.verdict]}" + (f": {condition}" if condition else ""),
+        *([f"{words['stated']} {legal.stated_of}"] if legal.stated_of not in ("", category.name) else []),
+        *([f"{words['source']} {', '.join(legal.sources)}"] if legal.sources else []),
+        f"{words['as of']} {legal.as_of}",
+    ]
+    return "; ".join(parts)
+
+
+def _printable(text: str) -> str:
+    """Names come from anybody's ontology; long texts stay whole."""
+    return "".join(c if c.isprintable() else " " for c in text)

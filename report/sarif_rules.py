@@ -1,0 +1,142 @@
+"""The kinds of findings for readers of SARIF: what each means and what a person can do, in words without a verdict.
+
+In: the kind of a finding. Out: a ``reportingDescriptor``. A kind that is not known here gets a plain text of its own,
+so that none is left out.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.errors import shown
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+WARNING, NONE = "warning", "none"
+NO_VERDICT = "The labels are a person's word, and a path can be lawful: this is no legal verdict."
+DECIDE = "If the path is to stay, write down who decided so, why, and on which legal basis."
+CLEAN = "Can the data be cleaned before: anonymised, aggregated, dropped? Label the node that does it as sanitizer."
+ASSESS = (
+    "Read the way step by step: is each label right, and is each step needed?",
+    "If a step is not needed, take the grant out of the policy, or deny it.",
+    CLEAN,
+    DECIDE,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """What a kind of finding means.
+
+    Attributes
+    ----------
+    id
+        Stable; the kind itself.
+    name
+        For programs, in Pascal case.
+    short, full
+        One sentence; some more.
+    steps
+        What a person can do about it.
+    level
+        Of its results by default.
+    """
+
+    id: str
+    name: str
+    short: str
+    full: str
+    steps: tuple[str, ...] = ASSESS
+    level: str = WARNING
+
+
+RULES = (
+    Rule(
+        "disclosure",
+        "PersonalDataDisclosure",
+        "Personal data can reach a place that lets it out: a path to assess.",
+        "A node that brings personal data in and a place that lets it out of the system are connected by steps that "
+        "the policies allow. The line is the last one that lets the data in there.",
+    ),
+    Rule(
+        "storage-limitation",
+        "PersonalDataStorage",
+        "Personal data can reach a storage that keeps it without a stated limit, or longer than its kind may be kept.",
+        "A storage that personal data can reach states no retention, or a longer one than the labels allow for that "
+        "kind of data.",
+        (
+            "State how long the storage keeps each kind of data.",
+            "If it is too long, shorten it, or let only other data go there.",
+            CLEAN,
+            DECIDE,
+        ),
+    ),
+    Rule(
+        "third-country-transfer",
+        "PersonalDataTransfer",
+        "Personal data can reach a recipient outside the European Economic Area with no stated basis for the transfer.",
+        "An element in a country outside the European Economic Area can get personal data, and neither a decision that "
+        "the country is adequate nor a safeguard is stated for it.",
+        ("State the basis of the transfer, or the country if it is another.", *ASSESS),
+    ),
+)
+UNREVIEWED = Rule(
+    "unreviewed-element",
+    "PersonalDataNotReviewed",
+    "Personal data reaches a node that no label speaks of: a question to answer.",
+    "The node is among those that data reaches before any other that nobody has reviewed. The analysis lets the data "
+    "pass there. Until a person has looked, nobody knows what becomes of it.",
+    (
+        "Look up what the node does with the data, and say so in a label: conduit, sanitizer, leak, or what it makes.",
+        "Then analyse again: further nodes may come into view.",
+    ),
+    NONE,
+)
+NOTHING_FOLLOWED = Rule(
+    "no-data-followed",
+    "PersonalDataNotFollowed",
+    "No data was followed: that nothing is found says nothing about the system.",
+    "No label names a source of the kinds of data that were asked for, so there was nothing to follow.",
+    ("Name the nodes that bring personal data in, in a label file: rosprivacy labels --init writes a first one.",),
+)
+
+
+def rule_of(kind: str) -> Rule:
+    """Return the rule of a kind of finding.
+
+    >>> rule_of("disclosure").name
+    'PersonalDataDisclosure'
+    >>> rule_of("some new kind").id
+    'some-new-kind'
+    """
+    identifier = re.sub(r"[^a-z0-9]+", "-", kind.casefold()).strip("-") or "finding"
+    known = {rule.id: rule for rule in RULES}
+    name = "PersonalData" + "".join(part.capitalize() for part in identifier.split("-"))
+    short = f"Personal data can reach a place that it perhaps should not: {shown(kind)}."
+    return known.get(identifier) or Rule(identifier, name, short, short)
+
+
+def descriptors(rules: Iterable[Rule]) -> list[dict[str, Any]]:
+    """Return rules as SARIF's ``reportingDescriptor``; at most 10 tags are shown, so there are few."""
+    return [
+        {
+            "id": rule.id,
+            "name": rule.name,
+            "shortDescription": {"text": rule.short},
+            "fullDescription": {"text": f"{rule.full} {NO_VERDICT}"},
+            "help": {
+                "text": "\n".join(
+                    [rule.full, "", "What to do:", *(f"- {step}" for step in rule.steps), "", NO_VERDICT]
+                ),
+                "markdown": "\n".join(
+                    [rule.full, "", "**What to do**", "", *(f"- {step}" for step in rule.steps), "", f"*{NO_VERDICT}*"]
+                ),
+            },
+            "defaultConfiguration": {"level": rule.level},
+            "properties": {"tags": ["privacy", "personal-data"]},
+        }
+        for rule in rules
+    ]

@@ -1,0 +1,34 @@
+"""The one time that a report may tell, ``SOURCE_DATE_EPOCH``: the same input gives the same bytes (rule S14)."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.errors import InputError, shown
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+VARIABLE = "SOURCE_DATE_EPOCH"
+
+
+def source_date(environment: Mapping[str, str]) -> datetime | None:
+    """Return the time that the environment names, in UTC; None if it names none.
+
+    Raises
+    ------
+    InputError
+        If it is no number of seconds since 1970.
+
+    >>> source_date({"SOURCE_DATE_EPOCH": "1767225600"})
+    datetime.datetime(2026, 1, 1, 0, 0, tzinfo=datetime.timezone.utc)
+    """
+    given = environment.get(VARIABLE, "")
+    if not given:
+        return None
+    try:
+        return datetime.fromtimestamp(int(given), UTC)
+    except (ValueError, OverflowError, OSError):
+        hint = "give whole seconds since 1970, or unset it"
+        raise InputError(VARIABLE, 0, f"{shown(given)!r} is no time", hint) from None

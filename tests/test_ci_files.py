@@ -1,0 +1,286 @@
+"""What people use in CI and before a commit: the action, the hook, the example workflow and its comment.
+
+The scripts of the action are run as a runner does, with its files and variables; the hook by pre-commit itself, in a
+repository made for it.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+from tests.test_sarif import HOSTILE, checked
+
+ROOT = Path(__file__).resolve().parent.parent
+ACTION, HOOKS, CI = ROOT / "action.yml", ROOT / ".pre-commit-hooks.yaml", ROOT / "examples" / "ci"
+FACTORY = ROOT / "examples" / "factory"
+GIT = ["git", "-c", "user.name=t", "-c", "user.email=t@example.org", "-c", "init.defaultBranch=main"]
+
+
+def tool(*arguments: str, cwd: Path = ROOT, **variables: str) -> subprocess.CompletedProcess[str]:
+    environment = {**os.environ, **variables}
+    return subprocess.run(
+        [sys.executable, "-m", *arguments], cwd=cwd, env=environment, capture_output=True, text=True, check=False
+    )
+
+
+# ---------------------------------------------------------------- the action
+
+
+@pytest.fixture
+def runner(tmp_path: Path) -> dict[str, str]:
+    """What a runner gives to a step; rosprivacy is there already, as after the first step."""
+    bin_folder = tmp_path / "temp" / "rosprivacy" / "bin"
+    bin_folder.mkdir(parents=True)
+    for name in ("python", "rosprivacy"):
+        (bin_folder / name).write_text(f'#!/bin/sh\nexec "{sys.executable}" "$@"\n')
+        (bin_folder / name).chmod(0o755)
+    return {
+        "RUNNER_TEMP": str(tmp_path / "temp"),
+        "GITHUB_ACTION_PATH": str(ROOT),
+        "GITHUB_OUTPUT": str(tmp_path / "output"),
+        "GITHUB_STEP_SUMMARY": str(tmp_path / "summary.md"),
+    }
+
+
+def steps_of(inputs: dict[str, str]) -> list[tuple[str, dict[str, str]]]:
+    """(script, variables) of the action's steps, with inputs put in as GitHub does: in ``env`` only."""
+    action = yaml.safe_load(ACTION.read_text("utf-8"))
+    given = {name: str(said.get("default", "")) for name, said in action["inputs"].items()} | inputs
+    found = []
+    for step in action["runs"]["steps"]:
+        assert "${{" not in step["run"]  # a script that an input could change
+        assert step["shell"] == "bash"
+        variables = {
+            name: re.sub(r"\$\{\{ inputs\.([\w-]+) \}\}", lambda match: given[match[1]], value)
+            for name, value in step["env"].items()
+        }
+        found.append((step["run"], variables))
+    return found
+
+
+def run_action(inputs: dict[str, str], runner: dict[str, str], cwd: Path) -> list[subprocess.CompletedProcess[str]]:
+    done = []
+    for script, variables in steps_of(inputs):
+        environment = {**os.environ, **runner, **variables}
+        command = ["bash", "--noprofile", "--norc", "-eo", "pipefail", "-c", script]
+        done.append(subprocess.run(command, cwd=cwd, env=environment, capture_output=True, text=True, check=False))
+        if done[-1].returncode:
+            break
+    return done
+
+
+def outputs(runner: dict[str, str]) -> dict[str, str]:
+    return dict(line.split("=", 1) for line in Path(runner["GITHUB_OUTPUT"]).read_text().splitlines())
+
+
+def test_the_action_and_the_workflow_are_what_github_takes() -> None:
+    for file, kind in ((ACTION, "github-actions"), (CI / "privacy.yml", "github-workflows")):
+        done = tool("check_jsonschema", "--builtin-schema", f"vendor.{kind}", str(file))
+        assert done.returncode == 0, done.stdout
+
+
+def test_the_action_writes_sarif_json_a_summary_and_outputs(runner: dict[str, str], tmp_path: Path) -> None:
+    shutil.copytree(FACTORY, tmp_path / "my policies")
+    inputs = {"policies": "my policies/before.policy.xml\n", "labels": "my policies/run2.labels.yaml\n\n"}
+    *_, done = run_action(inputs, runner, tmp_path)
+    assert (done.returncode, done.stderr) == (1, "")
+    assert outputs(runner) == {"verdict": "leak", "findings": "2"}
+    checked(json.loads((tmp_path / "rosprivacy.sarif").read_text("utf-8")))
+    assert len(json.loads((tmp_path / "rosprivacy.json").read_text("utf-8"))["findings"]) == 2
+    summary = Path(runner["GITHUB_STEP_SUMMARY"]).read_text("utf-8").splitlines()
+    assert "    leak: data can reach a leak" in summary
+    assert all(line.startswith("    ") for line in summary)
+    first, *lines, last = done.stdout.splitlines()
+    assert first == f"::stop-commands::{last.strip(':')}"
+    assert "leak: data can reach a leak" in lines
+
+
+@pytest.mark.parametrize(("fail_on", "code"), [("never", 0), ("leak", 0), ("undetermined", 4)])
+def test_the_action_fails_when_it_is_told_to(fail_on: str, code: int, runner: dict[str, str], tmp_path: Path) -> None:
+    shutil.copytree(FACTORY, tmp_path / "p")
+    inputs = {"policies": "p/before.policy.xml", "labels": "p/run1.labels.yaml", "fail-on": fail_on}
+    inputs |= {"options": "--view\nenforced" if fail_on == "never" else "", "json": "out.json"}
+    *_, done = run_action(inputs, runner, tmp_path)
+    assert done.returncode == code, done.stderr
+    assert outputs(runner)["verdict"] == "undetermined"
+    view = json.loads((tmp_path / "out.json").read_text("utf-8"))["view"]
+    assert view == ("enforced" if fail_on == "never" else "declared")
+
+
+def test_bad_input_ends_the_action_with_the_problem(runner: dict[str, str], tmp_path: Path) -> None:
+    *_, done = run_action({"policies": "-x; echo hello"}, runner, tmp_path)
+    assert done.returncode == 2
+    assert "-x; echo hello:0: " in done.stderr
+    assert done.stdout.splitlines()[-1].startswith("::")  # commands are read again
+    assert "hello" not in done.stdout
+
+
+@pytest.mark.slow
+def test_the_action_installs_itself(tmp_path: Path) -> None:
+    shutil.copytree(FACTORY, tmp_path / "p")
+    (tmp_path / "temp").mkdir()
+    runner = {
+        "RUNNER_TEMP": str(tmp_path / "temp"),
+        "GITHUB_ACTION_PATH": str(hooks_repository(tmp_path / "action")),
+        "GITHUB_OUTPUT": str(tmp_path / "output"),
+        "GITHUB_STEP_SUMMARY": str(tmp_path / "summary.md"),
+        "PYTHONPATH": "",
+    }
+    inputs = {"policies": "p/after.policy.xml", "labels": "p/run5.labels.yaml", "python": sys.executable}
+    done = run_action(inputs, runner, tmp_path)
+    assert [step.returncode for step in done] == [0, 0], done[-1].stderr
+    assert outputs(runner) == {"verdict": "no-leak-found", "findings": "0"}
+
+
+# ---------------------------------------------------------------- the hook
+
+
+def hooks_repository(folder: Path) -> Path:
+    """This repository as it is now, with one commit: what pre-commit and GitHub fetch."""
+    listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard"], cwd=ROOT, capture_output=True, check=True)
+    for name in listed.stdout.decode().splitlines():
+        source, target = ROOT / name, folder / name
+        target.parent.mkdir(parents=True, exist_ok=True)
+        if source.is_symlink():
+            target.symlink_to(source.readlink())
+        elif source.is_file():
+            shutil.copy(source, target)
+    return committed(folder)
+
+
+def committed(folder: Path) -> Path:
+    for command in (["init", "-q"], ["add", "-A"], ["commit", "-qm", "all"]):
+        subprocess.run([*GIT, *command], cwd=folder, capture_output=True, check=True)
+    return folder
+
+
+def users_repository(folder: Path, hooks: Path, hook: dict[str, Any]) -> Path:
+    """A repository with a policy, labels and a hook."""
+    shutil.copytree(FACTORY, folder / "policies")
+    revision = subprocess.run(["git", "rev-parse", "HEAD"], cwd=hooks, capture_output=True, text=True, check=True)
+    config = {"repos": [{"repo": str(hooks), "rev": revision.stdout.strip(), "hooks": [{"id": "rosprivacy", **hook}]}]}
+    (folder / ".pre-commit-config.yaml").write_text(json.dumps(config))
+    return committed(folder)
+
+
+def run_hook(folder: Path, tmp_path: Path) -> subprocess.CompletedProcess[str]:
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    variables = {"PRE_COMMIT_HOME": str(tmp_path / "home"), "PATH": path, "GIT_CONFIG_NOSYSTEM": "1"}
+    return tool("pre_commit", "run", "--all-files", "--verbose", "--color=never", cwd=folder, **variables)
+
+
+def arguments(run: int) -> list[str]:
+    policy = "before" if run < 4 else "after"
+    return [f"policies/{policy}.policy.xml", "--labels", f"policies/run{run}.labels.yaml"]
+
+
+def test_the_hooks_are_what_pre_commit_takes() -> None:
+    assert tool("pre_commit", "validate-manifest", str(HOOKS)).returncode == 0
+
+
+def test_the_hook_fails_on_a_leak_and_passes_without_one(tmp_path: Path) -> None:
+    """In the environment of the tests, so that nothing is fetched; how it is installed is the next test's."""
+    hooks = tmp_path / "hooks"
+    hooks.mkdir()
+    shutil.copy(HOOKS, hooks)
+    committed(hooks)
+    entry = {"language": "system", "entry": f"{sys.executable} -m rosprivacy analyze"}
+    leak = run_hook(users_repository(tmp_path / "leak", hooks, {**entry, "args": arguments(2)}), tmp_path)
+    assert leak.returncode == 1, leak.stderr
+    assert "where personal data can go" in leak.stdout
+    assert "exit code: 1" in leak.stdout
+    assert "Video: /safety_camera -> /archive_server" in leak.stdout
+    clean = run_hook(users_repository(tmp_path / "clean", hooks, {**entry, "args": arguments(5)}), tmp_path)
+    assert clean.returncode == 0, clean.stdout
+    assert "Passed" in clean.stdout
+
+
+@pytest.mark.slow
+def test_pre_commit_installs_the_hook_from_this_repository(tmp_path: Path) -> None:
+    hooks = hooks_repository(tmp_path / "hooks")
+    done = run_hook(users_repository(tmp_path / "user", hooks, {"args": arguments(2)}), tmp_path)
+    assert "Video: /safety_camera -> /archive_server" in done.stdout, done.stdout + done.stderr
+    assert done.returncode == 1
+
+
+# ---------------------------------------------------------------- the comment on a pull request
+
+
+def compare(tmp_path: Path, before: dict[str, Any], after: dict[str, Any]) -> str:
+    files = [tmp_path / "before.json", tmp_path / "after.json"]
+    for file, report in zip(files, (before, after), strict=True):
+        file.write_text(json.dumps(report))
+    command = [sys.executable, str(CI / "compare.py"), *map(str, files)]
+    return subprocess.run(command, capture_output=True, text=True, check=True, encoding="utf-8").stdout
+
+
+def report_of(run: int) -> dict[str, Any]:
+    policy = "before" if run < 4 else "after"
+    done = tool(
+        "rosprivacy", "analyze", f"{policy}.policy.xml", "-l", f"run{run}.labels.yaml", "-f", "json", cwd=FACTORY
+    )
+    found: dict[str, Any] = json.loads(done.stdout)
+    return found
+
+
+def test_the_comment_says_what_is_new_and_what_is_gone(tmp_path: Path) -> None:
+    run1, run2, run5 = report_of(1), report_of(2), report_of(5)
+    new = compare(tmp_path, run1, run2)
+    assert "**New paths to assess: 2**" in new
+    assert "- `Video`: `/safety_camera` → `/archive_server`, allowed at `before.policy.xml:14`\n" in new
+    assert "Verdict: `undetermined` before, `leak` now." in new
+    assert "**Gone: 2**" in compare(tmp_path, run2, run5)
+    same = compare(tmp_path, run2, run2)
+    assert "No path to assess is new or gone; there are 2." in same
+    assert "this is no legal verdict" in same
+
+
+def test_what_was_not_analysed_before_is_all_new(tmp_path: Path) -> None:
+    """The report that the workflow takes in its place."""
+    (text,) = re.findall(r"echo '(\{.*\})' > before\.json", (CI / "privacy.yml").read_text("utf-8"))
+    comment = compare(tmp_path, json.loads(text), report_of(2))
+    assert "**New paths to assess: 2**" in comment
+    assert "Verdict: `not analysed before` before, `leak` now." in comment
+
+
+def test_no_name_can_link_or_mention_anybody(tmp_path: Path) -> None:
+    after = report_of(2)
+    for finding in after["findings"]:
+        finding["leak"]["name"] = f"`@everyone ![x](http://e)\n# {HOSTILE}"
+        finding["leak"]["robot"] = "`<img>"
+    comment = compare(tmp_path, report_of(1), after)
+    (line, *_) = [line for line in comment.splitlines() if "@everyone" in line]
+    spans = re.fullmatch(r"- `[^`]+`: `[^`]+` → `[^`]+`, allowed at `[^`]+`", line)
+    assert spans  # all that is named is inside code
+    assert len(line) < 400
+    assert line.isprintable()
+
+
+def test_long_lists_are_cut_and_say_so(tmp_path: Path) -> None:
+    after = report_of(2)
+    after["findings"] = [{**after["findings"][0], "id": f"{i:016x}"} for i in range(500)]
+    comment = compare(tmp_path, report_of(1), after)
+    assert "**New paths to assess: 500**" in comment
+    assert "- and 480 more" in comment
+    assert len(comment) < 10_000
+
+
+def test_the_workflow_runs_what_is_there() -> None:
+    workflow = yaml.safe_load((CI / "privacy.yml").read_text("utf-8"))
+    steps = workflow["jobs"]["paths-to-assess"]["steps"]
+    inputs = yaml.safe_load(ACTION.read_text("utf-8"))["inputs"]
+    ours = [step["with"] for step in steps if step.get("uses", "").endswith("/rosprivacy@main")]
+    assert len(ours) == 2
+    assert all(set(given) <= set(inputs) for given in ours)
+    assert "pull_request_target" not in workflow[True]  # YAML reads 'on' so
+    assert not any("${{" in step.get("run", "") for step in steps)
