@@ -94,6 +94,10 @@ class QueryError(RosPrivacyError):
     """A query that is wrong, unknown, or refused by the server."""
 
 
+class DrawingError(RosPrivacyError):
+    """A picture that cannot be made: nothing to draw it with, or nothing of that name to draw."""
+
+
 class DatabaseError(RosPrivacyError):
     """A database that cannot be reached or does not answer."""
 

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 
-def write_texts(texts: Mapping[Path, str]) -> None:
-    """Write UTF-8 texts to files, all of them or none.
+def write_texts(texts: Mapping[Path, str | bytes]) -> None:
+    """Write UTF-8 texts, or bytes, to files, all of them or none.
 
     Raises
     ------
@@ -29,7 +29,7 @@ def write_texts(texts: Mapping[Path, str]) -> None:
     try:
         for at, text in texts.items():
             if at.exists() and not at.is_file() and not at.is_dir():
-                at.write_text(text, "utf-8", newline="\n")
+                at.write_bytes(_bytes(text))
             else:
                 target = at.resolve()
                 staged[_stage(target, text)] = target
@@ -43,15 +43,19 @@ def write_texts(texts: Mapping[Path, str]) -> None:
             Path(temporary).unlink(missing_ok=True)
 
 
-def _stage(target: Path, text: str) -> str:
+def _bytes(text: str | bytes) -> bytes:
+    return text.encode() if isinstance(text, str) else text
+
+
+def _stage(target: Path, text: str | bytes) -> str:
     """Write a text beside its target, with the target's permissions; return where."""
     if target.is_dir():
         raise IsADirectoryError(0, "it is a folder")
     mode = target.stat().st_mode if target.exists() else 0o666 & ~_umask()
     handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name[:50]}.")
     try:
-        with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as file:
-            file.write(text)
+        with os.fdopen(handle, "wb") as file:
+            file.write(_bytes(text))
         Path(temporary).chmod(mode)
     except BaseException:
         Path(temporary).unlink(missing_ok=True)

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 import rosprivacy
-from rosprivacy import cli_categories, cli_db, cli_graph
+from rosprivacy import cli_categories, cli_db, cli_graph, cli_views
 from rosprivacy.analysis.errors import InputError, RosPrivacyError
 from rosprivacy.cli_options import (
     FailOn,
@@ -50,6 +50,7 @@ app.add_typer(cli_db.app, name="db", help="The private Neo4j: start it, stop it,
 app.command()(cli_graph.load)
 app.command()(cli_graph.unload)
 app.command()(cli_graph.query)
+app.command()(cli_views.graph)
 app.command()(cli_categories.categories)
 
 

@@ -22,12 +22,26 @@ def emit(text: str, output: Path | None, others: Mapping[Path, str] | None = Non
         from rosprivacy.report.atomic import write_texts
 
         write_texts(texts)
-    if output:
+    if not output:
+        _print(text)
+
+
+def emit_bytes(data: bytes, output: Path | None) -> None:
+    """Write what is not text in the terminal's own encoding to a file or to standard output."""
+    if not output:
+        _print(data)
         return
+    from rosprivacy.report.atomic import write_texts
+
+    write_texts({output: data})
+
+
+def _print(text: str | bytes) -> None:
     if sys.stdout is None:  # `>&-`
         raise InputError("standard output", 0, "is closed", "open it, or name a file with --output")
     try:
-        sys.stdout.buffer.write(text.encode(_encoding(text), "backslashreplace"))
+        data = text.encode(_encoding(text), "backslashreplace") if isinstance(text, str) else text
+        sys.stdout.buffer.write(data)
         sys.stdout.flush()
     except BrokenPipeError:  # `| head`: end as a program does that knows nothing of pipes, not with a verdict
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -1,0 +1,89 @@
+"""Names from anybody's files -> text that is fit to be drawn: printable, of a bounded length, broken into lines."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+LONGEST_LINE = 28
+MOST_LINES = 3
+_PARTS = re.compile(r"/?[^/]*")
+
+
+def printable(text: str) -> str:
+    r"""Return text with what is not printable escaped; of any length.
+
+    Signs that turn the direction of writing are not printable, letters that are written from right to left are.
+
+    >>> printable("/a" + chr(10) + chr(0x202E))
+    '/a\\n\\u202e'
+    """
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
+
+
+def shortened(text: str, longest: int) -> str:
+    """Return printable text with its middle left out where it is too long.
+
+    >>> shortened("/perception/detection/objects", 15)
+    '/percep…objects'
+    """
+    line = printable(text)
+    if len(line) <= longest:
+        return line
+    return line[: longest // 2] + "…" + line[len(line) - (longest - longest // 2 - 1) :]
+
+
+def broken(name: str) -> tuple[str, ...]:
+    """Return a name as a few lines, broken before a ``/`` where there is one.
+
+    >>> broken("/perception/object_recognition/tracking/objects")
+    ('/perception', '/object_recognition/tracking', '/objects')
+    """
+    text = shortened(name, LONGEST_LINE * MOST_LINES)
+    lines = [""]
+    for part in _PARTS.findall(text):
+        if len(lines[-1]) + len(part) <= LONGEST_LINE:
+            lines[-1] += part
+            continue
+        lines.extend(_cut(part))
+    full = [line for line in lines if line] or [""]
+    if len(full) > MOST_LINES:
+        full = [*full[: MOST_LINES - 2], "…", full[-1]]
+    return tuple(full)
+
+
+def _cut(part: str) -> Iterator[str]:
+    """Cut a part of a name that is longer than a line, after a ``_`` where there is one."""
+    while len(part) > LONGEST_LINE:
+        at = part.rfind("_", LONGEST_LINE // 2, LONGEST_LINE) + 1 or LONGEST_LINE
+        yield part[:at]
+        part = part[at:]
+    yield part
+
+
+def listed(names: Iterable[str], most: int = 3, longest: int = 60) -> str:
+    """Return some names, and how many more there are.
+
+    >>> listed(["a", "b", "c", "d", "e"])
+    'a, b, c and 2 more'
+    """
+    every = [shortened(name, longest) for name in names]
+    more = f" and {len(every) - most} more" if len(every) > most else ""
+    return ", ".join(every[:most]) + more
+
+
+def counted(number: int, noun: str, plural: str = "") -> str:
+    """Return a number with its noun.
+
+    >>> counted(1, "box", "boxes"), counted(2, "box", "boxes")
+    ('1 box', '2 boxes')
+    """
+    return f"{number:,} {noun if number == 1 else plural or noun + 's'}"
+
+
+def sentences(texts: Sequence[str]) -> str:
+    """Join sentences."""
+    return " ".join(text if text.endswith((".", "…")) else f"{text}." for text in texts)
