@@ -174,6 +174,38 @@ def test_a_witness_is_a_way_along_flows_and_names_the_leaks_that_dismiss_it(syst
         assert all(brute.has(number[element], "leak", finding.category) for element in finding.through)
 
 
+@given(systems(), st.data())
+def test_an_accepted_leak_hides_nothing_behind_it(system: System, data: st.DataObject) -> None:
+    """Rule S10: a way through a leak is dismissed, unless the finding there is accepted."""
+    plain = analysed(system)
+    if plain is None:
+        return
+    number = index(system)
+    keys = [(f.category, number[f.source], number[f.leak]) for f in plain.findings]
+    hidden_only = data.draw(st.dictionaries(st.sampled_from(keys), st.booleans())) if keys else {}
+
+    def accepts(category: str, source: Element, leak: Element, hidden: bool) -> bool:  # noqa: FBT001 - as it is called
+        return accepted(category, number[source], number[leak], hidden)
+
+    def accepted(category: str, source: int, leak: int, hidden: bool) -> bool:  # noqa: FBT001
+        key = (category, source, leak)
+        return key in hidden_only and (hidden or not hidden_only[key])
+
+    found = system.analyse(Options(accepts=accepts))
+    assert {
+        (f.category, number[f.source], number[f.leak]): (f.pseudonymised, f.dismissed, len(f.witness) - 1)
+        for f in found.findings
+    } == system.brute().findings(accepted)
+    for finding in found.findings:
+        ends = finding.category, finding.source, finding.leak
+        assert finding.accepted == accepts(*ends, finding.pseudonymised)
+        assert bool(finding.through) == finding.dismissed
+        assert not any(accepts(finding.category, finding.source, leak, False) for leak in finding.through)
+    left = [f for f in found.findings if not f.dismissed and not f.accepted]
+    assert (found.verdict is Verdict.LEAK) == bool(left)
+    assert found.carried == plain.carried  # a decision changes no flow
+
+
 @given(systems())
 def test_open_questions_are_those_of_brute_force(system: System) -> None:
     """Rule S11: which elements, for which categories, how far, and which are on the frontier."""
