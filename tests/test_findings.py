@@ -73,10 +73,10 @@ class System:
 
 
 @st.composite
-def systems(draw: st.DrawFn, names: tuple[str, ...] = tuple(PARENTS)) -> System:
+def systems(draw: st.DrawFn, names: tuple[str, ...] = tuple(PARENTS), most: int = 7, degree: int = 3) -> System:
     """Dense enough that most have a leak, a third something derived, pseudonymised or dismissed (measured)."""
-    nodes, channels = draw(st.integers(1, 7)), draw(st.integers(1, 6))
-    ends = st.sets(st.integers(0, nodes - 1), min_size=1, max_size=3)
+    nodes, channels = draw(st.integers(1, most)), draw(st.integers(1, most - 1))
+    ends = st.sets(st.integers(0, nodes - 1), min_size=1, max_size=degree)
     edges: set[tuple[int, int]] = set()
     for channel in range(nodes, nodes + channels):
         edges |= {(node, channel) for node in draw(ends)} | {(channel, node) for node in draw(ends)}

@@ -1,0 +1,352 @@
+"""What could be changed so that data no longer gets there: filters, reviews, grants set to DENY, each with its cost.
+
+In: an analysis, the places on the ways to its open findings, the limits that the user sets. Out: ``Change``s. What is
+on its way to a time-critical node is never filtered nor cut.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.spread import bits_of
+from rosprivacy.analysis.ways import merged
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+
+    from rosprivacy.analysis.model import Analysis, FlowGraph, Grant
+    from rosprivacy.analysis.ways import Arc, At
+
+REVIEW, FILTER, DENY = "review", "filter", "deny"
+CHANGES = (REVIEW, FILTER, DENY)
+LARGEST_COST = 1_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class Weights:
+    """What changes cost, in whole numbers of the user's choice.
+
+    Attributes
+    ----------
+    review, filter, deny
+        One of them; a DENY per line.
+    node
+        Each node that is no leak and would get filtered data, or lose some, directly.
+    """
+
+    review: int = 1
+    filter: int = 10
+    node: int = 10
+    deny: int = 20
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """What the user says of some places.
+
+    Attributes
+    ----------
+    flows, vertices
+        The places.
+    never
+        Kinds of change that are not made there.
+    factor
+        How many times as dear a change is there.
+    """
+
+    flows: frozenset[int]
+    vertices: frozenset[int]
+    never: frozenset[str] = frozenset()
+    factor: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """What may be changed, and at what cost.
+
+    Attributes
+    ----------
+    kinds
+        Of changes that are allowed at all.
+    critical
+        Nodes for which data may not come late: nothing on the way to them is filtered or cut.
+    """
+
+    weights: Weights = field(default_factory=Weights)
+    kinds: frozenset[str] = frozenset(CHANGES)
+    critical: frozenset[int] = frozenset()
+    rules: tuple[Rule, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Denial:
+    """What goes when some grants are set to DENY (rule S5).
+
+    Attributes
+    ----------
+    flows
+        That are gone.
+    touched
+        Further flows of which a part goes: another grant, or other names of a wildcard, still allow the rest.
+    """
+
+    grants: tuple[Grant, ...]
+    flows: frozenset[int]
+    touched: frozenset[int] = frozenset()
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """One change that could be made.
+
+    Attributes
+    ----------
+    flows
+        Along which a filter would end the data, or that a DENY takes away.
+    channels
+        Vertices of the channel to review.
+    categories
+        Numbers of those that a filter could end, or that a review could find are not carried.
+    touched
+        See ``Denial``.
+    readers
+        Vertices that get what went along the flows directly: filtered, or no longer.
+    """
+
+    kind: str
+    cost: int
+    flows: frozenset[int] = frozenset()
+    channels: frozenset[int] = frozenset()
+    categories: frozenset[int] = frozenset()
+    grants: tuple[Grant, ...] = ()
+    touched: frozenset[int] = frozenset()
+    readers: tuple[int, ...] = ()
+
+    def cuts(self, arc: Arc) -> bool:
+        """Whether no data goes along an arc after this change."""
+        if self.kind == DENY:
+            return arc.flow in self.flows
+        return arc.category in self.categories and (arc.flow in self.flows or arc.channel in self.channels)
+
+    def may_cut(self, arc: Arc) -> bool:
+        """Whether it cuts an arc, or may do so: certain to be true of all that it cuts."""
+        return self.cuts(arc) or arc.flow in self.touched
+
+
+class Places:
+    """The places where changes can be made, and who reads what goes through them.
+
+    Parameters
+    ----------
+    leaks
+        Vertices; that they get filtered data is what is wanted, and costs nothing.
+    open_ended
+        Per kind of channel the wildcards that cover a channel whatever it is called.
+    """
+
+    def __init__(
+        self,
+        analysis: Analysis,
+        limits: Limits,
+        leaks: Collection[int],
+        open_ended: Mapping[str, frozenset[int]],
+    ) -> None:
+        self.open_ended = open_ended
+        self.spread = analysis.spread
+        self.graph = analysis.graph
+        self.k = len(self.spread.categories)
+        self.limits = limits
+        self.leaks = frozenset(leaks)
+        self.out: dict[int, list[int]] = defaultdict(list)
+        for index, flow in enumerate(self.graph.flows):
+            self.out[flow.source].append(index)
+        self.late = self._before_critical()
+
+    def along(self, flow: int) -> int:
+        """The categories that go along a flow, its planes put together."""
+        return merged(self.spread.along(flow), self.k)
+
+    def readers(self, flow: int, categories: int | None = None) -> set[int]:
+        """Who gets what goes along a flow, next after the channel: of some categories, or of all there is."""
+        found: set[int] = set()
+        seen = {flow}
+        waiting = [flow]
+        while waiting:
+            here = waiting.pop()
+            if categories is not None and not self.along(here) & categories:
+                continue
+            target = self.graph.flows[here].target
+            if not self.graph.elements[target].is_channel:
+                found.add(target)
+                continue
+            new = [after for after in self.out[target] if after not in seen]
+            seen.update(new)
+            waiting += new
+        return found
+
+    def _before_critical(self) -> frozenset[At]:
+        """Where (vertex, category) arrives and goes on to a time-critical node, or is at one."""
+        incoming: dict[int, list[int]] = defaultdict(list)
+        for index, flow in enumerate(self.graph.flows if self.limits.critical else ()):
+            if self.along(index):
+                incoming[flow.target].append(index)
+        late = {(v, i) for v in self.limits.critical for i in range(self.k)}
+        waiting = sorted(late)
+        while waiting:
+            vertex, i = waiting.pop()
+            for index in incoming[vertex]:
+                if self.along(index) >> i & 1:
+                    before = self.graph.flows[index].source
+                    new = {(before, j) for j in self._made_into(before, i)} - late
+                    late |= new
+                    waiting += sorted(new)
+        return frozenset(late)
+
+    def _made_into(self, vertex: int, i: int) -> Iterator[int]:
+        """The categories that leave a vertex as i when they arrive there."""
+        if merged(self.spread.keeps.get(vertex, self.spread.all_bits), self.k) >> i & 1:
+            yield i
+        for before, after in self.spread.derives.get(vertex, ()):
+            if after % self.k == i:
+                yield before % self.k
+
+    def delays(self, flow: int) -> bool:
+        """Whether what goes along a flow goes on to a time-critical node."""
+        target = self.graph.flows[flow].target
+        return any((target, i) in self.late for i in bits_of(self.along(flow)))
+
+    def private(self, flow: int) -> bool:
+        """Whether a filter in a flow can have a channel of its own to the other side.
+
+        Before a channel it needs one that no wildcard reads, behind it one that no wildcard writes data to.
+        """
+        ends = self.graph.flows[flow].source, self.graph.flows[flow].target
+        channel = next((v for v in ends if self.graph.elements[v].is_channel), None)
+        if channel is None:
+            return True
+        before = channel == ends[1]
+        wild = self.open_ended.get(self.graph.elements[channel].kind, frozenset())
+        return not any(
+            self.graph.elements[v].side == "read" if before else self.spread.leaves.get(v) and self._written(v)
+            for v in wild
+        )
+
+    def _written(self, vertex: int) -> bool:
+        return self.graph.elements[vertex].side == "write"
+
+    def factor(self, kind: str, flows: frozenset[int], channels: frozenset[int] = frozenset()) -> int | None:
+        """How many times as dear a change is at some places; None if it may not be made there."""
+        rules = [rule for rule in self.limits.rules if rule.flows & flows or rule.vertices & channels]
+        if kind not in self.limits.kinds or any(kind in rule.never for rule in rules):
+            return None
+        return max((rule.factor for rule in rules), default=1)
+
+    def cost(self, own: int, factor: int, readers: Iterable[int]) -> int:
+        """The cost of a change: its own, and the nodes beside the leaks that it would reach."""
+        return factor * (own + self.limits.weights.node * len(set(readers) - self.leaks))
+
+
+def changes(
+    places: Places, arcs: Sequence[Arc], denials: Callable[[Collection[int]], Sequence[Denial]]
+) -> tuple[Change, ...]:
+    """Return the changes that could be made on some ways, in a stable order: reviews, filters, denials.
+
+    Parameters
+    ----------
+    denials
+        Says of flows what grants would have to be set to DENY for each to go, and what else would go with it.
+    """
+    by_flow: dict[int, set[int]] = defaultdict(set)
+    by_channel: dict[int, set[int]] = defaultdict(set)
+    for arc in arcs:
+        if arc.flow >= 0:
+            by_flow[arc.flow].add(arc.category)
+        if arc.channel >= 0:
+            by_channel[arc.channel].add(arc.category)
+    found = [*_reviews(places, by_channel), *_filters(places, by_flow)]
+    if DENY in places.limits.kinds:
+        found += _denied(places, denials(sorted(by_flow)))
+    return tuple(found)
+
+
+def _reviews(places: Places, by_channel: Mapping[int, set[int]]) -> Iterator[Change]:
+    """A channel on the way that nobody has reviewed may turn out to carry none; a wildcard is not one channel."""
+    elements, spread = places.graph.elements, places.spread
+    parts: dict[tuple[str, str, str], list[int]] = defaultdict(list)
+    for vertex, element in enumerate(elements):
+        if element.is_channel and not element.pattern:
+            parts[element.identity].append(vertex)
+    for identity in dict.fromkeys(elements[v].identity for v in sorted(by_channel) if not elements[v].pattern):
+        vertices = parts[identity]
+        covered = [merged(spread.covered.get(v, 0), places.k) for v in vertices]
+        passed = {i for v in vertices for i in by_channel.get(v, ())}
+        open_ = frozenset(i for i in passed if not any(bits >> i & 1 for bits in covered))
+        factor = places.factor(REVIEW, frozenset(), frozenset(vertices))
+        if open_ and factor is not None:
+            cost = places.cost(places.limits.weights.review, factor, ())
+            yield Change(REVIEW, cost, channels=frozenset(vertices), categories=open_)
+
+
+def _filters(places: Places, by_flow: Mapping[int, set[int]]) -> Iterator[Change]:
+    """A sanitizer between two elements; on what a wildcard covers there is no place for one."""
+    wanted = [f for f in sorted(by_flow) if places.graph.flows[f].role != "matches"]
+    for flows in dict.fromkeys(_together(places.graph, wanted)):
+        categories = frozenset(i for f in flows for i in by_flow.get(f, ()))
+        factor = places.factor(FILTER, flows)
+        if factor is None or any(places.delays(f) or not places.private(f) for f in flows):
+            continue
+        bits = sum(1 << i for i in categories)
+        readers = {reader for f in flows for reader in places.readers(f, bits)}
+        cost = places.cost(places.limits.weights.filter, factor, readers)
+        yield Change(FILTER, cost, flows, categories=categories, readers=tuple(sorted(readers)))
+
+
+def _together(graph: FlowGraph, wanted: Iterable[int]) -> Iterator[frozenset[int]]:
+    """For each flow, those that a filter in its place takes in: all between the same two elements.
+
+    Under the enforced view a right is the enclave's (rule S6), so a filter only helps where the whole enclave gets
+    filtered data: then these are all flows at the channel whose grants stand in the same enclaves.
+    """
+    by_ends: dict[tuple[object, ...], set[int]] = defaultdict(set)
+    by_channel: dict[tuple[object, ...], set[int]] = defaultdict(set)
+    for index, flow in enumerate(graph.flows):
+        by_ends[_ends(graph, index)].add(index)
+        if flow.grants:
+            by_channel[_channel(graph, index)].add(index)
+    for index in wanted:
+        flows = by_ends[_ends(graph, index)]
+        if graph.view == "enforced" and graph.flows[index].grants:
+            enclaves = {grant.enclave for grant in graph.flows[index].grants}
+            near = by_channel[_channel(graph, index)]
+            flows = flows | {f for f in near if {grant.enclave for grant in graph.flows[f].grants} <= enclaves}
+        yield frozenset(flows)
+
+
+def _ends(graph: FlowGraph, index: int) -> tuple[object, ...]:
+    flow = graph.flows[index]
+    return (graph.elements[flow.source].shown_as, graph.elements[flow.target].shown_as)
+
+
+def _channel(graph: FlowGraph, index: int) -> tuple[object, ...]:
+    """The channel of a granted flow, and the direction."""
+    flow = graph.flows[index]
+    writes = graph.elements[flow.target].is_channel
+    return (writes, graph.elements[flow.target if writes else flow.source].shown_as)
+
+
+def _denied(places: Places, denials: Iterable[Denial]) -> Iterator[Change]:
+    """Grants set to DENY; not where a time-critical node would lose something."""
+    flows, limits = places.graph.flows, places.limits
+    for denial in denials:
+        gone = denial.flows | denial.touched
+        factor = places.factor(DENY, gone)
+        late = any(places.delays(f) or {flows[f].source, flows[f].target} & limits.critical for f in gone)
+        if factor is None or late or not denial.flows:
+            continue
+        readers = {reader for f in denial.flows for reader in places.readers(f)}
+        cost = places.cost(limits.weights.deny * len(denial.grants), factor, readers)
+        yield Change(
+            DENY, cost, denial.flows, grants=denial.grants, touched=denial.touched, readers=tuple(sorted(readers))
+        )

@@ -1,0 +1,331 @@
+"""Findings -> what to change so that they go: proposals, each proven by a new analysis (rules S8, S10).
+
+In: an analysis and what it was made of, the limits that the user sets. Out: ``Proposal``s, for each category with an
+open finding and for all together. What is proposed is taken from a network of the ways to be cut; whether it is right
+is decided by the real fixpoint, with the changes applied: a proposal that this does not bear out has no steps.
+
+Source: the paper, section II-C, for the kinds of change and for naming who would get filtered data.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.affected import affected
+from rosprivacy.analysis.changes import DENY, FILTER, REVIEW, Limits, Places, changes
+from rosprivacy.analysis.cuts import BUDGET, cheapest
+from rosprivacy.analysis.findings import Options, analyse
+from rosprivacy.analysis.model import Bound, Place, Statement
+from rosprivacy.analysis.search import Net
+from rosprivacy.analysis.spread import bits_of
+from rosprivacy.analysis.ways import Group, a_way, merged, open_ends, ways
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+
+    from rosprivacy.analysis.affected import Affected
+    from rosprivacy.analysis.changes import Change, Denial
+    from rosprivacy.analysis.hierarchy import Hierarchy
+    from rosprivacy.analysis.model import Analysis, Element, Finding, FlowGraph, Grant, Verdict
+    from rosprivacy.analysis.ways import Arc, At, Ways
+
+ITSELF, NOT_ALLOWED = "itself", "not-allowed"
+EXACT = 1_000_000  # the specificity of a name that is spelt out
+
+
+@dataclass(frozen=True, slots=True)
+class System:
+    """What an analysis was made of, and how it is made anew with changes.
+
+    Attributes
+    ----------
+    denials
+        Says of flows what grants would have to be set to DENY for each to go, and what would go with them.
+    deny
+        Makes the graph and its statements anew with some grants set to DENY.
+    open_ended
+        Per kind of channel the wildcards that cover a channel whatever it is called.
+    """
+
+    graph: FlowGraph
+    bound: Bound
+    hierarchy: Hierarchy
+    options: Options
+    denials: Callable[[Collection[int]], Sequence[Denial]]
+    deny: Callable[[Collection[Grant]], tuple[FlowGraph, Bound]]
+    open_ended: Mapping[str, frozenset[int]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One change of a proposal.
+
+    Attributes
+    ----------
+    kind
+        ``review``, ``filter`` or ``deny``.
+    cost
+        By the limits.
+    categories
+        That a filter has to end, or that a review has to find are not carried; empty for a DENY, which ends all.
+    between
+        (from, to) of a filter; several under the enforced view, where a right is the enclave's.
+    channel
+        To review.
+    grants
+        The lines behind the flows that are filtered, or to be set to DENY.
+    readers
+        Who gets filtered data, or loses data, directly.
+    spared
+        Of a filter behind a channel: who else reads the channel, and would get filtered data from a filter before it.
+    """
+
+    kind: str
+    cost: int
+    categories: tuple[str, ...] = ()
+    between: tuple[tuple[Element, Element], ...] = ()
+    channel: Element | None = None
+    grants: tuple[Grant, ...] = ()
+    readers: tuple[Element, ...] = ()
+    spared: tuple[Element, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """A finding that no allowed change removes.
+
+    Attributes
+    ----------
+    reason
+        ``itself``: the source is the leak, only another role helps. ``not-allowed``: a way has no place for a change.
+    way
+        That way.
+    """
+
+    finding: Finding
+    reason: str
+    way: tuple[Element, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Proposal:
+    """The cheapest changes that remove the open findings of some categories.
+
+    Attributes
+    ----------
+    categories
+        Names.
+    removed
+        Findings that the steps remove.
+    kept
+        Findings that stay.
+    steps
+        Reviews, filters, DENY lines; empty if nothing can be removed, or if no proposal could be proven.
+    lower
+        No set of such changes that removes them costs less; the steps are the cheapest if they cost as much.
+    proven
+        Whether a new analysis with the steps applied has no open finding of the categories but those kept.
+    verdict
+        Of that analysis, which is about all categories that were asked for.
+    affected
+        Who gets less than before, once the reviews are done.
+    """
+
+    categories: tuple[str, ...]
+    removed: tuple[Finding, ...]
+    kept: tuple[Kept, ...]
+    steps: tuple[Step, ...]
+    lower: int
+    proven: bool
+    verdict: Verdict
+    affected: tuple[Affected, ...] = ()
+
+    @property
+    def cost(self) -> int:
+        """The costs of all steps."""
+        return sum(step.cost for step in self.steps)
+
+
+def open_findings(analysis: Analysis) -> tuple[Finding, ...]:
+    """Return the findings that are neither dismissed nor accepted."""
+    return tuple(finding for finding in analysis.findings if not finding.dismissed and not finding.accepted)
+
+
+def mitigate(
+    system: System, analysis: Analysis, limits: Limits | None = None, budget: int = BUDGET
+) -> tuple[Proposal, ...]:
+    """Return a proposal per category with an open finding, in order, and one for all together where there are several.
+
+    Parameters
+    ----------
+    analysis
+        Of the system, by its options.
+    budget
+        Steps of the search for the cheapest set, see ``cuts``.
+    """
+    limits = limits or Limits()
+    names = list(dict.fromkeys(finding.category for finding in open_findings(analysis)))
+    wanted = [(name,) for name in names] + ([tuple(names)] if len(names) > 1 else [])
+    return tuple(_Work(system, analysis, limits, some).proposal(budget) for some in wanted)
+
+
+class _Work:
+    """The way to one proposal."""
+
+    def __init__(self, system: System, analysis: Analysis, limits: Limits, names: tuple[str, ...]) -> None:
+        self.system = system
+        self.analysis = analysis
+        self.names = names
+        self.net = Net.of(analysis.spread)
+        self.elements = analysis.graph.elements
+        self.number = {name: i for i, name in enumerate(analysis.spread.categories)}
+        self.wanted = frozenset(self.number[name] for name in names)
+        self.vertex = {element: v for v, element in enumerate(self.elements)}
+        self.findings = [f for f in open_findings(analysis) if f.category in names]
+        self.places = Places(analysis, limits, {self.vertex[f.leak] for f in self.findings}, system.open_ended)
+
+    def proposal(self, budget: int) -> Proposal:
+        """Find what to cut, cut it, and prove it."""
+        sources = sorted({self.vertex[finding.source] for finding in self.findings})
+        groups = [self._group(source) for source in sources]
+        everything = ways(self.net, groups, self.wanted)
+        options = changes(self.places, everything.arcs, self.system.denials)
+        kept = [kept for group in groups for kept in self._kept(group, options)]
+        stays = {kept.finding.id for kept in kept}
+        removed = tuple(finding for finding in self.findings if finding.id not in stays)
+        left = ways(self.net, self._grouped(groups, kept), self.wanted)
+        plain = Proposal(self.names, removed, tuple(kept), (), 0, proven=not removed, verdict=self.analysis.verdict)
+        if not removed:
+            return plain
+        for cut in cheapest(left, options, budget):
+            chosen = [(change, change.categories) for change in (options[n] for n in cut.chosen)]
+            proposal = self._proven(replace(plain, lower=cut.lower), _lean(left, chosen) if cut.sure else chosen)
+            if proposal.proven:
+                return proposal
+        return replace(plain, lower=cut.lower)
+
+    def _group(self, source: int) -> Group:
+        """What is decided of one source."""
+        accepted, others = set(), set()
+        for finding in self.analysis.findings:
+            at = (self.vertex[finding.leak], self.number[finding.category])
+            if self.vertex[finding.source] == source and at[1] in self.wanted:
+                if finding.accepted:
+                    accepted.add(at)
+                elif not finding.dismissed and not self._leaks(at):
+                    others.add(at)
+        begun = merged(self.analysis.spread.begins(source), len(self.number))
+        itself = {(source, i) for i in bits_of(begun) if self._leaks((source, i))}
+        return Group((source,), frozenset(accepted), frozenset(itself), frozenset(others))
+
+    def _leaks(self, at: At) -> bool:
+        leaks = merged(self.analysis.spread.leaks.get(at[0], 0), len(self.number))
+        return bool(leaks >> at[1] & 1)
+
+    def _kept(self, group: Group, options: Sequence[Change]) -> Iterable[Kept]:
+        """The findings of one source that no change removes, with a way on which none can be made."""
+        (source,) = group.sources
+        mine = {
+            (self.vertex[f.leak], self.number[f.category]): f for f in self.findings if self.vertex[f.source] == source
+        }
+        for at, finding in sorted(mine.items()):
+            if at[0] == source and len(finding.witness) == 1:
+                yield Kept(finding, ITSELF, (finding.source,))
+        network = ways(self.net, [group], self.wanted)
+        for at, way in open_ends(network, lambda arc: not any(change.cuts(arc) for change in options)):
+            if at in mine:
+                yield Kept(mine[at], NOT_ALLOWED, self._shown(source, network, way))
+
+    def _shown(self, source: int, network: Ways, way: Iterable[Arc]) -> tuple[Element, ...]:
+        shown = [self.elements[source]]
+        for arc in way:
+            element = self.elements[network.at[arc.head][0]] if arc.head in network.at else shown[-1]
+            if element.shown_as != shown[-1].shown_as:
+                shown.append(element)
+        return tuple(shown)
+
+    def _grouped(self, groups: Iterable[Group], kept: Iterable[Kept]) -> list[Group]:
+        """Sources of which the same is decided together: in one network, each flow is one arc."""
+        stays: dict[int, set[At]] = defaultdict(set)
+        for one in kept:
+            at = (self.vertex[one.finding.leak], self.number[one.finding.category])
+            stays[self.vertex[one.finding.source]].add(at)
+        together: dict[tuple[frozenset[At], ...], list[int]] = defaultdict(list)
+        for group in groups:
+            mine = frozenset(stays[group.sources[0]])
+            together[group.accepted, group.kept | mine, group.others - mine].append(group.sources[0])
+        return [Group(tuple(sources), *decided) for decided, sources in together.items()]
+
+    def _proven(self, plain: Proposal, chosen: Sequence[tuple[Change, frozenset[int]]]) -> Proposal:
+        """Apply the changes, analyse anew, and take the proposal only if nothing is left but what is kept."""
+        steps = tuple(self._step(change, categories) for change, categories in chosen)
+        after = self._analysed(steps)
+        before = {finding.id for finding in open_findings(self.analysis)}
+        stays = {kept.finding.id for kept in plain.kept}
+        left = {finding.id for finding in open_findings(after) if finding.category in self.names}
+        if not left <= stays or not {finding.id for finding in open_findings(after)} <= before:
+            return plain
+        reviewed = self._analysed([step for step in steps if step.kind == REVIEW])
+        return replace(plain, steps=steps, proven=True, verdict=after.verdict, affected=affected(reviewed, after))
+
+    def _step(self, change: Change, categories: frozenset[int]) -> Step:
+        flows = [self.analysis.graph.flows[f] for f in sorted(change.flows)]
+        if change.kind == DENY:
+            return Step(DENY, change.cost, grants=change.grants, readers=self._named(change.readers))
+        names = tuple(self.analysis.spread.categories[i] for i in sorted(categories))
+        if change.kind == REVIEW:
+            return Step(REVIEW, change.cost, names, channel=self.elements[min(change.channels)])
+        bits = sum(1 << i for i in categories)
+        readers = {reader for f in change.flows for reader in self.places.readers(f, bits)}
+        read = {f for flow in flows for f in self.places.out[flow.source] if self.elements[flow.source].is_channel}
+        others = {reader for f in read - change.flows for reader in self.places.readers(f, bits)} - readers
+        between = dict.fromkeys((self.elements[flow.source], self.elements[flow.target]) for flow in flows)
+        return Step(
+            FILTER, change.cost, names, tuple(between), readers=self._named(readers), spared=self._named(others),
+            grants=tuple(dict.fromkeys(grant for flow in flows for grant in flow.grants)),
+        )  # fmt: skip
+
+    def _named(self, vertices: Iterable[int]) -> tuple[Element, ...]:
+        return tuple(self.elements[vertex] for vertex in sorted(vertices))
+
+    def _analysed(self, steps: Iterable[Step]) -> Analysis:
+        """Analyse the system with some steps applied."""
+        steps = list(steps)
+        grants = [grant for step in steps if step.kind == DENY for grant in step.grants]
+        graph, bound = self.system.deny(grants) if grants else (self.system.graph, self.system.bound)
+        return analyse(graph, _with(graph, bound, steps), self.system.hierarchy, self.system.options)
+
+
+def _lean(network: Ways, chosen: Sequence[tuple[Change, frozenset[int]]]) -> list[tuple[Change, frozenset[int]]]:
+    """The same changes, filters and reviews about no more categories than they have to be."""
+    lean = list(chosen)
+    for place, (change, categories) in enumerate(lean):
+        for i in sorted(categories) if change.kind != DENY else ():
+            less = lean[place][1] - {i}
+            tried = [*lean[:place], (change, less), *lean[place + 1 :]]
+            if less and a_way(network, _passable(tried)) is None:
+                lean = tried
+    return lean
+
+
+def _passable(chosen: Sequence[tuple[Change, frozenset[int]]]) -> Callable[[Arc], bool]:
+    made = [replace(change, categories=categories) for change, categories in chosen]
+    return lambda arc: not any(change.cuts(arc) for change in made)
+
+
+def _with(graph: FlowGraph, bound: Bound, steps: Iterable[Step]) -> Bound:
+    """The statements of a system, and those that say what filters and reviews do."""
+    elements = dict(bound.elements)
+    flows = dict(bound.flows)
+    for step in steps:
+        never = Statement("never", step.categories, (1, EXACT), Place("proposal", 0))
+        ends = {(source.shown_as, target.shown_as) for source, target in step.between}
+        for index, flow in enumerate(graph.flows if ends else ()):
+            if (graph.elements[flow.source].shown_as, graph.elements[flow.target].shown_as) in ends:
+                flows[index] = (*flows.get(index, ()), never)
+        for vertex, element in enumerate(graph.elements if step.channel else ()):
+            if step.channel and element.identity == step.channel.identity:
+                elements[vertex] = (*elements.get(vertex, ()), never)
+    return Bound(dict(sorted(elements.items())), dict(sorted(flows.items())), bound.through)

@@ -1,0 +1,134 @@
+"""Grants set to DENY: which lines would cut some flows, and what else would go with them (rules S3 to S5).
+
+In: policies, the graph that they make, flows. Out: ``Denial``s; policies with some grants set to DENY. A DENY holds for
+its enclave and direction, and for all that its name covers; it takes names out of the enclave's wildcards.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.changes import Denial
+from rosprivacy.ingest.names import covers, endpoints, is_pattern, overlaps
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Iterator, Sequence
+
+    from rosprivacy.analysis.model import FlowGraph, Grant, Policy
+
+Part = tuple[str, bool, str]  # enclave, whether it writes, DDS name or expression
+
+
+def with_denied(policies: Iterable[Policy], grants: Collection[Grant]) -> tuple[Policy, ...]:
+    """Return policies with some grants set to DENY."""
+    chosen = set(grants)
+    return tuple(
+        replace(policy, grants=tuple(replace(g, allow=False) if g in chosen else g for g in policy.grants))
+        for policy in policies
+    )
+
+
+def denials(policies: Iterable[Policy], graph: FlowGraph, flows: Collection[int]) -> tuple[Denial, ...]:
+    """Return the lines that would cut or touch some flows if they were set to DENY, one of those that do the same.
+
+    A flow that no single line cuts (its node stands in several enclaves, or an action is granted by its parts) has
+    a set of lines of its own.
+
+    Notes
+    -----
+    O(lines · flows) within an enclave for lines with wildcards; the others are looked up by name.
+    """
+    rights = _Rights(graph)
+    wanted = sorted(flows)
+    first = {grant for f in wanted for grant in graph.flows[f].grants}
+    lines = [grant for policy in policies for grant in policy.grants if grant.allow]
+    found: dict[frozenset[Part], Denial] = {}
+    for grant in sorted(dict.fromkeys(lines), key=lambda grant: grant not in first):
+        parts = _denied(grant)
+        if parts not in found and rights.concerned(parts, wanted):
+            found[parts] = rights.denial((grant,), parts)
+    single = list(found.items())
+    for f in wanted:
+        if rights.parts[f] and not any(f in denial.flows for _, denial in single):
+            several = _together(rights.parts[f], single)
+            parts = frozenset(part for one, _ in several for part in one)
+            grants = tuple(grant for _, denial in several for grant in denial.grants)
+            found.setdefault(parts, rights.denial(grants, parts))
+    return tuple(found.values())
+
+
+def _denied(grant: Grant) -> frozenset[Part]:
+    """What an enclave may no longer do when a line is set to DENY."""
+    ends = endpoints(grant.role, grant.kind, grant.name)
+    return frozenset((grant.enclave, end.writes, end.dds) for end in ends)
+
+
+def _covered(part: Part, denied: Iterable[Part]) -> bool:
+    return any(one[:2] == part[:2] and covers(one[2], part[2]) for one in denied)
+
+
+def _touched(part: Part, denied: Iterable[Part]) -> bool:
+    return any(one[:2] == part[:2] and overlaps(one[2], part[2]) for one in denied)
+
+
+def _together(
+    parts: Iterable[Part], single: Sequence[tuple[frozenset[Part], Denial]]
+) -> list[tuple[frozenset[Part], Denial]]:
+    """Lines that together deny all parts of a flow: for each part that is left, the first that covers it."""
+    chosen: list[tuple[frozenset[Part], Denial]] = []
+    for part in parts:
+        if not any(_covered(part, one) for one, _ in chosen):
+            chosen.append(next(pair for pair in single if _covered(part, pair[0])))
+    return chosen
+
+
+class _Rights:
+    """By flow, what of which enclave allows it."""
+
+    def __init__(self, graph: FlowGraph) -> None:
+        self.graph = graph
+        self.parts = [tuple(dict.fromkeys(self._of(f))) for f in range(len(graph.flows))]
+        self.by_part: dict[Part, list[int]] = defaultdict(list)
+        self.matches: dict[int, list[int]] = defaultdict(list)
+        for f, parts in enumerate(self.parts):
+            for part in parts:
+                self.by_part[part].append(f)
+            flow = graph.flows[f]
+            if flow.role == "matches":
+                self.matches[flow.source].append(f)
+                self.matches[flow.target].append(f)
+        self.patterns = [part for part in self.by_part if is_pattern(part[2])]
+
+    def _of(self, f: int) -> Iterator[Part]:
+        flow = self.graph.flows[f]
+        writes = self.graph.elements[flow.target].is_channel
+        channel = self.graph.elements[flow.target if writes else flow.source]
+        for grant in flow.grants:
+            for end in endpoints(grant.role, grant.kind, grant.name):
+                if (end.writes, end.kind, end.name, end.leg) == (writes, channel.kind, channel.name, channel.leg):
+                    yield (grant.enclave, end.writes, end.dds)
+
+    def _near(self, denied: Iterable[Part]) -> Iterator[Part]:
+        """Parts that a denial may touch."""
+        for one in denied:
+            if is_pattern(one[2]):
+                yield from self.by_part
+            else:
+                yield from (part for part in (one, *self.patterns) if part in self.by_part)
+
+    def concerned(self, denied: frozenset[Part], flows: Iterable[int]) -> bool:
+        """Whether a denial touches one of some flows."""
+        return any(_touched(part, denied) for f in flows for part in self.parts[f])
+
+    def denial(self, grants: tuple[Grant, ...], denied: frozenset[Part]) -> Denial:
+        """What goes when some lines are set to DENY."""
+        near = [part for part in dict.fromkeys(self._near(denied)) if _touched(part, denied)]
+        flows = {f for part in near for f in self.by_part[part]}
+        gone = {f for f in flows if all(_covered(part, denied) for part in self.parts[f])}
+        touched = flows - gone
+        for f in flows:
+            ends = self.graph.flows[f].source, self.graph.flows[f].target
+            touched |= {other for end in ends if self.graph.elements[end].pattern for other in self.matches[end]}
+        return Denial(grants, frozenset(gone), frozenset(touched))
