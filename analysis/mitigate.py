@@ -14,10 +14,12 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.affected import affected
-from rosprivacy.analysis.changes import DENY, FILTER, REVIEW, Limits, Places, changes
+from rosprivacy.analysis.changes import DENY, FILTER, REVIEW, Limits, changes
 from rosprivacy.analysis.cuts import BUDGET, cheapest
 from rosprivacy.analysis.findings import Options, analyse
 from rosprivacy.analysis.model import Bound, Place, Statement
+from rosprivacy.analysis.places import Places
+from rosprivacy.analysis.proposals import ITSELF, NOT_ALLOWED, Kept, Proposal, Step
 from rosprivacy.analysis.search import Net
 from rosprivacy.analysis.spread import bits_of
 from rosprivacy.analysis.ways import Group, a_way, merged, open_ends, ways
@@ -25,13 +27,11 @@ from rosprivacy.analysis.ways import Group, a_way, merged, open_ends, ways
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 
-    from rosprivacy.analysis.affected import Affected
     from rosprivacy.analysis.changes import Change, Denial
     from rosprivacy.analysis.hierarchy import Hierarchy
-    from rosprivacy.analysis.model import Analysis, Element, Finding, FlowGraph, Grant, Verdict
+    from rosprivacy.analysis.model import Analysis, Element, Finding, FlowGraph, Grant
     from rosprivacy.analysis.ways import Arc, At, Ways
 
-ITSELF, NOT_ALLOWED = "itself", "not-allowed"
 EXACT = 1_000_000  # the specificity of a name that is spelt out
 
 
@@ -56,96 +56,6 @@ class System:
     denials: Callable[[Collection[int]], Sequence[Denial]]
     deny: Callable[[Collection[Grant]], tuple[FlowGraph, Bound]]
     open_ended: Mapping[str, frozenset[int]] = field(default_factory=dict)
-
-
-@dataclass(frozen=True, slots=True)
-class Step:
-    """One change of a proposal.
-
-    Attributes
-    ----------
-    kind
-        ``review``, ``filter`` or ``deny``.
-    cost
-        By the limits.
-    categories
-        That a filter has to end, or that a review has to find are not carried; empty for a DENY, which ends all.
-    between
-        (from, to) of a filter; several under the enforced view, where a right is the enclave's.
-    channel
-        To review.
-    grants
-        The lines behind the flows that are filtered, or to be set to DENY.
-    readers
-        Who gets filtered data, or loses data, directly.
-    spared
-        Of a filter behind a channel: who else reads the channel, and would get filtered data from a filter before it.
-    """
-
-    kind: str
-    cost: int
-    categories: tuple[str, ...] = ()
-    between: tuple[tuple[Element, Element], ...] = ()
-    channel: Element | None = None
-    grants: tuple[Grant, ...] = ()
-    readers: tuple[Element, ...] = ()
-    spared: tuple[Element, ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
-class Kept:
-    """A finding that no allowed change removes.
-
-    Attributes
-    ----------
-    reason
-        ``itself``: the source is the leak, only another role helps. ``not-allowed``: a way has no place for a change.
-    way
-        That way.
-    """
-
-    finding: Finding
-    reason: str
-    way: tuple[Element, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Proposal:
-    """The cheapest changes that remove the open findings of some categories.
-
-    Attributes
-    ----------
-    categories
-        Names.
-    removed
-        Findings that the steps remove.
-    kept
-        Findings that stay.
-    steps
-        Reviews, filters, DENY lines; empty if nothing can be removed, or if no proposal could be proven.
-    lower
-        No set of such changes that removes them costs less; the steps are the cheapest if they cost as much.
-    proven
-        Whether a new analysis with the steps applied has no open finding of the categories but those kept.
-    verdict
-        Of that analysis, which is about all categories that were asked for.
-    affected
-        Who gets less than before, once the reviews are done.
-    """
-
-    categories: tuple[str, ...]
-    removed: tuple[Finding, ...]
-    kept: tuple[Kept, ...]
-    steps: tuple[Step, ...]
-    lower: int
-    proven: bool
-    verdict: Verdict
-    affected: tuple[Affected, ...] = ()
-
-    @property
-    def cost(self) -> int:
-        """The costs of all steps."""
-        return sum(step.cost for step in self.steps)
 
 
 def open_findings(analysis: Analysis) -> tuple[Finding, ...]:
@@ -276,7 +186,8 @@ class _Work:
             return Step(DENY, change.cost, grants=change.grants, readers=self._named(change.readers))
         names = tuple(self.analysis.spread.categories[i] for i in sorted(categories))
         if change.kind == REVIEW:
-            return Step(REVIEW, change.cost, names, channel=self.elements[min(change.channels)])
+            part = self.elements[min(change.channels)]
+            return Step(REVIEW, change.cost, names, channel=replace(part, leg=""))
         bits = sum(1 << i for i in categories)
         readers = {reader for f in change.flows for reader in self.places.readers(f, bits)}
         read = {f for flow in flows for f in self.places.out[flow.source] if self.elements[flow.source].is_channel}

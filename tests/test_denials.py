@@ -22,8 +22,8 @@ from tests.test_findings import HIERARCHY, statement
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator
 
-    from rosprivacy.analysis.mitigate import Step
     from rosprivacy.analysis.model import Analysis, FlowGraph
+    from rosprivacy.analysis.proposals import Step
 
 ENCLAVES = ("/e1", "/e2")
 NODES = ("/n0", "/n1", "/n2", "/n3")

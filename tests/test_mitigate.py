@@ -12,15 +12,16 @@ from hypothesis import strategies as st
 from rosprivacy.analysis.changes import FILTER, REVIEW, Limits, Weights
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.findings import Options, analyse
-from rosprivacy.analysis.mitigate import NOT_ALLOWED, System, mitigate, open_findings
+from rosprivacy.analysis.mitigate import System, mitigate, open_findings
+from rosprivacy.analysis.proposals import NOT_ALLOWED
 from tests.test_findings import HIERARCHY, statement, systems
 from tests.test_findings import System as Random
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from rosprivacy.analysis.mitigate import Proposal
     from rosprivacy.analysis.model import Analysis, Bound, Element, FlowGraph
+    from rosprivacy.analysis.proposals import Proposal
 
 
 def no_denial(_: object) -> tuple[()]:

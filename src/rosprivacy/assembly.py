@@ -81,6 +81,8 @@ class Result:
     policies: tuple[Policy, ...]
     diagnostics: tuple[Diagnostic, ...]
     assumptions: dict[str, Any]
+    labels: tuple[Labels, ...] = ()
+    options: Options = field(default_factory=Options)
 
     def document(self) -> dict[str, Any]:
         """Return the JSON document of the contract."""
@@ -102,10 +104,12 @@ def run(policies: tuple[str, ...], labels: tuple[str, ...], settings: Settings) 
     graph = build(system, settings.view)
     files = _read_labels(labels, vocabulary, settings)
     bound = bind(graph, files)
-    analysis = analyse(graph, bound, vocabulary.hierarchy, Options(asked, settings.paths, settings.max_paths))
+    options = Options(asked, settings.paths, settings.max_paths)
+    analysis = analyse(graph, bound, vocabulary.hierarchy, options)
     said = tuple(d for policy in system for d in policy.diagnostics) + diagnostics
     said += tuple(d for file in files for d in file.diagnostics)
-    return Result(analysis, bound, vocabulary, system, said, _assumptions(graph, system, files, analysis, settings))
+    assumptions = _assumptions(graph, system, files, analysis, settings)
+    return Result(analysis, bound, vocabulary, system, said, assumptions, tuple(files), options)
 
 
 def run_stored(driver: Driver, settings: Settings) -> Result:

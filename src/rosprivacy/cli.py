@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 import rosprivacy
-from rosprivacy import cli_db, cli_graph
+from rosprivacy import cli_db, cli_graph, cli_mitigate
 from rosprivacy.analysis.errors import InputError, RosPrivacyError
 from rosprivacy.cli_options import (
     FailOn,
@@ -48,6 +48,7 @@ app.add_typer(cli_db.app, name="db", help="The private Neo4j: start it, stop it,
 app.command()(cli_graph.load)
 app.command()(cli_graph.unload)
 app.command()(cli_graph.query)
+app.command()(cli_mitigate.mitigate)
 
 
 @app.callback(invoke_without_command=True)
