@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.model import FlowGraph, Grant
     from rosprivacy.analysis.places import Places
-    from rosprivacy.analysis.ways import Arc
+    from rosprivacy.analysis.ways import Arc, At
 
 REVIEW, FILTER, DENY = "review", "filter", "deny"
 CHANGES = (REVIEW, FILTER, DENY)
@@ -71,7 +71,8 @@ class Limits:
     kinds
         Of changes that are allowed at all.
     critical
-        Nodes for which data may not come late: nothing on the way to them is filtered or cut.
+        Nodes for which data may not come late: nothing on the way to them is filtered or cut. What comes back from
+        a leak is not counted, as in rule S10.
     """
 
     weights: Weights = field(default_factory=Weights)
@@ -113,6 +114,8 @@ class Change:
         See ``Denial``.
     readers
         Vertices that get what went along the flows directly: filtered, or no longer.
+    private
+        Of a filter: whether no wildcard gets past it, see ``applied``.
     """
 
     kind: str
@@ -123,6 +126,7 @@ class Change:
     grants: tuple[Grant, ...] = ()
     touched: frozenset[int] = frozenset()
     readers: tuple[int, ...] = ()
+    private: bool = True
 
     def cuts(self, arc: Arc) -> bool:
         """Whether no data goes along an arc after this change."""
@@ -133,6 +137,21 @@ class Change:
     def may_cut(self, arc: Arc) -> bool:
         """Whether it cuts an arc, or may do so: certain to be true of all that it cuts."""
         return self.cuts(arc) or arc.flow in self.touched
+
+
+def uncut(changes: Iterable[Change]) -> Callable[[Arc], bool]:
+    """Return the test whether an arc is cut by none of some changes, made once for many arcs."""
+    flows: set[int] = set()
+    filtered: set[At] = set()
+    reviewed: set[At] = set()
+    for change in changes:
+        if change.kind == DENY:
+            flows.update(change.flows)
+        filtered.update((flow, i) for flow in change.flows for i in change.categories)
+        reviewed.update((channel, i) for channel in change.channels for i in change.categories)
+    return lambda arc: (
+        not (arc.flow in flows or (arc.flow, arc.category) in filtered or (arc.channel, arc.category) in reviewed)
+    )
 
 
 def changes(
@@ -182,12 +201,13 @@ def _filters(places: Places, by_flow: Mapping[int, set[int]]) -> Iterator[Change
     for flows in dict.fromkeys(_together(places.graph, wanted)):
         categories = frozenset(i for f in flows for i in by_flow.get(f, ()))
         factor = places.factor(FILTER, flows)
-        if factor is None or any(places.delays(f) or not places.private(f) for f in flows):
+        if factor is None or any(places.delays(f) for f in flows):
             continue
         bits = sum(1 << i for i in categories)
         readers = {reader for f in flows for reader in places.readers(f, bits)}
         cost = places.cost(places.limits.weights.filter, factor, readers)
-        yield Change(FILTER, cost, flows, categories=categories, readers=tuple(sorted(readers)))
+        private = all(places.private(f) for f in flows)
+        yield Change(FILTER, cost, flows, categories=categories, readers=tuple(sorted(readers)), private=private)
 
 
 def _together(graph: FlowGraph, wanted: Iterable[int]) -> Iterator[frozenset[int]]:
@@ -233,7 +253,8 @@ def _denied(places: Places, denials: Iterable[Denial]) -> Iterator[Change]:
         if factor is None or late or not denial.flows:
             continue
         readers = {reader for f in denial.flows for reader in places.readers(f)}
-        cost = places.cost(limits.weights.deny * len(denial.grants), factor, readers)
+        lines = len({(grant.place, grant.role, grant.name) for grant in denial.grants})
+        cost = places.cost(limits.weights.deny * lines, factor, readers)
         yield Change(
             DENY, cost, denial.flows, grants=denial.grants, touched=denial.touched, readers=tuple(sorted(readers))
         )

@@ -10,29 +10,28 @@ Source: the paper, section II-C, for the kinds of change and for naming who woul
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.affected import affected
-from rosprivacy.analysis.changes import DENY, FILTER, REVIEW, Limits, changes
+from rosprivacy.analysis.applied import applied, opened
+from rosprivacy.analysis.changes import DENY, FILTER, REVIEW, Limits, changes, uncut
 from rosprivacy.analysis.cuts import BUDGET, cheapest
 from rosprivacy.analysis.findings import Options, analyse
-from rosprivacy.analysis.model import Bound, Place, Statement
 from rosprivacy.analysis.places import Places
 from rosprivacy.analysis.proposals import ITSELF, NOT_ALLOWED, Kept, Proposal, Step
 from rosprivacy.analysis.search import Net
-from rosprivacy.analysis.spread import bits_of
+from rosprivacy.analysis.spread import bits_of, spread
 from rosprivacy.analysis.ways import Group, a_way, merged, open_ends, ways
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.changes import Change, Denial
+    from rosprivacy.analysis.cuts import Cut
     from rosprivacy.analysis.hierarchy import Hierarchy
-    from rosprivacy.analysis.model import Analysis, Element, Finding, FlowGraph, Grant
+    from rosprivacy.analysis.model import Analysis, Bound, Element, Finding, FlowGraph, Grant
     from rosprivacy.analysis.ways import Arc, At, Ways
-
-EXACT = 1_000_000  # the specificity of a name that is spelt out
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +45,7 @@ class System:
     deny
         Makes the graph and its statements anew with some grants set to DENY.
     open_ended
-        Per kind of channel the wildcards that cover a channel whatever it is called.
+        Says of a graph, per kind of channel, which wildcards cover a channel whatever it is called.
     """
 
     graph: FlowGraph
@@ -55,7 +54,7 @@ class System:
     options: Options
     denials: Callable[[Collection[int]], Sequence[Denial]]
     deny: Callable[[Collection[Grant]], tuple[FlowGraph, Bound]]
-    open_ended: Mapping[str, frozenset[int]] = field(default_factory=dict)
+    open_ended: Callable[[FlowGraph], Mapping[str, frozenset[int]]] = lambda _: {}
 
 
 def open_findings(analysis: Analysis) -> tuple[Finding, ...]:
@@ -94,7 +93,8 @@ class _Work:
         self.wanted = frozenset(self.number[name] for name in names)
         self.vertex = {element: v for v, element in enumerate(self.elements)}
         self.findings = [f for f in open_findings(analysis) if f.category in names]
-        self.places = Places(analysis, limits, {self.vertex[f.leak] for f in self.findings}, system.open_ended)
+        self.wild = system.open_ended(analysis.graph)
+        self.places = Places(analysis, limits, {self.vertex[f.leak] for f in self.findings}, self.wild)
 
     def proposal(self, budget: int) -> Proposal:
         """Find what to cut, cut it, and prove it."""
@@ -109,12 +109,39 @@ class _Work:
         plain = Proposal(self.names, removed, tuple(kept), (), 0, proven=not removed, verdict=self.analysis.verdict)
         if not removed:
             return plain
-        for cut in cheapest(left, options, budget):
+        lower = 0
+        for cut, network in self._cuts(left, options, groups, kept, budget):
+            lower = lower or cut.lower  # that of the first, in which no wildcard gets past a filter
             chosen = [(change, change.categories) for change in (options[n] for n in cut.chosen)]
-            proposal = self._proven(replace(plain, lower=cut.lower), _lean(left, chosen) if cut.sure else chosen)
+            proposal = self._proven(replace(plain, lower=lower), _lean(network, chosen) if cut.sure else chosen)
             if proposal.proven:
                 return proposal
-        return replace(plain, lower=cut.lower)
+        return replace(plain, lower=lower)
+
+    def _cuts(
+        self, left: Ways, options: Sequence[Change], groups: Sequence[Group], kept: Sequence[Kept], budget: int
+    ) -> Iterator[tuple[Cut, Ways]]:
+        """Cuts to try, the cheapest first: without regard to wildcards that get past filters, then with."""
+        yield from ((cut, left) for cut in cheapest(left, options, budget))
+        if all(change.private for change in options):
+            return
+        later: list[tuple[Cut, Ways]] = []
+        private = [n for n, change in enumerate(options) if change.private]
+        for network, numbers in ((left, private), (self._opened(options, groups, kept), range(len(options)))):
+            some = [options[n] for n in numbers]
+            if a_way(network, uncut(some)) is None:
+                cuts = cheapest(network, some, budget)
+                later += [(replace(cut, chosen=tuple(numbers[n] for n in cut.chosen)), network) for cut in cuts]
+        yield from sorted(later, key=lambda pair: pair[0].cost)
+
+    def _opened(self, options: Iterable[Change], groups: Iterable[Group], kept: Iterable[Kept]) -> Ways:
+        """The ways that there are when wildcards get past all filters that could be made."""
+        graph, bound = self.system.graph, self.system.bound
+        filtered = sorted({flow for change in options if not change.private for flow in change.flows})
+        grown = spread(*opened(graph, bound, filtered, self.wild, bound), self.system.hierarchy)
+        known = {group.sources for group in groups}
+        others = [self._group(v) for v in grown.facts if grown.begins(v) and (v,) not in known]
+        return ways(Net.of(grown), self._grouped([*groups, *others], kept), self.wanted)
 
     def _group(self, source: int) -> Group:
         """What is decided of one source."""
@@ -144,7 +171,7 @@ class _Work:
             if at[0] == source and len(finding.witness) == 1:
                 yield Kept(finding, ITSELF, (finding.source,))
         network = ways(self.net, [group], self.wanted)
-        for at, way in open_ends(network, lambda arc: not any(change.cuts(arc) for change in options)):
+        for at, way in open_ends(network, uncut(options)):
             if at in mine:
                 yield Kept(mine[at], NOT_ALLOWED, self._shown(source, network, way))
 
@@ -206,7 +233,8 @@ class _Work:
         steps = list(steps)
         grants = [grant for step in steps if step.kind == DENY for grant in step.grants]
         graph, bound = self.system.deny(grants) if grants else (self.system.graph, self.system.bound)
-        return analyse(graph, _with(graph, bound, steps), self.system.hierarchy, self.system.options)
+        changed = applied(graph, bound, steps, self.system.open_ended(graph))
+        return analyse(*changed, self.system.hierarchy, self.system.options)
 
 
 def _lean(network: Ways, chosen: Sequence[tuple[Change, frozenset[int]]]) -> list[tuple[Change, frozenset[int]]]:
@@ -216,27 +244,6 @@ def _lean(network: Ways, chosen: Sequence[tuple[Change, frozenset[int]]]) -> lis
         for i in sorted(categories) if change.kind != DENY else ():
             less = lean[place][1] - {i}
             tried = [*lean[:place], (change, less), *lean[place + 1 :]]
-            if less and a_way(network, _passable(tried)) is None:
+            if less and a_way(network, uncut([replace(one, categories=some) for one, some in tried])) is None:
                 lean = tried
     return lean
-
-
-def _passable(chosen: Sequence[tuple[Change, frozenset[int]]]) -> Callable[[Arc], bool]:
-    made = [replace(change, categories=categories) for change, categories in chosen]
-    return lambda arc: not any(change.cuts(arc) for change in made)
-
-
-def _with(graph: FlowGraph, bound: Bound, steps: Iterable[Step]) -> Bound:
-    """The statements of a system, and those that say what filters and reviews do."""
-    elements = dict(bound.elements)
-    flows = dict(bound.flows)
-    for step in steps:
-        never = Statement("never", step.categories, (1, EXACT), Place("proposal", 0))
-        ends = {(source.shown_as, target.shown_as) for source, target in step.between}
-        for index, flow in enumerate(graph.flows if ends else ()):
-            if (graph.elements[flow.source].shown_as, graph.elements[flow.target].shown_as) in ends:
-                flows[index] = (*flows.get(index, ()), never)
-        for vertex, element in enumerate(graph.elements if step.channel else ()):
-            if step.channel and element.identity == step.channel.identity:
-                elements[vertex] = (*elements.get(vertex, ()), never)
-    return Bound(dict(sorted(elements.items())), dict(sorted(flows.items())), bound.through)

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.applied import opens
 from rosprivacy.analysis.spread import bits_of
 from rosprivacy.analysis.ways import merged
 
@@ -26,7 +27,7 @@ class Places:
     ----------
     leaks
         Vertices; that they get filtered data is what is wanted, and costs nothing.
-    open_ended
+    wild
         Per kind of channel the wildcards that cover a channel whatever it is called.
     """
 
@@ -35,9 +36,9 @@ class Places:
         analysis: Analysis,
         limits: Limits,
         leaks: Collection[int],
-        open_ended: Mapping[str, frozenset[int]],
+        wild: Mapping[str, frozenset[int]],
     ) -> None:
-        self.open_ended = open_ended
+        self.wild = wild
         self.spread = analysis.spread
         self.graph = analysis.graph
         self.k = len(self.spread.categories)
@@ -71,7 +72,7 @@ class Places:
         return found
 
     def _before_critical(self) -> frozenset[At]:
-        """Where (vertex, category) arrives and goes on to a time-critical node, or is at one."""
+        """Where (vertex, category) arrives and goes on to a time-critical node, not through a leak, or is at one."""
         incoming: dict[int, list[int]] = defaultdict(list)
         for index, flow in enumerate(self.graph.flows if self.limits.critical else ()):
             if self.along(index):
@@ -89,11 +90,14 @@ class Places:
         return frozenset(late)
 
     def _made_into(self, vertex: int, i: int) -> Iterator[int]:
-        """The categories that leave a vertex as i when they arrive there."""
+        """The categories that leave a vertex as i when they arrive there; not where it or they leak."""
+        leaks = merged(self.spread.leaks.get(vertex, 0), self.k)
+        if leaks >> i & 1:
+            return
         if merged(self.spread.keeps.get(vertex, self.spread.all_bits), self.k) >> i & 1:
             yield i
         for before, after in self.spread.derives.get(vertex, ()):
-            if after % self.k == i:
+            if after % self.k == i and not leaks >> before % self.k & 1:
                 yield before % self.k
 
     def delays(self, flow: int) -> bool:
@@ -102,23 +106,8 @@ class Places:
         return any((target, i) in self.late for i in bits_of(self.along(flow)))
 
     def private(self, flow: int) -> bool:
-        """Whether a filter in a flow can have a channel of its own to the other side.
-
-        Before a channel it needs one that no wildcard reads, behind it one that no wildcard writes data to.
-        """
-        ends = self.graph.flows[flow].source, self.graph.flows[flow].target
-        channel = next((v for v in ends if self.graph.elements[v].is_channel), None)
-        if channel is None:
-            return True
-        before = channel == ends[1]
-        wild = self.open_ended.get(self.graph.elements[channel].kind, frozenset())
-        return not any(
-            self.graph.elements[v].side == "read" if before else self.spread.leaves.get(v) and self._written(v)
-            for v in wild
-        )
-
-    def _written(self, vertex: int) -> bool:
-        return self.graph.elements[vertex].side == "write"
+        """Whether a filter in a flow can have a channel of its own, which no wildcard reads or writes data past."""
+        return not any(self.spread.leaves.get(tail) for tail, _ in opens(self.graph, flow, self.wild))
 
     def factor(self, kind: str, flows: frozenset[int], channels: frozenset[int] = frozenset()) -> int | None:
         """How many times as dear a change is at some places; None if it may not be made there."""

@@ -16,7 +16,7 @@ from rosprivacy.ingest.names import covers, endpoints, is_pattern, overlaps
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Sequence
 
-    from rosprivacy.analysis.model import FlowGraph, Grant, Policy
+    from rosprivacy.analysis.model import FlowGraph, Grant, Place, Policy
 
 Part = tuple[str, bool, str]  # enclave, whether it writes, DDS name or expression
 
@@ -31,10 +31,10 @@ def with_denied(policies: Iterable[Policy], grants: Collection[Grant]) -> tuple[
 
 
 def denials(policies: Iterable[Policy], graph: FlowGraph, flows: Collection[int]) -> tuple[Denial, ...]:
-    """Return the lines that would cut or touch some flows if they were set to DENY, one of those that do the same.
+    """Return the grants that would cut or touch some flows if they were set to DENY, one of those that do the same.
 
-    A flow that no single line cuts (its node stands in several enclaves, or an action is granted by its parts) has
-    a set of lines of its own.
+    Grants are taken one by one, for their enclave; a line that several profiles include also as a whole; and for a
+    flow that none of these cuts (its node stands in several enclaves, or an action is granted by its parts) a set.
 
     Notes
     -----
@@ -42,13 +42,18 @@ def denials(policies: Iterable[Policy], graph: FlowGraph, flows: Collection[int]
     """
     rights = _Rights(graph)
     wanted = sorted(flows)
+    concerned = {part for f in wanted for part in rights.parts[f]}
     first = {grant for f in wanted for grant in graph.flows[f].grants}
     lines = [grant for policy in policies for grant in policy.grants if grant.allow]
     found: dict[frozenset[Part], Denial] = {}
-    for grant in sorted(dict.fromkeys(lines), key=lambda grant: grant not in first):
-        parts = _denied(grant)
-        if parts not in found and rights.concerned(parts, wanted):
-            found[parts] = rights.denial((grant,), parts)
+    ordered = sorted(dict.fromkeys(lines), key=lambda grant: grant not in first)
+    by_line: dict[tuple[Place, str, str], list[Grant]] = defaultdict(list)
+    for grant in ordered:
+        by_line[grant.place, grant.role, grant.name].append(grant)
+    for some in (*([grant] for grant in ordered), *by_line.values()):
+        parts = frozenset(part for grant in some for part in _denied(grant))
+        if parts not in found and not concerned.isdisjoint(rights.touched(parts)):
+            found[parts] = rights.denial(tuple(some), parts)
     single = list(found.items())
     for f in wanted:
         if rights.parts[f] and not any(f in denial.flows for _, denial in single):
@@ -110,22 +115,15 @@ class _Rights:
                 if (end.writes, end.kind, end.name, end.leg) == (writes, channel.kind, channel.name, channel.leg):
                     yield (grant.enclave, end.writes, end.dds)
 
-    def _near(self, denied: Iterable[Part]) -> Iterator[Part]:
-        """Parts that a denial may touch."""
+    def touched(self, denied: Iterable[Part]) -> Iterator[Part]:
+        """The parts that a denial touches."""
         for one in denied:
-            if is_pattern(one[2]):
-                yield from self.by_part
-            else:
-                yield from (part for part in (one, *self.patterns) if part in self.by_part)
-
-    def concerned(self, denied: frozenset[Part], flows: Iterable[int]) -> bool:
-        """Whether a denial touches one of some flows."""
-        return any(_touched(part, denied) for f in flows for part in self.parts[f])
+            near = self.by_part if is_pattern(one[2]) else (one, *self.patterns)
+            yield from (part for part in near if part in self.by_part and _touched(part, (one,)))
 
     def denial(self, grants: tuple[Grant, ...], denied: frozenset[Part]) -> Denial:
         """What goes when some lines are set to DENY."""
-        near = [part for part in dict.fromkeys(self._near(denied)) if _touched(part, denied)]
-        flows = {f for part in near for f in self.by_part[part]}
+        flows = {f for part in self.touched(denied) for f in self.by_part[part]}
         gone = {f for f in flows if all(_covered(part, denied) for part in self.parts[f])}
         touched = flows - gone
         for f in flows:

@@ -55,7 +55,8 @@ class _Span:
     start: int
     parent: _Span | None
     end: int = 0
-    close: int = 0  # where the end tag begins; the same as start for <a/>
+    close: int = 0  # where the end tag begins
+    empty: bool = False  # <a/>
     names: int = 0  # of a group
 
 
@@ -96,7 +97,10 @@ def _changed(policy: Policy, grants: list[Grant]) -> dict[str, tuple[bytes, byte
     added = Counter(map(_key, policy.grants)) + Counter(_key(replace(grant, allow=False)) for grant in grants)
     for change, expected in ((_move, moved), (_add, added)):
         after = dict(before)
-        upwards = sorted(grants, key=lambda grant: grant.place.line, reverse=True)  # what is above keeps its line
+        once = {(g.place, g.role, g.kind, g.name, g.node): g for g in grants}  # a profile that is included twice
+        upwards = sorted(
+            once.values(), key=lambda grant: grant.place.line, reverse=True
+        )  # what is above keeps its line
         if all(change(after, policy, grant) for grant in upwards) and _grants(policy, after) == expected:
             return {name: (before[name], data) for name, data in after.items() if data != before[name]}
     return None
@@ -155,7 +159,7 @@ def _add(texts: dict[str, bytes], policy: Policy, grant: Grant) -> bool:
     """Add a group that denies to the end of the profile."""
     for place in (p.place for p in policy.profiles if (p.enclave, p.node) == (grant.enclave, grant.node)):
         text = _read(place.file, texts[place.file])
-        for profile in (s for s in text.spans if s.tag == "profile" and s.close > s.start):
+        for profile in (s for s in text.spans if s.tag == "profile" and not s.empty):
             namespace, node = profile.attributes.get("ns", ""), profile.attributes.get("node", "")
             joined = namespace + node if namespace.endswith("/") else f"{namespace}/{node}"
             opened = text.data.count(b"\n", 0, profile.start) + 1
@@ -213,8 +217,10 @@ def _read(name: str, data: bytes) -> _Text:
 
     def end(_: str) -> None:
         span = stack.pop()
+        opened = _after_tag(data, span.start)
+        span.empty = data[opened - 2 : opened] == b"/>"
         span.close = parser.CurrentByteIndex
-        span.end = data.index(b">", span.close) + 1 if span.close > span.start else _after_tag(data, span.start)
+        span.end = opened if span.empty else data.index(b">", span.close) + 1
 
     parser.StartElementHandler, parser.EndElementHandler = start, end
     parser.Parse(data, True)
@@ -222,7 +228,7 @@ def _read(name: str, data: bytes) -> _Text:
 
 
 def _after_tag(data: bytes, start: int) -> int:
-    """Where an empty-element tag ends; values of attributes may have a > in them."""
+    """Where a start tag ends; values of attributes may have a > in them."""
     match = re.compile(rb"<(?:[^\"'>]|\"[^\"]*\"|'[^']*')*>").match(data, start)
     return match.end() if match else start
 

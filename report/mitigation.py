@@ -28,6 +28,12 @@ if TYPE_CHECKING:
 
 FORMAT = "rosprivacy.mitigation/1"
 SECTIONS = {"topic": "topics", "service": "services", "action": "actions"}
+LESS = {
+    "unread": "can no longer read",
+    "unwritten": "can no longer write to",
+    "narrowed": "gets fewer names through",
+}
+SHOWN, PARTS = 12, 4  # elements that get less, and what of each
 Line = tuple[str, str]  # text, style
 
 
@@ -176,8 +182,9 @@ def _of_proposal(proposal: Mapping[str, Any]) -> Iterator[Line]:
     elif removes:
         yield f"{title}: {_count(len(steps), 'change')} {_verb(steps)} {_count(removes, 'finding')}", "bold"
         yield f"   {_certainty(proposal)}", "dim"
-        for number, step in enumerate(steps, 1):
-            yield from _of_step(number, step)
+        yield from _reviews([step for step in steps if step["kind"] == REVIEW])
+        for step in steps:
+            yield from _of_step(step) if step["kind"] != REVIEW else ()
         yield from _breaks(proposal)
         stays = f"no open finding of {_these(names)} is left" if not kept else "only what is listed below is left"
         reviews = any(step["kind"] == REVIEW for step in steps)
@@ -204,39 +211,57 @@ def _certainty(proposal: Mapping[str, Any]) -> str:
     return f"cost {cost}; whether a cheaper one does it is not known, but none costs less than {least}"
 
 
-def _of_step(number: int, step: Mapping[str, Any]) -> Iterator[Line]:
-    kinds = ", ".join(step["categories"])
-    if step["kind"] == REVIEW:
-        yield f"   {number}. Review {_of(step['channel'])}: does it carry {kinds}?", "bold"
-        yield f"      If a person finds that it does not, this label closes the way:  {_written(step['label'])}", ""
-        yield "      If it does, label it sensitive, and ask again.", ""
-        return
+def _reviews(steps: Sequence[Mapping[str, Any]]) -> Iterator[Line]:
+    """Reviews first: what they find decides on the rest."""
+    for kinds in dict.fromkeys(", ".join(step["categories"]) for step in steps):
+        alike = [step for step in steps if ", ".join(step["categories"]) == kinds]
+        if len(alike) == 1:
+            yield f"   Review {_of(alike[0]['channel'])}: does it carry {kinds}?", "bold"
+            yield "      If a person finds that it does not, this label closes the way:", ""
+        else:
+            yield f"   Review {len(alike)} channels: does any of them carry {kinds}?", "bold"
+            yield "      If a person finds that none does, these labels close the ways:", ""
+        for section in SECTIONS.values():
+            labels = [step["label"][section] for step in alike if section in step["label"]]
+            yield from [(f"         {section}:", "")] if labels else ()
+            yield from ((f"           {_written(label)}", "") for label in labels)
+        yield "      What does carry it is labelled sensitive; then ask again.", ""
+
+
+def _of_step(step: Mapping[str, Any]) -> Iterator[Line]:
     if step["kind"] == FILTER:
-        yield from _filter(number, step, kinds)
-    if step["kind"] == DENY:
-        yield f"   {number}. Set to DENY", "bold"
-    for grant in step["policy"]:
-        what = f"{grant['role']} {grant['kind']} {shown(grant['name'])}"
-        place = f"{shown(grant['file'])}:{grant['line']}"
-        yield f"      {place}  {what}  (enclave {shown(grant['enclave'])}, profile {shown(grant['profile'])})", "dim"
+        yield from _filter(step)
+    else:
+        yield "   Set to DENY", "bold"
+    yield from _policy(step["policy"])
     if step["kind"] == DENY:
         yield "      A DENY holds for the whole enclave.", ""
 
 
+def _policy(grants: Iterable[Mapping[str, Any]]) -> Iterator[Line]:
+    """The lines, each once: several enclaves may include it."""
+    lines: dict[str, list[str]] = {}
+    for grant in grants:
+        what = f"{grant['role']} {grant['kind']} {shown(grant['name'])}  (profile {shown(grant['profile'])}, enclave"
+        lines.setdefault(f"{shown(grant['file'])}:{grant['line']}  {what}", []).append(shown(grant["enclave"]))
+    for line, enclaves in lines.items():
+        yield f"      {line} {', '.join(enclaves)})", "dim"
+
+
 def _written(label: Mapping[str, Any]) -> str:
-    """A label as YAML on one line; JSON's way of quoting is YAML's too."""
-    ((section, named),) = label.items()
-    ((name, said),) = named.items()
+    """A label as a line of YAML; JSON's way of quoting is YAML's too."""
+    ((name, said),) = label.items()
     plain = name.isascii() and all(c.isalnum() or c in "/_-." for c in name)
-    return f"{section}: {{{name if plain else json.dumps(name)}: {{never: [{', '.join(said['never'])}]}}}}"
+    return f"{name if plain else json.dumps(name)}: {{never: [{', '.join(said['never'])}]}}"
 
 
-def _filter(number: int, step: Mapping[str, Any], kinds: str) -> Iterator[Line]:
+def _filter(step: Mapping[str, Any]) -> Iterator[Line]:
     """Where the filter stands, who gets what leaves it, and whom it would reach on the other side of the channel."""
     ends = [list(dict.fromkeys(_of(one[end]) for one in step["between"])) for end in ("from", "to")]
     source, target = (end[0] if len(end) == 1 else f"any of {', '.join(end)}" for end in ends)
     whole = len(step["between"]) > 1
-    yield f"   {number}. Put a filter between {source} and {target}", "bold"
+    kinds = ", ".join(step["categories"])
+    yield f"   Put a filter between {source} and {target}", "bold"
     yield f"      It has to end {kinds} (anonymise, aggregate or drop; pseudonymised data is still personal).", ""
     if whole:
         yield "      In an enclave of its own: the right to the data before it is taken from the whole enclave.", ""
@@ -250,15 +275,14 @@ def _breaks(proposal: Mapping[str, Any]) -> Iterator[Line]:
     """All that gets less, also further on."""
     if proposal["affected"]:
         yield "   What gets less than today:", ""
-    for less in proposal["affected"]:
+    for less in proposal["affected"][:SHOWN]:
         parts = [f"without {', '.join(one['categories'])} from {_of(one['from'])}" for one in less["filtered"]]
-        for key, verb in (
-            ("unread", "can no longer read"),
-            ("unwritten", "can no longer write to"),
-            ("narrowed", "gets fewer names through"),
-        ):
-            parts += [f"{verb} {', '.join(map(_of, less[key]))}"] if less[key] else []
-        yield f"      {_marked(less['element'])}: {'; '.join(parts)}", ""
+        for key, verb in LESS.items():
+            parts += [f"{verb} {_of(one)}" for one in less[key]]
+        more = [f"{len(parts) - PARTS} more"] if len(parts) > PARTS else []
+        yield f"      {_marked(less['element'])}: {'; '.join([*parts[:PARTS], *more])}", ""
+    if len(proposal["affected"]) > SHOWN:
+        yield f"      … and {len(proposal['affected']) - SHOWN} more (--format json has all)", "dim"
 
 
 def _kept(one: Mapping[str, Any]) -> str:

@@ -66,7 +66,7 @@ def system_of(some: Collection[Policy], said: Said, view: str) -> System:
     graph, bound = made(some)
     return System(
         graph, bound, HIERARCHY, Options(), lambda flows: denials(some, graph, flows),
-        lambda grants: made(with_denied(some, grants)), open_ended(graph),
+        lambda grants: made(with_denied(some, grants)), open_ended,
     )  # fmt: skip
 
 

@@ -86,7 +86,7 @@ def run_mitigation(result: Result, limits_file: str | None = None, kinds: Collec
 
     system = System(
         graph, result.bound, result.vocabulary.hierarchy, result.options,
-        lambda flows: denials(result.policies, graph, flows), deny, open_ended(graph),
+        lambda flows: denials(result.policies, graph, flows), deny, open_ended,
     )  # fmt: skip
     proposals = mitigate(system, result.analysis, limits)
     grants = list(_denied(proposals[-1:]))
