@@ -223,11 +223,13 @@ def _together(graph: FlowGraph, wanted: Iterable[int]) -> Iterator[frozenset[int
         if flow.grants:
             by_channel[_channel(graph, index)].add(index)
     for index in wanted:
-        flows = by_ends[_ends(graph, index)]
-        if graph.view == "enforced" and graph.flows[index].grants:
-            enclaves = {grant.enclave for grant in graph.flows[index].grants}
-            near = by_channel[_channel(graph, index)]
-            flows = flows | {f for f in near if {grant.enclave for grant in graph.flows[f].grants} <= enclaves}
+        flows, more = set[int](), by_ends[_ends(graph, index)]
+        while more - flows:
+            flows |= more
+            enclaves = {grant.enclave for f in flows for grant in graph.flows[f].grants}
+            near = by_channel[_channel(graph, index)] if graph.view == "enforced" and enclaves else ()
+            more = {f for f in near if {grant.enclave for grant in graph.flows[f].grants} <= enclaves}
+            more = {other for f in more for other in by_ends[_ends(graph, f)]}
         yield frozenset(flows)
 
 

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.decisions import Case
 from rosprivacy.analysis.model import (
     Analysis,
     Carried,
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Bound, FlowGraph, OpenQuestion
 
 MAX_PATHS = 100
+DISCLOSURE = "disclosure"
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,14 +55,14 @@ class Options:
     max_paths
         Bound on further paths per finding.
     accepts
-        Whether a person has accepted that a category of a source reaches a leak (category, source, leak), and in
-        which form (pseudonymised); such a leak hides nothing that lies behind it (rule S10).
+        Whether a person has accepted that a category of a source reaches a leak, in one form; such a leak hides
+        nothing that lies behind it (rule S10).
     """
 
     categories: Collection[str] | None = None
     paths: str = WITNESS
     max_paths: int = MAX_PATHS
-    accepts: Callable[[str, Element, Element, bool], bool] | None = None
+    accepts: Callable[[Case], bool] | None = None
 
 
 def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Options | None = None) -> Analysis:
@@ -156,13 +158,14 @@ def _accepted(found: Spread, source: int, reached: Mapping[int, int], options: O
     """Leak -> the bits that a person has accepted there, of those that come from a source."""
     if options.accepts is None:
         return {}
-    accepts, elements, k = options.accepts, found.graph.elements, len(found.categories)
+    k = len(found.categories)
+    from_, elements = found.graph.elements[source], found.graph.elements
     accepted: dict[int, int] = defaultdict(int)
     for leak, bits in reached.items():
         for name in found.names(bits):
-            i = found.categories.index(name)
+            i, to = found.categories.index(name), elements[leak]
             for plane in (False, True):
-                if accepts(name, elements[source], elements[leak], plane):
+                if options.accepts(Case(finding_id(name, from_, to), DISCLOSURE, name, from_, to, plane)):
                     accepted[leak] |= 1 << i + k * plane
     return accepted
 
@@ -209,7 +212,7 @@ def _finding(
     shown, steps = _shown(net, path)
     return Finding(
         id=finding_id(category, elements[source], elements[leak]),
-        kind="disclosure",
+        kind=DISCLOSURE,
         category=category,
         pseudonymised=bit >= k,
         source=elements[source],

@@ -119,6 +119,7 @@ def _finding(finding: Finding) -> dict[str, Any]:
         "disjoint_paths": finding.disjoint_paths,
         "through": [element_dict(element) for element in finding.through],
         "dismissed": finding.dismissed,
+        "accepted": finding.accepted,
     }
     if finding.paths:
         shown["paths"] = [[element_dict(element) for element in path] for path in finding.paths]

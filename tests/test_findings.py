@@ -10,6 +10,7 @@ import networkx as nx
 from hypothesis import given
 from hypothesis import strategies as st
 
+from rosprivacy.analysis.decisions import Case
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.findings import Options, analyse
 from rosprivacy.analysis.hierarchy import Hierarchy
@@ -184,8 +185,8 @@ def test_an_accepted_leak_hides_nothing_behind_it(system: System, data: st.DataO
     keys = [(f.category, number[f.source], number[f.leak]) for f in plain.findings]
     hidden_only = data.draw(st.dictionaries(st.sampled_from(keys), st.booleans())) if keys else {}
 
-    def accepts(category: str, source: Element, leak: Element, hidden: bool) -> bool:  # noqa: FBT001 - as it is called
-        return accepted(category, number[source], number[leak], hidden)
+    def accepts(case: Case) -> bool:
+        return accepted(case.category, number[case.source], number[case.leak], case.pseudonymised)
 
     def accepted(category: str, source: int, leak: int, hidden: bool) -> bool:  # noqa: FBT001
         key = (category, source, leak)
@@ -197,10 +198,9 @@ def test_an_accepted_leak_hides_nothing_behind_it(system: System, data: st.DataO
         for f in found.findings
     } == system.brute().findings(accepted)
     for finding in found.findings:
-        ends = finding.category, finding.source, finding.leak
-        assert finding.accepted == accepts(*ends, finding.pseudonymised)
+        assert finding.accepted == accepts(Case.of(finding))
         assert bool(finding.through) == finding.dismissed
-        assert not any(accepts(finding.category, finding.source, leak, False) for leak in finding.through)
+        assert not any(accepted(finding.category, number[finding.source], number[e], False) for e in finding.through)
     left = [f for f in found.findings if not f.dismissed and not f.accepted]
     assert (found.verdict is Verdict.LEAK) == bool(left)
     assert found.carried == plain.carried  # a decision changes no flow

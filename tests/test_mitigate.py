@@ -20,6 +20,7 @@ from tests.test_findings import System as Random
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
+    from rosprivacy.analysis.decisions import Case
     from rosprivacy.analysis.model import Analysis, Bound, Element, FlowGraph
     from rosprivacy.analysis.proposals import Proposal, Step
 
@@ -147,8 +148,8 @@ def test_an_accepted_finding_is_left_and_what_lies_behind_it_is_removed(random: 
     keys = sorted({(f.category, number[f.source], number[f.leak]) for f in plain.findings})
     taken = set(data.draw(st.lists(st.sampled_from(keys))))
 
-    def accepts(category: str, source: Element, leak: Element, _: bool) -> bool:  # noqa: FBT001 - as it is called
-        return (category, number[source], number[leak]) in taken
+    def accepts(case: Case) -> bool:
+        return (case.category, number[case.source], number[case.leak]) in taken
 
     system = replace(system, options=Options(accepts=accepts))
     found = analysed(system)

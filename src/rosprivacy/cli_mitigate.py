@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from rosprivacy.cli_options import (
+    DecisionsFile,
     Format,
     IncludeRoot,
     LabelFiles,
@@ -62,6 +63,7 @@ def mitigate(
         ),
     ] = None,
     category: SixLists = "PersonalData",
+    decisions: DecisionsFile = None,
     view: ViewChosen = View.declared,
     standard_channels: Standard = "rosprivacy:standard",
     no_standard_channels: NoStandard = False,
@@ -88,6 +90,7 @@ def mitigate(
         include_root=str(include_root) if include_root else None,
         max_bytes=max_bytes,
         progress=progress_of,
+        decisions=str(decisions) if decisions else None,
     )
     result = run(tuple(policies), tuple(labels or ()), settings)
     kinds = tuple(kind.value for kind in by) if by else CHANGES
