@@ -69,6 +69,14 @@ class LabelError(InputError):
     """A label file that cannot be read, contradicts itself, or names what is not there (S11)."""
 
 
+class LimitsError(InputError):
+    """A limits file that cannot be read, or that names what is not there."""
+
+
+class DecisionError(InputError):
+    """A decisions file that cannot be read, or that contradicts itself."""
+
+
 class FleetError(InputError):
     """A fleet file that cannot be read."""
 

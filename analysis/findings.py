@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.decisions import Case
 from rosprivacy.analysis.model import (
     DISCLOSURE,
     Analysis,
@@ -33,7 +34,7 @@ from rosprivacy.analysis.search import START, Net, Search, path_to, present, sea
 from rosprivacy.analysis.spread import Spread, bits_of, spread
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Iterator
+    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
     from typing import Any
 
     from rosprivacy.analysis.hierarchy import Hierarchy
@@ -55,11 +56,15 @@ class Options:
         ``witness``: no further paths; ``disjoint``: paths that share no flow; ``all``: simple paths.
     max_paths
         Bound on further paths per finding.
+    accepts
+        Whether a person has accepted that a category of a source reaches a leak, in one form; such a leak hides
+        nothing that lies behind it (rule S10).
     """
 
     categories: Collection[str] | None = None
     paths: str = WITNESS
     max_paths: int = MAX_PATHS
+    accepts: Callable[[Case], bool] | None = None
 
 
 def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Options | None = None) -> Analysis:
@@ -104,7 +109,7 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
 
 def _verdict(findings: Iterable[Finding], questions: Iterable[OpenQuestion], *, sources: bool) -> Verdict:
     """Rule S12. Without any source nothing was asked, so nothing can be said."""
-    if any(not finding.dismissed for finding in findings):
+    if any(not finding.dismissed and not finding.accepted for finding in findings):
         return Verdict.LEAK
     return Verdict.UNDETERMINED if any(True for _ in questions) or not sources else Verdict.NO_LEAK_FOUND
 
@@ -141,33 +146,50 @@ def _findings_of(
     found, k = net.spread, len(net.spread.categories)
     between: dict[tuple[int, bool], Between] = {}
     reached = {v: bits & present(whole, v) for v, bits in leaks.items() if bits & present(whole, v)}
+    accepted = _accepted(found, source, concern.kind, reached, options)
     free: dict[int, Search] = {}  # number of the category -> search that stops at other leaks of it
     for leak, bits in reached.items():
         for i in sorted({bit % k for bit in bits_of(bits)}):
             if concern.kind != DISCLOSURE:
                 free[i] = whole
             elif i not in free:
-                _search_free(net, source, i, free)
+                _search_free(net, source, i, accepted, free)
             chosen, bit = _best(free[i], whole, leak, i, k)
             anyway = chosen is whole
             dismissed = anyway and concern.kind == DISCLOSURE
-            finding = _finding(net, chosen, source, leak, bit, concern, dismissed=dismissed)
+            finding = _finding(net, chosen, source, leak, bit, concern, accepted, dismissed=dismissed)
             if len(finding.witness) == 1:
                 yield leak, i, finding
                 continue
             if (i, anyway) not in between:
-                stop = {} if anyway else _leaks_of(found, i)
+                stop = {} if anyway else _leaks_of(found, i, accepted)
                 between[i, anyway] = Between(net, chosen, source, i, _relevant(found, i), stop)
             more = further(between[i, anyway], leak, memory, options.paths, options.max_paths)
             yield leak, i, replace(finding, disjoint_paths=more.disjoint, paths=more.paths, bounded=more.bounded)
 
 
-def _search_free(net: Net, source: int, i: int, free: dict[int, Search]) -> None:
+def _accepted(found: Spread, source: int, kind: str, reached: Mapping[int, int], options: Options) -> dict[int, int]:
+    """Leak -> the bits that a person has accepted there, of those that come from a source."""
+    if options.accepts is None:
+        return {}
+    k = len(found.categories)
+    from_, elements = found.graph.elements[source], found.graph.elements
+    accepted: dict[int, int] = defaultdict(int)
+    for leak, bits in reached.items():
+        for name in found.names(bits):
+            i, to = found.categories.index(name), elements[leak]
+            for plane in (False, True):
+                if options.accepts(Case(finding_id(name, from_, to, kind), kind, name, from_, to, plane)):
+                    accepted[leak] |= 1 << i + k * plane
+    return accepted
+
+
+def _search_free(net: Net, source: int, i: int, accepted: Mapping[int, int], free: dict[int, Search]) -> None:
     """Search with the leaks of category i as ends; one search serves all categories that nothing is made into."""
     found = net.spread
     together = [i] if i in found.made else [j for j in range(len(found.categories)) if j not in found.made]
     ends = sum(found.both(found.categories[j]) for j in together)
-    stop = {v: bits & ends for v, bits in found.leaks.items()}
+    stop = {v: bits & ends & ~accepted.get(v, 0) for v, bits in found.leaks.items()}
     result = search(net, [source], found.all_bits if i in found.made else ends, stop)
     free.update(dict.fromkeys(together, result))
 
@@ -177,9 +199,9 @@ def _relevant(found: Spread, i: int) -> int:
     return found.all_bits if i in found.made else found.both(found.categories[i])
 
 
-def _leaks_of(found: Spread, i: int) -> dict[int, int]:
+def _leaks_of(found: Spread, i: int, accepted: Mapping[int, int]) -> dict[int, int]:
     both = found.both(found.categories[i])
-    return {v: bits & both for v, bits in found.leaks.items() if bits & both}
+    return {v: bits & both & ~accepted.get(v, 0) for v, bits in found.leaks.items() if bits & both}
 
 
 def _best(free: Search, whole: Search, leak: int, i: int, k: int) -> tuple[Search, int]:
@@ -191,13 +213,16 @@ def _best(free: Search, whole: Search, leak: int, i: int, k: int) -> tuple[Searc
     raise AssertionError("a reached leak has a way")
 
 
-def _finding(net: Net, way: Search, source: int, leak: int, bit: int, concern: Concern, *, dismissed: bool) -> Finding:
+def _finding(
+    net: Net, way: Search, source: int, leak: int, bit: int, concern: Concern, accepted: Mapping[int, int], *,
+    dismissed: bool,
+) -> Finding:  # fmt: skip
     found, k = net.spread, len(net.spread.categories)
     elements = found.graph.elements
     i = bit % k
     own = leak == source and way.begun[source] >> bit & 1  # a finding by itself, of one element
     path = [(START, source, bit)] if own else path_to(net, way, leak, bit)
-    through = _other_leaks(found, path, i)
+    through = _other_leaks(found, path, i, accepted)
     category = found.categories[i]
     shown, steps = _shown(net, path)
     return Finding(
@@ -213,14 +238,16 @@ def _finding(net: Net, way: Search, source: int, leak: int, bit: int, concern: C
         through=tuple(elements[v] for v in dict.fromkeys(through)) if dismissed else (),
         dismissed=dismissed,
         reason=concern.reasons.get((leak, category), ""),
+        accepted=bool(accepted.get(leak, 0) >> bit & 1),
     )
 
 
-def _other_leaks(found: Spread, path: list[tuple[int, int, int]], i: int) -> list[int]:
-    """Leaks of a category inside a path, where it arrives or is made."""
+def _other_leaks(found: Spread, path: list[tuple[int, int, int]], i: int, accepted: Mapping[int, int]) -> list[int]:
+    """Leaks of a category inside a path that are not accepted, where it arrives or is made."""
     k = len(found.categories)
+    leaks = {v: found.leaks.get(v, 0) & ~accepted.get(v, 0) for _, v, _ in path}
     inside = [(v, bits) for (_, v, arriving), (_, _, leaving) in pairwise(path[1:]) for bits in [{arriving, leaving}]]
-    return [v for v, bits in inside if any(b % k == i and found.leaks.get(v, 0) >> b & 1 for b in bits)]
+    return [v for v, bits in inside if any(b % k == i and leaks[v] >> b & 1 for b in bits)]
 
 
 def finding_id(category: str, source: Element, leak: Element, kind: str = DISCLOSURE) -> str:

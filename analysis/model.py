@@ -428,7 +428,9 @@ class Finding:
     through
         Other leaks of the category on the witness; not empty only if dismissed.
     dismissed
-        Whether every path goes through another leak of the category, which has a finding of its own.
+        Whether every path goes through another leak of the category, which has a finding of its own, not accepted.
+    accepted
+        Whether a person has decided that this may be; it then hides nothing behind it.
     paths
         Further paths if asked for, each source first.
     bounded
@@ -451,6 +453,7 @@ class Finding:
     paths: tuple[tuple[Element, ...], ...] = ()
     bounded: bool = False
     reason: str = ""
+    accepted: bool = False
 
 
 @dataclass(frozen=True, slots=True)

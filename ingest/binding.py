@@ -35,6 +35,14 @@ def bind(graph: FlowGraph, labels: Sequence[Labels]) -> Bound:
     InputErrors
         With every name that matches nothing, but for shipped files.
     """
+    bound, problems = join(graph, labels)
+    if problems:
+        raise InputErrors(problems)
+    return bound
+
+
+def join(graph: FlowGraph, labels: Sequence[Labels]) -> tuple[Bound, list[InputError]]:
+    """Join label files to a graph as far as its names go; return also what matches nothing."""
     names = _Names(graph)
     elements: dict[int, list[Statement]] = defaultdict(list)
     flows: dict[int, list[Statement]] = defaultdict(list)
@@ -58,14 +66,13 @@ def bind(graph: FlowGraph, labels: Sequence[Labels]) -> Bound:
     outside = _outside(graph, labels)
     for vertex in outside:
         elements[vertex] += by_kind(graph.elements[vertex])
-    if problems:
-        raise InputErrors(problems)
-    return Bound(
+    bound = Bound(
         {vertex: tuple(said) for vertex, said in sorted(elements.items())},
         {index: tuple(said) for index, said in sorted(flows.items())},
         through,
         outside,
     )
+    return bound, problems
 
 
 def _outside(graph: FlowGraph, labels: Iterable[Labels]) -> dict[int, Outside]:

@@ -167,6 +167,7 @@ def _finding(finding: Finding, categories: Mapping[str, Category]) -> dict[str, 
         "dismissed": finding.dismissed,
         **law_of(finding, categories),
         **({"reason": finding.reason} if finding.reason else {}),
+        "accepted": finding.accepted,
     }
     if finding.paths:
         shown["paths"] = [[element_dict(element) for element in path] for path in finding.paths]

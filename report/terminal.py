@@ -12,6 +12,7 @@ from rich.text import Text
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import CHANNELS
+from rosprivacy.report.decided import decision_lines
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -22,6 +23,10 @@ VERDICTS = {
     "leak": ("bold red", "data can reach a leak"),
     "undetermined": ("bold yellow", "no leak reached, but not everything on the way is reviewed"),
     "no-leak-found": ("bold green", "no way to a leak, everything on the way is reviewed"),
+}
+ACCEPTED = {  # the same where a decision accepts a finding
+    "undetermined": "no leak reached but what is accepted, and not everything on the way is reviewed",
+    "no-leak-found": "no way to a leak but what is accepted, everything on the way is reviewed",
 }
 VERBS = {
     "publish": "publishes", "subscribe": "is read by", "request": "request", "reply": "reply",
@@ -56,6 +61,10 @@ def _lines(report: Mapping[str, Any], *, verbose: bool, quiet: bool) -> Iterator
     style, meaning = VERDICTS[report["verdict"]]
     if not any(report["categories"]) or (report["verdict"] == "undetermined" and not report["open"]):
         meaning = "no data was followed"
+    accepted = sum(finding["accepted"] for finding in report["findings"])
+    if accepted and report["verdict"] != "leak":
+        style, meaning = "bold yellow", ACCEPTED[report["verdict"]]
+    meaning += f"; {_count(accepted, 'finding')} accepted" if accepted else ""
     yield f"{report['verdict']}: {meaning}", style
     if quiet:
         return
@@ -69,8 +78,10 @@ def _lines(report: Mapping[str, Any], *, verbose: bool, quiet: bool) -> Iterator
 def _summary(report: Mapping[str, Any]) -> str:
     findings = [finding for finding in report["findings"] if not finding["dismissed"]]
     dismissed = len(report["findings"]) - len(findings)
+    accepted = sum(finding["accepted"] for finding in findings)
     parts = [
         _count(len(findings), "finding"),
+        *([f"{accepted} of them accepted"] if accepted else []),
         *([f"{dismissed} more only through another leak"] if dismissed else []),
         f"{_count(len(report['open']), 'element')} to review",
         f"{_count(report['elements'], 'element')} and {_count(report['flows'], 'flow')} in all",
@@ -84,7 +95,7 @@ def _findings(report: Mapping[str, Any]) -> Iterator[Line]:
     for number, finding in enumerate(report["findings"], 1):
         source, leak = finding["source"], finding["leak"]
         form = "pseudonymised " if finding["pseudonymised"] else ""
-        style = "dim" if finding["dismissed"] else "bold"
+        style = "dim" if finding["dismissed"] or finding["accepted"] else "bold"
         yield "", ""
         what = f"{KINDS[finding['kind']]}{form}{finding['category']}"
         yield f"{number}. {what}: {_name(source)} -> {_name(leak)}   [{finding['id']}]", style
@@ -93,6 +104,7 @@ def _findings(report: Mapping[str, Any]) -> Iterator[Line]:
         if finding["dismissed"]:
             through = ", ".join(_name(element) for element in finding["through"])
             yield f"   only through {through}, which has a finding of its own", "dim"
+        yield from decision_lines(finding)
         yield from _way(finding, roles, unreviewed)
         yield from _paths(finding)
         yield from _law(finding, report)
@@ -191,6 +203,9 @@ def _assumed(report: Mapping[str, Any]) -> Iterator[Line]:
         yield f"   labels {shown(file['file'])} (sha256 {file['sha256'][:12]})", ""
     if not assumptions["labels"]:
         yield "   no labels", ""
+    if "decisions" in assumptions:
+        taken = assumptions["decisions"]
+        yield f"   decisions {shown(taken['file'])} (sha256 {taken['sha256'][:12]}), as of {taken['today']}", ""
     if assumptions["categories_asked"] != "all":
         yield f"   only {', '.join(assumptions['categories_asked'])} and narrower categories", ""
     if assumptions["data_types_asked"] != "all":

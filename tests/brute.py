@@ -144,7 +144,7 @@ class Brute:
         return data | {made for d in data for made in self.made(vertex, d) if not made[1]}
 
     def spread(
-        self, sources: Collection[int], stop: Callable[[int, str], bool] = lambda _v, _c: False
+        self, sources: Collection[int], stop: Callable[[int, Data], bool] = lambda _v, _d: False
     ) -> dict[tuple[int, Data], int]:
         """What is where (arrives, starts or is made there) -> least number of flows from a source."""
         present: dict[tuple[int, Data], int] = {}
@@ -176,13 +176,13 @@ class Brute:
                     continue
                 arrived.add((b, data))
                 present.setdefault((b, data), level + 1)
-                if stop(b, data[0]):
+                if stop(b, data):
                     continue
                 if not self.kills(b, data[0]) or (data[1] and self.only_hides(b, data[0])):
                     leave(b, data, level + 1)
                 for made in self.made(b, data):
                     present.setdefault((b, made), level + 1)
-                    if not stop(b, made[0]):
+                    if not stop(b, made):
                         leave(b, made, level + 1)
         return present
 
@@ -219,15 +219,21 @@ class Brute:
         facts = self.outside[vertex][1] if vertex in self.outside else None
         return facts is not None and facts.area in ABROAD and not facts.transfer
 
-    def findings(self) -> dict[tuple[str, str, int, int], tuple[bool, bool, int]]:
-        """S10: (kind, category, source, leak) -> (pseudonymised, dismissed, length of the shortest way to show)."""
+    def findings(
+        self, accepted: Callable[[str, int, int, bool], bool] = lambda _c, _s, _l, _h: False
+    ) -> dict[tuple[str, str, int, int], tuple[bool, bool, int]]:
+        """S10: (kind, category, source, leak) -> (pseudonymised, dismissed, length of the shortest way to show).
+
+        ``accepted`` says of (category, source, leak, pseudonymised) whether that disclosure is.
+        """
         found: dict[tuple[str, str, int, int], tuple[bool, bool, int]] = {}
         for source in self.sources():
             whole = self.spread([source])
             for leak, category in {(v, c) for v, (c, _) in whole}:
 
-                def other(v: int, c: str, leak: int = leak, category: str = category) -> bool:
-                    return c == category and v != leak and self.has(v, "leak", c)
+                def other(v: int, data: Data, source: int = source, leak: int = leak, category: str = category) -> bool:
+                    ends = data[0] == category and v != leak and self.has(v, "leak", category)
+                    return ends and not accepted(category, source, v, data[1])
 
                 kinds = {
                     "disclosure": self.has(leak, "leak", category),
@@ -263,7 +269,8 @@ class Brute:
         whole = self.spread(self.sources())
         questions = {(v, c) for v, (c, _) in whole if not self.covered(v, c)}
 
-        def end(v: int, c: str) -> bool:
+        def end(v: int, data: Data) -> bool:
+            c = data[0]
             return self.has(v, "leak", c) or (v in self.nodes and (v, c) in questions)
 
         first = {(v, c) for v, (c, _) in self.spread(self.sources(), end)}

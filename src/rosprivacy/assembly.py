@@ -11,6 +11,7 @@ from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import rosprivacy
+from rosprivacy.analysis.decisions import decided
 from rosprivacy.analysis.errors import InputError, InputErrors, OntologyError, shown
 from rosprivacy.analysis.findings import MAX_PATHS, Options, analyse
 from rosprivacy.analysis.model import Diagnostic, Place, Severity
@@ -23,7 +24,9 @@ from rosprivacy.ingest.labels import STANDARD, read_labels
 from rosprivacy.ingest.outside import extend
 from rosprivacy.ingest.saved import read_saved
 from rosprivacy.ingest.xinclude import MAX_BYTES
+from rosprivacy.ontology.special import special_provision
 from rosprivacy.ontology.vocabulary import TOP, load
+from rosprivacy.report.decided import with_decisions
 from rosprivacy.report.document import document
 
 if TYPE_CHECKING:
@@ -31,6 +34,7 @@ if TYPE_CHECKING:
 
     from neo4j import Driver
 
+    from rosprivacy.analysis.decisions import Decided, Decisions
     from rosprivacy.analysis.model import Analysis, Bound, Category, FlowGraph, Policy
     from rosprivacy.ingest.labels import Labels
     from rosprivacy.ingest.rows import RobotRows
@@ -65,6 +69,10 @@ class Settings:
         See ``read_policy``.
     progress
         Wraps the list of files, to show how far it is.
+    decisions
+        A decisions file.
+    today
+        ISO date on which decisions are valid or expired; None for the date of now (or ``SOURCE_DATE_EPOCH``).
     """
 
     add: tuple[str, ...] = ()
@@ -80,6 +88,8 @@ class Settings:
     include_root: str | None = None
     max_bytes: int = MAX_BYTES
     progress: Callable[[Sequence[str]], Iterable[str]] = field(default=lambda files: files)
+    decisions: str | None = None
+    today: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,11 +102,15 @@ class Result:
     policies: tuple[Policy, ...]
     diagnostics: tuple[Diagnostic, ...]
     assumptions: dict[str, Any]
+    labels: tuple[Labels, ...] = ()
+    options: Options = field(default_factory=Options)
+    decided: Decided | None = None
 
     def document(self) -> dict[str, Any]:
         """Return the JSON document of the contract."""
-        vocabulary = self.vocabulary
-        return document(self.analysis, vocabulary.categories, vocabulary.hierarchy, self.diagnostics, self.assumptions)
+        categories, hierarchy = self.vocabulary.categories, self.vocabulary.hierarchy
+        made = document(self.analysis, categories, hierarchy, self.diagnostics, self.assumptions)
+        return with_decisions(made, self.decided) if self.decided else made
 
     def linked_data(self, form: str, **more: Any) -> str:
         """Return the findings as RDF, in ``turtle`` or ``json-ld``; ``more`` as for ``rdf_graph``."""
@@ -121,11 +135,16 @@ def run(policies: tuple[str, ...], labels: tuple[str, ...], settings: Settings) 
     files = _read_labels(labels, vocabulary, settings)
     graph = extend(build(system, settings.view), files)
     bound = bind(graph, files)
-    analysis = analyse(graph, bound, vocabulary.hierarchy, Options(asked, settings.paths, settings.max_paths))
+    decisions = _decisions(settings, vocabulary)
+    options = Options(asked, settings.paths, settings.max_paths, decisions.accepts if decisions else None)
+    analysis = analyse(graph, bound, vocabulary.hierarchy, options)
+    joined = _joined(decisions, analysis, vocabulary, asked)
     said = tuple(d for policy in system for d in policy.diagnostics) + diagnostics
     said += tuple(d for file in files for d in file.diagnostics)
-    rests_on = {**_own_assumptions(graph, settings, vocabulary), **_assumptions(system, files, analysis, settings)}
-    return Result(analysis, bound, vocabulary, system, said, rests_on)
+    said += joined.diagnostics if joined else ()
+    rests_on = _own_assumptions(graph, settings, vocabulary) | _assumptions(system, files, analysis, settings)
+    rests_on |= _assumed_decisions(decisions)
+    return Result(analysis, bound, vocabulary, system, said, rests_on, tuple(files), options, joined)
 
 
 def run_stored(driver: Driver, settings: Settings) -> Result:
@@ -147,12 +166,40 @@ def run_stored(driver: Driver, settings: Settings) -> Result:
     everything = Options(None, settings.paths, settings.max_paths)
     analysis = analyse(stored.graph, stored.bound, vocabulary.hierarchy, everything)
     write_back(driver, stored, analysis, vocabulary)
-    if asked is not None:
-        chosen = Options(asked, settings.paths, settings.max_paths)
+    decisions = _decisions(settings, vocabulary)
+    chosen = Options(asked, settings.paths, settings.max_paths, decisions.accepts if decisions else None)
+    if chosen != everything:
         analysis = analyse(stored.graph, stored.bound, vocabulary.hierarchy, chosen)
+    joined = _joined(decisions, analysis, vocabulary, asked)
     said, remembered = _remembered(stored.robots.values(), analysis)
-    assumptions = {**_own_assumptions(stored.graph, settings, vocabulary), **remembered}
-    return Result(analysis, stored.bound, vocabulary, (), said, assumptions)
+    said += joined.diagnostics if joined else ()
+    assumptions = _own_assumptions(stored.graph, settings, vocabulary) | remembered | _assumed_decisions(decisions)
+    return Result(analysis, stored.bound, vocabulary, (), said, assumptions, options=chosen, decided=joined)
+
+
+def _decisions(settings: Settings, vocabulary: Vocabulary) -> Decisions | None:
+    if settings.decisions is None:
+        return None
+    from rosprivacy.ingest.decisions import read_decisions, today  # noqa: PLC0415 - only where there are some
+
+    return read_decisions(settings.decisions, vocabulary, settings.today or today())
+
+
+def _joined(
+    decisions: Decisions | None, analysis: Analysis, vocabulary: Vocabulary, asked: set[str] | None
+) -> Decided | None:
+    """Decisions joined to findings; where only some categories were asked for, none is called orphaned."""
+    if decisions is None:
+        return None
+    special = {name: special_provision(vocabulary, name) for name in analysis.emitted}
+    held = {name: provision for name, provision in special.items() if provision}
+    return decided(decisions, analysis.findings, held, everything=asked is None)
+
+
+def _assumed_decisions(decisions: Decisions | None) -> dict[str, Any]:
+    if decisions is None:
+        return {}
+    return {"decisions": {"file": decisions.file, "sha256": decisions.sha256, "today": decisions.today}}
 
 
 def robot_of(name: str, result: Result) -> RobotRows:

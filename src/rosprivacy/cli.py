@@ -14,9 +14,10 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 import rosprivacy
-from rosprivacy import cli_categories, cli_db, cli_graph, cli_views
+from rosprivacy import cli_categories, cli_db, cli_decide, cli_graph, cli_mitigate, cli_views
 from rosprivacy.analysis.errors import InputError, RosPrivacyError
 from rosprivacy.cli_options import (
+    DecisionsFile,
     FailOn,
     Format,
     IncludeRoot,
@@ -52,6 +53,8 @@ app.command()(cli_graph.unload)
 app.command()(cli_graph.query)
 app.command()(cli_views.graph)
 app.command()(cli_categories.categories)
+app.command()(cli_mitigate.mitigate)
+app.command()(cli_decide.decide)
 
 
 @app.callback(invoke_without_command=True)
@@ -106,7 +109,14 @@ def analyze(
     max_paths: Annotated[int, typer.Option(min=1, help="Bound on the listed ways of a finding.")] = 100,
     standard_channels: Standard = "rosprivacy:standard",
     no_standard_channels: NoStandard = False,
-    fail_on: Annotated[FailOn, typer.Option(help="Exit with 1 on a leak, also with 4 if undetermined.")] = FailOn.leak,
+    decisions: DecisionsFile = None,
+    fail_on: Annotated[
+        FailOn,
+        typer.Option(
+            help="Exit with 1 on a finding that is not accepted (leak, todo) or not decided (undecided), on any (all), "
+            "or on none (never, off); undetermined: as leak, and with 4 if undetermined."
+        ),
+    ] = FailOn.leak,
     include_root: IncludeRoot = None,
     max_bytes: MaxBytes = 64 * 2**20,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print the verdict only.")] = False,
@@ -129,6 +139,7 @@ def analyze(
         include_root=str(include_root) if include_root else None,
         max_bytes=max_bytes,
         progress=progress_of,
+        decisions=str(decisions) if decisions else None,
     )
     if from_database:
         if policies or labels or add or save_graph:
@@ -148,7 +159,7 @@ def analyze(
 
         texts[save_graph] = as_text(as_dict(result.policies))
     emit(_report(result, format, colour=output is None, quiet=quiet, verbose=verbose), output, texts)
-    raise typer.Exit(_exit_code(str(result.analysis.verdict), fail_on))
+    raise typer.Exit(_exit_code(result, fail_on))
 
 
 @app.command()
@@ -231,10 +242,15 @@ def _report(result: Result, form: Format, *, colour: bool, quiet: bool, verbose:
     return text.getvalue()
 
 
-def _exit_code(verdict: str, fail_on: FailOn) -> int:
-    if verdict == "leak" and fail_on is not FailOn.never:
+def _exit_code(result: Result, fail_on: FailOn) -> int:
+    analysis, decided = result.analysis, result.decided
+    findings = [finding for finding in analysis.findings if not finding.dismissed]
+    left = [finding for finding in findings if not finding.accepted]
+    undecided = [finding for finding in left if not (decided and decided.valid(finding))]
+    counted = {FailOn.never: [], FailOn.off: [], FailOn.undecided: undecided, FailOn.all: findings}.get(fail_on, left)
+    if counted:
         return 1
-    return 4 if verdict == "undetermined" and fail_on is FailOn.undetermined else 0
+    return 4 if analysis.verdict == "undetermined" and fail_on is FailOn.undetermined else 0
 
 
 def main() -> None:

@@ -36,11 +36,15 @@ class PathsShown(StrEnum):
 
 
 class FailOn(StrEnum):
-    """Which verdicts end with an exit code other than 0."""
+    """What ends with an exit code other than 0: verdicts, or what is decided about findings."""
 
     leak = "leak"
     undetermined = "undetermined"
     never = "never"
+    off = "off"
+    undecided = "undecided"
+    todo = "todo"
+    all = "all"
 
 
 def complete_category(incomplete: str) -> list[str]:
@@ -75,6 +79,10 @@ SixLists = Annotated[
     str, typer.Option(metavar="NAME", autocompletion=complete_category, help="What a six-list JSON is about.")
 ]
 ViewChosen = Annotated[View, typer.Option(help="What nodes declare, or what DDS enforces per enclave.")]
+DecisionsFile = Annotated[
+    Path | None,
+    typer.Option("--decisions", metavar="FILE", help="What people have decided about findings.", show_default=False),
+]
 Server = Annotated[
     str | None,
     typer.Option(

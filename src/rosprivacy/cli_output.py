@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
     from pathlib import Path
+
+    from rich.console import Console
 
 SIGPIPE = 13  # the module signal lacks it on Windows
 
@@ -55,6 +57,17 @@ def _print(text: str | bytes) -> None:
 def _encoding(text: str) -> str:
     """JSON and Turtle are UTF-8 wherever they go; other text is what the terminal understands."""
     return "utf-8" if text.startswith(("{", "@prefix")) else sys.stdout.encoding
+
+
+def on_console(write: Callable[[Console], None], *, colour: bool) -> str:
+    """Return what is written to a rich console, with colours if standard output is a terminal."""
+    from io import StringIO
+
+    from rich.console import Console
+
+    text = StringIO()
+    write(Console(file=text, force_terminal=colour and Console().is_terminal, highlight=False, emoji=False))
+    return text.getvalue()
 
 
 def progress_of(files: Sequence[str]) -> Iterable[str]:

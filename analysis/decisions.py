@@ -1,0 +1,256 @@
+"""What people have decided about findings: which decision holds for which, until when, and what is missing (S10, S12).
+
+In: decisions as a file states them, findings. Out: per finding the decision that holds, per decision what it is about.
+A decision about a finding outranks one about a pattern, and of two patterns the one that spells out more counts. An
+expired decision decides nothing, and nor does what it outranks: a person has to look again.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+from fnmatch import fnmatchcase
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.errors import DecisionError
+from rosprivacy.analysis.model import Diagnostic, Severity
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from rosprivacy.analysis.hierarchy import Hierarchy
+    from rosprivacy.analysis.model import Element, Finding, Place
+
+FARTHEST = 1_000_000
+
+
+class Choice(StrEnum):
+    """What is decided. All but the first leave something to do."""
+
+    ACCEPT = "accept"
+    MITIGATE = "mitigate"
+    DELEGATE = "delegate"
+    AVOID = "avoid"
+
+
+class State(StrEnum):
+    """Of a decision."""
+
+    VALID = "valid"
+    EXPIRED = "expired"
+    ORPHANED = "orphaned"  # no finding is as it says
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """What a decision can be about: a finding, or one that may be made."""
+
+    id: str
+    kind: str
+    category: str
+    source: Element
+    leak: Element
+    pseudonymised: bool
+
+    @classmethod
+    def of(cls, finding: Finding) -> Case:
+        """Return the case that a finding is."""
+        ends = finding.source, finding.leak
+        return cls(finding.id, finding.kind, finding.category, *ends, finding.pseudonymised)
+
+
+@dataclass(frozen=True, slots=True)
+class Decision:
+    """One entry of a decisions file.
+
+    Attributes
+    ----------
+    id
+        Of a finding; empty for a pattern.
+    category
+        A name; it stands for the narrower ones too.
+    source, leak, robot
+        Names or globs.
+    kind
+        Of findings.
+    pseudonymised
+        Whether it is about data in this form only; None for any form.
+    legal_basis
+        Such as ``6(1)(f)`` and ``9(2)(h)``, in order.
+    date, expires
+        ISO dates, or empty; it is valid to the end of the day on which it expires.
+    """
+
+    choice: Choice
+    place: Place
+    id: str = ""
+    category: str = ""
+    source: str = ""
+    leak: str = ""
+    robot: str = ""
+    kind: str = ""
+    pseudonymised: bool | None = None
+    reason: str = ""
+    owner: str = ""
+    legal_basis: tuple[str, ...] = ()
+    date: str = ""
+    expires: str = ""
+    ticket: str = ""
+
+    def about(self, case: Case, hierarchy: Hierarchy) -> bool:
+        """Whether it is about a case."""
+        robots = (case.source.robot, case.leak.robot)
+        return (
+            self.id in ("", case.id)
+            and self.kind in ("", case.kind)
+            and (not self.category or hierarchy.distance(case.category, self.category) is not None)
+            and _covers(self.source, case.source.name)
+            and _covers(self.leak, case.leak.name)
+            and any(_covers(self.robot, robot) for robot in robots)
+            and self.pseudonymised in (None, case.pseudonymised)
+        )
+
+    def rank(self, case: Case, hierarchy: Hierarchy) -> tuple[int, ...]:
+        """How closely it speaks of a case; the higher counts."""
+        names = [name for name in (self.source, self.leak, self.robot) if name]
+        exact = sum(not _pattern(name) for name in names)
+        spelt = sum(sum(char not in "*?[]" for char in name) for name in names if _pattern(name))
+        distance = hierarchy.distance(case.category, self.category) if self.category else FARTHEST
+        return (bool(self.id), exact, spelt, -(distance or 0), self.pseudonymised is not None, bool(self.kind))
+
+
+def _pattern(name: str) -> bool:
+    return any(char in name for char in "*?[")
+
+
+def _covers(written: str, name: str) -> bool:
+    """Nothing written covers every name."""
+    return not written or (fnmatchcase(name, written.replace("[^", "[!")) if _pattern(written) else written == name)
+
+
+@dataclass(frozen=True, slots=True)
+class Decisions:
+    """A decisions file on a day.
+
+    Attributes
+    ----------
+    today
+        ISO date.
+    """
+
+    file: str
+    sha256: str
+    today: str
+    entries: tuple[Decision, ...]
+    hierarchy: Hierarchy = field(repr=False)
+
+    def state(self, decision: Decision) -> State:
+        """Whether a decision is still valid."""
+        return State.EXPIRED if decision.expires and decision.expires < self.today else State.VALID
+
+    def foremost(self, case: Case) -> list[Decision]:
+        """The decisions of the highest rank about a case, in the order of the file."""
+        about = [entry for entry in self.entries if entry.about(case, self.hierarchy)]
+        highest = max((entry.rank(case, self.hierarchy) for entry in about), default=())
+        return [entry for entry in about if entry.rank(case, self.hierarchy) == highest]
+
+    def on(self, case: Case) -> Decision | None:
+        """The decision about a case, valid or not; None if there is none, or several of one rank that differ."""
+        found = self.foremost(case)
+        return found[0] if len({entry.choice for entry in found}) == 1 else None
+
+    def accepts(self, case: Case) -> bool:
+        """Whether a valid decision accepts a case (rule S10)."""
+        decision = self.on(case)
+        return decision is not None and decision.choice is Choice.ACCEPT and self.state(decision) is State.VALID
+
+
+@dataclass(frozen=True, slots=True)
+class Decided:
+    """Decisions joined to findings.
+
+    Attributes
+    ----------
+    on
+        Finding's id -> the decision about it, valid or expired.
+    about
+        By entry: the ids of the findings that it is about, sorted.
+    states
+        By entry.
+    """
+
+    decisions: Decisions
+    on: Mapping[str, Decision]
+    about: tuple[tuple[str, ...], ...]
+    states: tuple[State, ...]
+    diagnostics: tuple[Diagnostic, ...]
+
+    def valid(self, finding: Finding) -> Decision | None:
+        """The decision about a finding, if it is valid."""
+        decision = self.on.get(finding.id)
+        return decision if decision and self.decisions.state(decision) is State.VALID else None
+
+
+def decided(
+    decisions: Decisions, findings: Iterable[Finding], special: Mapping[str, str], *, everything: bool
+) -> Decided:
+    """Join decisions to findings.
+
+    Parameters
+    ----------
+    special
+        Category -> the provision for special categories that it can fall under; for those that do.
+    everything
+        Whether the findings are all there are: else no decision is called orphaned.
+
+    Raises
+    ------
+    DecisionError
+        If two decisions of one rank differ; the message names both lines.
+    """
+    cases = [(finding, Case.of(finding)) for finding in findings]
+    on: dict[str, Decision] = {}
+    for _, case in cases:
+        found = decisions.foremost(case)
+        other = next((entry for entry in found if entry.choice != found[0].choice), None)
+        if other:
+            what = f"to {other.choice} {case.id} contradicts line {found[0].place.line}: to {found[0].choice}"
+            raise DecisionError(other.place.file, other.place.line, what, "make one more specific, or remove it")
+        if found:
+            on[case.id] = found[0]
+    about = tuple(
+        tuple(sorted({case.id for _, case in cases if entry.about(case, decisions.hierarchy)}))
+        for entry in decisions.entries
+    )
+    states = tuple(
+        State.ORPHANED if everything and not ids else decisions.state(entry)
+        for entry, ids in zip(decisions.entries, about, strict=True)
+    )
+    result = Decided(decisions, on, about, states, ())
+    said = tuple(_diagnostics(result, {finding.id: finding for finding, _ in cases}, special))
+    return Decided(decisions, on, about, states, said)
+
+
+def _diagnostics(joined: Decided, findings: Mapping[str, Finding], special: Mapping[str, str]) -> Iterator[Diagnostic]:
+    """What a reader has to know: expired and orphaned decisions, missing legal bases."""
+    for entry, ids, state in zip(joined.decisions.entries, joined.about, joined.states, strict=True):
+        what = f"the decision to {entry.choice} {entry.id or 'a pattern'}"
+        if state is State.ORPHANED:
+            yield Diagnostic(entry.place, Severity.WARNING, f"{what} is about no finding: it is orphaned; remove it")
+        if joined.decisions.state(entry) is State.EXPIRED:
+            message = f"{what} expired on {entry.expires} and no longer counts; decide anew"
+            yield Diagnostic(entry.place, Severity.WARNING, message)
+        if entry.choice is Choice.ACCEPT:
+            held = [findings[one] for one in ids if joined.on.get(one) is entry]
+            yield from (
+                Diagnostic(entry.place, Severity.WARNING, f"{what} {gap}") for gap in missing(entry, held, special)
+            )
+
+
+def missing(entry: Decision, findings: Iterable[Finding], special: Mapping[str, str]) -> Iterator[str]:
+    """Yield the legal bases that an acceptance lacks: Article 6, and 9(2) where a category is special."""
+    if not any(basis.startswith("6(1)") for basis in entry.legal_basis):
+        yield "states no legal basis under Article 6(1)"
+    if not any(basis.startswith("9(2)") for basis in entry.legal_basis):
+        for category in sorted({finding.category for finding in findings} & special.keys()):
+            yield f"states no ground under Article 9(2), and {category} can fall under {special[category]}"

@@ -1,0 +1,77 @@
+"""Decisions in what readers get: added to the JSON document, and as lines for the terminal.
+
+In: a document and decisions joined to its findings. Out: the document with ``decision`` on findings and ``decisions``.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.decisions import Choice, State
+from rosprivacy.analysis.errors import shown
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from rosprivacy.analysis.decisions import Decided, Decision
+
+DONE = {
+    Choice.ACCEPT: "accepted",
+    Choice.MITIGATE: "to be mitigated",
+    Choice.DELEGATE: "delegated",
+    Choice.AVOID: "to be avoided",
+}
+
+
+def with_decisions(document: Mapping[str, Any], decided: Decided) -> dict[str, Any]:
+    """Return a document with what was decided about its findings."""
+    decisions = decided.decisions
+    on = {key: _decision(entry, decisions.state(entry)) for key, entry in decided.on.items()}
+    findings = [{**finding, "decision": on.get(finding["id"])} for finding in document["findings"]]
+    entries = [
+        {**_decision(entry, state), "target": _target(entry), "findings": list(about)}
+        for entry, about, state in zip(decisions.entries, decided.about, decided.states, strict=True)
+    ]
+    return {**document, "findings": findings, "decisions": entries}
+
+
+def _decision(entry: Decision, state: State) -> dict[str, Any]:
+    return {
+        "choice": str(entry.choice),
+        "state": str(state),
+        "reason": entry.reason,
+        "owner": entry.owner,
+        "legal_basis": list(entry.legal_basis),
+        "date": entry.date or None,
+        "expires": entry.expires or None,
+        "ticket": entry.ticket or None,
+        "file": entry.place.file,
+        "line": entry.place.line,
+    }
+
+
+def _target(entry: Decision) -> dict[str, Any]:
+    """What an entry says that it is about."""
+    keys = ("id", "category", "source", "leak", "robot", "kind")
+    said: dict[str, Any] = {key: getattr(entry, key) for key in keys if getattr(entry, key)}
+    if entry.pseudonymised is not None:
+        said["pseudonymised"] = entry.pseudonymised
+    return said
+
+
+def decision_lines(finding: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """Yield (text, style) of the decision about a finding, if there is one."""
+    decision = finding.get("decision")
+    if not decision:
+        return
+    choice, place = DONE[Choice(decision["choice"])], f"{shown(decision['file'])}:{decision['line']}"
+    if decision["state"] == State.EXPIRED:
+        yield f"   undecided: {choice} until {decision['expires']}, which has passed  ({place})", "yellow"
+        return
+    owner = f" by {shown(decision['owner'])}" if decision["owner"] else ""
+    until = f" until {decision['expires']}" if decision["expires"] else ""
+    basis = f", {', '.join(decision['legal_basis'])}" if decision["legal_basis"] else ""
+    style = "green" if decision["choice"] == Choice.ACCEPT else "yellow"
+    yield f"   {choice}{owner}{until}{basis}  ({place})", style
+    if decision["reason"]:
+        yield f"      {shown(decision['reason'])}", style

@@ -1,0 +1,101 @@
+"""The way from findings to proposals: policies, labels and limits in, proven proposals and a patch out.
+
+In: a ``Result`` of ``assembly``. Out: ``Mitigation``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.changes import CHANGES, DENY, Limits
+from rosprivacy.analysis.mitigate import System, mitigate
+from rosprivacy.ingest.binding import join
+from rosprivacy.ingest.denials import denials, with_denied
+from rosprivacy.ingest.fresh import open_ended
+from rosprivacy.ingest.graph import build
+from rosprivacy.ingest.limits import read_limits
+from rosprivacy.ingest.patch import Patch, patch
+from rosprivacy.report.mitigation import mitigation_document
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable
+
+    from rosprivacy.analysis.model import Bound, FlowGraph, Grant
+    from rosprivacy.analysis.proposals import Proposal
+    from rosprivacy.assembly import Result
+
+
+@dataclass(frozen=True, slots=True)
+class Mitigation:
+    """Proposals for a system.
+
+    Attributes
+    ----------
+    result
+        The analysis that they start from.
+    proposals
+        Per category, and for all together, last, where there are several.
+    patch
+        Of the last proposal's lines to be set to DENY.
+    unmatched
+        What labels would then name that is no longer there.
+    """
+
+    result: Result
+    limits: Limits
+    proposals: tuple[Proposal, ...]
+    patch: Patch
+    unmatched: tuple[str, ...] = ()
+
+    @property
+    def complete(self) -> bool:
+        """Whether nothing is open, or all that is open is removed by a proposal that is proven."""
+        return all(proposal.proven and not proposal.kept for proposal in self.proposals)
+
+    def document(self) -> dict[str, Any]:
+        """Return the JSON document."""
+        return mitigation_document(
+            self.result.document(), self.result.analysis, self.limits, self.proposals, self.patch.diff,
+            self.patch.why_not, self.unmatched,
+        )  # fmt: skip
+
+
+def run_mitigation(result: Result, limits_file: str | None = None, kinds: Collection[str] = CHANGES) -> Mitigation:
+    """Propose changes that remove the open findings of an analysis.
+
+    Parameters
+    ----------
+    kinds
+        Of changes that may be proposed.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the limits file.
+    """
+    graph, view = result.analysis.graph, result.analysis.graph.view
+    limits = read_limits(limits_file, graph) if limits_file else Limits()
+    if build(result.policies, view) != graph:  # what else is in the graph would be lost when it is built anew
+        kinds = set(kinds) - {DENY}
+    limits = replace(limits, kinds=limits.kinds & set(kinds))
+
+    def deny(grants: Collection[Grant]) -> tuple[FlowGraph, Bound]:
+        changed = build(with_denied(result.policies, grants), view)
+        return changed, join(changed, result.labels)[0]
+
+    system = System(
+        graph, result.bound, result.vocabulary.hierarchy, result.options,
+        lambda flows: denials(result.policies, graph, flows), deny, open_ended,
+    )  # fmt: skip
+    proposals = mitigate(system, result.analysis, limits)
+    grants = list(_denied(proposals[-1:]))
+    if not grants:
+        return Mitigation(result, limits, proposals, Patch())
+    changed = build(with_denied(result.policies, grants), view)
+    unmatched = tuple(str(problem) for problem in join(changed, result.labels)[1])
+    return Mitigation(result, limits, proposals, patch(result.policies, grants), unmatched)
+
+
+def _denied(proposals: Iterable[Proposal]) -> Iterable[Grant]:
+    return (g for proposal in proposals for step in proposal.steps if step.kind == DENY for g in step.grants)
