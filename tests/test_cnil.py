@@ -306,7 +306,7 @@ def test_storages_and_recipients_with_what_was_stated_of_them() -> None:
         tool, 122
     )
     assert "storage bucket: pseudonymised Video; retention: P30D" in seen(tool, 215)
-    assert "storage disk: pseudonymised Video; retention: P30D" in seen(tool, 215)
+    assert "storage disk: pseudonymised Video; retention: not stated" in seen(tool, 215)
     assert "external-system cloud: country: US; basis of a transfer: standard contractual clauses" in seen(tool, 227)
     contents = {m["title"]: Page(m["content"]).seen for m in tool.measures.values()}
     assert contents["Encryption of storages"].startswith("bucket: yes")
