@@ -111,8 +111,8 @@ def systems(draw: st.DrawFn, names: tuple[str, ...] = tuple(PARENTS)) -> System:
     ends = st.sets(st.integers(0, nodes - 1), min_size=1, max_size=3)
     edges: set[tuple[int, int]] = set()
     for element in range(ros, nodes):
-        others = draw(ends) - {element}, draw(ends) - {element}  # nothing flows from an element to itself
-        edges |= {(a, element) for a in others[0]} | {(element, b) for b in others[1]}
+        before, behind = draw(ends) - {element}, draw(ends) - {element}  # nothing flows from an element to itself
+        edges |= {(a, element) for a in before} | {(element, b) for b in behind}
     for channel in range(nodes, nodes + channels):
         edges |= {(node, channel) for node in draw(ends)} | {(channel, node) for node in draw(ends)}
     category = st.sampled_from(names)
