@@ -59,7 +59,8 @@ def ways(analysis: Analysis, robot: str) -> dict[Way, int]:
 
 
 def found(driver: Driver, name: str, **values: str) -> dict[Way, list[str]]:
-    rows = run(driver, find(name).text, values, limit=None).rows
+    query = find(name)
+    rows = run(driver, query.text, query.values(values), limit=None).rows
     keys = [row[:4] for row in rows]
     assert len(set(keys)) == len(keys)
     assert keys == sorted(keys)

@@ -7,7 +7,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import networkx as nx
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rosprivacy.analysis.decisions import Case
@@ -112,7 +112,8 @@ def systems(draw: st.DrawFn, names: tuple[str, ...] = tuple(PARENTS), most: int 
     ends = st.sets(st.integers(0, nodes - 1), min_size=1, max_size=degree)
     edges: set[tuple[int, int]] = set()
     for element in range(ros, nodes):
-        edges |= {(a, element) for a in draw(ends)} | {(element, b) for b in draw(ends)}
+        before, behind = draw(ends) - {element}, draw(ends) - {element}  # nothing flows from an element to itself
+        edges |= {(a, element) for a in before} | {(element, b) for b in behind}
     for channel in range(nodes, nodes + channels):
         edges |= {(node, channel) for node in draw(ends)} | {(channel, node) for node in draw(ends)}
     category = st.sampled_from(names)
@@ -381,7 +382,7 @@ def test_further_paths_keep_to_their_bound_and_say_so(system: System, asked: str
         assert finding.bounded or finding.paths == whole.paths
         assert list(map(len, whole.paths)) == sorted(map(len, whole.paths))
         if whole.paths and asked == "all":  # those that share no flow need not have the shortest among them
-            assert len(whole.paths[0]) == len(finding.witness)
+            assert len(whole.paths[0]) <= len(finding.witness)  # the witness prefers data as it is to pseudonymised
         for path in finding.paths:
             way = [number[element] for element in path]
             assert all(step in edges for step in pairwise(way))
