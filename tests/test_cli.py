@@ -112,7 +112,16 @@ OPTIONS = {
     "analyze": (
         "--labels", "--add", "--save-graph", "--format", "--output", "--categories", "--category", "--view", "--paths",
         "--max-paths", "--standard-channels", "--no-standard-channels", "--fail-on", "--include-root", "--max-bytes",
+        "--decisions",
         "--quiet", "--verbose", "--help", "-l", "-f", "-o", "-c", "-q", "-v", "-h",
+    ),
+    "decide": (
+        "--decisions", "--report", "--reason", "--owner", "--legal-basis", "--expires", "--ticket", "--category",
+        "--source", "--leak", "--robot", "--help",
+    ),
+    "mitigate": (
+        "--labels", "--limits", "--by", "--patch", "--format", "--output", "--categories", "--category", "--decisions",
+        "--view", "--standard-channels", "--no-standard-channels", "--include-root", "--max-bytes", "--help",
     ),
     "labels": (
         "--init", "--schema", "--standard", "--infrastructure", "--output", "--standard-channels",
@@ -139,7 +148,7 @@ def test_help_lists_each_option(cli: Cli, command: str) -> None:
 @pytest.mark.parametrize(
     ("words", "wanted"),
     [
-        (["rosprivacy", ""], {"analyze", "db", "labels", "load", "query", "unload"}),
+        (["rosprivacy", ""], {"analyze", "db", "decide", "labels", "load", "mitigate", "query", "unload"}),
         (["rosprivacy", "analyze", "--fail"], {"--fail-on"}),
         (["rosprivacy", "analyze", "--view", ""], {"declared", "enforced"}),
         (["rosprivacy", "analyze", "--format", "j"], {"json"}),
