@@ -240,7 +240,7 @@ def _diagnostics(joined: Decided, findings: Mapping[str, Finding], special: Mapp
         if joined.decisions.state(entry) is State.EXPIRED:
             message = f"{what} expired on {entry.expires} and no longer counts; decide anew"
             yield Diagnostic(entry.place, Severity.WARNING, message)
-        if entry.choice is Choice.ACCEPT:
+        if entry.choice is Choice.ACCEPT and state is State.VALID:
             held = [findings[one] for one in ids if joined.on.get(one) is entry]
             yield from (
                 Diagnostic(entry.place, Severity.WARNING, f"{what} {gap}") for gap in missing(entry, held, special)

@@ -45,6 +45,7 @@ def mitigation_document(
     patch: str,
     why_no_patch: str,
     unmatched: Iterable[str],
+    notes: Iterable[str] = (),
 ) -> dict[str, Any]:
     """Return the proposals as one JSON object.
 
@@ -65,6 +66,7 @@ def mitigation_document(
         "patch": patch,
         "why_no_patch": why_no_patch,
         "labels_without_element": list(unmatched),
+        "notes": list(notes),
         "diagnostics": report["diagnostics"],
         "assumptions": {
             **report["assumptions"],
@@ -305,6 +307,8 @@ def _closing(report: Mapping[str, Any]) -> Iterator[Line]:
             f"   nothing on the way to {', '.join(map(_name, assumed['time_critical']))} is touched: time-critical",
             "",
         )
+    for note in report["notes"]:
+        yield f"   {note}", "yellow"
     for line in report["labels_without_element"]:
         yield f"   after the DENY, a label names nothing: {line}", "yellow"
     if report["why_no_patch"]:

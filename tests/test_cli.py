@@ -112,7 +112,16 @@ OPTIONS = {
     "analyze": (
         "--labels", "--add", "--save-graph", "--format", "--output", "--categories", "--category", "--view", "--paths",
         "--max-paths", "--standard-channels", "--no-standard-channels", "--fail-on", "--include-root", "--max-bytes",
+        "--decisions",
         "--quiet", "--verbose", "--help", "-l", "-f", "-o", "-c", "-q", "-v", "-h",
+    ),
+    "decide": (
+        "--decisions", "--report", "--reason", "--owner", "--legal-basis", "--expires", "--ticket", "--category",
+        "--source", "--leak", "--robot", "--help",
+    ),
+    "mitigate": (
+        "--labels", "--limits", "--by", "--patch", "--format", "--output", "--categories", "--category", "--decisions",
+        "--view", "--standard-channels", "--no-standard-channels", "--include-root", "--max-bytes", "--help",
     ),
     "labels": (
         "--init", "--schema", "--standard", "--infrastructure", "--output", "--standard-channels",

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 import subprocess
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
 import yaml
+from jsonschema import Draft202012Validator
 
 import rosprivacy
+from rosprivacy.analysis.changes import Weights
 from rosprivacy.ingest.policy import read_policy
 from tests.test_cli import XI, Cli, Done, cli, refused, run
 
@@ -21,11 +25,15 @@ if TYPE_CHECKING:
 __all__ = ["cli"]
 ROOT = Path(__file__).resolve().parent.parent
 FACTORY = ROOT / "examples" / "factory"
+SCHEMA = json.loads((ROOT / "docs" / "mitigation.schema.json").read_text("utf-8"))
+Draft202012Validator.check_schema(SCHEMA)
 BEFORE, RUN3 = FACTORY / "before.policy.xml", FACTORY / "run3.labels.yaml"
 
 
 def proposals(cli: Cli, *arguments: str | Path, cwd: Path | None = None) -> Any:
-    return json.loads(cli("mitigate", *arguments, "--format", "json", cwd=cwd).stdout)
+    document = json.loads(cli("mitigate", *arguments, "--format", "json", cwd=cwd).stdout)
+    Draft202012Validator(SCHEMA).validate(document)
+    return document
 
 
 def step_of(step: dict[str, Any]) -> tuple[Any, ...]:
@@ -354,6 +362,15 @@ def test_the_same_input_gives_the_same_bytes(form: str) -> None:  # S14
     policy_, labels = care / "care-home.policy.xml", care / "care-home.labels.yaml"
     answers = {run("mitigate", policy_, "-l", labels, "-f", form, PYTHONHASHSEED=seed).stdout for seed in "017"}
     assert len(answers) == 1
+
+
+def test_the_readme_of_mitigation_shows_what_is_printed(cli: Cli) -> None:
+    page = (ROOT / "docs" / "mitigation.md").read_text("utf-8")
+    (shown,) = re.findall(r"```text\n(.*?)```", page, re.DOTALL)
+    (text,) = re.findall(r"```yaml\n(limits:.*?)```", page, re.DOTALL)
+    printed = cli("mitigate", BEFORE, "-l", RUN3, cwd=ROOT).stdout.splitlines()
+    assert all(line in printed for line in shown.splitlines())
+    assert yaml.safe_load(text)["weights"] == asdict(Weights())
 
 
 def test_several_kinds_get_a_proposal_each_and_one_together(cli: Cli) -> None:

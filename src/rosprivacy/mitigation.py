@@ -40,6 +40,8 @@ class Mitigation:
         Of the last proposal's lines to be set to DENY.
     unmatched
         What labels would then name that is no longer there.
+    notes
+        What else a reader has to know.
     """
 
     result: Result
@@ -47,6 +49,7 @@ class Mitigation:
     proposals: tuple[Proposal, ...]
     patch: Patch
     unmatched: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
 
     @property
     def complete(self) -> bool:
@@ -57,7 +60,7 @@ class Mitigation:
         """Return the JSON document."""
         return mitigation_document(
             self.result.document(), self.result.analysis, self.limits, self.proposals, self.patch.diff,
-            self.patch.why_not, self.unmatched,
+            self.patch.why_not, self.unmatched, self.notes,
         )  # fmt: skip
 
 
@@ -76,8 +79,10 @@ def run_mitigation(result: Result, limits_file: str | None = None, kinds: Collec
     """
     graph, view = result.analysis.graph, result.analysis.graph.view
     limits = read_limits(limits_file, graph) if limits_file else Limits()
-    if build(result.policies, view) != graph:  # what else is in the graph would be lost when it is built anew
+    notes: tuple[str, ...] = ()
+    if DENY in kinds and build(result.policies, view) != graph:  # what else is in it would be lost when built anew
         kinds = set(kinds) - {DENY}
+        notes = ("no line is proposed for DENY: the graph holds more than the policies say",)
     limits = replace(limits, kinds=limits.kinds & set(kinds))
 
     def deny(grants: Collection[Grant]) -> tuple[FlowGraph, Bound]:
@@ -91,10 +96,10 @@ def run_mitigation(result: Result, limits_file: str | None = None, kinds: Collec
     proposals = mitigate(system, result.analysis, limits)
     grants = list(_denied(proposals[-1:]))
     if not grants:
-        return Mitigation(result, limits, proposals, Patch())
+        return Mitigation(result, limits, proposals, Patch(), notes=notes)
     changed = build(with_denied(result.policies, grants), view)
     unmatched = tuple(str(problem) for problem in join(changed, result.labels)[1])
-    return Mitigation(result, limits, proposals, patch(result.policies, grants), unmatched)
+    return Mitigation(result, limits, proposals, patch(result.policies, grants), unmatched, notes)
 
 
 def _denied(proposals: Iterable[Proposal]) -> Iterable[Grant]:
