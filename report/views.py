@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import Verdict
 from rosprivacy.analysis.search import Net
-from rosprivacy.analysis.ways import ways
+from rosprivacy.analysis.ways import Ways, ways
 from rosprivacy.report.looks import ALLOWED, DATA, DENIED, MATCHES, SHORTEST, WAY
 from rosprivacy.report.picture import PRIVACY, ROS, Box, Line, Picture, order, sorted_boxes, sorted_lines
 from rosprivacy.report.privacy import Reached
@@ -32,7 +32,9 @@ VERDICTS = {
     Verdict.UNDETERMINED: "no leak reached, but not everything on the way is reviewed",
     Verdict.NO_LEAK_FOUND: "no way to a leak found",
 }
+PER_BOX = 12  # flows that are looked at for each box: channels with the same ends will be one
 NOTHING = "No data was followed: no label names a source. So this says nothing about the system."
+LONGER = "Not drawn: ways of more"
 BOTH_WAYS = {"request", "reply", "call", "execute"}
 
 
@@ -167,7 +169,7 @@ def privacy_view(analysis: Analysis) -> Picture:
     open_findings = [finding for finding in analysis.findings if not finding.dismissed]
     lengths: dict[int, int] = {}
     for category in sorted({finding.category for finding in open_findings}):
-        for flow, length in ways(net, category).items():
+        for flow, length in ways(net, category).flows.items():
             lengths[flow] = min(length, lengths.get(flow, length))
     lines = _data_lines(reached, boxes, range(len(analysis.graph.flows)), lengths, _pairs(open_findings))
     what = listed(analysis.emitted, most=6)
@@ -194,17 +196,24 @@ class FindingViews:
         self._number = {element: vertex for vertex, element in enumerate(analysis.graph.elements)}
         self._reached: dict[str, Reached] = {}
 
-    def of(self, finding: Finding) -> Picture:
+    def of(self, finding: Finding, about: int | None = None) -> Picture:
         """Return the ways of one finding, from its source to its leak: the shortest, and the longer ones.
 
         A dismissed one shows its ways through other leaks. What else the data reaches is in the privacy view.
+
+        Parameters
+        ----------
+        about
+            Take only the shorter ways, with about so many flows: on a large graph much quicker. None for all.
         """
         category, graph = finding.category, self._analysis.graph
         reached = self._reached.setdefault(category, Reached(self._analysis, {category}))
         source, leak = self._number[finding.source], self._number[finding.leak]
-        lengths = {}
+        found = Ways({})
         if finding.steps:
-            lengths = ways(self._net, category, sources=[source], leaks=[leak], past_leaks=finding.dismissed)
+            past = finding.dismissed
+            found = ways(self._net, category, sources=[source], leaks=[leak], past_leaks=past, about=about)
+        lengths = found.flows
         keys = {element.identity for element in finding.witness}
         for index in lengths:
             keys |= set(_ends(self._analysis, graph.flows[index]))
@@ -219,13 +228,15 @@ class FindingViews:
             notes.append(f"Only through {through}, which has a finding of its own")
         if finding.disjoint_paths > 1:
             notes.append(f"{finding.disjoint_paths} ways share no flow")
+        if not found.complete:
+            notes.append(f"{LONGER} than {counted(max(lengths.values()), 'step')}")
         ordered = sorted_boxes(boxes.values())
         return Picture(PRIVACY, title, ordered, lines.made(), tuple(notes), (in_words(finding),), _core([finding]))
 
 
-def finding_view(analysis: Analysis, finding: Finding) -> Picture:
+def finding_view(analysis: Analysis, finding: Finding, about: int | None = None) -> Picture:
     """Return the ways of one finding, see ``FindingViews``."""
-    return FindingViews(analysis).of(finding)
+    return FindingViews(analysis).of(finding, about)
 
 
 def bounded(picture: Picture, most: int) -> Picture:
@@ -238,16 +249,18 @@ def bounded(picture: Picture, most: int) -> Picture:
     lines = [line for line in picture.lines if line.look == SHORTEST]
     what = "the shortest ways"
     for length in sorted({line.length for line in picture.lines if line.length}):
-        more = [line for line in picture.lines if 0 < line.length <= length or line.look == SHORTEST]
-        if len(_joined(more) | picture.core) > most:
+        longer = [line for line in picture.lines if 0 < line.length <= length or line.look == SHORTEST]
+        if len(_joined(longer) | picture.core) > most:
             break
-        lines, what = more, f"the ways of up to {counted(length, 'step')}"
+        lines, what = longer, f"the ways of up to {counted(length, 'step')}"
     kept = _joined(lines) | picture.core
     left = len(picture.boxes) - len(kept)
     if not left and len(lines) == len(picture.lines):
         return picture
-    note = f"Not drawn: {counted(left, 'element')} beside {what}" if left else f"Not drawn: what is beside {what}"
-    return replace(picture.kept(kept, note), lines=tuple(lines))
+    notes = tuple(note for note in picture.notes if not note.startswith(LONGER))
+    known = left and len(notes) == len(picture.notes)
+    note = f"Not drawn: {counted(left, 'element') if known else 'what is'} beside {what}"
+    return replace(picture, notes=notes, lines=tuple(lines)).kept(kept, note)
 
 
 def _joined(lines: Iterable[Line]) -> set[Key]:
