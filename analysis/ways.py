@@ -62,7 +62,7 @@ def ways(
     category
         An emitted one: what arrives at the leaks. It may be made of others on the way.
     sources, leaks
-        Vertices to begin and to end at; None for all.
+        Vertices to begin and to end at, whatever labels say; None for all sources, for all leaks.
     past_leaks
         Whether ways through other leaks of the category count, as for a dismissed finding.
     about
@@ -132,7 +132,7 @@ class _States:
         seen = set(waiting)
         while waiting:
             state = waiting.popleft()
-            if state[0] == ARRIVED and (leaks is None or state[1] in leaks) and self._leaks(*state[1:]):
+            if state[0] == ARRIVED and self._ends(*state[1:], leaks):
                 edges.append((state, END, NO_FLOW))
             for flow, after in self._onward(state):
                 edges.append((state, after, flow))
@@ -177,8 +177,11 @@ class _States:
     def _made(self, vertex: int, bit: int) -> int:
         return sum(1 << after for before, after in self._net.spread.derives.get(vertex, ()) if before == bit)
 
-    def _leaks(self, vertex: int, bit: int) -> bool:
-        here = self._net.spread.leaks.get(vertex, 0) & self._both
+    def _ends(self, vertex: int, bit: int, leaks: Collection[int] | None) -> bool:
+        if leaks is None:
+            here = self._net.spread.leaks.get(vertex, 0) & self._both
+        else:
+            here = self._both if vertex in leaks else 0
         return bool(here and here & (1 << bit | self._made(vertex, bit)))
 
 

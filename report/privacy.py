@@ -6,7 +6,7 @@ from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import CHANNELS
-from rosprivacy.report.looks import DERIVATION, LEAK, OPEN, REVIEWED, SANITIZER, SOURCE
+from rosprivacy.report.looks import DERIVATION, FOUND, LEAK, OPEN, REVIEWED, SANITIZER, SOURCE
 from rosprivacy.report.picture import Box
 from rosprivacy.report.wording import counted, listed
 
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Analysis
     from rosprivacy.report.picture import Key
 
+DISCLOSURE = "disclosure"  # the kind of finding that has a role of its own, the leak's
 MOST = 4  # categories that are named on a box
 
 
@@ -41,6 +42,10 @@ class Reached:
             self._of[element.identity].append(vertex)
         self._open: dict[Key, set[str]] = defaultdict(set)
         shown = set(found.names(self._mask))
+        self._kinds: dict[Key, set[str]] = defaultdict(set)
+        for finding in analysis.findings:
+            if finding.kind != DISCLOSURE and finding.category in shown:
+                self._kinds[finding.leak.identity].add(finding.kind.replace("-", " "))
         for question in analysis.open:
             self._open[question.element.identity] |= shown.intersection(question.categories)
 
@@ -101,6 +106,7 @@ class Reached:
         open_for = self._open.get(key, set())
         roles = [
             (LEAK, bits["leaks"]),
+            (FOUND, self._kinds.get(key)),
             (SOURCE, bits["begins"]),
             (DERIVATION, made),
             (SANITIZER, cleaned),
@@ -144,7 +150,7 @@ class Reached:
             words.append(f"source of {listed(own, MOST)}")
         if bits["leaks"]:
             words.append(f"leak of {listed(found.names(bits['leaks']), MOST)}")
-        return [*words, *made[:MOST], *cleaned[:MOST]]
+        return [*words, *sorted(self._kinds.get(key, ())), *made[:MOST], *cleaned[:MOST]]
 
     def _own(self, vertices: list[int], begins: int) -> list[str]:
         """What labels call it a source of; what it makes of its own data begins here too."""

@@ -24,7 +24,7 @@ from rosprivacy.report.wording import counted, listed, shortened
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
 
-    from rosprivacy.analysis.model import Analysis, Finding, Flow, Grant, Place
+    from rosprivacy.analysis.model import Analysis, Finding, Flow, FlowGraph, Grant, Place
     from rosprivacy.report.picture import Key
 
 VERDICTS = {
@@ -61,15 +61,15 @@ def ros_view(analysis: Analysis, denials: Iterable[Grant] = (), *, standard: boo
         lines.add(*_ends(analysis, flow), MATCHES if flow.role == "matches" else ALLOWED, flow.role, flow.grants)
     for flow in graph.denied:
         lines.add(*_ends(analysis, flow), DENIED, flow.role, flow.denials)
-    for grant in denials:
-        if not grant.allow:
-            _deny(lines, grant, graph.elements[0].robot if graph.elements else "")
+    effective = {grant for flow in graph.denied for grant in flow.denials}
+    denying = [grant for grant in denials if not grant.allow]
+    undrawn = sum(not _deny(lines, grant, graph, hidden) and grant not in effective for grant in denying)
     for key in boxes.keys() & covered.keys():
         if boxes[key].pattern:
             words = f"covers {counted(len(covered[key] - {key}), 'name')}"
             boxes[key] = replace(boxes[key], words=(words,))
     title = f"ROS graph ({graph.view}): {_inventory(boxes)}"
-    notes = _left_out(hidden)
+    notes = _left_out(hidden, undrawn)
     return Picture(ROS, title, sorted_boxes(boxes.values()), lines.made(), notes)
 
 
@@ -78,13 +78,18 @@ def _ends(analysis: Analysis, flow: Flow) -> tuple[Key, Key]:
     return elements[flow.source].identity, elements[flow.target].identity
 
 
-def _deny(lines: _Lines, grant: Grant, robot: str) -> None:
-    """A DENY by itself is no flow; it is drawn where there is a channel of that name."""
+def _deny(lines: _Lines, grant: Grant, graph: FlowGraph, hidden: Collection[Key]) -> bool:
+    """A DENY by itself is no flow; it is drawn where there is a channel of that name. Return whether it was."""
+    robots = {element.robot for element in graph.elements}
+    if len(robots) > 1:  # a policy line does not say whose it is
+        return False
+    robot = next(iter(robots), "")
     node, channel = (robot, "node", grant.node), (robot, grant.kind, grant.name)
     if grant.role in BOTH_WAYS or grant.role == "publish":
         lines.add(node, channel, DENIED, grant.role, (grant,))
     if grant.role in BOTH_WAYS or grant.role == "subscribe":
         lines.add(channel, node, DENIED, grant.role, (grant,))
+    return channel in lines.boxes or channel in hidden
 
 
 def _inventory(boxes: Mapping[Key, Box]) -> str:
@@ -94,8 +99,11 @@ def _inventory(boxes: Mapping[Key, Box]) -> str:
     return ", ".join(counted(number, kind.replace("-", " ")) for kind, number in kinds.items()) or "nothing"
 
 
-def _left_out(hidden: Collection[Key]) -> tuple[str, ...]:
-    return (f"Not drawn: {counted(len(hidden), 'standard ROS channel')}",) if hidden else ()
+def _left_out(hidden: Collection[Key], undrawn: int) -> tuple[str, ...]:
+    notes = [f"Not drawn: {counted(len(hidden), 'standard ROS channel')}"] if hidden else []
+    if undrawn:
+        notes.append(f"Not drawn: {counted(undrawn, 'DENY', 'DENYs')} without a channel of that very name")
+    return tuple(notes)
 
 
 @dataclass
@@ -168,8 +176,10 @@ def privacy_view(analysis: Analysis) -> Picture:
     net = Net.of(analysis.spread)
     open_findings = [finding for finding in analysis.findings if not finding.dismissed]
     lengths: dict[int, int] = {}
+    number = {element: vertex for vertex, element in enumerate(analysis.graph.elements)}
     for category in sorted({finding.category for finding in open_findings}):
-        for flow, length in ways(net, category).flows.items():
+        ends = {number[finding.leak] for finding in open_findings if finding.category == category}
+        for flow, length in ways(net, category, leaks=ends).flows.items():
             lengths[flow] = min(length, lengths.get(flow, length))
     lines = _data_lines(reached, boxes, range(len(analysis.graph.flows)), lengths, _pairs(open_findings))
     what = listed(analysis.emitted, most=6)
