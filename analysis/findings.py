@@ -15,6 +15,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import (
+    DISCLOSURE,
     Analysis,
     Carried,
     Diagnostic,
@@ -25,6 +26,7 @@ from rosprivacy.analysis.model import (
     Step,
     Verdict,
 )
+from rosprivacy.analysis.outside import concerns, country_unknown
 from rosprivacy.analysis.paths import WITNESS, Between, further
 from rosprivacy.analysis.questions import open_questions
 from rosprivacy.analysis.search import START, Net, Search, path_to, present, search
@@ -36,6 +38,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.model import Bound, FlowGraph, OpenQuestion
+    from rosprivacy.analysis.outside import Concern
 
 MAX_PATHS = 100
 
@@ -75,11 +78,13 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
     """
     options = options or Options()
     found = spread(graph, bound, hierarchy)
+    kinds = tuple(concerns(found, bound, hierarchy))
     wanted = [c for c in found.categories if options.categories is None or c in options.categories]
     mask = sum(found.both(category) for category in wanted)
     net = Net.of(found)
-    findings = tuple(_findings(net, mask, options))
-    questions = open_questions(net, mask)
+    findings = tuple(_findings(net, mask, kinds, options))
+    unknown = {v for v, facts in bound.outside.items() if country_unknown(graph.elements[v], facts)}
+    questions = open_questions(net, mask, unknown)
     sources = any(found.begins(vertex) & mask for vertex in range(len(graph.elements)))
     return Analysis(
         graph=graph,
@@ -93,6 +98,7 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
         spread=found,
         unstated=tuple(_unstated(found)),
         diagnostics=() if sources else (_no_source(options),),
+        outside={graph.elements[vertex]: facts for vertex, facts in sorted(bound.outside.items())},
     )
 
 
@@ -109,41 +115,50 @@ def _no_source(options: Options) -> Diagnostic:
     return Diagnostic(Place("labels", 0), Severity.WARNING, message)
 
 
-def _findings(net: Net, mask: int, options: Options) -> Iterator[Finding]:
-    """All findings, sorted by category, source and leak."""
+def _findings(net: Net, mask: int, kinds: Iterable[Concern], options: Options) -> Iterator[Finding]:
+    """All findings, sorted by category, source, leak and kind."""
     found = net.spread
-    leaks = {v: bits & mask for v, bits in found.leaks.items() if bits & mask & found.present(v)}
-    results: list[tuple[int, int, int, Finding]] = []
+    ends = [(c, {v: b & mask for v, b in c.bits.items() if b & mask & found.present(v)}) for c in kinds]
+    reached = [(concern, leaks) for concern, leaks in ends if leaks]
+    results: list[tuple[int, int, int, str, Finding]] = []
     memory: dict[Any, Any] = {}
-    for source in [v for v in found.facts if found.begins(v)] if leaks else []:
-        for leak, category, finding in _findings_of(net, source, leaks, options, memory):
-            results.append((category, source, leak, finding))
-    yield from (finding for *_, finding in sorted(results, key=lambda row: row[:3]))
+    for source in [v for v in found.facts if found.begins(v)] if reached else []:
+        whole = search(net, [source], found.all_bits, {})
+        for concern, leaks in reached:
+            for leak, category, finding in _findings_of(net, source, whole, concern, leaks, options, memory):
+                results.append((category, source, leak, finding.kind, finding))
+    yield from (finding for *_, finding in sorted(results, key=lambda row: row[:4]))
 
 
 def _findings_of(
-    net: Net, source: int, leaks: dict[int, int], options: Options, memory: dict[Any, Any]
-) -> Iterator[tuple[int, int, Finding]]:
-    """(leak, number of the category, finding) of one source."""
+    net: Net, source: int, whole: Search, concern: Concern, leaks: dict[int, int], options: Options,
+    memory: dict[Any, Any],
+) -> Iterator[tuple[int, int, Finding]]:  # fmt: skip
+    """(leak, number of the category, finding) of one source and kind.
+
+    Only disclosures are dismissed: no leak on the way cures a retention or a transfer (rule S10).
+    """
     found, k = net.spread, len(net.spread.categories)
-    whole = search(net, [source], found.all_bits, {})
     between: dict[tuple[int, bool], Between] = {}
     reached = {v: bits & present(whole, v) for v, bits in leaks.items() if bits & present(whole, v)}
     free: dict[int, Search] = {}  # number of the category -> search that stops at other leaks of it
     for leak, bits in reached.items():
         for i in sorted({bit % k for bit in bits_of(bits)}):
-            if i not in free:
+            if concern.kind != DISCLOSURE:
+                free[i] = whole
+            elif i not in free:
                 _search_free(net, source, i, free)
             chosen, bit = _best(free[i], whole, leak, i, k)
-            dismissed = chosen is whole
-            finding = _finding(net, chosen, source, leak, bit, dismissed=dismissed)
+            anyway = chosen is whole
+            dismissed = anyway and concern.kind == DISCLOSURE
+            finding = _finding(net, chosen, source, leak, bit, concern, dismissed=dismissed)
             if len(finding.witness) == 1:
                 yield leak, i, finding
                 continue
-            if (i, dismissed) not in between:
-                stop = {} if dismissed else _leaks_of(found, i)
-                between[i, dismissed] = Between(net, chosen, source, i, _relevant(found, i), stop)
-            more = further(between[i, dismissed], leak, memory, options.paths, options.max_paths)
+            if (i, anyway) not in between:
+                stop = {} if anyway else _leaks_of(found, i)
+                between[i, anyway] = Between(net, chosen, source, i, _relevant(found, i), stop)
+            more = further(between[i, anyway], leak, memory, options.paths, options.max_paths)
             yield leak, i, replace(finding, disjoint_paths=more.disjoint, paths=more.paths, bounded=more.bounded)
 
 
@@ -176,7 +191,7 @@ def _best(free: Search, whole: Search, leak: int, i: int, k: int) -> tuple[Searc
     raise AssertionError("a reached leak has a way")
 
 
-def _finding(net: Net, way: Search, source: int, leak: int, bit: int, *, dismissed: bool) -> Finding:
+def _finding(net: Net, way: Search, source: int, leak: int, bit: int, concern: Concern, *, dismissed: bool) -> Finding:
     found, k = net.spread, len(net.spread.categories)
     elements = found.graph.elements
     i = bit % k
@@ -186,8 +201,8 @@ def _finding(net: Net, way: Search, source: int, leak: int, bit: int, *, dismiss
     category = found.categories[i]
     shown, steps = _shown(net, path)
     return Finding(
-        id=finding_id(category, elements[source], elements[leak]),
-        kind="disclosure",
+        id=finding_id(category, elements[source], elements[leak], concern.kind),
+        kind=concern.kind,
         category=category,
         pseudonymised=bit >= k,
         source=elements[source],
@@ -197,6 +212,7 @@ def _finding(net: Net, way: Search, source: int, leak: int, bit: int, *, dismiss
         disjoint_paths=1,
         through=tuple(elements[v] for v in dict.fromkeys(through)) if dismissed else (),
         dismissed=dismissed,
+        reason=concern.reasons.get((leak, category), ""),
     )
 
 
@@ -207,13 +223,13 @@ def _other_leaks(found: Spread, path: list[tuple[int, int, int]], i: int) -> lis
     return [v for v, bits in inside if any(b % k == i and found.leaks.get(v, 0) >> b & 1 for b in bits)]
 
 
-def finding_id(category: str, source: Element, leak: Element) -> str:
-    """Return the stable id of a finding, made from category, source and leak (rule S10).
+def finding_id(category: str, source: Element, leak: Element, kind: str = DISCLOSURE) -> str:
+    """Return the stable id of a finding, made from category, source and leak, and the kind if several can be (S10).
 
     >>> finding_id("Video", Element("node", "/camera"), Element("node", "/uplink"))
     '72abf86b6fa9e2ae'
     """
-    parts = [category, *source.identity, *leak.identity]
+    parts = [*([] if kind == DISCLOSURE else [kind]), category, *source.identity, *leak.identity]
     return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:16]
 
 

@@ -12,11 +12,13 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from rosprivacy.analysis.outside import Outside
     from rosprivacy.analysis.spread import Spread
 
 CHANNELS = ("action", "service", "topic")
 NON_ROS = ("device", "display", "external-system", "person", "shared-memory", "side-channel", "storage")  # rule S9
 KINDS = ("node", *NON_ROS, *CHANNELS)  # channels last: flow.py sweeps them and the others in turn
+DISCLOSURE, STORAGE_LIMITATION, THIRD_COUNTRY = "disclosure", "storage-limitation", "third-country-transfer"  # S10
 
 
 @dataclass(frozen=True, slots=True)
@@ -379,11 +381,14 @@ class Bound:
         By index of an allowed flow.
     through
         (vertex, ``Statement.through``) -> the flows out of the vertex that these name expressions mean.
+    outside
+        What is stated about non-ROS elements, by vertex (rule S9).
     """
 
     elements: Mapping[int, tuple[Statement, ...]]
     flows: Mapping[int, tuple[Statement, ...]] = field(default_factory=dict)
     through: Mapping[tuple[int, tuple[str, ...]], tuple[int, ...]] = field(default_factory=dict)
+    outside: Mapping[int, Outside] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -405,7 +410,13 @@ class Finding:
     Attributes
     ----------
     id
-        16 hexadecimal digits made from category, source and leak; stable as long as these are.
+        16 hexadecimal digits made from category, source and leak, and of other kinds than disclosure from the kind;
+        stable as long as these are.
+    kind
+        ``DISCLOSURE``: it reaches a leak. ``STORAGE_LIMITATION``: a storage that keeps it without a stated end or
+        longer than allowed. ``THIRD_COUNTRY``: an element outside the EEA without a stated basis.
+    leak
+        The leak, the storage or the element abroad.
     pseudonymised
         Whether the data arrives in pseudonymised form only.
     witness
@@ -422,6 +433,8 @@ class Finding:
         Further paths if asked for, each source first.
     bounded
         Whether ``paths`` was cut at the bound that the user set.
+    reason
+        Of other kinds than disclosure: what is wrong there.
     """
 
     id: str
@@ -437,6 +450,7 @@ class Finding:
     dismissed: bool = False
     paths: tuple[tuple[Element, ...], ...] = ()
     bounded: bool = False
+    reason: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -451,12 +465,15 @@ class OpenQuestion:
         Flows from the nearest source.
     frontier
         Of a node: whether a category reaches it without another open node or a leak of it on the way.
+    missing
+        What has to be known of a non-ROS element and is not stated, such as ``country``.
     """
 
     element: Element
     categories: tuple[str, ...]
     distance: int
     frontier: bool
+    missing: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -500,6 +517,8 @@ class Analysis:
         The fixpoint itself: what is at every vertex and along every flow.
     unstated
         (element, category) of sanitizers whose method no label states.
+    outside
+        What is stated about non-ROS elements (rule S9).
     """
 
     graph: FlowGraph
@@ -513,3 +532,4 @@ class Analysis:
     spread: Spread
     unstated: tuple[tuple[Element, str], ...] = ()
     diagnostics: tuple[Diagnostic, ...] = ()
+    outside: Mapping[Element, Outside] = field(default_factory=dict)

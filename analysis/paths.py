@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 State = tuple[int, int]  # vertex, number of the category with which data arrives there
 SOURCE, LEAK = -1, -2  # in place of the category's number: the source and the leak are one state each
 WITNESS, DISJOINT, ALL = "witness", "disjoint", "all"
+SEARCHED = 10  # times the bound: so many ways of data are looked at, of which many may be one to the reader
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,11 +189,11 @@ def further(between: Between, leak: int, memory: dict[Any, Any], asked: str, mos
         paths = nx.shortest_simple_paths(nx.DiGraph(edges), (between.source, SOURCE), (leak, LEAK))
         found = ([state[0] for state in path] for path in paths)
     shown: dict[tuple[Element, ...], None] = {}
-    for path in found:  # two ways of data that differs may be one way to the reader
+    for number, path in enumerate(found):  # two ways of data that differs may be one way to the reader
         shown[_elements(between.net, path)] = None
-        if len(shown) > most:
-            break
-    return Paths(len(disjoint), tuple(shown)[:most], len(shown) > most)
+        if len(shown) > most or number >= SEARCHED * most:
+            return Paths(len(disjoint), tuple(shown)[:most], bounded=True)
+    return Paths(len(disjoint), tuple(shown))
 
 
 def _elements(net: Net, path: list[int]) -> tuple[Element, ...]:

@@ -13,11 +13,13 @@ from rosprivacy.analysis.model import OpenQuestion
 from rosprivacy.analysis.search import present, search
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from rosprivacy.analysis.search import Net
     from rosprivacy.analysis.spread import Spread
 
 
-def open_questions(net: Net, mask: int) -> tuple[OpenQuestion, ...]:
+def open_questions(net: Net, mask: int, unknown: Collection[int] = ()) -> tuple[OpenQuestion, ...]:
     """Return the elements that a category reaches and no label covers, in the order of review.
 
     Parameters
@@ -26,6 +28,8 @@ def open_questions(net: Net, mask: int) -> tuple[OpenQuestion, ...]:
         Of a spread.
     mask
         Bits of the categories that the answer is about.
+    unknown
+        Vertices whose country has to be known and is not: open for all that gets there.
 
     Returns
     -------
@@ -33,7 +37,7 @@ def open_questions(net: Net, mask: int) -> tuple[OpenQuestion, ...]:
         Nodes on the frontier first, then by distance and name; O(flows) for a fixed number of categories.
     """
     found, elements = net.spread, net.spread.graph.elements
-    open_bits = _open_bits(found)
+    open_bits = _open_bits(found, unknown)
     if not open_bits:
         return ()
     sources = [vertex for vertex in found.facts if found.begins(vertex)]
@@ -45,7 +49,8 @@ def open_questions(net: Net, mask: int) -> tuple[OpenQuestion, ...]:
         if not bits:
             continue
         frontier = not element.is_channel and bool(present(first, vertex) & bits)
-        question = OpenQuestion(element, found.names(bits), nearest.level(vertex, bits) or 0, frontier)
+        missing = ("country",) if vertex in unknown else ()
+        question = OpenQuestion(element, found.names(bits), nearest.level(vertex, bits) or 0, frontier, missing)
         known = merged.get(element.shown_as)  # the other side of a wildcard
         if known:
             categories = tuple(sorted({*known.categories, *question.categories}))
@@ -54,10 +59,11 @@ def open_questions(net: Net, mask: int) -> tuple[OpenQuestion, ...]:
     return tuple(sorted(merged.values(), key=lambda q: (not q.frontier, q.distance, q.element.sort_key())))
 
 
-def _open_bits(found: Spread) -> dict[int, int]:
-    """What is at an element without a label that covers it."""
+def _open_bits(found: Spread, unknown: Collection[int]) -> dict[int, int]:
+    """What is at an element without a label that covers it, or where it is not known in which country it is."""
     reached = {vertex: found.present(vertex) for vertex in {*found.arrives, *found.leaves}}
-    uncovered = {vertex: bits & ~found.covered.get(vertex, 0) for vertex, bits in reached.items()}
+    covered = {vertex: bits for vertex, bits in found.covered.items() if vertex not in unknown}
+    uncovered = {vertex: bits & ~covered.get(vertex, 0) for vertex, bits in reached.items()}
     return {vertex: bits for vertex, bits in uncovered.items() if bits}
 
 

@@ -51,6 +51,7 @@ def ways(
     sources: Collection[int] | None = None,
     leaks: Collection[int] | None = None,
     past_leaks: bool = False,
+    ends: Mapping[int, int] | None = None,
     about: int | None = None,
 ) -> Ways:
     """Return the flows that lie on a way of data from a source to a leak of a category.
@@ -62,9 +63,11 @@ def ways(
     category
         An emitted one: what arrives at the leaks. It may be made of others on the way.
     sources, leaks
-        Vertices to begin and to end at, whatever labels say; None for all sources, for all leaks.
+        Vertices to begin and to end at; None for all.
     past_leaks
         Whether ways through other leaks of the category count, as for a dismissed finding.
+    ends
+        Vertex -> bits that end there; the leaks by default. Findings of other kinds end elsewhere, as at a storage.
     about
         Take only the shorter ways, those up to a length, so that about so many flows are on them; None for all.
 
@@ -78,7 +81,7 @@ def ways(
     Rounds of O(flows), for a fixed number of categories, with networkx's immediate dominators on the part between; two
     rounds as a rule, never more than there are flows.
     """
-    graph = _States(net, category, past_leaks=past_leaks)
+    graph = _States(net, category, ends, past_leaks=past_leaks)
     starts = [v for v in net.spread.facts if net.spread.begins(v)] if sources is None else sources
     edges, before, complete = graph.edges(starts, leaks), -1, True
     while len(edges) != before:  # what only a detour leads to is gone in the next round
@@ -115,9 +118,10 @@ def _longest(lengths: Mapping[int, int], about: int) -> int:
 class _States:
     """How data of a category, or of what it is made of, goes from state to state."""
 
-    def __init__(self, net: Net, category: str, *, past_leaks: bool) -> None:
+    def __init__(self, net: Net, category: str, ends: Mapping[int, int] | None, *, past_leaks: bool) -> None:
         self._net = net
         found = net.spread
+        self._ends = found.leaks if ends is None else ends
         number, self._both = found.categories.index(category), found.both(category)
         self._relevant = found.all_bits if number in found.made else self._both
         self._stop: Mapping[int, int] = {}
@@ -132,7 +136,7 @@ class _States:
         seen = set(waiting)
         while waiting:
             state = waiting.popleft()
-            if state[0] == ARRIVED and self._ends(*state[1:], leaks):
+            if state[0] == ARRIVED and (leaks is None or state[1] in leaks) and self._leaks(*state[1:]):
                 edges.append((state, END, NO_FLOW))
             for flow, after in self._onward(state):
                 edges.append((state, after, flow))
@@ -177,11 +181,8 @@ class _States:
     def _made(self, vertex: int, bit: int) -> int:
         return sum(1 << after for before, after in self._net.spread.derives.get(vertex, ()) if before == bit)
 
-    def _ends(self, vertex: int, bit: int, leaks: Collection[int] | None) -> bool:
-        if leaks is None:
-            here = self._net.spread.leaks.get(vertex, 0) & self._both
-        else:
-            here = self._both if vertex in leaks else 0
+    def _leaks(self, vertex: int, bit: int) -> bool:
+        here = self._ends.get(vertex, 0) & self._both
         return bool(here and here & (1 << bit | self._made(vertex, bit)))
 
 

@@ -7,17 +7,20 @@ names that exist, never silence (rule S11).
 from __future__ import annotations
 
 from collections import defaultdict
+from dataclasses import replace
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, shown
 from rosprivacy.analysis.model import Bound
+from rosprivacy.analysis.outside import by_kind
 from rosprivacy.ingest.names import covers, is_pattern, matcher
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from rosprivacy.analysis.model import FlowGraph, Statement
+    from rosprivacy.analysis.outside import Outside
     from rosprivacy.ingest.labels import Entry, FlowEntry, Labels
 
 NEAREST = 3
@@ -50,15 +53,31 @@ def bind(graph: FlowGraph, labels: Sequence[Labels]) -> Bound:
             indices = _flows(graph, leaving, names, flow)
             if not indices:
                 problems.append(names.no_flow(flow))
-            for index in indices:
+            for index in indices if flow.statements else ():
                 flows[index] += flow.statements
+    outside = _outside(graph, labels)
+    for vertex in outside:
+        elements[vertex] += by_kind(graph.elements[vertex])
     if problems:
         raise InputErrors(problems)
     return Bound(
         {vertex: tuple(said) for vertex, said in sorted(elements.items())},
         {index: tuple(said) for index, said in sorted(flows.items())},
         through,
+        outside,
     )
+
+
+def _outside(graph: FlowGraph, labels: Iterable[Labels]) -> dict[int, Outside]:
+    """What is stated about the elements outside ROS, and how long they may keep what they hold."""
+    files = list(labels)
+    stated = {(entry.kind, entry.name): entry.outside for file in files for entry in file.elements}
+    limits = tuple(sorted({limit for file in files for limit in file.limits}, key=lambda pair: (pair[0], str(pair[1]))))
+    return {
+        vertex: replace(stated[element.kind, element.name], limits=limits)
+        for vertex, element in enumerate(graph.elements)
+        if (element.kind, element.name) in stated
+    }
 
 
 class _Names:

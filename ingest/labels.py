@@ -10,7 +10,7 @@ Source: the paper, section II-A, for the roles; rules S7, S8 and S13 for what th
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from importlib.resources import files
 from pathlib import Path
@@ -19,11 +19,13 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, shown
 from rosprivacy.analysis.model import Diagnostic, Method, Place, Severity, Statement
 from rosprivacy.ingest import yamlfile
+from rosprivacy.ingest.elements import is_outside, read_element, read_limits
 from rosprivacy.ingest.names import LONGEST_NAME, is_pattern, literals
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from rosprivacy.ingest.elements import Limit, Stated
     from rosprivacy.ingest.yamlfile import Value
     from rosprivacy.ontology.vocabulary import Vocabulary
 
@@ -38,6 +40,7 @@ SIX_LISTS = ("source", "leak", "conduit", "sanitizer", "sensitive", "mundane")
 NODE_KEYS = ("source", "leak", "sanitizer", "conduit", "derives", "note")
 CHANNEL_KEYS = ("only", "never", "note")
 FLOW_KEYS = ("from", "to", "only", "never", "note")
+OUTSIDE = ("elements", "limits")
 OURS, SHIPPED_FILES = "rosprivacy:", ("standard", "infrastructure")
 STANDARD = f"{OURS}standard"
 EXACT = 1_000_000  # a name outranks every glob
@@ -56,7 +59,10 @@ class Entry:
 
 @dataclass(frozen=True, slots=True)
 class FlowEntry:
-    """What is said of the flows from one element to another, by names or globs."""
+    """What is said of the flows from one element to another, by names or globs.
+
+    One with an end outside ROS is stated by it; others are in the policies.
+    """
 
     source: str
     target: str
@@ -72,6 +78,10 @@ class Labels:
     ----------
     shipped
         Whether it comes with the program: then a name that matches nothing is no error.
+    elements
+        Elements outside ROS (rule S9).
+    limits
+        How long kinds of data may be kept at most.
     """
 
     file: str
@@ -80,6 +90,8 @@ class Labels:
     flows: tuple[FlowEntry, ...] = ()
     diagnostics: tuple[Diagnostic, ...] = ()
     shipped: bool = False
+    elements: tuple[Stated, ...] = ()
+    limits: tuple[Limit, ...] = ()
 
 
 def read_labels(file: str, vocabulary: Vocabulary, *, category: str = "PersonalData", shipped: bool = False) -> Labels:
@@ -120,6 +132,8 @@ def read_labels(file: str, vocabulary: Vocabulary, *, category: str = "PersonalD
         tuple(reader.flows),
         tuple(reader.diagnostics),
         shipped,
+        tuple(reader.elements),
+        tuple(reader.limits),
     )
 
 
@@ -153,6 +167,8 @@ class _Reader:
     diagnostics: list[Diagnostic] = field(default_factory=list)
     entries: list[Entry] = field(default_factory=list)
     flows: list[FlowEntry] = field(default_factory=list)
+    elements: list[Stated] = field(default_factory=list)
+    limits: list[Limit] = field(default_factory=list)
 
     def document(self, top: Value) -> None:
         if top.kind != "map":
@@ -170,12 +186,34 @@ class _Reader:
             self.problem(
                 version.line, f"label format {shown(version.text or version.kind)!r}", "this reads 'labels: 1'"
             )
-        for key, line, value in self._entries(top, ("labels", *SECTIONS, "flows")):
-            if key == "flows":
-                for item in self._list(value, "flows"):
-                    self._flow(item)
+        for key, line, value in self.entries_of(top, ("labels", *SECTIONS, *OUTSIDE, "flows")):
+            if key in ("flows", *OUTSIDE):
+                self.outside(key, line, value)
             elif key in SECTIONS:
                 self._section(key, line, value)
+
+    def outside(self, section: str, line: int, value: Value) -> None:
+        """Read a section that fleet files have too."""
+        if section == "limits":
+            self.limits += read_limits(self, line, value)
+        elif section == "flows":
+            for item in self._list(value, "flows"):
+                self._flow(item)
+        elif value.kind not in ("map", "empty"):
+            self.problem(line, f"elements is a map, not a {value.kind}", "write 'name: {kind: storage}'")
+        for name, at, facts in value.entries if section == "elements" else ():
+            self._element(name, at, facts)
+
+    def _element(self, name: str, line: int, value: Value) -> None:
+        stated = read_element(self, name, line, value, NODE_KEYS)
+        if stated is None:
+            return
+        labels = replace(value, entries=tuple(entry for entry in value.entries if entry[0] in NODE_KEYS))
+        statements = tuple(self._node(labels, stated.place, (self.tier, EXACT)))
+        if stated.kind == "device" and not any(key != "note" for key, *_ in labels.entries):
+            self.problem(line, f"device {shown(name)!r} does nothing", "say what comes from it: source: [Voice]")
+        self.elements.append(stated)
+        self.entries.append(Entry((stated.kind,), name, stated.place, statements))
 
     def _section(self, section: str, line: int, value: Value) -> None:
         if value.kind == "empty":
@@ -204,7 +242,7 @@ class _Reader:
             what = f"label {shown(label.text or label.kind)!r} on a node"
             self.problem(place.line, what, "write conduit, or {source: [Video]}, {leak: […]}, {sanitizer: {…}}, …")
             return
-        for key, line, value in self._entries(label, NODE_KEYS):
+        for key, line, value in self.entries_of(label, NODE_KEYS):
             at = Place(self.file, line)
             if key == "source":
                 yield from self._source(value, at, rank)
@@ -223,7 +261,7 @@ class _Reader:
             return
         self._not_empty(value, "source")
         for written, line, channels in value.entries:
-            name = self._category(written, line)
+            name = self.kind_of_data(written, line)
             through = tuple(sorted({self._name(item) for item in self._list(channels, f"source of {shown(written)}")}))
             if not through:
                 self.problem(line, f"source of {shown(written)} names no channel", "name them: [/topic]")
@@ -236,7 +274,7 @@ class _Reader:
             return
         self._not_empty(value, "sanitizer")
         for written, line, method in value.entries:
-            name = self._category(written, line)
+            name = self.kind_of_data(written, line)
             if method.kind == "empty":
                 yield Statement("sanitizer", (name,), rank, place, Method.PSEUDONYMISE, stated=False)
             elif method.kind == "text" and method.text in list(Method):
@@ -254,7 +292,7 @@ class _Reader:
                     item.line, f"a derivation is a map, not a {item.kind}", "write {from: Video, to: FaceTemplate}"
                 )
                 continue
-            ends = {key: self._category_of(end) for key, _, end in self._entries(item, ("from", "to"))}
+            ends = {key: self._category_of(end) for key, _, end in self.entries_of(item, ("from", "to"))}
             if len(ends) < len(("from", "to")):
                 self.problem(item.line, "a derivation needs from and to", "write {from: Video, to: FaceTemplate}")
             elif all(ends.values()):
@@ -274,7 +312,7 @@ class _Reader:
 
     def _restrictions(self, label: Value, keys: tuple[str, ...], rank: tuple[int, int]) -> Iterable[Statement]:
         """``only`` and ``never`` of a channel or flow."""
-        for key, line, value in self._entries(label, keys):
+        for key, line, value in self.entries_of(label, keys):
             if key in ("only", "never"):
                 names = tuple(self._categories(value, key))
                 if names:
@@ -285,21 +323,24 @@ class _Reader:
             self.problem(item.line, f"a flow is a map, not a {item.kind}", "write {from: /a, to: /b, never: [Video]}")
             return
         place = Place(self.file, item.line)
-        ends = {key: self._name(value) for key, _, value in item.entries if key in ("from", "to")}
+        ends = {key: self._end(value) for key, _, value in item.entries if key in ("from", "to")}
         rank = (self.tier, sum(specificity(name) for name in ends.values()))
         statements = tuple(self._restrictions(item, FLOW_KEYS, rank))
-        if len(ends) < len(("from", "to")) or not (item.get("only") or item.get("never")):
-            self.problem(
-                item.line, "a flow needs from, to, and only or never", "write {from: /a, to: /b, never: [Video]}"
-            )
+        if len(ends) < len(("from", "to")):
+            self.problem(item.line, "a flow needs from and to", "write {from: /a, to: /b, never: [Video]}")
             return
-        if statements:
+        stated = any(map(is_outside, ends.values()))
+        if not stated and not (item.get("only") or item.get("never")):
+            hint = "write {from: /a, to: /b, never: [Video]}; what policies do not know goes through an element"
+            self.problem(item.line, "a flow between nodes and channels needs only or never", hint)
+            return
+        if statements or (stated and all(ends.values())):
             self.flows.append(FlowEntry(ends["from"], ends["to"], place, statements))
 
     def _six_lists(self, top: Value) -> None:
         """The paper's JSON: six lists of names, one kind of data; there a sanitizer ends it (rule S8)."""
-        name = self._category(self.category, 0)
-        for role, line, value in self._entries(top, SIX_LISTS):
+        name = self.kind_of_data(self.category, 0)
+        for role, line, value in self.entries_of(top, SIX_LISTS):
             kinds = SECTIONS["channels" if role in ("sensitive", "mundane") else "nodes"]
             for item in self._list(value, role):
                 element = self._name(item)
@@ -311,8 +352,8 @@ class _Reader:
                 message = "a sanitizer of the paper's six lists ends the category; the method is not stated"
                 self.diagnostics.append(Diagnostic(Place(self.file, line), Severity.NOTICE, message))
 
-    def _entries(self, value: Value, known: tuple[str, ...]) -> Iterable[tuple[str, int, Value]]:
-        """The entries of a map, those with unknown keys reported."""
+    def entries_of(self, value: Value, known: tuple[str, ...]) -> Iterable[tuple[str, int, Value]]:
+        """Return the entries of a map, those with unknown keys reported."""
         for key, line, child in value.entries:
             if key == "note" and key in known:
                 if child.kind != "text":
@@ -345,10 +386,10 @@ class _Reader:
         if value.kind != "text":
             self.problem(value.line, f"a {value.kind} where a category is named", "write its name, such as Video")
             return ""
-        return self._category(value.text, value.line)
+        return self.kind_of_data(value.text, value.line)
 
-    def _category(self, written: str, line: int) -> str:
-        """The category's name; rule S11: one that is not there is an error with the nearest."""
+    def kind_of_data(self, written: str, line: int) -> str:
+        """Return the category's name; rule S11: one that is not there is an error with the nearest."""
         category = self.vocabulary.find(written)
         if category is None:
             self.problem(line, f"unknown category {shown(written)!r}", self.vocabulary.hint(written))
@@ -357,6 +398,12 @@ class _Reader:
             message = f"{shown(written)} is a former spelling; DPV spells it {new}"
             self.diagnostics.append(Diagnostic(Place(self.file, line), Severity.NOTICE, message))
         return category.name
+
+    def _end(self, value: Value) -> str:
+        """The name or glob of ROS at the end of a flow, or the name of an element outside it."""
+        if value.kind == "text" and value.text and is_outside(value.text):
+            return value.text
+        return self._name(value)
 
     def _name(self, value: Value) -> str:
         if value.kind != "text" or not value.text.startswith(("/", "*", "?", "[")):

@@ -7,13 +7,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.model import Method
+from rosprivacy.analysis.model import NON_ROS, Method
+from rosprivacy.analysis.outside import RECIPIENTS, TRANSFERS
+from rosprivacy.ingest.elements import CARRIERS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from rosprivacy.analysis.model import Category
 
+END = {"type": "string", "minLength": 1}
+OUTSIDE_NAME = {"type": "string", "pattern": r"^[^/*?\[:][^:]*$", "maxLength": 200}
 NAME = {"type": "string", "pattern": r"^[/*?\[]"}
 
 
@@ -39,9 +43,28 @@ def label_schema(categories: Iterable[Category]) -> dict[str, Any]:
             "topics": _section("channel", "As channels, for topics only."),
             "services": _section("channel", "As channels, for services only."),
             "actions": _section("channel", "As channels, for actions only."),
-            "flows": {"type": ["array", "null"], "items": {"$ref": "#/$defs/flow"}},
+            **outside_sections(),
         },
         "$defs": _definitions(list(categories)),
+    }
+
+
+def outside_sections() -> dict[str, Any]:
+    """Return the sections that fleet files have too."""
+    return {
+        "elements": {
+            "type": ["object", "null"],
+            "description": "What lies outside ROS, by name: storages, servers, side channels.",
+            "propertyNames": OUTSIDE_NAME,
+            "additionalProperties": {"$ref": "#/$defs/element"},
+        },
+        "limits": {
+            **_by_category({"$ref": "#/$defs/duration"}),
+            "type": ["object", "null"],
+            "minProperties": 0,
+            "description": "How long kinds of data may be kept at most.",
+        },
+        "flows": {"type": ["array", "null"], "items": {"$ref": "#/$defs/flow"}},
     }
 
 
@@ -77,12 +100,43 @@ def _definitions(categories: list[Category]) -> dict[str, Any]:
                 _object({**restrictions, "note": note}),
             ]
         },
+        "duration": {"type": "string", "pattern": "^P", "description": "ISO 8601, such as P30D."},
+        "element": {"oneOf": [_element(kind, _node(one, some, note)) for kind in NON_ROS]},
         "flow": {
-            **_object({"from": NAME, "to": NAME, **restrictions, "note": note}),
+            **_object({"from": END, "to": END, **restrictions, "note": note}),
             "required": ["from", "to"],
-            "anyOf": [{"required": ["only"]}, {"required": ["never"]}],
+            "anyOf": [  # what policies know can only be restricted
+                {"required": ["only"]},
+                {"required": ["never"]},
+                {"properties": {"from": OUTSIDE_NAME}},
+                {"properties": {"to": OUTSIDE_NAME}},
+            ],
         },
     }
+
+
+def _element(kind: str, labels: dict[str, Any]) -> dict[str, Any]:
+    """An element outside ROS of one kind: its facts, and labels as of nodes."""
+    duration = {"$ref": "#/$defs/duration"}
+    facts: dict[str, Any] = {
+        "kind": {"const": kind},
+        "country": {"type": "string", "pattern": "^[A-Z]{2}$", "description": "ISO 3166-1; quote NO."},
+        "operator": {"type": "string", "minLength": 1, "description": "Who runs it."},
+        "recipient": {"enum": list(RECIPIENTS)},
+        "transfer": {"enum": [*TRANSFERS, "none"], "description": "Basis of a transfer out of the EEA."},
+    }
+    if kind == "storage":
+        facts |= {
+            "retention": {"anyOf": [duration, _by_category(duration)], "description": "How long data is kept."},
+            "backups": {"anyOf": [duration, {"type": "boolean"}], "description": "How much longer backups keep it."},
+            "encrypted": {"type": "boolean", "description": "At rest."},
+        }
+    if kind in CARRIERS:
+        facts["between"] = {"type": "array", "minItems": 2, "items": NAME, "description": "Nodes that it joins."}
+    element = {**_object(facts | labels["properties"]), "required": ["kind"]}
+    if kind == "device":
+        element["anyOf"] = [{"required": [key]} for key in labels["properties"] if key != "note"]
+    return element
 
 
 def _node(one: dict[str, Any], some: dict[str, Any], note: dict[str, Any]) -> dict[str, Any]:

@@ -196,12 +196,13 @@ def finding_rows(
     rows, across = [], []
     for finding in analysis.findings:
         robot = robots[finding.source]
-        pattern = finding_id(finding.category, _alike(finding.source), _alike(finding.leak))
+        pattern = finding_id(finding.category, _alike(finding.source), _alike(finding.leak), finding.kind)
         key = f"{robot}|{pattern}" if robots[finding.leak] == robot else f"{robot}|{pattern}|{ids[finding.leak]}"
         properties = {
             "pattern": pattern,
             "robot": robot,
             "kind": finding.kind,
+            "reason": finding.reason or None,
             "category": finding.category,
             "source": finding.source.name,
             "leak": finding.leak.name,

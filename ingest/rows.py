@@ -11,6 +11,8 @@ import json
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.outside import BY_KIND
+from rosprivacy.ingest.facts import properties_of
 from rosprivacy.ingest.ids import category_labels, element_id, enclave_id
 from rosprivacy.ingest.results import Names, Roles, element_results, finding_rows, flow_results, origin_rows
 from rosprivacy.ingest.schema import KIND_LABELS, LEG, WILDCARD
@@ -100,7 +102,7 @@ def robot_rows(
     enclaves = sorted({profile.enclave for profile in graph.profiles})
     found, across = finding_rows(analysis, vocabulary, by_element, dict.fromkeys(graph.elements, robot))
     parts: dict[str, Any] = {
-        "elements": list(_elements(robot, ids, element_results(analysis, bound, names, roles), graph.elements)),
+        "elements": list(_elements(robot, ids, element_results(analysis, bound, names, roles), analysis)),
         "enclaves": [{"id": enclave_id(robot, e), "properties": {"path": e, "robot": robot}} for e in enclaves],
         "memberships": list(_memberships(robot, analysis)),
         "flows": list(_flows(robot, analysis, bound, names, ids)),
@@ -132,9 +134,9 @@ def kind_labels(element: Element) -> list[str]:
 
 
 def _elements(
-    robot: str, ids: Sequence[str], results: Iterable[tuple[Row, list[str]]], elements: Sequence[Element]
+    robot: str, ids: Sequence[str], results: Iterable[tuple[Row, list[str]]], analysis: Analysis
 ) -> Iterator[Row]:
-    for element, key, (properties, labels) in zip(elements, ids, results, strict=True):
+    for element, key, (properties, labels) in zip(analysis.graph.elements, ids, results, strict=True):
         known = {
             "name": element.name,
             "robot": robot,
@@ -142,6 +144,7 @@ def _elements(
             "leg": element.leg or None,
             "side": element.side or None,
             "without": list(element.without) or None,
+            **(properties_of(analysis.outside[element]) if element in analysis.outside else {}),
         }
         yield {"id": key, "labels": [*kind_labels(element), *labels], "properties": {**known, **properties}}
 
@@ -195,6 +198,8 @@ def _roles(robot: str, bound: Bound, vocabulary: Vocabulary, ids: Sequence[str])
     top = [category.name for category in vocabulary.categories.values() if not category.broader]
     for vertex, said in bound.elements.items():
         for statement in said:
+            if statement.rank == BY_KIND:  # nobody said it; whoever reads the graph takes it so too
+                continue
             properties: Row = {
                 "file": statement.place.file,
                 "line": statement.place.line,

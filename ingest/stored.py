@@ -13,7 +13,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import GraphError, InputError, InputErrors, shown
-from rosprivacy.analysis.model import Bound, Element, Flow, FlowGraph, Grant, Method, Place, Profile, Statement
+from rosprivacy.analysis.model import NON_ROS, Bound, Element, Flow, FlowGraph, Grant, Method, Place, Profile, Statement
+from rosprivacy.analysis.outside import by_kind
+from rosprivacy.ingest.facts import facts_of
 from rosprivacy.ingest.labels import EXACT
 from rosprivacy.ingest.names import covers
 from rosprivacy.ingest.schema import KIND_LABELS, ROLES
@@ -23,6 +25,7 @@ if TYPE_CHECKING:
 
     from neo4j import Driver, ManagedTransaction, Record
 
+    from rosprivacy.analysis.outside import Outside
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 DATABASE = "the database"
@@ -135,6 +138,7 @@ class _Reader:
         self._flows: list[tuple[Element, Element, str, str, Mapping[str, Any]]] = []
         self._said: dict[str, list[tuple[str, str, Mapping[str, Any]]]] = defaultdict(list)
         self._profiles: list[Profile] = []
+        self._outside: dict[Element, Outside] = {}
 
     def elements(self, records: Iterable[Record]) -> None:
         for record in records:
@@ -157,8 +161,18 @@ class _Reader:
             if element in self._vertices:
                 hint = "rename one, or remove it"
                 self.problems.append(_problem(f"there are two elements {element.kind} {shown(name)!r}", hint))
+            if element.kind in NON_ROS:
+                self._take_facts(element, properties)
             self._vertices[element] = _Vertex(record["key"], labels, properties)
             self._by_key[record["key"]] = element
+
+    def _take_facts(self, element: Element, properties: Mapping[str, Any]) -> None:
+        """What is stated about an element outside ROS; where nothing is, the facts are empty (rule S9)."""
+        try:
+            self._outside[element] = facts_of(properties, self._vocabulary.categories)
+        except ValueError as error:
+            what = f"{element.kind} {shown(element.name)!r} cannot be understood: {shown(str(error))}"
+            self.problems.append(_problem(what, "see docs/database.md for what it has"))
 
     def flows(self, records: Iterable[Record]) -> None:
         for record in records:
@@ -212,10 +226,19 @@ class _Reader:
         )
         statements = {v: tuple(self._statements(vertices[v].key)) for v in range(len(elements))}
         statements = {v: said for v, said in statements.items() if said}
+        outside = {v: facts for v, e in enumerate(elements) if (facts := self._outside.get(e)) is not None}
+        for vertex in outside:
+            statements[vertex] = (*statements.get(vertex, ()), *by_kind(elements[vertex]))
+        statements = dict(sorted(statements.items()))
         restrictions = {i: tuple(_restrictions(row[4])) for i, row in enumerate(allowed)}
         return Stored(
             graph,
-            Bound(statements, {i: said for i, said in restrictions.items() if said}, _through(graph, statements)),
+            Bound(
+                {v: said for v, said in statements.items() if said},
+                {i: said for i, said in restrictions.items() if said},
+                _through(graph, statements),
+                outside,
+            ),
             robots,
             tuple(vertex.key for vertex in vertices),
             tuple(vertex.labels for vertex in vertices),

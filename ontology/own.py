@@ -61,7 +61,7 @@ def own_categories(data: bytes, file: str, ours: Graph, known: Iterable[Category
 
     problems = [problem(s, what, hint) for s, what, hint in _taken(graph, subjects, known)]
     problems += [problem(s, what, hint) for s, what, hint in _parents(graph, both, subjects, known)]
-    problems += [problem(s, what, hint) for s, what, hint in _shape_problems(both, set(subjects))]
+    problems += [problem(s, what, hint) for s, what, hint in _shape_problems(graph, ours, set(subjects))]
     if problems:
         raise InputErrors(problems)
     return categories_of(both, subjects)
@@ -119,14 +119,22 @@ def _climbs_to(both: Graph, subject: Node, ends: set[URIRef]) -> bool:
     return any(up in ends for up in both.transitive_objects(subject, SKOS.broader))
 
 
-def _shape_problems(both: Graph, subjects: set[Node]) -> Iterator[Problem]:
-    """What the shapes refuse, with their own words: 'what is wrong; what to do'."""
+def _shape_problems(graph: Graph, ours: Graph, subjects: set[Node]) -> Iterator[Problem]:
+    """What the shapes refuse, with their own words: 'what is wrong; what to do'.
+
+    Of ours only the provisions are put beside the user's file: the shapes hold ours in tests, and parents and names
+    are checked above.
+    """
     import pyshacl  # noqa: PLC0415 - takes longer than all the rest
 
     shapes = Graph().parse(data=files("rosprivacy.ontology").joinpath(SHAPES).read_text("utf-8"), format="turtle")
-    _, report, _ = pyshacl.validate(both, shacl_graph=shapes, advanced=True, inplace=False)
+    provisions = Graph()
+    for provision in ours.subjects(RDF.type, RP.LegalProvision):
+        for triple in ((provision, RDF.type, RP.LegalProvision), *ours.triples((provision, RP.partOf, None))):
+            provisions.add(triple)
+    _, report, _ = pyshacl.validate(graph + provisions, shacl_graph=shapes, advanced=True, inplace=False)
     found = set()
-    for result in report.subjects(RDF.type, SH.ValidationResult):
+    for result in report.objects(None, SH.result):
         focus = report.value(result, SH.focusNode)
         if focus in subjects:
             what, _, hint = str(report.value(result, SH.resultMessage)).partition("; ")

@@ -109,8 +109,8 @@ class Vocabulary:
     def hint(self, text: str) -> str:
         """Return what to do about a name that is not there.
 
-        >>> load().hint("Vidoe"), load().hint("qqqqqq")
-        ('did you mean Video?', 'rosprivacy categories lists all of them')
+        >>> load().hint("Biometrik"), load().hint("qqqqqq")
+        ('did you mean Biometric?', 'rosprivacy categories lists all of them')
         """
         close_ones = self.nearest(text)
         return f"did you mean {' or '.join(close_ones)}?" if close_ones else "rosprivacy categories lists all of them"

@@ -18,7 +18,7 @@ WITH collect(DISTINCT c.name) AS emitted
 MATCH (:DataCategory)<-[:LEAKS]-(leak:Element)
 WITH DISTINCT leak, emitted
 UNWIND [k IN leak.leaks WHERE k IN emitted] AS category
-WITH leak, category, EXISTS { (leak)<-[:TO]-(:Finding {category: category}) } AS reached
+WITH leak, category, EXISTS { (leak)<-[:TO]-(:Finding {kind: 'disclosure', category: category}) } AS reached
 WHERE $otherwise OR NOT reached
 CALL (leak, category) {
   RETURN leak AS b, [leak.name] AS way

@@ -12,7 +12,7 @@
 // order: robot, category, source, leak
 MATCH (c:DataCategory)
 WHERE $category = '' OR EXISTS { (c)-[:BROADER*0..]->(:DataCategory {name: $category}) }
-MATCH (c)<-[:OF_CATEGORY]-(f:Finding {dismissed: false})
+MATCH (c)<-[:OF_CATEGORY]-(f:Finding {kind: 'disclosure', dismissed: false})
 WHERE $robot = '' OR f.robot = $robot
 MATCH (f)-[a:ACROSS]->(n:Element)
 WITH f, a, n ORDER BY a.step

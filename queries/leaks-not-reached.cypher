@@ -9,8 +9,8 @@
 // order: robot, leak, category, label
 MATCH (e:Element)-[l:LEAKS]->(c:DataCategory)
 WHERE ($robot = '' OR e.robot = $robot)
-  AND NOT EXISTS { (c)-[:BROADER*0..]->(:DataCategory)<-[:OF_CATEGORY]-(:Finding)-[:TO]->(e) }
-  AND NOT EXISTS { (c)<-[:BROADER*0..]-(:DataCategory)<-[:OF_CATEGORY]-(:Finding)-[:TO]->(e) }
+  AND NOT EXISTS { (c)-[:BROADER*0..]->(:DataCategory)<-[:OF_CATEGORY]-(:Finding {kind: 'disclosure'})-[:TO]->(e) }
+  AND NOT EXISTS { (c)<-[:BROADER*0..]-(:DataCategory)<-[:OF_CATEGORY]-(:Finding {kind: 'disclosure'})-[:TO]->(e) }
 RETURN DISTINCT e.robot AS robot, e.name AS leak, c.name AS category,
        coalesce(l.file + ':' + l.line, 'by hand') AS label
 ORDER BY robot, leak, category, label

@@ -9,7 +9,7 @@
 // returns by: list of string, who pseudonymises it on the shortest way
 // returns path: list of string, names in the order of the flow, source first
 // order: robot, category, source, leak
-MATCH (f:Finding {pseudonymised: true, dismissed: false})-[a:ACROSS]->(e:Element)
+MATCH (f:Finding {kind: 'disclosure', pseudonymised: true, dismissed: false})-[a:ACROSS]->(e:Element)
 WHERE $robot = '' OR f.robot = $robot
 WITH f, a, e ORDER BY a.step
 WITH f, collect(e.name) AS path, collect(a.pseudonymised) AS after

@@ -11,7 +11,7 @@
 // returns disjoint_paths: integer, how many ways share no flow
 // returns path: list of string, names on a shortest way in the order of the flow, source first
 // order: robot, category, source
-MATCH (f:Finding {leak: $leak})-[a:ACROSS]->(e:Element)
+MATCH (f:Finding {kind: 'disclosure', leak: $leak})-[a:ACROSS]->(e:Element)
 WHERE $robot = '' OR f.robot = $robot
 WITH f, a, e ORDER BY a.step
 WITH f, collect(e.name) AS path

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 NAMES = 30  # named in a row
 WAYS = 50  # findings shown with their way, recipients
 THREATS = 100
+STORED = "storage-limitation"  # the kind of findings whose end is a storage, told under 'Kept in'
 NOTHING_FOLLOWED = Html(
     "<p>No label names a source of personal data, so nothing was followed and nothing can be said here.</p>"
 )
@@ -195,8 +196,9 @@ def threats(known: Known) -> list[str]:
 
 def _threat(finding: Finding, known: Known) -> str:
     what = f"{_form(finding)}{finding.category} can get from {_name(finding.source)} to {_name(finding.leak)}"
+    why = harmless(f"; {finding.reason}") if finding.reason else ""
     decided = f", accepted: {known.accepted[finding.id]}" if finding.id in known.accepted else ""
-    return f"{harmless(what)} (path to assess {finding.id}{harmless(decided)})"
+    return f"{harmless(what)}{why} (path to assess {finding.id}{harmless(decided)})"
 
 
 def _line(what: str, said: Html) -> Html:
@@ -263,7 +265,8 @@ def _law(kind: Kind) -> Iterator[Html]:
 
 
 def _recipients(kind: Kind) -> Html:
-    names = [_name(f.leak) + (" (pseudonymised)" if f.pseudonymised else "") for f in kind.findings]
+    outside = [finding for finding in kind.findings if finding.kind != STORED]
+    names = [_name(f.leak) + (" (pseudonymised)" if f.pseudonymised else "") for f in outside]
     found = some(list(dict.fromkeys(names)), NAMES) or Html("none found under the labels given")
     unknown = joined(Html("; not reviewed: "), counted(len(kind.open), "element")) if kind.open else Html("")
     return joined(found, unknown)

@@ -9,6 +9,7 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.legal import turned_special
+from rosprivacy.report.outside import inventory, taken_by_kind
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -48,6 +49,7 @@ def document(
                 "categories": list(question.categories),
                 "distance": question.distance,
                 "frontier": question.frontier,
+                **({"missing": list(question.missing)} if question.missing else {}),
             }
             for question in analysis.open
         ],
@@ -65,6 +67,7 @@ def document(
             for category, roles in sorted(said.items())
             if not element.is_channel
         ],
+        "outside": inventory(analysis, hierarchy),
         "flows": len(graph.flows),
         "denied_flows": len(graph.denied),
         "elements": len({element.identity for element in graph.elements}),
@@ -72,6 +75,7 @@ def document(
         "diagnostics": [_diagnostic(d) for d in (*diagnostics, *analysis.diagnostics)],
         "assumptions": {
             **assumptions,
+            "taken_by_kind": taken_by_kind(analysis),
             "sanitizers_without_method": [
                 {"element": element_dict(element), "category": category, "taken_as": "pseudonymise"}
                 for element, category in analysis.unstated
@@ -162,6 +166,7 @@ def _finding(finding: Finding, categories: Mapping[str, Category]) -> dict[str, 
         "through": [element_dict(element) for element in finding.through],
         "dismissed": finding.dismissed,
         **law_of(finding, categories),
+        **({"reason": finding.reason} if finding.reason else {}),
     }
     if finding.paths:
         shown["paths"] = [[element_dict(element) for element in path] for path in finding.paths]

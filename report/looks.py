@@ -95,12 +95,11 @@ KIND_LOOKS = {
     "person": Look("person", YELLOW),
 }
 
-SOURCE, LEAK, FOUND, DERIVATION, SANITIZER = "source", "leak", "found", "derivation", "sanitizer"
+SOURCE, LEAK, DERIVATION, SANITIZER = "source", "leak", "derivation", "sanitizer"
 REVIEWED, OPEN = "reviewed", "open"
 ROLE_LOOKS = {
     SOURCE: Look("source: brings data in", SKY, width=3.0),
     LEAK: Look("leak: lets data out", RED, width=1.5, double=True),
-    FOUND: Look("finding of another kind, named on the box", ORANGE, width=3.0, double=True),
     DERIVATION: Look("makes one kind of data of another", PURPLE, width=1.5),
     SANITIZER: Look("cleans, but not all", GREEN, width=1.5),
     REVIEWED: Look("reviewed: passes on what it gets", GRAY),

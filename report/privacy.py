@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.model import CHANNELS
-from rosprivacy.report.looks import DERIVATION, FOUND, LEAK, OPEN, REVIEWED, SANITIZER, SOURCE
+from rosprivacy.analysis.model import CHANNELS, DISCLOSURE
+from rosprivacy.report.looks import DERIVATION, LEAK, OPEN, REVIEWED, SANITIZER, SOURCE
 from rosprivacy.report.picture import Box
 from rosprivacy.report.wording import counted, listed
 
@@ -16,8 +16,17 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Analysis
     from rosprivacy.report.picture import Key
 
-DISCLOSURE = "disclosure"  # the kind of finding that has a role of its own, the leak's
 MOST = 4  # categories that are named on a box
+
+
+def ends_of(analysis: Analysis) -> dict[int, int]:
+    """Return where findings end that are no disclosures: vertex -> bits of what is kept too long there, or leaves."""
+    number = {element: vertex for vertex, element in enumerate(analysis.graph.elements)}
+    ends: dict[int, int] = defaultdict(int)
+    for finding in analysis.findings:
+        if finding.kind != DISCLOSURE:
+            ends[number[finding.leak]] |= analysis.spread.both(finding.category)
+    return dict(ends)
 
 
 class Reached:
@@ -40,12 +49,9 @@ class Reached:
         self._of: dict[Key, list[int]] = defaultdict(list)
         for vertex, element in enumerate(self.graph.elements):
             self._of[element.identity].append(vertex)
+        self._ends = ends_of(analysis)
         self._open: dict[Key, set[str]] = defaultdict(set)
         shown = set(found.names(self._mask))
-        self._kinds: dict[Key, set[str]] = defaultdict(set)
-        for finding in analysis.findings:
-            if finding.kind != DISCLOSURE and finding.category in shown:
-                self._kinds[finding.leak.identity].add(finding.kind.replace("-", " "))
         for question in analysis.open:
             self._open[question.element.identity] |= shown.intersection(question.categories)
 
@@ -62,7 +68,8 @@ class Reached:
 
     def _goes_on(self, vertex: int) -> int:
         found = self._found
-        here = found.leaves.get(vertex, 0) | (found.leaks.get(vertex, 0) & found.present(vertex))
+        ends = found.leaks.get(vertex, 0) | self._ends.get(vertex, 0)
+        here = found.leaves.get(vertex, 0) | (ends & found.present(vertex))
         return here & self._mask
 
     def along(self, index: int) -> tuple[tuple[str, ...], bool]:
@@ -70,7 +77,7 @@ class Reached:
         found, target = self._found, self.graph.flows[index].target
         bits = found.along(index) & self._mask
         if bits:
-            taken = found.keeps.get(target, found.all_bits) | found.leaks.get(target, 0)
+            taken = found.keeps.get(target, found.all_bits) | found.leaks.get(target, 0) | self._ends.get(target, 0)
             for before, _ in found.derives.get(target, ()):
                 taken |= 1 << before
             bits &= taken
@@ -95,18 +102,18 @@ class Reached:
         return tuple(notes)
 
     def _box(self, key: Key, vertices: list[int]) -> Box:
-        bits = {"present": 0, "begins": 0, "leaks": 0, "arrives": 0}
+        bits = {"present": 0, "begins": 0, "leaks": 0, "arrives": 0, "ends": 0}
         for vertex in vertices:
             present = self._found.present(vertex) & self._mask
             bits["present"] |= present
             bits["begins"] |= self._found.begins(vertex) & self._mask
             bits["leaks"] |= self._found.leaks.get(vertex, 0) & present
+            bits["ends"] |= self._ends.get(vertex, 0) & present
             bits["arrives"] |= self._found.arrives.get(vertex, 0) & self._mask
         made, cleaned = self._said(vertices, bits["present"])
         open_for = self._open.get(key, set())
         roles = [
-            (LEAK, bits["leaks"]),
-            (FOUND, self._kinds.get(key)),
+            (LEAK, bits["leaks"] | bits["ends"]),
             (SOURCE, bits["begins"]),
             (DERIVATION, made),
             (SANITIZER, cleaned),
@@ -150,7 +157,9 @@ class Reached:
             words.append(f"source of {listed(own, MOST)}")
         if bits["leaks"]:
             words.append(f"leak of {listed(found.names(bits['leaks']), MOST)}")
-        return [*words, *sorted(self._kinds.get(key, ())), *made[:MOST], *cleaned[:MOST]]
+        if bits["ends"]:
+            words.append(f"kept too long, or outside the EEA: {listed(found.names(bits['ends']), MOST)}")
+        return [*words, *made[:MOST], *cleaned[:MOST]]
 
     def _own(self, vertices: list[int], begins: int) -> list[str]:
         """What labels call it a source of; what it makes of its own data begins here too."""

@@ -122,6 +122,8 @@ class Results:
         kinds = ", ".join(text(name) for name in question.categories)
         unknown = "whether it may carry that" if element.is_channel else "what it does with that"
         what = f"{named(element)} gets {kinds}, and no label says {unknown}."
+        if question.missing:
+            what = f"{named(element)} gets {kinds}, and nobody states its {' or '.join(question.missing)}."
         digest = hashlib.sha256("\0".join(("unreviewed", *element.shown_as)).encode()).hexdigest()[:16]
         return {
             "ruleId": rule.id,
@@ -187,6 +189,8 @@ def _message(finding: Finding, law: Sequence[Legal], turned: Element | None, pla
     said = [f"{category} can get from {source} to {leak}: a path to assess."]
     if len(finding.witness) == 1:
         said = [f"{source} brings {category} in and lets it out itself: a path to assess."]
+    if finding.reason:
+        said.append(f"{leak}: {prose(finding.reason)}.")
     if finding.pseudonymised:
         said.append("It arrives pseudonymised, which is still personal data.")
     if turned is not None:

@@ -28,6 +28,12 @@ VERBS = {
     "call": "call", "execute": "execute", "matches": "wildcard covers", "flow": "goes to",
 }  # fmt: skip
 MAY = {"always": "applies", "conditional": "can apply", "may-reveal": "may be revealed"}  # to the data, not the system
+KINDS = {
+    "disclosure": "",
+    "storage-limitation": "kept without a stated end, or too long: ",
+    "third-country-transfer": "leaves the EEA without a stated basis: ",
+}
+TAKEN = {"conduit": "passes on all that gets there", "leak": "lets out all that gets there"}
 SHOWN = 12  # open elements of a kind, without --verbose
 Line = tuple[str, str]  # text, style
 
@@ -80,7 +86,10 @@ def _findings(report: Mapping[str, Any]) -> Iterator[Line]:
         form = "pseudonymised " if finding["pseudonymised"] else ""
         style = "dim" if finding["dismissed"] else "bold"
         yield "", ""
-        yield f"{number}. {form}{finding['category']}: {_name(source)} -> {_name(leak)}   [{finding['id']}]", style
+        what = f"{KINDS[finding['kind']]}{form}{finding['category']}"
+        yield f"{number}. {what}: {_name(source)} -> {_name(leak)}   [{finding['id']}]", style
+        if "reason" in finding:
+            yield f"   {shown(finding['reason'])}", ""
         if finding["dismissed"]:
             through = ", ".join(_name(element) for element in finding["through"])
             yield f"   only through {through}, which has a finding of its own", "dim"
@@ -157,7 +166,8 @@ def _review(report: Mapping[str, Any], *, verbose: bool) -> Iterator[Line]:
         chosen = questions if verbose else questions[:SHOWN]
         for question in chosen:
             element = question["element"]
-            what = f"{_name(element)}  ({_kind(element)}; {', '.join(question['categories'])};"
+            missing = "".join(f" no {what} is stated;" for what in question.get("missing", ()))
+            what = f"{_name(element)}  ({_kind(element)}; {', '.join(question['categories'])};{missing}"
             yield f"   {what} {_count(question['distance'], 'step')} from a source)", ""
         if len(questions) > len(chosen):
             yield f"   … and {len(questions) - len(chosen)} more (-v shows all)", "dim"
@@ -190,10 +200,24 @@ def _assumed(report: Mapping[str, Any]) -> Iterator[Line]:
     for file in assumptions["ontologies"]:
         yield f"   more categories of {shown(file['file'])} (sha256 {file['sha256'][:12]})", ""
     yield f"   law as of {assumptions['law_as_of']}", ""
+    yield from _assumed_outside(report)
     for taken in assumptions["sanitizers_without_method"]:
         method = f"sanitizer {_name(taken['element'])} states no method for {taken['category']}"
         yield f"   {method}: taken as pseudonymise, the data is still personal", "yellow"
     yield "   labels are a person's word; this is no legal verdict", "dim"
+
+
+def _assumed_outside(report: Mapping[str, Any]) -> Iterator[Line]:
+    """What was taken of elements outside ROS (rule S9)."""
+    assumptions = report["assumptions"]
+    for kind, role in assumptions["taken_by_kind"].items():
+        yield f"   {kind}: {TAKEN[role]} ({role}), unless a label says otherwise", ""
+    if "countries_as_of" in assumptions:
+        yield f"   EEA and adequacy decisions as of {assumptions['countries_as_of']}: check them", ""
+    for row in report["outside"]:
+        if "without_limit" in row:
+            what = f"how long {_name(row['element'])} keeps {', '.join(row['without_limit'])} was not judged"
+            yield f"   {what}: no label file states a limit", "yellow"
 
 
 def _diagnostics(report: Mapping[str, Any], *, verbose: bool) -> Iterator[Line]:

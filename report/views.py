@@ -13,7 +13,7 @@ from collections import defaultdict
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.model import Verdict
+from rosprivacy.analysis.model import DISCLOSURE, Verdict
 from rosprivacy.analysis.search import Net
 from rosprivacy.analysis.ways import Ways, ways
 from rosprivacy.report.looks import ALLOWED, DATA, DENIED, MATCHES, SHORTEST, WAY
@@ -22,7 +22,7 @@ from rosprivacy.report.privacy import Reached
 from rosprivacy.report.wording import counted, listed, shortened
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Mapping
+    from collections.abc import Collection, Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.model import Analysis, Finding, Flow, FlowGraph, Grant, Place
     from rosprivacy.report.picture import Key
@@ -176,10 +176,8 @@ def privacy_view(analysis: Analysis) -> Picture:
     net = Net.of(analysis.spread)
     open_findings = [finding for finding in analysis.findings if not finding.dismissed]
     lengths: dict[int, int] = {}
-    number = {element: vertex for vertex, element in enumerate(analysis.graph.elements)}
-    for category in sorted({finding.category for finding in open_findings}):
-        ends = {number[finding.leak] for finding in open_findings if finding.category == category}
-        for flow, length in ways(net, category, leaks=ends).flows.items():
+    for found in _ways_to_all(analysis, net, open_findings):
+        for flow, length in found.items():
             lengths[flow] = min(length, lengths.get(flow, length))
     lines = _data_lines(reached, boxes, range(len(analysis.graph.flows)), lengths, _pairs(open_findings))
     what = listed(analysis.emitted, most=6)
@@ -190,6 +188,20 @@ def privacy_view(analysis: Analysis) -> Picture:
     shown = tuple(in_words(finding) for finding in open_findings)
     core = _core(open_findings)
     return Picture(PRIVACY, title, sorted_boxes(boxes.values()), lines.made(), notes, shown, core)
+
+
+def _ways_to_all(analysis: Analysis, net: Net, findings: Iterable[Finding]) -> Iterator[dict[int, int]]:
+    """The ways to the leaks of each category, and to where data are kept too long or leave the EEA (rule S10)."""
+    number = {element: vertex for vertex, element in enumerate(analysis.graph.elements)}
+    ends: dict[str, dict[int, int]] = {}
+    for finding in findings:
+        if finding.kind != DISCLOSURE:
+            both = analysis.spread.both(finding.category)
+            ends.setdefault(finding.category, {})[number[finding.leak]] = both
+    for category in sorted({finding.category for finding in findings if finding.kind == DISCLOSURE}):
+        yield ways(net, category).flows
+    for category, where in sorted(ends.items()):
+        yield ways(net, category, leaks=where, past_leaks=True, ends=where).flows
 
 
 class FindingViews:
@@ -221,8 +233,11 @@ class FindingViews:
         source, leak = self._number[finding.source], self._number[finding.leak]
         found = Ways({})
         if finding.steps:
-            past = finding.dismissed
-            found = ways(self._net, category, sources=[source], leaks=[leak], past_leaks=past, about=about)
+            ends = None if finding.kind == DISCLOSURE else {leak: self._analysis.spread.both(category)}
+            past = finding.dismissed or ends is not None
+            found = ways(
+                self._net, category, sources=[source], leaks=[leak], past_leaks=past, ends=ends, about=about
+            )
         lengths = found.flows
         keys = {element.identity for element in finding.witness}
         for index in lengths:
@@ -230,8 +245,8 @@ class FindingViews:
         boxes = {box.key: box for box in reached.boxes(keys)}
         lines = _data_lines(reached, boxes, lengths, lengths, _pairs([finding]))
         form = "pseudonymised " if finding.pseudonymised else ""
-        ends = f"{shortened(finding.source.name, 60)} to {shortened(finding.leak.name, 60)}"
-        title = f"How {form}{category} can get from {ends} ({graph.view})"
+        from_to = f"{shortened(finding.source.name, 60)} to {shortened(finding.leak.name, 60)}"
+        title = f"How {form}{category} can get from {from_to} ({graph.view})"
         notes = [f"Finding {finding.id}"]
         if finding.dismissed:
             through = listed((element.name for element in finding.through), longest=60)

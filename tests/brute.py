@@ -5,15 +5,20 @@ A state is (vertex, category, pseudonymised). Statements here all have one name 
 
 from __future__ import annotations
 
+import re
 from collections import deque
 from dataclasses import dataclass, field
+from datetime import date
+from functools import cache
 from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.model import Place, Statement
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection
 
     from rosprivacy.analysis.hierarchy import Hierarchy
-    from rosprivacy.analysis.model import Statement
+    from rosprivacy.analysis.outside import Outside
 
 Data = tuple[str, bool]  # category, pseudonymised
 
@@ -29,6 +34,33 @@ PAIRS = [
     {"sensitive", "never"},
 ]
 ENDS = {"anonymise", "aggregate", "drop"}
+CONDUIT = Statement("conduit", (), (-1, 0), Place("", 0))
+LEAK = Statement("leak", (), (-1, 0), Place("", 0))
+BY_KIND = {
+    "storage": [CONDUIT],
+    "shared-memory": [CONDUIT],
+    "side-channel": [CONDUIT],
+    "external-system": [LEAK],
+    "display": [LEAK],
+    "person": [LEAK],
+}  # S9: what is taken of an element outside ROS, unless a label says otherwise
+ABROAD = {"third", "partly"}
+
+
+@cache
+def longer(ours: str, theirs: str) -> bool:
+    """Whether a duration is longer than another from the first of some month on (all of 400 years are tried)."""
+    return any(_end(day, ours) > _end(day, theirs) for day in _FIRSTS)
+
+
+_FIRSTS = [date(year, month, 1) for year in range(1600, 2000) for month in range(1, 13)]
+
+
+def _end(start: date, durations: str) -> int:
+    """The day on which one or several durations such as ``P10D`` end, added up."""
+    parts = [(int(n), unit) for n, unit in re.findall(r"P(\d+)([DMY])", durations)]
+    months = start.year * 12 + start.month - 1 + sum({"D": 0, "M": 1, "Y": 12}[unit] * n for n, unit in parts)
+    return date(months // 12, months % 12 + 1, 1).toordinal() + sum(n for n, unit in parts if unit == "D")
 
 
 @dataclass
@@ -40,6 +72,7 @@ class Brute:
     said: dict[int, list[Statement]]
     hierarchy: Hierarchy
     never: dict[tuple[int, int], set[str]] = field(default_factory=dict)  # of flows
+    outside: dict[int, tuple[str, Outside]] = field(default_factory=dict)  # kind, facts
     along: set[tuple[int, int, Data]] = field(default_factory=set)  # what the last spread sent along flows
 
     def nearness(self, statement: Statement, category: str) -> int | None:
@@ -56,15 +89,18 @@ class Brute:
 
     def holding(self, vertex: int, category: str) -> list[Statement]:
         """S7: the statements that apply, but for those that a nearer one contradicts."""
-        applying = [s for s in self.said.get(vertex, []) if self.nearness(s, category) is not None]
+        said = [*self.said.get(vertex, []), *BY_KIND.get(self.outside.get(vertex, ("",))[0], [])]
+        applying = [s for s in said if self.nearness(s, category) is not None]
+
+        def weight(s: Statement) -> tuple[int, int]:
+            near = self.nearness(s, category)
+            assert near is not None
+            return (s.rank[0], -near)
 
         def outdone(s: Statement) -> bool:
-            mine = self.nearness(s, category)
-            assert mine is not None
             return any(
                 ({s.role, t.role} in PAIRS or (s.role == t.role == "sanitizer" and s.method != t.method))
-                and (other := self.nearness(t, category)) is not None
-                and other < mine
+                and weight(t) > weight(s)
                 for t in applying
             )
 
@@ -153,29 +189,69 @@ class Brute:
     def sources(self) -> set[int]:
         return {v for v in self.said if self.emitted(v)}
 
-    def findings(self) -> dict[tuple[str, int, int], tuple[bool, bool, int]]:
-        """S10: (category, source, leak) -> (pseudonymised, dismissed, length of the shortest way to show)."""
-        found: dict[tuple[str, int, int], tuple[bool, bool, int]] = {}
+    def nearest(self, stated: Collection[tuple[str, object]], category: str) -> list[str]:
+        """S7: durations stated for the category or the nearest broader one; for every category last."""
+        steps = [
+            (self.hierarchy.distance(category, name) if name else 1_000_000, str(how_long)) for name, how_long in stated
+        ]
+        known = [(step, how_long) for step, how_long in steps if step is not None]
+        return [how_long for step, how_long in known if step == min(known)[0]]
+
+    def kept_too_long(self, vertex: int, category: str) -> bool:
+        """S10: no stated retention, or one longer than allowed; the data may be of any narrower kind."""
+        kind, facts = self.outside.get(vertex, ("", None))
+        if kind != "storage" or facts is None:
+            return False
+        kinds = [name for name, above in self.hierarchy.ancestors.items() if category in above]
+        more = "" if facts.backups is None else str(facts.backups)
+        return facts.backups is True or any(
+            not self.nearest(facts.retention, name)
+            or any(
+                longer(f"{kept} {more}", limit)
+                for kept in self.nearest(facts.retention, name)
+                for limit in self.nearest(facts.limits, name)
+            )
+            for name in kinds
+        )
+
+    def abroad(self, vertex: int) -> bool:
+        """S10: outside the EEA without a stated basis."""
+        facts = self.outside[vertex][1] if vertex in self.outside else None
+        return facts is not None and facts.area in ABROAD and not facts.transfer
+
+    def findings(self) -> dict[tuple[str, str, int, int], tuple[bool, bool, int]]:
+        """S10: (kind, category, source, leak) -> (pseudonymised, dismissed, length of the shortest way to show)."""
+        found: dict[tuple[str, str, int, int], tuple[bool, bool, int]] = {}
         for source in self.sources():
             whole = self.spread([source])
-            for leak in self.said:
-                for category in {c for v, (c, _) in whole if v == leak}:
-                    if not self.has(leak, "leak", category):
-                        continue
+            for leak, category in {(v, c) for v, (c, _) in whole}:
 
-                    def other(v: int, c: str, leak: int = leak, category: str = category) -> bool:
-                        return c == category and v != leak and self.has(v, "leak", c)
+                def other(v: int, c: str, leak: int = leak, category: str = category) -> bool:
+                    return c == category and v != leak and self.has(v, "leak", c)
 
-                    free = self.spread([source], other)
-                    for way, dismissed in ((free, False), (whole, True)):
+                kinds = {
+                    "disclosure": self.has(leak, "leak", category),
+                    "storage-limitation": self.kept_too_long(leak, category),
+                    "third-country-transfer": self.abroad(leak),
+                }
+                for kind in [kind for kind, holds in kinds.items() if holds]:
+                    ways = (
+                        [(whole, False)]
+                        if kind != "disclosure"
+                        else [(self.spread([source], other), False), (whole, True)]
+                    )
+                    for way, dismissed in ways:
                         for hidden in (False, True):
                             if (leak, (category, hidden)) in way:
-                                key = (category, source, leak)
+                                key = (kind, category, source, leak)
                                 found.setdefault(key, (hidden, dismissed, way[leak, (category, hidden)]))
         return found
 
     def covered(self, vertex: int, category: str) -> bool:
-        """S11; who makes a category of another is covered for both."""
+        """S11; who makes a category of another is covered for both; where a country has to be known, it is."""
+        kind, facts = self.outside.get(vertex, ("", None))
+        if kind in ("storage", "external-system") and facts is not None and not facts.country and not facts.transfer:
+            return False
         return bool(self.holding(vertex, category)) or any(
             s.role == "derivation" and s.to == category
             for c in self.hierarchy.ancestors

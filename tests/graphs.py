@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from contextlib import chdir
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,18 +16,24 @@ if TYPE_CHECKING:
     from rosprivacy.assembly import Result
     from rosprivacy.ingest.rows import RobotRows
 
-EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
-FACTORY, CARE = EXAMPLES / "factory", EXAMPLES / "care-home"
+ROOT = Path(__file__).resolve().parent.parent
+FACTORY, CARE = "examples/factory", "examples/care-home"
 
 
 def factory(run: int) -> Result:
     """One of the paper's five runs."""
     policy = "before" if run < 4 else "after"
-    return rosprivacy.analyze([str(FACTORY / f"{policy}.policy.xml")], [str(FACTORY / f"run{run}.labels.yaml")])
+    return analysed(f"{FACTORY}/{policy}.policy.xml", f"{FACTORY}/run{run}.labels.yaml")
 
 
 def care_home() -> Result:
-    return rosprivacy.analyze([str(CARE / "care-home.policy.xml")], [str(CARE / "care-home.labels.yaml")])
+    return analysed(f"{CARE}/care-home.policy.xml", f"{CARE}/care-home.labels.yaml")
+
+
+def analysed(policy: str, labels: str) -> Result:
+    """Files are named as from the repository's folder, so that what is made of them is the same on every machine."""
+    with chdir(ROOT):
+        return rosprivacy.analyze([policy], [labels])
 
 
 def rows_of(robot: str, result: Result) -> RobotRows:

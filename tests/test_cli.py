@@ -142,7 +142,7 @@ def test_help_lists_each_option(cli: Cli, command: str) -> None:
         (["rosprivacy", "l"], {"labels", "load"}),
         (["rosprivacy", "analyze", "--fail"], {"--fail-on"}),
         (["rosprivacy", "analyze", "--view", ""], {"declared", "enforced"}),
-        (["rosprivacy", "analyze", "--format", "j"], {"json"}),
+        (["rosprivacy", "analyze", "--format", "j"], {"json", "json-ld"}),
         (["rosprivacy", "analyze", "--categories", "Vo"], {"Voice", "VoiceCommand", "VoicePrint"}),
         (["rosprivacy", "analyze", "--category", "Vid"], {"Video"}),
     ],

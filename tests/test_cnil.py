@@ -407,4 +407,4 @@ def test_what_people_added_in_the_database_is_in_both_formats(neo4j_server: Conn
     last = way(found)[-1]
     assert last["message"]["text"] == "pseudonymised Video goes from /recorder to storage footage bucket."
     tool = imported(pia_file(result))
-    assert "storage footage bucket: pseudonymised Video; retention: not stated" in seen(tool, 215)
+    assert "storage footage bucket: pseudonymised Video; retention: P30D" in seen(tool, 215)

@@ -15,7 +15,7 @@ from hypothesis import Phase, given, settings
 import rosprivacy
 from rosprivacy import database
 from rosprivacy.analysis.errors import InputErrors
-from rosprivacy.analysis.model import Category
+from rosprivacy.analysis.model import DISCLOSURE, Category
 from rosprivacy.ingest.neo4j import load
 from rosprivacy.ingest.policy import NotAPolicyError, read_policy
 from rosprivacy.ingest.rows import robot_rows
@@ -50,14 +50,17 @@ def empty(neo4j_server: Connection) -> Iterator[Driver]:
 
 
 def ways(analysis: Analysis, robot: str) -> dict[Way, int]:
-    """(robot, category, source, leak) -> elements of the shortest way, of what is not dismissed."""
+    """(robot, category, source, leak) -> elements of the shortest way, of disclosures that are not dismissed."""
     return {
-        (robot, f.category, f.source.name, f.leak.name): len(f.witness) for f in analysis.findings if not f.dismissed
+        (robot, f.category, f.source.name, f.leak.name): len(f.witness)
+        for f in analysis.findings
+        if f.kind == DISCLOSURE and not f.dismissed
     }
 
 
 def found(driver: Driver, name: str, **values: str) -> dict[Way, list[str]]:
-    rows = run(driver, find(name).text, values, limit=None).rows
+    query = find(name)
+    rows = run(driver, query.text, query.values(values), limit=None).rows
     keys = [row[:4] for row in rows]
     assert len(set(keys)) == len(keys)
     assert keys == sorted(keys)
@@ -148,7 +151,11 @@ def test_on_the_examples(empty: Driver, case: Path, examples: Path, monkeypatch:
     given = json.loads((case / "case.json").read_text("utf-8"))
     result = rosprivacy.analyze(given["policies"], given["labels"], **given.get("options", {}))
     load(empty, [robot_rows("r", result.analysis, result.bound, result.vocabulary)], result.vocabulary)
-    shown = {("r", f.category, f.source.name, f.leak.name): f for f in result.analysis.findings if not f.dismissed}
+    shown = {
+        ("r", f.category, f.source.name, f.leak.name): f
+        for f in result.analysis.findings
+        if f.kind == DISCLOSURE and not f.dismissed
+    }
     got, stored = found(empty, "leak-paths-of-category", category="PersonalData"), found(empty, "leak-paths")
     assert set(got) == set(stored) == set(shown)
     for way, finding in shown.items():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -10,10 +10,13 @@ import networkx as nx
 from hypothesis import given
 from hypothesis import strategies as st
 
+from rosprivacy.analysis.durations import parse
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.findings import Options, analyse
 from rosprivacy.analysis.hierarchy import Hierarchy
 from rosprivacy.analysis.model import (
+    DISCLOSURE,
+    NON_ROS,
     Analysis,
     Bound,
     Category,
@@ -25,6 +28,8 @@ from rosprivacy.analysis.model import (
     Statement,
     Verdict,
 )
+from rosprivacy.analysis.outside import NOWHERE, Outside, by_kind
+from rosprivacy.ingest.countries import countries
 from tests.brute import Brute
 
 if TYPE_CHECKING:
@@ -48,36 +53,66 @@ def statement(role: str, *categories: str, method: Method | None = None, to: str
 
 @dataclass
 class System:
+    """The last of the nodes are elements outside ROS."""
+
     nodes: int
     channels: int
     edges: list[tuple[int, int]]
     said: dict[int, list[Statement]]
     never: dict[int, set[str]]
     hierarchy: Hierarchy = HIERARCHY
+    outside: list[tuple[str, Outside]] = field(default_factory=list)
+
+    @property
+    def facts(self) -> dict[int, tuple[str, Outside]]:
+        return dict(enumerate(self.outside, self.nodes - len(self.outside)))
 
     def graph(self) -> FlowGraph:
-        elements = [Element("node", f"/n{i}") for i in range(self.nodes)]
+        kinds = ["node"] * (self.nodes - len(self.outside)) + [kind for kind, _ in self.outside]
+        elements = [Element(kind, f"/n{i}" if kind == "node" else f"n{i}") for i, kind in enumerate(kinds)]
         elements += [Element("topic", f"/t{i}") for i in range(self.channels)]
         return FlowGraph(tuple(elements), tuple(Flow(a, b, "publish") for a, b in self.edges), (), ())
 
     def bound(self) -> Bound:
         flows = {i: (statement("never", *sorted(names)),) for i, names in self.never.items()}
-        return Bound({v: tuple(said) for v, said in sorted(self.said.items()) if said}, flows)
+        elements = self.graph().elements
+        said = {v: (*said, *by_kind(elements[v])) for v, said in sorted(self.said.items())}
+        facts = {v: facts for v, (_, facts) in self.facts.items()}
+        return Bound({v: statements for v, statements in said.items() if statements}, flows, outside=facts)
 
     def analyse(self, options: Options | None = None) -> Analysis:
         return analyse(self.graph(), self.bound(), self.hierarchy, options)
 
     def brute(self) -> Brute:
         never = {self.edges[i]: names for i, names in self.never.items()}
-        return Brute(range(self.nodes), self.edges, self.said, self.hierarchy, never)
+        return Brute(range(self.nodes), self.edges, self.said, self.hierarchy, never, self.facts)
+
+
+@st.composite
+def facts(draw: st.DrawFn, names: tuple[str, ...]) -> tuple[str, Outside]:
+    """An element outside ROS; most are storages."""
+    duration = st.sampled_from([parse(text) for text in ("P10D", "P30D", "P31D", "P1M", "P6M", "P1Y")])
+    about = st.sampled_from(("", *names))
+    stated = st.dictionaries(about, duration, max_size=2).map(lambda found: tuple(sorted(found.items())))
+    country = draw(st.sampled_from(["", "DE", "JP", "US", "CN"]))
+    return draw(st.sampled_from(("storage", "storage", *NON_ROS))), Outside(
+        draw(stated), draw(stated), draw(st.sampled_from([None, None, True, False, parse("P30D")])),
+        transfer=draw(st.sampled_from(["", "", "standard-clauses"])), place=NOWHERE, encrypted=None,
+        **(countries().place(country) if country else {}),
+    )  # fmt: skip
 
 
 @st.composite
 def systems(draw: st.DrawFn, names: tuple[str, ...] = tuple(PARENTS)) -> System:
     """Dense enough that most have a leak, a third something derived, pseudonymised or dismissed (measured)."""
-    nodes, channels = draw(st.integers(1, 7)), draw(st.integers(1, 6))
+    ros, channels = draw(st.integers(1, 7)), draw(st.integers(1, 6))
+    outside = draw(st.lists(facts(names), max_size=3))
+    nodes = ros + len(outside)
     ends = st.sets(st.integers(0, nodes - 1), min_size=1, max_size=3)
     edges: set[tuple[int, int]] = set()
+    for element in range(ros, nodes):
+        before, behind = draw(ends) - {element}, draw(ends) - {element}  # nothing flows from an element to itself
+        edges |= {(a, element) for a in before} | {(element, b) for b in behind}
     for channel in range(nodes, nodes + channels):
         edges |= {(node, channel) for node in draw(ends)} | {(channel, node) for node in draw(ends)}
     category = st.sampled_from(names)
@@ -97,7 +132,7 @@ def systems(draw: st.DrawFn, names: tuple[str, ...] = tuple(PARENTS)) -> System:
     said |= {vertex: draw(st.one_of(plain, plain, part)) for vertex in range(nodes, nodes + channels)}
     never = draw(st.dictionaries(st.integers(0, len(edges) - 1), some, max_size=2))
     unique = {vertex: list(dict.fromkeys(rows)) for vertex, rows in said.items()}
-    return System(nodes, channels, sorted(edges), unique, never)
+    return System(nodes, channels, sorted(edges), unique, never, outside=outside)
 
 
 def analysed(system: System) -> Analysis | None:
@@ -145,17 +180,18 @@ def test_what_goes_along_each_flow_is_what_brute_force_sends(system: System) -> 
 
 @given(systems())
 def test_findings_are_those_of_brute_force(system: System) -> None:
-    """Rule S10: which (category, source, leak), in which form, dismissed or not, and how short a way."""
+    """Rule S10: which (kind, category, source, leak), in which form, dismissed or not, and how short a way."""
     found = analysed(system)
     if found is None:
         return
     number = index(system)
     expected = system.brute().findings()
     assert {
-        (f.category, number[f.source], number[f.leak]): (f.pseudonymised, f.dismissed, len(f.witness) - 1)
+        (f.kind, f.category, number[f.source], number[f.leak]): (f.pseudonymised, f.dismissed, len(f.witness) - 1)
         for f in found.findings
     } == expected
     assert len({f.id for f in found.findings}) == len(found.findings)
+    assert all(bool(f.reason) == (f.kind != DISCLOSURE) for f in found.findings)
 
 
 @given(systems())
@@ -214,7 +250,11 @@ def test_disjoint_paths_are_as_many_as_a_minimum_cut_has_flows(system: System) -
         if source == leak:
             assert finding.disjoint_paths == 1
             continue
-        ends = {leak} if finding.dismissed else {v for v in system.said if brute.has(v, "leak", category)} - {source}
+        ends = (
+            {leak}
+            if finding.dismissed or finding.kind != DISCLOSURE
+            else {v for v in system.said if brute.has(v, "leak", category)} - {source}
+        )
         graph: nx.DiGraph[int] = nx.DiGraph()
         graph.add_nodes_from([source, leak])
         for a, b in system.edges:
@@ -238,7 +278,12 @@ def test_more_flows_never_shrink_what_is_carried(system: System, data: st.DataOb
     never = {system.edges[i]: names for i, names in system.never.items()}
     edges = sorted({*system.edges, edge})
     more = System(
-        system.nodes, system.channels, edges, system.said, {edges.index(e): names for e, names in never.items()}
+        system.nodes,
+        system.channels,
+        edges,
+        system.said,
+        {edges.index(e): names for e, names in never.items()},
+        outside=system.outside,
     )
     after = analysed(more)
     assert after is not None
@@ -294,14 +339,15 @@ def test_more_categories_than_a_word_has_bits(system: System) -> None:
 def test_further_paths_keep_to_their_bound_and_say_so(system: System, asked: str, most: int) -> None:
     try:
         found = system.analyse(Options(paths=asked, max_paths=most))
-        unbounded = system.analyse(Options(paths=asked, max_paths=10_000))
+        unbounded = system.analyse(Options(paths=asked, max_paths=40))
     except InputErrors:
         return
     number, edges = index(system), set(system.edges)
     for finding, whole in zip(found.findings, unbounded.findings, strict=True):
         assert len(finding.paths) <= most
-        assert finding.bounded == (len(whole.paths) > most)
-        assert finding.paths == whole.paths[:most]
+        assert finding.bounded or len(whole.paths) <= most  # a bound that cuts is said
+        assert finding.paths == whole.paths[: len(finding.paths)]
+        assert finding.bounded or finding.paths == whole.paths
         assert list(map(len, whole.paths)) == sorted(map(len, whole.paths))
         if whole.paths and asked == "all":  # those that share no flow need not have the shortest among them
             assert len(whole.paths[0]) == len(finding.witness)

@@ -386,14 +386,14 @@ class TestFaults:
         self, private_neo4j: Connection, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         assert database.stop()
-        monkeypatch.setattr(
-            server, "CONFIGURATION", server.CONFIGURATION + "server.databases.default_to_read_only=true\n"
-        )
-        try:
-            assert database.start() == private_neo4j
-            with database.open_driver(private_neo4j) as driver, pytest.raises(DatabaseError) as error:
-                load(driver, [rows_of("r", factory(2))], VOCABULARY)
-        finally:
-            database.stop()
+        with monkeypatch.context() as patch:  # over before the fixture starts the server again for others
+            only_reads = "server.databases.default_to_read_only=true\n"
+            patch.setattr(server, "CONFIGURATION", server.CONFIGURATION + only_reads)
+            try:
+                assert database.start() == private_neo4j
+                with database.open_driver(private_neo4j) as driver, pytest.raises(DatabaseError) as error:
+                    load(driver, [rows_of("r", factory(2))], VOCABULARY)
+            finally:
+                database.stop()
         assert str(error.value).startswith("the server refuses to write: ")
         assert "\n" not in str(error.value)

@@ -86,9 +86,12 @@ def test_on_random_graphs_nothing_changes(driver: Driver) -> None:
 
 ADD_STORAGE = """
 MATCH (n:RosNode {name: '/recorder'}), (video:DataCategory {name: 'Video'})
-CREATE (bucket:Storage {name: 'footage bucket'}),
+CREATE (bucket:Storage {name: 'footage bucket', retention: 'P30D', country: 'DE'}),
        (n)-[:FLOWS_TO]->(bucket), (bucket)-[:LEAKS]->(video)
 """
+
+
+VIDEO = ("PersonImage", "PersonalData", "Video")  # with the broader ones
 
 
 class TestWhatPeopleAdd:
@@ -104,10 +107,19 @@ class TestWhatPeopleAdd:
             "MATCH (:RosNode {name: '/recorder'})-[f:FLOWS_TO]->(b:Element:VideoLeak:Video) "
             "MATCH (x:Finding)-[:TO]->(b) RETURN b.kind, b.carries, f.carries, x.source"
         ).records
-        assert [list(record) for record in rows] == [
-            ["storage", ["PersonalData", "Video"], ["PersonalData", "Video"], "/camera"]
-        ]
+        assert [list(record) for record in rows] == [["storage", [*VIDEO], [*VIDEO], "/camera"]]
         assert not driver.execute_query("MATCH (n:VideoLeak:RosNode) RETURN n").records
+
+    def test_a_storage_of_which_nothing_is_said_keeps_for_ever_and_nobody_knows_where(self, driver: Driver) -> None:
+        """Rules S10 and S11."""
+        load(driver, [rows_of("care", care_home())], VOCABULARY)
+        driver.execute_query(ADD_STORAGE.replace(", retention: 'P30D', country: 'DE'", ""))
+        result = run_stored(driver, Settings())
+        (kept,) = [f for f in result.analysis.findings if f.kind == "storage-limitation"]
+        assert (kept.leak.name, kept.reason) == ("footage bucket", "no retention is stated")
+        assert [q.element.name for q in result.analysis.open if q.missing] == ["footage bucket"]
+        rows = driver.execute_query("MATCH (f:Finding {kind: 'storage-limitation'})-[:TO]->(b) RETURN b.name, f.reason")
+        assert [list(record) for record in rows.records] == [["footage bucket", "no retention is stated"]]
 
     def test_it_is_there_after_the_next_load_and_found_again(self, driver: Driver) -> None:
         load(driver, [rows_of("care", care_home())], VOCABULARY)
@@ -186,6 +198,15 @@ class TestProblems:
             ("MATCH ()-[f:FLOWS_TO]->({name: '/blur'}) SET f.line = 'high'", "a flow cannot be understood"),
             ("MATCH ()-[f:FLOWS_TO]->({name: '/blur'}) SET f.further = ['{']", "a flow cannot be understood"),
             ("MATCH ()-[f:FLOWS_TO]->({name: '/blur'}) SET f.never = 7", "a flow cannot be understood"),
+            (
+                "CREATE (:Element:Storage {name: 'x', country: 'UK'})",
+                "storage 'x' cannot be understood: country 'UK' is no ISO 3166-1 code; did you mean GB\\?",
+            ),
+            ("CREATE (:Element:Storage {name: 'x', retention: 'long'})", "retention 'long' is no ISO 8601 duration"),
+            ("CREATE (:Element:Storage {name: 'x', limits: ['X: P1D']})", "limits names the unknown category 'X'"),
+            ("CREATE (:Element:Storage {name: 'x', backups: 'some'})", "backups 'some' is no ISO 8601 duration"),
+            ("CREATE (:Element:Storage {name: 'x', transfer: 'trust'})", "transfer 'trust' is none of adequacy, "),
+            ("CREATE (:Element:Storage {name: 'x', operator: 7})", "operator is no text"),
             ("CREATE (:Robot {name: 'other', view: 'enforced'})", "in the views declared and enforced"),
             ("MATCH (r:Robot) DELETE r", "there is no robot in it; load one"),
             (

@@ -121,7 +121,7 @@ def test_what_pseudonymises_stays_and_what_it_sends_is_dashed() -> None:
     assert not after["/camera/image", "/blur"]
 
 
-def test_findings_of_other_kinds_have_ways_and_a_look_of_their_own() -> None:
+def test_findings_of_other_kinds_have_ways_and_words_of_their_own() -> None:
     """Rule S10: what is kept too long, what leaves the EEA; no label calls such a place a leak."""
     found = factory(2).analysis
     leak = found.findings[1]
@@ -130,7 +130,7 @@ def test_findings_of_other_kinds_have_ways_and_a_look_of_their_own() -> None:
     kept = replace(leak, kind="storage-limitation", source=camera, leak=place, witness=(camera, place), steps=())
     picture = views.privacy_view(replace(found, findings=(leak, kept)))
     box = next(box for box in picture.boxes if box.names == ("/navigator",))
-    assert (box.look, box.words) == ("found", ("storage limitation",))
+    assert (box.look, box.words) == ("leak", ("kept too long, or outside the EEA: Video",))
     assert lines_of(picture)["/robot_camera", "/robot_video"] == "way"
 
 
@@ -162,7 +162,7 @@ def test_nothing_that_counts_is_missing_from_the_privacy_view(system: System) ->
         kept = {d for d in here if not brute.kills(vertex, d[0]) or (d[1] and brute.only_hides(vertex, d[0]))}
         goes_on = kept | {made for data in here for made in brute.made(vertex, data)} | brute.emitted(vertex)
         leaks = {c for c, _ in here if vertex in brute.nodes and brute.has(vertex, "leak", c)}
-        if (here and goes_on) or leaks:
+        if (here and goes_on) or leaks or element in {finding.leak for finding in found.findings}:
             expected.add(element.identity)
     assert set(drawn) == expected
     for question in found.open:

@@ -16,9 +16,11 @@ from rosprivacy.analysis.findings import MAX_PATHS, Options, analyse
 from rosprivacy.analysis.model import Diagnostic, Place, Severity
 from rosprivacy.analysis.paths import WITNESS
 from rosprivacy.ingest.binding import bind
+from rosprivacy.ingest.countries import countries
 from rosprivacy.ingest.files import read_policies
 from rosprivacy.ingest.graph import DECLARED, build
 from rosprivacy.ingest.labels import STANDARD, read_labels
+from rosprivacy.ingest.outside import extend
 from rosprivacy.ingest.saved import read_saved
 from rosprivacy.ingest.xinclude import MAX_BYTES
 from rosprivacy.ontology.vocabulary import TOP, load
@@ -116,8 +118,8 @@ def run(policies: tuple[str, ...], labels: tuple[str, ...], settings: Settings) 
     vocabulary = load(ontologies=settings.ontologies)
     asked = _asked(vocabulary, settings)
     system, diagnostics = read_system(policies, settings)
-    graph = build(system, settings.view)
     files = _read_labels(labels, vocabulary, settings)
+    graph = extend(build(system, settings.view), files)
     bound = bind(graph, files)
     analysis = analyse(graph, bound, vocabulary.hierarchy, Options(asked, settings.paths, settings.max_paths))
     said = tuple(d for policy in system for d in policy.diagnostics) + diagnostics
@@ -187,6 +189,7 @@ def _remembered(
         for d in json.loads(robot.get("diagnostics") or "[]")
     }
     assumptions = {
+        **_adequacy(analysis),
         **files,
         "standard_channels": {**taken[0], "taken": analysis.standard_channels} if taken else None,
         "database": {"robots": len(loaded)},
@@ -275,10 +278,16 @@ def _assumptions(
     hashes = [(file, {"file": file.file, "sha256": file.sha256}) for file in files]
     standard = [entry for file, entry in hashes if file.shipped and file.file == settings.standard_channels]
     return {
+        **_adequacy(analysis),
         "policies": [{"file": name, "sha256": digest} for name, digest in sources],
         "labels": [entry for _, entry in hashes if entry not in standard],
         "standard_channels": {**standard[0], "taken": analysis.standard_channels} if standard else None,
     }
+
+
+def _adequacy(analysis: Analysis) -> dict[str, str]:
+    """The date of the list of countries, where it counts (rule S10)."""
+    return {"countries_as_of": countries().as_of} if any(facts.country for facts in analysis.outside.values()) else {}
 
 
 def _own_assumptions(graph: FlowGraph, settings: Settings, vocabulary: Vocabulary) -> dict[str, Any]:

@@ -12,9 +12,13 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.clock import source_date
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
+    from rosprivacy.analysis.model import Analysis
+    from rosprivacy.analysis.outside import Outside
     from rosprivacy.assembly import Result
+
+    Stated = Mapping[tuple[str, str, str], Mapping[str, str]]
 
 
 def sarif_log(result: Result, accepted: Mapping[str, str] | None = None) -> dict[str, Any]:
@@ -46,7 +50,7 @@ def sarif_log(result: Result, accepted: Mapping[str, str] | None = None) -> dict
 def pia_file(
     result: Result,
     accepted: Mapping[str, str] | None = None,
-    stated: Mapping[tuple[str, str, str], Mapping[str, str]] | None = None,
+    stated: Stated | None = None,
 ) -> dict[str, Any]:
     """Return what the CNIL's PIA tool imports.
 
@@ -55,7 +59,7 @@ def pia_file(
     accepted
         Id of a finding -> why a person accepted it.
     stated
-        (robot, kind, name) of a storage or recipient -> what people stated of it.
+        (robot, kind, name) of a storage or recipient -> what people stated of it; what the analysis knows by default.
 
     Raises
     ------
@@ -74,5 +78,24 @@ def pia_file(
         result.assumptions,
         created,
         accepted or {},
-        stated or {},
+        stated_of(result.analysis) if stated is None else stated,
     )
+
+
+def stated_of(analysis: Analysis) -> dict[tuple[str, str, str], dict[str, str]]:
+    """Return what people stated of what lies outside ROS, as texts (rule S9)."""
+    return {element.identity: dict(_stated(facts)) for element, facts in analysis.outside.items()}
+
+
+def _stated(facts: Outside) -> Iterator[tuple[str, str]]:
+    kept = ", ".join(f"{category}: {duration}" if category else str(duration) for category, duration in facts.retention)
+    backups = "in backups, nobody says for how long" if facts.backups is True else f"in backups {facts.backups} more"
+    said = {
+        "retention": ", ".join(part for part in (kept, backups if facts.backups else "") if part),
+        "country": facts.country,
+        "encrypted": "" if facts.encrypted is None else ("yes" if facts.encrypted else "no"),
+        "operator": facts.operator,
+        "role": facts.recipient,
+        "basis": facts.transfer,
+    }
+    yield from ((what, value) for what, value in said.items() if value)

@@ -1,0 +1,73 @@
+"""Country codes -> where a country lies in the sense of GDPR chapter V (rule S10).
+
+In: ``countries.yaml``, which comes with the program and states its date. Out: for each ISO 3166-1 alpha-2 code whether
+it lies inside the EEA, outside with an adequacy decision, with one for some recipients only, or with none.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.outside import ADEQUATE, INSIDE, PARTLY, THIRD
+from rosprivacy.ingest import yamlfile
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rosprivacy.analysis.errors import InputError
+
+MISTAKEN = {"UK": "GB", "EL": "GR", "EU": "the member state", "EEA": "the state"}
+
+
+@dataclass(frozen=True, slots=True)
+class Countries:
+    """The list that comes with the program.
+
+    Attributes
+    ----------
+    as_of
+        Date of the adequacy decisions, ``YYYY-MM-DD``.
+    areas
+        Code -> one of the areas of ``analysis/outside.py``.
+    partly
+        Code -> whom a partial adequacy decision covers.
+    """
+
+    as_of: str
+    areas: Mapping[str, str]
+    partly: Mapping[str, str]
+
+    def place(self, code: str) -> dict[str, str]:
+        """Return the facts of an element in a country: code, area, whom a partial decision covers.
+
+        >>> countries().place("US")["area"]
+        'partly'
+        """
+        return {"country": code, "area": self.areas[code], "adequacy": self.partly.get(code, "")}
+
+    def hint(self, text: str) -> str:
+        """Return what to write instead of a code that is none."""
+        meant = MISTAKEN.get(text.upper(), text.upper())
+        if meant in self.areas or text.upper() in MISTAKEN:
+            return f"did you mean {meant}?"
+        return "write the two letters of ISO 3166-1, such as DE"
+
+
+@cache
+def countries() -> Countries:
+    """Read the list."""
+    file = str(files("rosprivacy.ingest").joinpath("countries.yaml"))
+    top, _ = yamlfile.read(file, _broken)
+    parts = {key: value for key, _, value in top.entries}
+    areas: dict[str, str] = {}
+    for key, area in (("eea", INSIDE), ("parts", INSIDE), ("adequate", ADEQUATE), ("others", THIRD)):
+        areas |= {item.text: area for item in parts[key].items}
+    partly = {key: value.text for key, _, value in parts["partly"].entries}
+    return Countries(parts["as_of"].text, areas | dict.fromkeys(partly, PARTLY), partly)
+
+
+def _broken(line: int, problem: str, hint: str) -> InputError:
+    raise AssertionError(f"countries.yaml:{line}: {problem}; {hint}")

@@ -1,0 +1,142 @@
+"""Graph + what files state about elements outside ROS -> the graph with these and their flows (rule S9).
+
+In: the flow graph of policies and label files. Out: a graph in which non-ROS elements take part like nodes; each of
+their flows keeps the line that states it. A name that is not there is an error with the nearest (rule S11).
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from difflib import get_close_matches
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, shown
+from rosprivacy.analysis.model import CHANNELS, Element, Flow, FlowGraph, Grant
+from rosprivacy.ingest.elements import is_outside
+from rosprivacy.ingest.names import covers, is_pattern, matcher
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+    from rosprivacy.analysis.model import Place
+    from rosprivacy.ingest.elements import Stated
+    from rosprivacy.ingest.labels import Labels
+
+FLOW = "flow"  # the role of a flow that a person states
+
+
+def extend(graph: FlowGraph, files: Sequence[Labels]) -> FlowGraph:
+    """Add the non-ROS elements of label files, and the flows that begin or end at them.
+
+    Raises
+    ------
+    InputErrors
+        With every element that is defined twice with different facts, and every end of a flow that is not there.
+    """
+    if not any(file.elements or file.flows for file in files):
+        return graph
+    problems: list[InputError] = []
+    stated = merged((entry for file in files for entry in file.elements), problems)
+    ends = Ends(graph, stated)
+    flows: list[tuple[Element, Element, Place]] = []
+    for file in files:
+        for flow in file.flows:
+            if is_outside(flow.source) or is_outside(flow.target):
+                flows += ends.between(flow.source, flow.target, flow.place, problems)
+    for entry in stated.values():
+        for name in entry.between:
+            flows += ends.between(name, entry.name, entry.place, problems)
+            flows += ends.between(entry.name, name, entry.place, problems)
+    if problems:
+        raise InputErrors(problems)
+    return with_flows(graph, (Element(entry.kind, entry.name) for entry in stated.values()), flows)
+
+
+def merged(entries: Iterable[Stated], problems: list[InputError]) -> dict[str, Stated]:
+    """Return elements by name; one that is defined twice with different facts is a problem."""
+    found: dict[str, Stated] = {}
+    for entry in entries:
+        known = found.setdefault(entry.name, entry)
+        if _facts(known) != _facts(entry):
+            what = f"element {shown(entry.name)!r} again, with other facts than at {known.place}"
+            problems.append(LabelError(entry.place.file, entry.place.line, what, "define it once"))
+    return found
+
+
+def _facts(entry: Stated) -> tuple[object, ...]:
+    said = entry.outside
+    more = (said.encrypted, said.country, said.operator, said.recipient, said.transfer)
+    return (entry.kind, said.retention, said.backups, *more, entry.between)
+
+
+class Ends:
+    """The elements that the ends of stated flows name.
+
+    A name of ROS means nodes, and channels only where no node has it; a glob means nodes if it covers any.
+    """
+
+    def __init__(self, graph: FlowGraph, stated: Mapping[str, Stated]) -> None:
+        self._stated = stated
+        self._ros: dict[bool, dict[str, list[Element]]] = {True: defaultdict(list), False: defaultdict(list)}
+        for element in graph.elements:
+            self._ros[element.kind not in CHANNELS][element.name].append(element)
+
+    def between(
+        self, source: str, target: str, place: Place, problems: list[InputError]
+    ) -> Iterator[tuple[Element, Element, Place]]:
+        """The flows from each element of one name to each of another."""
+        sources, targets = self.find(source), self.find(target)
+        for name, found in ((source, sources), (target, targets)):
+            if not found:
+                problems.append(self._missing(name, place))
+        yield from ((a, b, place) for a in sources for b in targets)
+
+    def find(self, name: str) -> list[Element]:
+        """The elements of a name or glob."""
+        if is_outside(name):
+            return [Element(self._stated[name].kind, name)] if name in self._stated else []
+        return self._of(True, name) or self._of(False, name)
+
+    def _of(self, nodes: bool, name: str) -> list[Element]:  # noqa: FBT001 - which half of the names
+        known = self._ros[nodes]
+        if not is_pattern(name):
+            return known.get(name, [])
+        plain = matcher(name)
+        covered = [n for n in known if (covers(name, n) if is_pattern(n) else plain(n))]
+        return [element for other in covered for element in known[other]]
+
+    def _missing(self, name: str, place: Place) -> LabelError:
+        known = list(self._stated) if is_outside(name) else [n for half in self._ros.values() for n in half]
+        close = get_close_matches(name, known, n=3, cutoff=0.5)
+        hint = f"did you mean {' or '.join(map(shown, close))}?" if close else "define it under elements"
+        if not is_outside(name) and not close:
+            hint = "see the names with rosprivacy labels --init"
+        return LabelError(place.file, place.line, f"a flow names {shown(name)!r}, which is not there", hint)
+
+
+def with_flows(
+    graph: FlowGraph, elements: Iterable[Element], flows: Iterable[tuple[Element, Element, Place]]
+) -> FlowGraph:
+    """Return a graph with more elements and flows, numbered anew and sorted (rule S14)."""
+    known = sorted({*graph.elements, *elements}, key=Element.sort_key)
+    number = {element: i for i, element in enumerate(known)}
+    moved = [number[element] for element in graph.elements]
+    lines: dict[tuple[int, int], list[Place]] = defaultdict(list)
+    for source, target, place in flows:
+        lines[number[source], number[target]].append(place)
+    added = [Flow(*ends, FLOW, tuple(_line(place) for place in _sorted(places))) for ends, places in lines.items()]
+
+    def renumbered(old: tuple[Flow, ...], new: Sequence[Flow] = ()) -> tuple[Flow, ...]:
+        kept = [Flow(moved[f.source], moved[f.target], f.role, f.grants, f.denials) for f in old]
+        return tuple(sorted([*kept, *new], key=lambda f: (f.source, f.target, f.role)))
+
+    return FlowGraph(tuple(known), renumbered(graph.flows, added), renumbered(graph.denied), graph.profiles, graph.view)
+
+
+def _sorted(places: Iterable[Place]) -> list[Place]:
+    return sorted(set(places), key=lambda place: (place.file, place.line))
+
+
+def _line(place: Place) -> Grant:
+    """The line that states a flow, in the form of the lines that grant others."""
+    return Grant(True, FLOW, FLOW, "", "", "", place)
