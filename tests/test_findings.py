@@ -7,7 +7,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import networkx as nx
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rosprivacy.analysis.durations import parse
@@ -335,6 +335,7 @@ def test_more_categories_than_a_word_has_bits(system: System) -> None:
     assert {number[c.element]: (set(c.categories), set(c.pseudonymised)) for c in found.carried} == expected
 
 
+@settings(max_examples=50)  # to list all ways takes long
 @given(systems(), st.sampled_from(["disjoint", "all"]), st.integers(1, 5))
 def test_further_paths_keep_to_their_bound_and_say_so(system: System, asked: str, most: int) -> None:
     try:
@@ -350,7 +351,7 @@ def test_further_paths_keep_to_their_bound_and_say_so(system: System, asked: str
         assert finding.bounded or finding.paths == whole.paths
         assert list(map(len, whole.paths)) == sorted(map(len, whole.paths))
         if whole.paths and asked == "all":  # those that share no flow need not have the shortest among them
-            assert len(whole.paths[0]) == len(finding.witness)
+            assert len(whole.paths[0]) <= len(finding.witness)  # the witness prefers data as it is to pseudonymised
         for path in finding.paths:
             way = [number[element] for element in path]
             assert all(step in edges for step in pairwise(way))
