@@ -11,6 +11,7 @@ without circles uses it is NP-hard on directed graphs; dominators say no only wh
 from __future__ import annotations
 
 from collections import defaultdict, deque
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.spread import bits_of
@@ -27,6 +28,22 @@ NO_FLOW = -1
 Edge = tuple[State, State, int]  # before, after, flow or ``NO_FLOW``
 
 
+@dataclass(frozen=True, slots=True)
+class Ways:
+    """The flows on ways to leaks.
+
+    Attributes
+    ----------
+    flows
+        Flow -> number of flows of the shortest way through it; sorted.
+    complete
+        Whether these are all; if not, there are longer ways.
+    """
+
+    flows: dict[int, int]
+    complete: bool = True
+
+
 def ways(
     net: Net,
     category: str,
@@ -35,7 +52,8 @@ def ways(
     leaks: Collection[int] | None = None,
     past_leaks: bool = False,
     ends: Mapping[int, int] | None = None,
-) -> dict[int, int]:
+    about: int | None = None,
+) -> Ways:
     """Return the flows that lie on a way of data from a source to a leak of a category.
 
     Parameters
@@ -50,12 +68,13 @@ def ways(
         Whether ways through other leaks of the category count, as for a dismissed finding.
     ends
         Vertex -> bits that end there; the leaks by default. Findings of other kinds end elsewhere, as at a storage.
+    about
+        Take only the shorter ways, those up to a length, so that about so many flows are on them; None for all.
 
     Returns
     -------
-    dict
-        Flow -> number of flows of the shortest way through it. Sorted by flow. Holds every flow of every way that
-        meets no state twice.
+    Ways
+        They hold every flow of every way (up to the length) that meets no state twice.
 
     Notes
     -----
@@ -64,17 +83,36 @@ def ways(
     """
     graph = _States(net, category, ends, past_leaks=past_leaks)
     starts = [v for v in net.spread.facts if net.spread.begins(v)] if sources is None else sources
-    edges, before = graph.edges(starts, leaks), -1
+    edges, before, complete = graph.edges(starts, leaks), -1, True
     while len(edges) != before:  # what only a detour leads to is gone in the next round
-        before = len(edges)
+        first, before = before < 0, len(edges)
         ahead, back = _distances(edges, BEGIN, forth=True), _distances(edges, END, forth=False)
-        edges = _without_detours([edge for edge in edges if edge[0] in ahead and edge[1] in back])
+        edges = [edge for edge in edges if edge[0] in ahead and edge[1] in back]
+        if first and about is not None:
+            longest = _longest(_lengths(edges, ahead, back), about)
+            short = [e for e in edges if ahead[e[0]] + (e[2] != NO_FLOW) + back[e[1]] <= longest]
+            edges, complete = short, len(short) == len(edges)
+        edges = _without_detours(edges)
+    return Ways(dict(sorted(_lengths(edges, ahead, back).items())), complete)
+
+
+def _lengths(edges: list[Edge], ahead: Mapping[State, int], back: Mapping[State, int]) -> dict[int, int]:
+    """Flow -> number of flows of the shortest way through it."""
     lengths: dict[int, int] = {}
     for here, there, flow in edges:
         if flow != NO_FLOW:
             length = ahead[here] + 1 + back[there]
             lengths[flow] = min(length, lengths.get(flow, length))
-    return dict(sorted(lengths.items()))
+    return lengths
+
+
+def _longest(lengths: Mapping[int, int], about: int) -> int:
+    """The length up to which there are no more flows than asked for; the shortest ways are always in."""
+    every = sorted(lengths.values())
+    if len(every) <= about:
+        return every[-1] if every else 0
+    shorter = [length for length in every if length < every[about]]
+    return shorter[-1] if shorter else every[0]
 
 
 class _States:

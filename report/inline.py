@@ -12,7 +12,7 @@ from rosprivacy.report.dot import dot
 from rosprivacy.report.graphviz import Graphviz, Job, TooLongError
 from rosprivacy.report.narrow import folded
 from rosprivacy.report.svg import inline
-from rosprivacy.report.views import FindingViews, bounded
+from rosprivacy.report.views import PER_BOX, FindingViews, bounded
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -52,7 +52,7 @@ def pictures_of(analysis: Analysis, findings: Iterable[Finding], *, most: int = 
     views = FindingViews(analysis)
     with Graphviz() as graphviz:
         for finding in findings:
-            picture = bounded(folded(views.of(finding)), most)
+            picture = bounded(folded(views.of(finding, PER_BOX * most)), most)
             yield _drawn(graphviz, picture, f"f{finding.id}-")
 
 

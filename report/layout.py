@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 SVG, PNG = "svg", "png"
 SECONDS = 45.0
+LESS = "--finding, --around, --most and --fold draw less"
 DOTS_PER_INCH = 144
 LARGEST_INCHES = 50  # of a PNG: 7,200 dots a side, 200 MB while it is drawn
 
@@ -106,7 +107,7 @@ def drawn(
             try:
                 data = graphviz.draw(Job(text, way.engine, form, {**way.attributes, **_paper(form)}), given)
             except TooLongError:
-                said = (f"Graphviz's {way.engine} did not finish in {counted(round(given), 'second')}",)
+                said = (f"Graphviz's {way.engine} did not finish in {counted(round(given), 'second')}; {LESS}",)
                 continue
             if form == SVG:
                 return Drawn(finished(data, picture.noted(*note)), note)

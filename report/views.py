@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import DISCLOSURE, Verdict
 from rosprivacy.analysis.search import Net
-from rosprivacy.analysis.ways import ways
+from rosprivacy.analysis.ways import Ways, ways
 from rosprivacy.report.looks import ALLOWED, DATA, DENIED, MATCHES, SHORTEST, WAY
 from rosprivacy.report.picture import PRIVACY, ROS, Box, Line, Picture, order, sorted_boxes, sorted_lines
 from rosprivacy.report.privacy import Reached
@@ -24,7 +24,7 @@ from rosprivacy.report.wording import counted, listed, shortened
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping
 
-    from rosprivacy.analysis.model import Analysis, Finding, Flow, Grant, Place
+    from rosprivacy.analysis.model import Analysis, Finding, Flow, FlowGraph, Grant, Place
     from rosprivacy.report.picture import Key
 
 VERDICTS = {
@@ -32,7 +32,9 @@ VERDICTS = {
     Verdict.UNDETERMINED: "no leak reached, but not everything on the way is reviewed",
     Verdict.NO_LEAK_FOUND: "no way to a leak found",
 }
+PER_BOX = 12  # flows that are looked at for each box: channels with the same ends will be one
 NOTHING = "No data was followed: no label names a source. So this says nothing about the system."
+LONGER = "Not drawn: ways of more"
 BOTH_WAYS = {"request", "reply", "call", "execute"}
 
 
@@ -59,15 +61,15 @@ def ros_view(analysis: Analysis, denials: Iterable[Grant] = (), *, standard: boo
         lines.add(*_ends(analysis, flow), MATCHES if flow.role == "matches" else ALLOWED, flow.role, flow.grants)
     for flow in graph.denied:
         lines.add(*_ends(analysis, flow), DENIED, flow.role, flow.denials)
-    for grant in denials:
-        if not grant.allow:
-            _deny(lines, grant, graph.elements[0].robot if graph.elements else "")
+    effective = {grant for flow in graph.denied for grant in flow.denials}
+    denying = [grant for grant in denials if not grant.allow]
+    undrawn = sum(not _deny(lines, grant, graph, hidden) and grant not in effective for grant in denying)
     for key in boxes.keys() & covered.keys():
         if boxes[key].pattern:
             words = f"covers {counted(len(covered[key] - {key}), 'name')}"
             boxes[key] = replace(boxes[key], words=(words,))
     title = f"ROS graph ({graph.view}): {_inventory(boxes)}"
-    notes = _left_out(hidden)
+    notes = _left_out(hidden, undrawn)
     return Picture(ROS, title, sorted_boxes(boxes.values()), lines.made(), notes)
 
 
@@ -76,13 +78,18 @@ def _ends(analysis: Analysis, flow: Flow) -> tuple[Key, Key]:
     return elements[flow.source].identity, elements[flow.target].identity
 
 
-def _deny(lines: _Lines, grant: Grant, robot: str) -> None:
-    """A DENY by itself is no flow; it is drawn where there is a channel of that name."""
+def _deny(lines: _Lines, grant: Grant, graph: FlowGraph, hidden: Collection[Key]) -> bool:
+    """A DENY by itself is no flow; it is drawn where there is a channel of that name. Return whether it was."""
+    robots = {element.robot for element in graph.elements}
+    if len(robots) > 1:  # a policy line does not say whose it is
+        return False
+    robot = next(iter(robots), "")
     node, channel = (robot, "node", grant.node), (robot, grant.kind, grant.name)
     if grant.role in BOTH_WAYS or grant.role == "publish":
         lines.add(node, channel, DENIED, grant.role, (grant,))
     if grant.role in BOTH_WAYS or grant.role == "subscribe":
         lines.add(channel, node, DENIED, grant.role, (grant,))
+    return channel in lines.boxes or channel in hidden
 
 
 def _inventory(boxes: Mapping[Key, Box]) -> str:
@@ -92,8 +99,11 @@ def _inventory(boxes: Mapping[Key, Box]) -> str:
     return ", ".join(counted(number, kind.replace("-", " ")) for kind, number in kinds.items()) or "nothing"
 
 
-def _left_out(hidden: Collection[Key]) -> tuple[str, ...]:
-    return (f"Not drawn: {counted(len(hidden), 'standard ROS channel')}",) if hidden else ()
+def _left_out(hidden: Collection[Key], undrawn: int) -> tuple[str, ...]:
+    notes = [f"Not drawn: {counted(len(hidden), 'standard ROS channel')}"] if hidden else []
+    if undrawn:
+        notes.append(f"Not drawn: {counted(undrawn, 'DENY', 'DENYs')} without a channel of that very name")
+    return tuple(notes)
 
 
 @dataclass
@@ -189,9 +199,9 @@ def _ways_to_all(analysis: Analysis, net: Net, findings: Iterable[Finding]) -> I
             both = analysis.spread.both(finding.category)
             ends.setdefault(finding.category, {})[number[finding.leak]] = both
     for category in sorted({finding.category for finding in findings if finding.kind == DISCLOSURE}):
-        yield ways(net, category)
+        yield ways(net, category).flows
     for category, where in sorted(ends.items()):
-        yield ways(net, category, leaks=where, past_leaks=True, ends=where)
+        yield ways(net, category, leaks=where, past_leaks=True, ends=where).flows
 
 
 class FindingViews:
@@ -208,19 +218,27 @@ class FindingViews:
         self._number = {element: vertex for vertex, element in enumerate(analysis.graph.elements)}
         self._reached: dict[str, Reached] = {}
 
-    def of(self, finding: Finding) -> Picture:
+    def of(self, finding: Finding, about: int | None = None) -> Picture:
         """Return the ways of one finding, from its source to its leak: the shortest, and the longer ones.
 
         A dismissed one shows its ways through other leaks. What else the data reaches is in the privacy view.
+
+        Parameters
+        ----------
+        about
+            Take only the shorter ways, with about so many flows: on a large graph much quicker. None for all.
         """
         category, graph = finding.category, self._analysis.graph
         reached = self._reached.setdefault(category, Reached(self._analysis, {category}))
         source, leak = self._number[finding.source], self._number[finding.leak]
-        lengths = {}
+        found = Ways({})
         if finding.steps:
             ends = None if finding.kind == DISCLOSURE else {leak: self._analysis.spread.both(category)}
             past = finding.dismissed or ends is not None
-            lengths = ways(self._net, category, sources=[source], leaks=[leak], past_leaks=past, ends=ends)
+            found = ways(
+                self._net, category, sources=[source], leaks=[leak], past_leaks=past, ends=ends, about=about
+            )
+        lengths = found.flows
         keys = {element.identity for element in finding.witness}
         for index in lengths:
             keys |= set(_ends(self._analysis, graph.flows[index]))
@@ -235,13 +253,15 @@ class FindingViews:
             notes.append(f"Only through {through}, which has a finding of its own")
         if finding.disjoint_paths > 1:
             notes.append(f"{finding.disjoint_paths} ways share no flow")
+        if not found.complete:
+            notes.append(f"{LONGER} than {counted(max(lengths.values()), 'step')}")
         ordered = sorted_boxes(boxes.values())
         return Picture(PRIVACY, title, ordered, lines.made(), tuple(notes), (in_words(finding),), _core([finding]))
 
 
-def finding_view(analysis: Analysis, finding: Finding) -> Picture:
+def finding_view(analysis: Analysis, finding: Finding, about: int | None = None) -> Picture:
     """Return the ways of one finding, see ``FindingViews``."""
-    return FindingViews(analysis).of(finding)
+    return FindingViews(analysis).of(finding, about)
 
 
 def bounded(picture: Picture, most: int) -> Picture:
@@ -254,16 +274,18 @@ def bounded(picture: Picture, most: int) -> Picture:
     lines = [line for line in picture.lines if line.look == SHORTEST]
     what = "the shortest ways"
     for length in sorted({line.length for line in picture.lines if line.length}):
-        more = [line for line in picture.lines if 0 < line.length <= length or line.look == SHORTEST]
-        if len(_joined(more) | picture.core) > most:
+        longer = [line for line in picture.lines if 0 < line.length <= length or line.look == SHORTEST]
+        if len(_joined(longer) | picture.core) > most:
             break
-        lines, what = more, f"the ways of up to {counted(length, 'step')}"
+        lines, what = longer, f"the ways of up to {counted(length, 'step')}"
     kept = _joined(lines) | picture.core
     left = len(picture.boxes) - len(kept)
     if not left and len(lines) == len(picture.lines):
         return picture
-    note = f"Not drawn: {counted(left, 'element')} beside {what}" if left else f"Not drawn: what is beside {what}"
-    return replace(picture.kept(kept, note), lines=tuple(lines))
+    notes = tuple(note for note in picture.notes if not note.startswith(LONGER))
+    known = left and len(notes) == len(picture.notes)
+    note = f"Not drawn: {counted(left, 'element') if known else 'what is'} beside {what}"
+    return replace(picture, notes=notes, lines=tuple(lines)).kept(kept, note)
 
 
 def _joined(lines: Iterable[Line]) -> set[Key]:

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -118,6 +119,25 @@ def test_what_pseudonymises_stays_and_what_it_sends_is_dashed() -> None:
     after = {(line.source[2], line.target[2]): line.pseudonymised for line in picture.lines}
     assert after["/blur", "/camera/blurred"]
     assert not after["/camera/image", "/blur"]
+
+
+def test_findings_of_other_kinds_have_ways_and_words_of_their_own() -> None:
+    """Rule S10: what is kept too long, what leaves the EEA; no label calls such a place a leak."""
+    found = factory(2).analysis
+    leak = found.findings[1]
+    place = next(element for element in found.graph.elements if element.name == "/navigator")
+    camera = next(element for element in found.graph.elements if element.name == "/robot_camera")
+    kept = replace(leak, kind="storage-limitation", source=camera, leak=place, witness=(camera, place), steps=())
+    picture = views.privacy_view(replace(found, findings=(leak, kept)))
+    box = next(box for box in picture.boxes if box.names == ("/navigator",))
+    assert (box.look, box.words) == ("leak", ("kept too long, or outside the EEA: Video",))
+    assert lines_of(picture)["/robot_camera", "/robot_video"] == "way"
+
+
+def test_a_denial_that_is_not_drawn_is_counted() -> None:
+    alone = Grant(False, "publish", "topic", "/secret/*", "/e", "/display", Place("p.xml", 1))
+    picture = views.ros_view(care_home().analysis, [alone])
+    assert "Not drawn: 1 DENY without a channel of that very name" in picture.notes
 
 
 def test_where_no_source_is_named_the_picture_says_that_it_says_nothing() -> None:

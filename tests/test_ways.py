@@ -6,6 +6,7 @@ from itertools import islice, pairwise
 from typing import TYPE_CHECKING
 
 from hypothesis import given
+from hypothesis import strategies as st
 
 from rosprivacy.analysis.model import DISCLOSURE
 from rosprivacy.analysis.search import Net
@@ -76,12 +77,12 @@ def test_every_way_without_a_circle_is_in(system: System) -> None:
         ends = {leak: found.spread.both(finding.category)} if other else None
         past = finding.dismissed or other
         got = ways(net, finding.category, sources=[source], leaks=[leak], past_leaks=past, ends=ends)
-        flows = {system.edges[flow] for flow in got}
+        flows = {system.edges[flow] for flow in got.flows}
         walks = Walks(brute, finding.category, leak, past_leaks=finding.dismissed)
         for way in islice(walks.simple(source), MOST_STEPS) if not other else ():
             assert set(pairwise(way)) <= flows
         assert set(pairwise(number[element] for element in finding.witness)) <= flows
-        assert not finding.steps or min(got.values()) == len(finding.steps)
+        assert not finding.steps or min(got.flows.values()) == len(finding.steps)
 
 
 @given(systems())
@@ -109,7 +110,7 @@ def test_every_flow_that_is_in_leads_from_a_source_to_a_leak(system: System) -> 
                 break
             good |= more
         expected = {(v, t) for v, _, _, t, d in edges if (t, d) in good}
-        assert {system.edges[flow] for flow in ways(net, category)} <= expected
+        assert {system.edges[flow] for flow in ways(net, category).flows} <= expected
 
 
 def test_detours_that_must_come_back_are_left_out() -> None:
@@ -119,7 +120,7 @@ def test_detours_that_must_come_back_are_left_out() -> None:
     system = System(4, 3, sorted(edges), labels, {})
     found = system.analyse()
     got = ways(Net.of(found.spread), "Face")
-    assert {system.edges[flow]: length for flow, length in got.items()} == {(0, 4): 2, (4, 1): 2}
+    assert {system.edges[flow]: length for flow, length in got.flows.items()} == {(0, 4): 2, (4, 1): 2}
 
 
 def test_longer_ways_are_in_with_their_length() -> None:
@@ -128,4 +129,30 @@ def test_longer_ways_are_in_with_their_length() -> None:
     system = System(4, 2, sorted(edges), labels, {})
     found = system.analyse()
     got = ways(Net.of(found.spread), "Face")
-    assert {system.edges[flow]: n for flow, n in got.items()} == {(0, 4): 2, (4, 1): 2, (4, 2): 4, (2, 5): 4, (5, 1): 4}
+    assert {system.edges[flow]: n for flow, n in got.flows.items()} == {
+        (0, 4): 2,
+        (4, 1): 2,
+        (4, 2): 4,
+        (2, 5): 4,
+        (5, 1): 4,
+    }
+
+
+@given(systems(), st.integers(1, 12))
+def test_the_shorter_ways_are_all_those_up_to_a_length(system: System, about: int) -> None:
+    found = analysed(system)
+    if found is None:
+        return
+    net, number = Net.of(found.spread), index(system)
+    for finding in [one for one in found.findings if one.kind == DISCLOSURE]:
+        source, leak = number[finding.source], number[finding.leak]
+        whole = ways(net, finding.category, sources=[source], leaks=[leak], past_leaks=finding.dismissed)
+        part = ways(net, finding.category, sources=[source], leaks=[leak], past_leaks=finding.dismissed, about=about)
+        assert part.complete or len(part.flows) < len(whole.flows) or part.flows == whole.flows
+        assert set(part.flows) <= set(whole.flows)
+        longest = max(part.flows.values(), default=0)
+        walks = Walks(system.brute(), finding.category, leak, past_leaks=finding.dismissed)
+        for way in islice(walks.simple(source), MOST_STEPS):
+            if len(way) - 1 <= longest:
+                assert set(pairwise(way)) <= {system.edges[flow] for flow in part.flows}
+        assert len(part.flows) <= max(about, sum(length == longest for length in part.flows.values()))

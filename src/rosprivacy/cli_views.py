@@ -15,6 +15,7 @@ from rosprivacy.cli_options import (
     LabelFiles,
     MaxBytes,
     NoStandard,
+    Ontologies,
     Output,
     Policies,
     SixLists,
@@ -116,6 +117,7 @@ def graph(
     draw_standard_channels: Annotated[
         bool, typer.Option("--draw-standard-channels", help="Draw the standard ROS channels too.")
     ] = False,
+    ontology: Ontologies = None,
     category: SixLists = "PersonalData",
     view: ViewChosen = View.declared,
     standard_channels: Standard = "rosprivacy:standard",
@@ -134,6 +136,7 @@ def graph(
     settings = Settings(
         view=view.value,
         categories=tuple(categories or ()),
+        ontologies=tuple(ontology or ()),
         category=category,
         standard_channels=None if no_standard_channels else standard_channels,
         include_root=str(include_root) if include_root else None,
@@ -141,7 +144,7 @@ def graph(
         progress=progress_of,
     )
     result = run(tuple(policies), tuple(labels or ()), settings)
-    picture = _view(result, show, finding, carried_only=bool(categories), standard=draw_standard_channels)
+    picture = _view(result, show, finding, most, carried_only=bool(categories), standard=draw_standard_channels)
     picture = _narrowed(picture, robot, around, steps, most, fold=fold, loose_ends=loose_ends)
     if cluster is not Cluster.none:
         from rosprivacy.report.narrow import grouped
@@ -162,12 +165,15 @@ def _format(given: PictureFormat | None, output: Path | None) -> PictureFormat:
     raise typer.BadParameter(f"what format is {output.name}? Name it with --format: {', '.join(PictureFormat)}")
 
 
-def _view(result: Result, show: Shown, finding: str | None, *, carried_only: bool, standard: bool) -> Picture:
+def _view(
+    result: Result, show: Shown, finding: str | None, most: int | None, *, carried_only: bool, standard: bool
+) -> Picture:
     from rosprivacy.report import narrow, views
 
     if show is Shown.privacy:
         if finding:
-            return views.finding_view(result.analysis, narrow.the_finding(result.analysis, finding))
+            about = views.PER_BOX * most if most else None
+            return views.finding_view(result.analysis, narrow.the_finding(result.analysis, finding), about)
         return views.privacy_view(result.analysis)
     denials = [grant for policy in result.policies for grant in policy.grants if not grant.allow]
     picture = views.ros_view(result.analysis, denials, standard=standard)

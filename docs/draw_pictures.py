@@ -1,6 +1,6 @@
 """Draw the pictures of ``views.md``, by the commands that stand there; needs the ``[views]`` extra and the corpus.
 
-    python docs/pictures.py [NAME…]
+    python docs/draw_pictures.py [NAME…]
 
 To add a system, add it to ``SYSTEMS``, and its pictures to ``PICTURES``.
 """

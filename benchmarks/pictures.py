@@ -1,0 +1,142 @@
+"""Pictures: a system of the size of Autoware, whole, and every finding of it by itself.
+
+    python benchmarks/pictures.py
+
+The system is made up: 1,900 elements besides the standard channels, in modules along a pipeline, as in a car that
+drives itself.
+"""
+
+from __future__ import annotations
+
+import random
+import sys
+import time
+from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING
+
+from measure import Line, print_header, print_line, run
+
+import rosprivacy
+from rosprivacy.report.inline import pictures_of
+from rosprivacy.report.layout import drawn
+from rosprivacy.report.narrow import folded
+from rosprivacy.report.views import PER_BOX, FindingViews, bounded, privacy_view, ros_view
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from rosprivacy.analysis.model import Analysis, Finding
+
+MODULES = ("sensing", "perception", "localization", "map", "planning", "control", "vehicle", "system", "api", "tools")
+NODES, TOPICS, SERVICES, ACTIONS = 300, 1230, 340, 30
+WHOLE, ONE = 60.0, 1.0  # seconds that are promised
+MOST = 60  # boxes of one finding
+PARAMETERS = ("describe_parameters", "get_parameter_types", "get_parameters", "list_parameters", "set_parameters")
+
+
+def write_system(folder: Path, seed: int = 7) -> tuple[str, str]:
+    """Write the policy and the labels; return their names.
+
+    A topic goes to one to three nodes, mostly of the next modules; a logger and a monitor read many.
+    """
+    chance = random.Random(seed)  # noqa: S311 - to be the same each time
+    nodes = [f"/{MODULES[i * len(MODULES) // NODES]}/node_{i}" for i in range(NODES)]
+    grants: dict[str, list[tuple[str, str, str]]] = {node: [] for node in nodes}
+
+    def near(place: int) -> int:
+        step = int(chance.expovariate(1 / 25)) + 1
+        return place + step if place + step < NODES else chance.randrange(NODES)
+
+    for i in range(TOPICS):
+        writer = chance.randrange(NODES)
+        name = f"{nodes[writer].rpartition('/')[0]}/output/topic_{i}"
+        grants[nodes[writer]].append(("topics", "publish", name))
+        for reader in {near(writer) for _ in range(chance.randint(1, 3))}:
+            grants[nodes[reader]].append(("topics", "subscribe", name))
+        if chance.random() < 0.1:
+            grants[nodes[-1 - i % 2]].append(("topics", "subscribe", name))
+    for kind, count, asks, answers in (
+        ("services", SERVICES, "request", "reply"),
+        ("actions", ACTIONS, "call", "execute"),
+    ):
+        for i in range(count):
+            server = chance.randrange(NODES)
+            grants[nodes[server]].append((kind, answers, f"{nodes[server]}/{kind[:-1]}_{i}"))
+            grants[nodes[near(server)]].append((kind, asks, f"{nodes[server]}/{kind[:-1]}_{i}"))
+    policy, labels = folder / "car.policy.xml", folder / "car.labels.yaml"
+    policy.write_text(_policy(grants), "utf-8")
+    labels.write_text(_labels(nodes), "utf-8")
+    return str(policy), str(labels)
+
+
+def _policy(grants: dict[str, list[tuple[str, str, str]]]) -> str:
+    profiles = []
+    for node, own in grants.items():
+        space, _, name = node.rpartition("/")
+        rows = [("topics", "publish", "/rosout"), *(("services", "reply", f"~/{p}") for p in PARAMETERS), *own]
+        lines = [f'<{kind} {role}="ALLOW"><{kind[:-1]}>{name}</{kind[:-1]}></{kind}>' for kind, role, name in rows]
+        profiles.append(f'<profile ns="{space}" node="{name}">\n{chr(10).join(lines)}\n</profile>')
+    inside = "\n".join(profiles)
+    return (
+        '<policy version="0.2.0"><enclaves><enclave path="/car"><profiles>\n'
+        f"{inside}\n</profiles></enclave></enclaves></policy>\n"
+    )
+
+
+def _labels(nodes: list[str]) -> str:
+    rows = [f"  {node}: {{source: [Video]}}" for node in nodes[:4]]
+    rows += [f"  {node}: {{source: [Location]}}" for node in nodes[60:62]]
+    rows += [f"  {node}: {{leak: [Video, Location]}}" for node in nodes[-10:]]
+    return "\n".join(["labels: 1", "nodes:", *rows, ""])
+
+
+def lines(folder: Path) -> Iterator[Line]:
+    """Measure each promise once: the longest of many counts where there are many."""
+    policy, labels = write_system(folder)
+    result = rosprivacy.analyze([policy], [labels])
+    analysis = result.analysis
+    whole = ros_view(analysis)
+    size = f"{len(whole.boxes):,} elements, {len(whole.lines):,} lines, {len(analysis.findings)} findings"
+    command = [sys.executable, "-m", "rosprivacy", "graph", policy, "--labels", labels]
+    for show in ("ros", "privacy"):
+        for options in ((), ("--fold", "--cluster", "namespace")):
+            output = folder / f"{show}.svg"
+            took = _seconds(lambda: run(*command, "--show", show, *options, "--output", output))  # noqa: B023 - at once
+            yield _line(f"rosprivacy graph --show {' '.join((show, *options))}, SVG", took, WHOLE, size)
+            size = ""
+    each = [_seconds(partial(_one, analysis, finding)) for finding in analysis.findings]
+    note = f"the slowest of {len(each)}, of up to {MOST} elements, with the start of Graphviz"
+    yield _line("the privacy view of one finding, SVG", max(each), ONE, note)
+    made: list[str] = []
+    took = _seconds(lambda: made.extend(pictures_of(analysis, analysis.findings)))
+    note = f"{max(map(len, made)) / 1000:.0f} kB the largest; all one after the other"
+    yield _line("the picture of one finding for a report, on average", took / len(made), ONE, note)
+    yield Line("boxes of the privacy view, folded", f"{len(folded(privacy_view(analysis)).boxes):,}")
+
+
+def _one(analysis: Analysis, finding: Finding) -> None:
+    drawn(bounded(folded(FindingViews(analysis).of(finding, PER_BOX * MOST)), MOST), "svg")
+
+
+def _seconds(what: Callable[[], object]) -> float:
+    begin = time.perf_counter()
+    what()
+    return time.perf_counter() - begin
+
+
+def _line(what: str, seconds: float, limit: float, note: str) -> Line:
+    return Line(what, f"{seconds:.2f} s", f"{limit:g} s", seconds / limit, 1.0, note=note)
+
+
+def main() -> int:
+    """Print the table; return the exit code."""
+    print_header()
+    with TemporaryDirectory() as folder:
+        measured = [print_line(line) for line in lines(Path(folder))]
+    return 1 if any(not line.met for line in measured) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
