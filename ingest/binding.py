@@ -39,6 +39,7 @@ def bind(graph: FlowGraph, labels: Sequence[Labels]) -> Bound:
     elements: dict[int, list[Statement]] = defaultdict(list)
     flows: dict[int, list[Statement]] = defaultdict(list)
     through: dict[tuple[int, tuple[str, ...]], tuple[int, ...]] = {}
+    subjects: dict[int, set[str]] = defaultdict(set)
     leaving = _leaving(graph)
     problems: list[InputError] = []
     for file in labels:
@@ -48,6 +49,8 @@ def bind(graph: FlowGraph, labels: Sequence[Labels]) -> Bound:
                 problems.append(names.unmatched(entry))
             for vertex in vertices:
                 elements[vertex] += entry.statements
+                if entry.subjects:
+                    subjects[vertex].update(entry.subjects)
             problems += _through(graph, leaving, entry, vertices, through)
         for flow in file.flows:
             indices = _flows(graph, leaving, names, flow)
@@ -65,6 +68,7 @@ def bind(graph: FlowGraph, labels: Sequence[Labels]) -> Bound:
         {index: tuple(said) for index, said in sorted(flows.items())},
         through,
         outside,
+        subjects={vertex: tuple(sorted(groups)) for vertex, groups in sorted(subjects.items())},
     )
 
 

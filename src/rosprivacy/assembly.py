@@ -96,7 +96,14 @@ class Result:
     def document(self) -> dict[str, Any]:
         """Return the JSON document of the contract."""
         vocabulary = self.vocabulary
-        return document(self.analysis, vocabulary.categories, vocabulary.hierarchy, self.diagnostics, self.assumptions)
+        return document(
+            self.analysis,
+            vocabulary.categories,
+            vocabulary.hierarchy,
+            self.diagnostics,
+            self.assumptions,
+            self.bound.subjects,
+        )
 
     def linked_data(self, form: str, **more: Any) -> str:
         """Return the findings as RDF, in ``turtle`` or ``json-ld``; ``more`` as for ``rdf_graph``."""
