@@ -20,7 +20,7 @@ from rosprivacy.report.kinds import provision
 from rosprivacy.report.naming import fit, key, name, whole
 from rosprivacy.report.patterns import grouped, names_of
 from rosprivacy.report.storages import STORAGE, retention
-from rosprivacy.report.tables import OUTSIDE
+from rosprivacy.report.tables import OUTSIDE, can_come_from
 from rosprivacy.report.words import Words
 
 if TYPE_CHECKING:
@@ -104,6 +104,7 @@ class _Facts:
         for at, row in index.outside.items():
             for category in row["holds"] if row["element"]["kind"] in OUTSIDE else ():
                 self._reached[category][at] = row["element"]
+        self._origins = can_come_from(index)
         self.enclaves = index.words.count(len(index.document["enclaves"]), "enclave")
 
     def recipients(self, category: str) -> list[list[Mapping[str, Any]]]:
@@ -112,10 +113,8 @@ class _Facts:
         return grouped(found, lambda element: (element["kind"], element["name"]))
 
     def sources(self, category: str) -> list[str]:
-        """Groups of persons of the sources that the kind comes from, by its findings and labels."""
-        sources = {key(finding["source"]) for finding in self.index.findings if finding["category"] == category}
-        sources |= {at for at, said in self.index.of_role.get("source", {}).items() if category in said}
-        return sorted({group for source in sources for group in self.index.subjects.get(source, ())})
+        """Groups of persons of the sources that the kind can come from."""
+        return sorted({group for source in self._origins[category] for group in self.index.subjects.get(source, ())})
 
 
 def _entry(category: str, group: Sequence[Mapping[str, Any]], facts: _Facts) -> Entry:

@@ -55,7 +55,7 @@ def assumed(index: Index) -> Iterator[str]:
         yield words("file.none")
     yield from _outside(index)
     yield from _unstated(index)
-    yield words("a.law", date=said["law_as_of"])
+    yield words("a.law", date=words.date(said["law_as_of"]))
     yield words("a.labels")
 
 
@@ -76,7 +76,7 @@ def _outside(index: Index) -> Iterator[str]:
     for kind, role in said.get("taken_by_kind", {}).items():
         yield words("a.kinds", kind=words.kind({"kind": kind}), role=words(f"a.kinds.{role}"))
     if "countries_as_of" in said:
-        yield words("a.countries", date=said["countries_as_of"])
+        yield words("a.countries", date=words.date(said["countries_as_of"]))
     for row in index.outside.values():
         if row.get("without_limit"):
             yield words("a.limit", element=name(row["element"]), data=index.all_data(row["without_limit"]))

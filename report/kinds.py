@@ -127,7 +127,7 @@ def provision(legal: Mapping[str, Any], of: str, index: Index) -> Provision:
         meaning=text(legal, "meaning", language),
         sources=printable(sources or "; ".join(legal["sources"])),
         stated="" if legal["stated_of"] in ("", of) else _stated(legal["stated_of"], index),
-        as_of=legal["as_of"],
+        as_of=index.words.date(legal["as_of"]),
     )
 
 

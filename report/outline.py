@@ -77,7 +77,7 @@ class Outline:
     title
         Of the system, as the user calls it, or the names of its policies.
     made
-        Date, ``YYYY-MM-DD``; empty if none is to be told.
+        Date; empty if none is to be told.
     sections
         (anchor, heading), in order.
     verdict
@@ -141,7 +141,7 @@ def outline(
     title
         Of the system; by default the names of its policy files.
     made
-        The date that the report tells.
+        The date that the report tells, ``YYYY-MM-DD``; empty for none.
     redacted
         Whether names were replaced in the documents; the report then says so.
 
@@ -157,9 +157,9 @@ def outline(
     return Outline(
         words=words,
         title=fit(title) if title else _title(index),
-        made=made,
+        made=words.date(made),
         version=document["assumptions"]["rosprivacy"],
-        law_as_of=document["assumptions"]["law_as_of"],
+        law_as_of=words.date(document["assumptions"]["law_as_of"]),
         redacted=redacted,
         sections=tuple((anchor, words(f"h.{anchor}")) for anchor in names),
         code=document["verdict"],

@@ -139,9 +139,9 @@ def subjects(index: Index, links: Links) -> tuple[Table, tuple[str, ...]]:
     findings: dict[tuple[Key, str], list[Mapping[str, Any]]] = defaultdict(list)
     for finding in index.findings:
         findings[key(finding["source"]), finding["category"]].append(finding)
-    made = _made(index)
+    origins = can_come_from(index)
     table = [
-        Row(fit(name), "", tuple(_about(members, c, findings, made, index, links) for c in index.categories))
+        Row(fit(name), "", tuple(_about(members, c, findings, origins, index, links) for c in index.categories))
         for name, members in rows
     ]
     return Table(_columns(index), tuple(table)), names_of([index.elements[s] for s in silent], index.words)
@@ -149,7 +149,7 @@ def subjects(index: Index, links: Links) -> tuple[Table, tuple[str, ...]]:
 
 def _about(
     members: set[Key], category: str, findings: Mapping[Any, list[Mapping[str, Any]]],
-    made: Mapping[str, set[str]], index: Index, links: Links,
+    origins: Mapping[str, set[Key]], index: Index, links: Links,
 ) -> Cell:  # fmt: skip
     here = [finding for member in sorted(members) for finding in findings.get((member, category), ())]
     open_ways = [finding for finding in here if state(finding) == "open"]
@@ -159,23 +159,22 @@ def _about(
     if here:
         accepted = any(state(finding) == "accepted" for finding in here)
         return Cell(words("cell.accepted" if accepted else "cell.through"), links.to(here))
-    emitted = {c for member in members for c in index.of_role["source"][member]}
-    if category in emitted:
+    if any(category in index.of_role["source"][member] for member in members):
         return Cell(words("cell.brought"))
-    return Cell(words("cell.made" if any(category in made.get(c, ()) for c in emitted) else "cell.none"))
+    return Cell(words("cell.made" if members & origins[category] else "cell.none"))
 
 
-def _made(index: Index) -> dict[str, set[str]]:
-    """Category -> what can be made of it, and of that in turn."""
-    made: dict[str, set[str]] = defaultdict(set)
-    for row in index.document["derivations"]:
-        if row["reached"]:
-            made[row["from"]].add(row["to"])
+def can_come_from(index: Index) -> dict[str, set[Key]]:
+    """Return for each kind of data the sources that bring it in, or what it can be made of."""
+    found: dict[str, set[Key]] = {category: set() for category in index.categories}
+    for source, categories in index.of_role.get("source", {}).items():
+        for category in categories:
+            found[category].add(source)
+    makes = {(row["from"], row["to"]) for row in index.document["derivations"] if row["reached"]}
     changed = True
     while changed:
-        changed = False
-        for after in made.values():
-            more = {further for to in after for further in made.get(to, ())} - after
-            after.update(more)
-            changed = changed or bool(more)
-    return made
+        before = sum(map(len, found.values()))
+        for of, made in sorted(makes):
+            found.setdefault(made, set()).update(found.get(of, ()))
+        changed = sum(map(len, found.values())) > before
+    return found

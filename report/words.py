@@ -15,6 +15,7 @@ from rosprivacy.report.words_en import WORDS as ENGLISH
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
+DATE = 3  # parts of one
 TABLES = {"en": ENGLISH, "de": GERMAN}
 
 
@@ -36,6 +37,15 @@ class Words:
         ('12,345', '12.345')
         """
         return f"{number:,}".replace(",", self("thousands"))
+
+    def date(self, date: str) -> str:
+        """Return a date, ``YYYY-MM-DD``, as the language writes it; anything else as it is.
+
+        >>> Words("de").date("2026-04-30")
+        '30.04.2026'
+        """
+        parts = date.split("-")
+        return self("date", **dict(zip(("year", "month", "day"), parts, strict=True))) if len(parts) == DATE else date
 
     def count(self, number: int, thing: str) -> str:
         """Return how many of a thing there are; its key ends in ``.one`` or ``.many``.

@@ -2,6 +2,7 @@
 
 WORDS = {
     "thousands": ".",
+    "date": "{day}.{month}.{year}",
     "title": "Wohin personenbezogene Daten gelangen können",
     "subtitle": "Datenflussbericht für den Datenschutz",
     "system": "System",
@@ -242,7 +243,7 @@ WORDS = {
     "f.picture": "Bild des Weges: {way}",
     "f.picture.left": "Die Bilder der übrigen Wege wurden weggelassen, damit die Datei klein bleibt.",
     "f.now": "ab hier: {data}",
-    "f.data": "{data}, pseudonymisiert",
+    "f.data": "{data} (pseudonymisiert)",
     "f.from.to": "{source} zu {leak}",
     "f.number": "Weg {n}",
     "f.kind.none": "Für diese Art wurde kein zu prüfender Weg gefunden.",

@@ -2,6 +2,7 @@
 
 WORDS = {
     "thousands": ",",
+    "date": "{year}-{month}-{day}",
     "title": "Where personal data can go",
     "subtitle": "Data-flow report for data protection",
     "system": "System",
@@ -287,7 +288,7 @@ WORDS = {
     "f.picture": "Picture of the way: {way}",
     "f.picture.left": "Pictures of the remaining ways were left out, so that the file stays small.",
     "f.now": "from here: {data}",
-    "f.data": "{data}, pseudonymised",
+    "f.data": "{data} (pseudonymised)",
     "f.from.to": "{source} to {leak}",
     "f.number": "Way {n}",
     "f.kind.none": "No way to assess was found for this kind.",
