@@ -63,12 +63,17 @@ def _inherited(category: Category, categories: Mapping[str, Category], hierarchy
         translations = {
             language: {**texts, "reason": up.text("reason", language)} for language, texts in translations.items()
         }
+    defined = category if category.gdpr else next((up for up in nearest if up.gdpr), category)
+    if defined is not category:
+        translations = {
+            language: {**texts, "gdpr": defined.text("gdpr", language)} for language, texts in translations.items()
+        }
     return replace(
         category,
         law=tuple(law[key] for key in sorted(law)),
         reason="; ".join(reasons),
         stated_of=tuple(up.name for up in nearest),
-        gdpr=category.gdpr or next((up.gdpr for up in nearest if up.gdpr), ""),
+        gdpr=defined.gdpr,
         translations=translations,
     )
 
@@ -93,7 +98,7 @@ def _may_reveal(kinds: list[tuple[Category, Legal]]) -> Legal:
         language: ", ".join(dict.fromkeys(kind.text("title", language) for kind, _ in kinds)) for language in languages
     }
     translations = {
-        language: {**legal.translations.get(language, {}), "condition": f"⊇ {conditions[language]}"}
+        language: {**legal.translations.get(language, {}), "condition": f"⊇ {conditions[language]}", "sources": ""}
         for language in sorted(languages - {"en"})
     }
     return replace(

@@ -227,7 +227,7 @@ class Legal:
     stated_of
         Name of the category that the ontology says it of: this one, a broader one, or narrower ones.
     translations
-        Language -> ``meaning`` and ``condition`` in it.
+        Language -> ``meaning``, ``condition``, ``name`` and ``sources`` (in a row) in it.
     """
 
     iri: str
@@ -246,7 +246,7 @@ class Legal:
         return self.name == ARTICLE_9 or self.name.startswith(f"{ARTICLE_9} ")
 
     def text(self, what: str, language: str) -> str:
-        """Return its ``meaning`` or ``condition`` in a language, in English if there is no translation."""
+        """Return its ``meaning``, ``condition`` or ``name`` in a language, in English if there is no translation."""
         return self.translations.get(language, {}).get(what) or str(getattr(self, what))
 
 
@@ -285,7 +285,7 @@ class Category:
     note
         For readers of the ontology.
     translations
-        Language -> ``title``, ``definition`` and ``reason`` in it.
+        Language -> ``title``, ``definition``, ``reason`` and ``gdpr`` in it.
     """
 
     name: str
@@ -313,7 +313,7 @@ class Category:
         return next((verdict for verdict in ARTICLE_9_VERDICTS[:3] if verdict in verdicts), stated)
 
     def text(self, what: str, language: str) -> str:
-        """Return its ``title``, ``definition`` or ``reason`` in a language, in English if there is no translation."""
+        """Return its ``title``, ``definition``, ``reason`` or ``gdpr`` in a language, else in English."""
         return self.translations.get(language, {}).get(what) or str(getattr(self, what))
 
 
@@ -383,12 +383,15 @@ class Bound:
         (vertex, ``Statement.through``) -> the flows out of the vertex that these name expressions mean.
     outside
         What is stated about non-ROS elements, by vertex (rule S9).
+    subjects
+        By vertex: whom the data of a source are about, sorted. It changes no flow.
     """
 
     elements: Mapping[int, tuple[Statement, ...]]
     flows: Mapping[int, tuple[Statement, ...]] = field(default_factory=dict)
     through: Mapping[tuple[int, tuple[str, ...]], tuple[int, ...]] = field(default_factory=dict)
     outside: Mapping[int, Outside] = field(default_factory=dict)
+    subjects: Mapping[int, tuple[str, ...]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

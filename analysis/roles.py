@@ -61,6 +61,8 @@ class Facts:
         Categories that it makes of this one, sorted.
     covered
         Whether a label covers the category here (rule S11).
+    method
+        Of a sanitizer, as in ``Method``; empty for others.
     unstated
         Whether it is a sanitizer whose method is taken, not stated.
     standard
@@ -79,6 +81,7 @@ class Facts:
     unstated: bool = False
     standard: bool = False
     roles: tuple[str, ...] = ()
+    method: str = ""
 
 
 NOTHING_SAID = Facts()
@@ -180,4 +183,5 @@ def _sum_up(accepted: list[Statement], category: str, hierarchy: Hierarchy) -> F
         unstated=any(not s.stated for s in sanitizers),
         standard=bool(mundane) and all(s.shipped for s in mundane),
         roles=tuple(sorted(by_role)),
+        method=str(sanitizers[0].method) if sanitizers else "",
     )

@@ -47,6 +47,7 @@ def join(graph: FlowGraph, labels: Sequence[Labels]) -> tuple[Bound, list[InputE
     elements: dict[int, list[Statement]] = defaultdict(list)
     flows: dict[int, list[Statement]] = defaultdict(list)
     through: dict[tuple[int, tuple[str, ...]], tuple[int, ...]] = {}
+    subjects: dict[int, set[str]] = defaultdict(set)
     leaving = _leaving(graph)
     problems: list[InputError] = []
     for file in labels:
@@ -56,6 +57,8 @@ def join(graph: FlowGraph, labels: Sequence[Labels]) -> tuple[Bound, list[InputE
                 problems.append(names.unmatched(entry))
             for vertex in vertices:
                 elements[vertex] += entry.statements
+                if entry.subjects:
+                    subjects[vertex].update(entry.subjects)
             problems += _through(graph, leaving, entry, vertices, through)
         for flow in file.flows:
             indices = _flows(graph, leaving, names, flow)
@@ -71,6 +74,7 @@ def join(graph: FlowGraph, labels: Sequence[Labels]) -> tuple[Bound, list[InputE
         {index: tuple(said) for index, said in sorted(flows.items())},
         through,
         outside,
+        subjects={vertex: tuple(sorted(groups)) for vertex, groups in sorted(subjects.items())},
     )
     return bound, problems
 

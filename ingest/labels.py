@@ -37,24 +37,33 @@ SECTIONS = {
     "actions": ("action",),
 }
 SIX_LISTS = ("source", "leak", "conduit", "sanitizer", "sensitive", "mundane")
-NODE_KEYS = ("source", "leak", "sanitizer", "conduit", "derives", "note")
+NODE_KEYS = ("source", "leak", "sanitizer", "conduit", "derives", "subjects", "note")
+SAYS_NOTHING = ("subjects", "note")  # of what data does
 CHANNEL_KEYS = ("only", "never", "note")
 FLOW_KEYS = ("from", "to", "only", "never", "note")
 OUTSIDE = ("elements", "limits")
 OURS, SHIPPED_FILES = "rosprivacy:", ("standard", "infrastructure")
 STANDARD = f"{OURS}standard"
+LONGEST_GROUP = 100  # characters of a group of persons
 EXACT = 1_000_000  # a name outranks every glob
 SHIPPED, OWN = 0, 1  # tiers: a person's own word outranks what comes with the program
 
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """What is said of the elements of some kinds that a name or glob covers."""
+    """What is said of the elements of some kinds that a name or glob covers.
+
+    Attributes
+    ----------
+    subjects
+        Of a source: whom its data are about, in a person's words.
+    """
 
     kinds: tuple[str, ...]
     name: str
     place: Place
     statements: tuple[Statement, ...]
+    subjects: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -210,10 +219,10 @@ class _Reader:
             return
         labels = replace(value, entries=tuple(entry for entry in value.entries if entry[0] in NODE_KEYS))
         statements = tuple(self._node(labels, stated.place, (self.tier, EXACT)))
-        if stated.kind == "device" and not any(key != "note" for key, *_ in labels.entries):
+        if stated.kind == "device" and all(key in SAYS_NOTHING for key, *_ in labels.entries):
             self.problem(line, f"device {shown(name)!r} does nothing", "say what comes from it: source: [Voice]")
         self.elements.append(stated)
-        self.entries.append(Entry((stated.kind,), name, stated.place, statements))
+        self.entries.append(Entry((stated.kind,), name, stated.place, statements, self._subjects(labels)))
 
     def _section(self, section: str, line: int, value: Value) -> None:
         if value.kind == "empty":
@@ -230,7 +239,8 @@ class _Reader:
             rank = (self.tier, specificity(name))
             read = self._node if section == "nodes" else self._channel
             statements = tuple(read(label, Place(self.file, at), rank))
-            self.entries.append(Entry(SECTIONS[section], name, Place(self.file, at), statements))
+            subjects = self._subjects(label) if section == "nodes" else ()
+            self.entries.append(Entry(SECTIONS[section], name, Place(self.file, at), statements, subjects))
 
     def _node(self, label: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
         if label.kind == "empty":  # a line of --init that nobody has filled in yet
@@ -297,6 +307,19 @@ class _Reader:
                 self.problem(item.line, "a derivation needs from and to", "write {from: Video, to: FaceTemplate}")
             elif all(ends.values()):
                 yield Statement("derivation", (ends["from"],), rank, place, to=ends["to"])
+
+    def _subjects(self, label: Value) -> tuple[str, ...]:
+        """Whom the data of a source are about: groups of persons, as a person calls them."""
+        value = label.get("subjects")
+        if value is None:
+            return ()
+        if not value.items:
+            self.problem(value.line, "subjects names nobody", "write [residents, staff], or remove it")
+        for item in value.items:
+            if item.kind != "text" or not item.text.strip() or len(item.text) > LONGEST_GROUP:
+                what = f"{shown(item.text) or f'a {item.kind}'!r} where a group of persons is named"
+                self.problem(item.line, what, f"write a word or two, at most {LONGEST_GROUP} characters")
+        return tuple(sorted({item.text.strip() for item in value.items}))
 
     def _channel(self, label: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
         if label.kind == "empty":

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.model import NON_ROS, Method
 from rosprivacy.analysis.outside import RECIPIENTS, TRANSFERS
 from rosprivacy.ingest.elements import CARRIERS
+from rosprivacy.ingest.labels import LONGEST_GROUP, SAYS_NOTHING
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -135,7 +136,7 @@ def _element(kind: str, labels: dict[str, Any]) -> dict[str, Any]:
         facts["between"] = {"type": "array", "minItems": 2, "items": NAME, "description": "Nodes that it joins."}
     element = {**_object(facts | labels["properties"]), "required": ["kind"]}
     if kind == "device":
-        element["anyOf"] = [{"required": [key]} for key in labels["properties"] if key != "note"]
+        element["anyOf"] = [{"required": [key]} for key in labels["properties"] if key not in SAYS_NOTHING]
     return element
 
 
@@ -157,6 +158,12 @@ def _node(one: dict[str, Any], some: dict[str, Any], note: dict[str, Any]) -> di
                 "type": "array",
                 "items": {**_object({"from": one, "to": one}), "required": ["from", "to"]},
                 "description": "Makes one kind of data of another.",
+            },
+            "subjects": {
+                "type": "array",
+                "minItems": 1,
+                "items": {"type": "string", "pattern": "\\S", "maxLength": LONGEST_GROUP},
+                "description": "Of a source: whom its data are about, such as residents or staff.",
             },
             "note": note,
         }

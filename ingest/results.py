@@ -117,6 +117,7 @@ def element_results(analysis: Analysis, bound: Bound, names: Names, roles: Roles
             "leaks": leaks,
             "sanitizes": cleans,
             "stops": names.exact(_stopped(found, found.keeps.get(vertex, found.all_bits))),
+            "subjects": list(bound.subjects.get(vertex, ())),
             "open": list(question.categories) if question else [],
             "frontier": question.frontier if question else None,
             "distance": question.distance if question else None,

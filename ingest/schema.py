@@ -96,6 +96,7 @@ ELEMENT = NodeKind(
         Property("carries", STRINGS, f"kinds of data that get here{_BROAD}"),
         Property("pseudonymised", STRINGS, f"kinds of data that get here pseudonymised{_BROAD}"),
         Property("begins", STRINGS, "kinds that it brings in"),
+        Property("subjects", STRINGS, "of a source: whom its data are about"),
         Property("leaks", STRINGS, "kinds that it lets out, if they come"),
         Property("sanitizes", STRINGS, "kinds that it cleans, if they come"),
         Property("stops", STRINGS, "kinds that some source brings in and that do not go on from here"),

@@ -153,6 +153,11 @@ class _Reader:
                 hint = f"give it one of the labels {', '.join(KIND_LABELS.values())}"
                 self.problems.append(_problem(f"what is {shown(name)!r}? its labels do not say its kind", hint))
                 continue
+            try:
+                _subjects(properties)
+            except TypeError as error:
+                self.problems.append(_problem(f"{shown(name)!r}: {error}", "SET n.subjects = ['residents', 'staff']"))
+                continue
             parts = {key: str(properties.get(key) or "") for key in ("leg", "side")}
             shown_robot = "" if self._alone and robot else robot
             element = Element(
@@ -238,6 +243,7 @@ class _Reader:
                 {i: said for i, said in restrictions.items() if said},
                 _through(graph, statements),
                 outside,
+                subjects={v: groups for v, vertex in enumerate(vertices) if (groups := _subjects(vertex.properties))},
             ),
             robots,
             tuple(vertex.key for vertex in vertices),
@@ -299,6 +305,14 @@ def _names(said: Mapping[str, Any], role: str) -> tuple[str, ...]:
     if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
         raise TypeError(f"{role} is not a list of names")
     return tuple(sorted(names))
+
+
+def _subjects(properties: Mapping[str, Any]) -> tuple[str, ...]:
+    """Whom the data of a source are about."""
+    groups = properties.get("subjects") or []
+    if not isinstance(groups, list) or not all(isinstance(group, str) for group in groups):
+        raise TypeError("subjects is not a list of texts")
+    return tuple(sorted(set(groups)))
 
 
 def _restrictions(said: Mapping[str, Any]) -> Iterator[Statement]:

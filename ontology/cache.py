@@ -19,7 +19,7 @@ from rosprivacy.analysis.model import Category, Legal
 if TYPE_CHECKING:
     from pathlib import Path
 
-FORMAT = 3
+FORMAT = 4
 _TUPLES = ("broader", "synonyms", "data_types", "same_as", "within", "stated_of")
 
 

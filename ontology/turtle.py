@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from rdflib import RDF, SKOS, Graph, Namespace
+from rdflib import DCTERMS, RDF, SKOS, Graph, Namespace
 
 from rosprivacy.analysis.errors import InputErrors, OntologyError, shown
 from rosprivacy.analysis.model import Category, Legal
@@ -130,7 +130,9 @@ def _category(graph: Graph, subject: Node, ours: set[Node], same: dict[Node, str
         same_as=tuple(sorted(str(other) for other in graph.objects(subject, SKOS.exactMatch))),
         within=tuple(sorted(str(up) for up in parents if up not in ours)),
         note=_first(graph, subject, SKOS.note).get(ENGLISH, ""),
-        translations=_translated(title=title, definition=definition, reason=reason),
+        translations=_translated(
+            title=title, definition=definition, reason=reason, gdpr={} if gdpr is None else _cited(graph, gdpr)
+        ),
     )
 
 
@@ -140,6 +142,7 @@ def _law(graph: Graph, subject: Node, own: str) -> Iterator[Legal]:
         if provision is None:
             continue
         meaning, condition = _first(graph, provision, SKOS.definition), _first(graph, link, RP.condition)
+        sources = sorted(graph.objects(link, RP.source), key=lambda source: _identifier(graph, source))
         yield Legal(
             iri=str(provision),
             name=_identifier(graph, provision),
@@ -147,10 +150,31 @@ def _law(graph: Graph, subject: Node, own: str) -> Iterator[Legal]:
             as_of=str(graph.value(provision, RP.asOf) or ""),
             verdict=str(graph.value(link, RP.verdict) or ""),
             condition=condition.get(ENGLISH, ""),
-            sources=tuple(sorted(_identifier(graph, source) for source in graph.objects(link, RP.source))),
+            sources=tuple(_identifier(graph, source) for source in sources),
             stated_of=own,
-            translations=_translated(meaning=meaning, condition=condition),
+            translations=_translated(
+                meaning=meaning,
+                condition=condition,
+                name=_cited(graph, provision),
+                sources=_listed([_cited(graph, source) for source in sources]),
+            ),
         )
+
+
+def _cited(graph: Graph, provision: Node) -> dict[str, str]:
+    """How a provision is cited in each language; an article with what it is about."""
+    citations, titles = _first(graph, provision, DCTERMS.bibliographicCitation), _first(graph, provision, DCTERMS.title)
+    article = str(graph.value(provision, RP.kind)) == "article"
+    return {
+        language: f"{cited} ({titles[language]})" if article and language in titles else cited
+        for language, cited in citations.items()
+    }
+
+
+def _listed(texts: list[dict[str, str]]) -> dict[str, str]:
+    """Texts of each language in a row, where all of them have one in it."""
+    languages = set.intersection(*map(set, texts)) if texts else set()
+    return {language: "; ".join(text[language] for text in texts) for language in sorted(languages)}
 
 
 def _identifier(graph: Graph, provision: Node) -> str:

@@ -6,9 +6,11 @@ In: an ``Analysis`` and what it rests on. Out: plain dicts and lists, sorted, wi
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.legal import turned_special
+from rosprivacy.analysis.treatment import cleanings, makings
 from rosprivacy.report.outside import inventory, taken_by_kind
 
 if TYPE_CHECKING:
@@ -18,6 +20,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Analysis, Category, Diagnostic, Element, Finding, Grant, Legal, Step
 
 FORMAT = "rosprivacy.analysis/1"
+_KEYS = {"name": "provision"}  # what the contract calls otherwise than the model
 
 
 def document(
@@ -26,6 +29,7 @@ def document(
     hierarchy: Hierarchy,
     diagnostics: Iterable[Diagnostic],
     assumptions: Mapping[str, Any],
+    subjects: Mapping[int, tuple[str, ...]] | None = None,
 ) -> dict[str, Any]:
     """Return the analysis as one JSON object.
 
@@ -35,6 +39,8 @@ def document(
         Of the inputs; the analysis' own are added.
     assumptions
         What the answer rests on, made by the caller who knows the files.
+    subjects
+        By vertex: whom the data of a source are about.
     """
     graph = analysis.graph
     return {
@@ -68,6 +74,12 @@ def document(
             if not element.is_channel
         ],
         "outside": inventory(analysis, hierarchy),
+        "subjects": [
+            {"element": element_dict(graph.elements[vertex]), "subjects": list(groups)}
+            for vertex, groups in sorted((subjects or {}).items())
+        ],
+        **_treatment(analysis),
+        **_inventory(analysis),
         "flows": len(graph.flows),
         "denied_flows": len(graph.denied),
         "elements": len({element.identity for element in graph.elements}),
@@ -108,6 +120,48 @@ def element_dict(element: Element) -> dict[str, Any]:
     return shown
 
 
+def _treatment(analysis: Analysis) -> dict[str, Any]:
+    """Who cleans data, and who makes one kind of another."""
+    return {
+        "sanitizers": [
+            {
+                "element": element_dict(cleaning.element),
+                "category": cleaning.category,
+                "method": cleaning.method,
+                "stated": cleaning.stated,
+                "reached": cleaning.reached,
+                "leaves": list(cleaning.leaves),
+                "leaves_pseudonymised": list(cleaning.pseudonymised),
+                "beside": [element_dict(element) for element in cleaning.beside],
+            }
+            for cleaning in cleanings(analysis.spread, analysis.emitted)
+        ],
+        "derivations": [
+            {
+                "element": element_dict(making.element),
+                "from": making.made_of,
+                "to": making.made,
+                "reached": making.reached,
+            }
+            for making in makings(analysis.spread, analysis.emitted)
+        ],
+    }
+
+
+def _inventory(analysis: Analysis) -> dict[str, Any]:
+    """Enclaves, and the elements that no data gets to: with ``carries`` all that there is."""
+    graph = analysis.graph
+    reached = {carried.element.identity for carried in analysis.carried}
+    rest = {element.identity: element for element in graph.elements if element.identity not in reached}
+    nodes: dict[str, set[str]] = {}
+    for profile in graph.profiles:
+        nodes.setdefault(profile.enclave, set()).add(profile.node)
+    return {
+        "unreached": [element_dict(replace(element, leg="")) for element in rest.values()],
+        "enclaves": [{"enclave": enclave, "nodes": sorted(inside)} for enclave, inside in sorted(nodes.items())],
+    }
+
+
 def _category(category: Category, hierarchy: Hierarchy) -> dict[str, Any]:
     return {
         "name": category.name,
@@ -120,7 +174,14 @@ def _category(category: Category, hierarchy: Hierarchy) -> dict[str, Any]:
         "article9": category.article9,
         "reason": category.reason,
         "law": [_legal(legal) for legal in category.law],
+        "translations": _translations(category.translations),
     }
+
+
+def _translations(texts: Mapping[str, Mapping[str, str]]) -> dict[str, dict[str, str]]:
+    """Language -> texts in it; English stands where the facts are."""
+    said = {language: {what: text for what, text in sorted(of.items()) if text} for language, of in texts.items()}
+    return {language: said[language] for language in sorted(said) if said[language]}
 
 
 def law_of(finding: Finding, categories: Mapping[str, Category]) -> dict[str, Any]:
@@ -149,6 +210,12 @@ def _legal(legal: Legal) -> dict[str, Any]:
         "stated_of": legal.stated_of,
         "sources": list(legal.sources),
         "as_of": legal.as_of,
+        "translations": _translations(
+            {
+                language: {_KEYS.get(what, what): text for what, text in of.items()}
+                for language, of in legal.translations.items()
+            }
+        ),
     }
 
 

@@ -235,9 +235,7 @@ class FindingViews:
         if finding.steps:
             ends = None if finding.kind == DISCLOSURE else {leak: self._analysis.spread.both(category)}
             past = finding.dismissed or ends is not None
-            found = ways(
-                self._net, category, sources=[source], leaks=[leak], past_leaks=past, ends=ends, about=about
-            )
+            found = ways(self._net, category, sources=[source], leaks=[leak], past_leaks=past, ends=ends, about=about)
         lengths = found.flows
         keys = {element.identity for element in finding.witness}
         for index in lengths:

@@ -464,7 +464,7 @@ FULL: dict[str, Any] = {
     "labels": 1,
     "nodes": {
         "/a": "conduit",
-        "/b": {"source": ["Video"], "leak": ["Voice"], "conduit": ["Location"], "note": "x"},
+        "/b": {"source": ["Video"], "leak": ["Voice"], "conduit": ["Location"], "subjects": ["staff"], "note": "x"},
         "/c": {"source": {"Video": ["/t"]}, "sanitizer": {"Voice": "drop", "Health": None}},
         "/d": {"sanitizer": ["Video"], "derives": [{"from": "Video", "to": "FaceTemplate"}]},
         "/e": None,
@@ -856,3 +856,36 @@ def test_a_former_spelling_of_dpv_is_read_with_a_notice(tmp_path: Path) -> None:
     assert [s.categories for entry in found.entries for s in entry.statements] == [("Behaviour",)]
     (notice,) = found.diagnostics
     assert "pd:Behavioral is a former spelling; DPV spells it https://w3id.org/dpv/pd#Behavioural" in notice.message
+
+
+# ---------------------------------------------------------------- whom the data are about
+
+
+def test_a_source_may_say_whom_its_data_are_about(tmp_path: Path) -> None:
+    text = "labels: 1\nnodes:\n  /a: {source: [Video], subjects: [visitors, ' staff ', staff]}\n  /b: conduit\n"
+    assert [entry.subjects for entry in read(tmp_path, text).entries] == [("staff", "visitors"), ()]
+
+
+@pytest.mark.parametrize(
+    ("written", "message"),
+    [
+        ("[]", "subjects names nobody"),
+        ("staff", "subjects names nobody"),
+        ("['  ']", "where a group of persons is named"),
+        ("[1]", "where a group of persons is named"),
+        (f"[{'x' * 101}]", "where a group of persons is named"),
+    ],
+)
+def test_whom_data_are_about_has_to_be_said_in_a_word_or_two(tmp_path: Path, written: str, message: str) -> None:
+    (problem,) = refused(tmp_path, f"labels: 1\nnodes:\n  /a:\n    subjects: {written}\n")
+    assert problem.startswith("l.yaml:4: ")
+    assert message in problem
+
+
+def test_a_file_may_say_it_for_another_files_source_and_for_many_at_once(tmp_path: Path) -> None:
+    (tmp_path / "p.xml").write_text(SYSTEM)
+    (tmp_path / "a.yaml").write_text("labels: 1\nnodes: {/camera: {source: [Video], subjects: [staff]}}\n")
+    (tmp_path / "b.yaml").write_text("labels: 1\nnodes: {'/cam*': {subjects: [visitors]}}\n")
+    result = rosprivacy.analyze([str(tmp_path / "p.xml")], [str(tmp_path / "a.yaml"), str(tmp_path / "b.yaml")])
+    camera = {"robot": "", "kind": "node", "name": "/camera"}
+    assert result.document()["subjects"] == [{"element": camera, "subjects": ["staff", "visitors"]}]

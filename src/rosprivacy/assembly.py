@@ -108,8 +108,15 @@ class Result:
 
     def document(self) -> dict[str, Any]:
         """Return the JSON document of the contract."""
-        categories, hierarchy = self.vocabulary.categories, self.vocabulary.hierarchy
-        made = document(self.analysis, categories, hierarchy, self.diagnostics, self.assumptions)
+        vocabulary = self.vocabulary
+        made = document(
+            self.analysis,
+            vocabulary.categories,
+            vocabulary.hierarchy,
+            self.diagnostics,
+            self.assumptions,
+            self.bound.subjects,
+        )
         return with_decisions(made, self.decided) if self.decided else made
 
     def linked_data(self, form: str, **more: Any) -> str:

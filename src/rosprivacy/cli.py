@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 import rosprivacy
-from rosprivacy import cli_categories, cli_db, cli_decide, cli_graph, cli_mitigate, cli_views
+from rosprivacy import cli_categories, cli_db, cli_decide, cli_graph, cli_mitigate, cli_report, cli_views
 from rosprivacy.analysis.errors import InputError, RosPrivacyError
 from rosprivacy.cli_options import (
     DecisionsFile,
@@ -55,6 +55,7 @@ app.command()(cli_views.graph)
 app.command()(cli_categories.categories)
 app.command()(cli_mitigate.mitigate)
 app.command()(cli_decide.decide)
+app.command()(cli_report.report)
 
 
 @app.callback(invoke_without_command=True)

@@ -1,0 +1,88 @@
+"""Copies of documents that can be shown to others: names of elements, files, enclaves, robots and persons replaced.
+
+In: one document or several. Out: copies; a name is replaced by the same one in all of them. Only what is known to name
+nobody is kept: kinds of data and what the law says of them, lines, methods, countries, hashes, ids. Free text, and
+whatever is not known here, is left out. Ids are those of the full report, so who guesses a name can make sure of it.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+LEFT_OUT = "[…]"
+OURS = "rosprivacy:"  # files that come with the program
+PATHS = ("node", "topic", "service", "action")
+AS_IT_IS = ("categories",)  # of the ontology: kinds of data and the law
+KEPT = {
+    "area", "article9", "backups", "beside", "carries", "categories", "categories_asked", "category", "condition",
+    "countries_as_of", "country", "data_types_asked", "decision", "expires", "finding", "findings", "format", "from",
+    "holds", "id", "kind", "law_as_of", "leaves", "leaves_pseudonymised", "legal_basis", "method", "missing", "paths",
+    "provision", "pseudonymised", "recipient", "retention", "role", "roles", "rosprivacy", "severity", "sha256",
+    "special_basis", "state", "taken_as", "taken_by_kind", "to", "transfer", "unlabelled_channel", "unlabelled_node",
+    "verdict", "view", "without_limit",
+}  # fmt: skip
+MAPS = ("retention", "taken_by_kind")  # of kinds of data and kinds of elements, values as they are
+NAMED = {"file": "file", "enclave": "enclave", "operator": "operator", "profile": "node", "nodes": "node"}
+
+
+def redacted(documents: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """Return copies of documents without names. Complexity: O(their size)."""
+    names = _Names()
+    for document in documents:
+        _document(document, names.see)
+    names.settle()
+    return [_document(document, names.replaced) for document in documents]
+
+
+class _Names:
+    """Replacements, numbered in the order of the names."""
+
+    def __init__(self) -> None:
+        self._known: dict[str, set[str]] = defaultdict(set)
+        self._numbers: dict[tuple[str, str], int] = {}
+
+    def see(self, kind: str, name: str) -> str:
+        """Take note of a name."""
+        self._known[kind].add(name)
+        return name
+
+    def settle(self) -> None:
+        """Number what was seen."""
+        for kind, names in self._known.items():
+            self._numbers |= {(kind, name): number for number, name in enumerate(sorted(names), 1)}
+
+    def replaced(self, kind: str, name: str) -> str:
+        """Return what stands for a name."""
+        return f"{'/' if kind in PATHS else ''}{kind}-{self._numbers[kind, name]}"
+
+
+def _document(document: Mapping[str, Any], change: Callable[[str, str], str]) -> dict[str, Any]:
+    """A copy in which every name went through ``change``."""
+    return {key: value if key in AS_IT_IS else _value(key, value, change) for key, value in document.items()}
+
+
+def _value(key: str, value: Any, change: Callable[[str, str], str]) -> Any:
+    if isinstance(value, list):
+        return [_value(key, item, change) for item in value]
+    if isinstance(value, dict):
+        if {"robot", "kind", "name"} <= set(value):
+            return _element(value, change)
+        return {inner: _value(key if key in MAPS else inner, item, change) for inner, item in value.items()}
+    return _text(key, value, change) if isinstance(value, str) and value else value
+
+
+def _element(element: Mapping[str, Any], change: Callable[[str, str], str]) -> dict[str, Any]:
+    robot = change("robot", element["robot"]) if element["robot"] else ""
+    return {**element, "robot": robot, "name": change(element["kind"], element["name"])}
+
+
+def _text(key: str, value: str, change: Callable[[str, str], str]) -> str:
+    if key in KEPT or (key == "file" and value.startswith(OURS)):
+        return value
+    if key == "subjects":
+        return change("persons", value)
+    return change(NAMED[key], value) if key in NAMED else LEFT_OUT

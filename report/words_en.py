@@ -1,0 +1,554 @@
+"""The words of reports in English. Ways to assess, recipients, conditions: no verdict of law, no promise."""
+
+WORDS = {
+    "thousands": ",",
+    "date": "{year}-{month}-{day}",
+    "title": "Where personal data can go",
+    "subtitle": "Data-flow report for data protection",
+    "system": "System",
+    "made": "Made on {date} with rosprivacy {version}",
+    "made.undated": "Made with rosprivacy {version}",
+    "law.date": "Law as of {date}",
+    "skip": "Skip to the content",
+    "contents": "Contents",
+    "top": "Back to the contents",
+    "none": "none",
+    "yes": "yes",
+    "no": "no",
+    "not.stated": "not stated",
+    "more": "and {n} more",
+    "wildcard": "wildcard",
+    # --- things, counted
+    "way.one": "{n} way to assess",
+    "way.many": "{n} ways to assess",
+    "element.one": "{n} element",
+    "element.many": "{n} elements",
+    "flow.one": "{n} flow",
+    "flow.many": "{n} flows",
+    "robot.one": "{n} robot",
+    "robot.many": "{n} robots",
+    "enclave.one": "{n} enclave",
+    "enclave.many": "{n} enclaves",
+    "step.one": "{n} step",
+    "step.many": "{n} steps",
+    "channel.one": "{n} standard ROS channel",
+    "channel.many": "{n} standard ROS channels",
+    # --- kinds of elements
+    "kind.node": "node",
+    "kind.topic": "topic",
+    "kind.service": "service",
+    "kind.action": "action",
+    "kind.storage": "storage",
+    "kind.external-system": "external system",
+    "kind.shared-memory": "shared memory",
+    "kind.side-channel": "side channel",
+    "kind.device": "device",
+    "kind.display": "display",
+    "kind.person": "person",
+    "leg.request": "request",
+    "leg.response": "response",
+    # --- roles and steps
+    "role.source": "source of {data}",
+    "role.leak": "lets out {data}",
+    "role.sanitizer": "cleans {data}",
+    "role.conduit": "reviewed, passes on {data}",
+    "role.derivation": "makes other data of {data}",
+    "unreviewed": "not reviewed",
+    "verb.publish": "publishes to",
+    "verb.subscribe": "is read by",
+    "verb.request": "requests, data goes to",
+    "verb.reply": "replies, data goes to",
+    "verb.call": "calls, data goes to",
+    "verb.execute": "executes, data goes to",
+    "verb.matches": "is covered by the wildcard",
+    "verb.flow": "goes to",
+    "policy.more": "and {n} more policy lines",
+    "policy.of": "enclave {enclave}, profile {profile}",
+    "policy.none": "no policy line: the wildcard covers the name",
+    # --- sections
+    "h.summary": "Result",
+    "h.assumptions": "What the result rests on",
+    "h.changes": "What changed since the earlier report",
+    "h.tables": "Whose data, and who can get them",
+    "h.findings": "Ways to assess",
+    "h.outside": "Storages and other things outside ROS",
+    "h.sanitizers": "What is cleaned, and what passes beside",
+    "h.questions": "Open questions",
+    "h.criteria": "For a data protection impact assessment",
+    "h.inventory": "Inventory",
+    "h.method": "How this report comes about",
+    "h.sign": "Assessment by a person",
+    # --- result
+    "verdict.leak": "Personal data can reach a place that a person has to assess",
+    "verdict.undetermined": "Not determined: what data can pass is not reviewed in full",
+    "verdict.no-leak-found": "No way to a recipient was found under the labels given",
+    "verdict.nothing": "Not determined: no source was named, so no data was followed",
+    "verdict.code": "Verdict of the program",
+    "verdict.leak.means": (
+        "At least one kind of personal data can get from where it is brought in to an element that lets it out of the "
+        "system, keeps it too long, or lies in a third country. Such a way can be lawful and intended. A person has to "
+        "assess each: is it wanted, on which legal basis, who is the recipient?"
+    ),
+    "verdict.undetermined.means": (
+        "No way to a recipient was found, but data can get to {open} that no label speaks of. Until these are reviewed, "
+        "nothing can be concluded: one of them may let data out."
+    ),
+    "verdict.no-leak-found.means": (
+        "Under the labels given, no way leads from a source to a recipient, and everything on the way was reviewed. "
+        "This holds only as far as the labels and policies are true. It says nothing about what lies outside them."
+    ),
+    "verdict.nothing.means": (
+        "No label names a source of the kinds of data that were asked for. The report says nothing about the system."
+    ),
+    "verdict.accepted": "{ways} accepted by a person's decision; section {section} shows each with its reason.",
+    "not.legal": (
+        "This report is no legal verdict. It shows where data can go under the policies, and what people said of the "
+        "elements. Whether that is permitted is for a person to decide."
+    ),
+    "n.ways": "ways to assess",
+    "n.special": "of them with data that can fall under Article 9 GDPR",
+    "n.recipients": "places that data can reach",
+    "n.open": "elements not reviewed",
+    "n.accepted": "accepted by decision",
+    "n.dismissed": "ways only through another recipient",
+    "t.kinds": "Kinds of personal data in the system",
+    "c.kind": "Kind of data",
+    "c.article9": "Article 9(1) GDPR",
+    "c.sources": "Brought in or made by",
+    "c.ways": "Ways to assess",
+    "c.places": "Places reached",
+    "c.open": "Not reviewed",
+    "made.by": "makes it of {data}",
+    # --- Article 9
+    "article9.short": "Article 9(1)",
+    "article9.always": "applies to such data",
+    "article9.conditional": "applies on a condition",
+    "article9.may-reveal": "such data may reveal it",
+    "article9.no": "not by itself",
+    "article9.unknown": "not known",
+    "law.always": "Applies to such data",
+    "law.conditional": "Applies to such data on a condition",
+    "law.may-reveal": "Such data may reveal what it names",
+    "law.meaning": "What the provision says",
+    "law.sources": "Source",
+    "law.stated": "Stated of",
+    "law.as.of": "as of {date}",
+    "law.narrower": "if the data are of a narrower kind: {kinds}",
+    "law.no": "Not a special category by itself: {reason}",
+    "law.unknown": (
+        "The ontology does not say whether Article 9(1) GDPR applies to such data. That is no 'no': a person has to look."
+    ),
+    "law.gdpr": "Defined in",
+    "law.box": "Provisions to look at",
+    # --- assumptions
+    "a.view.declared": "View 'declared': each node does what its own profile in the policy says, and nothing else.",
+    "a.view.enforced": (
+        "View 'enforced': each node may do whatever any profile in its enclave allows, because that is what the "
+        "middleware enforces. It shows what remains if a node misbehaves."
+    ),
+    "a.unlabelled": (
+        "An element that no label speaks of passes on all data that gets there, and counts as not reviewed; a channel "
+        "counts as able to carry personal data."
+    ),
+    "a.standard": "{channels} taken to carry no personal data, by the file {file} (SHA-256 {sha}).",
+    "a.standard.none": "No standard ROS channel was taken to carry no personal data.",
+    "a.categories": "The answer is only about these kinds of data and narrower ones: {names}. Others were not looked at.",
+    "a.types": "The answer is only about data of these types: {names}. Others were not looked at.",
+    "a.article9": (
+        "The answer is only about data that can fall under Article 9(1) GDPR, or of which that is not known. Other "
+        "personal data were not looked at."
+    ),
+    "a.database": "The graph of {robots} came from a database, where people can have changed it after it was loaded.",
+    "a.unstated": (
+        "{element} is labelled as cleaning {data}, but no label states how. It was taken as pseudonymisation: the data "
+        "is still personal."
+    ),
+    "a.kinds": "A {kind} is taken to {role}, unless a label says otherwise.",
+    "a.kinds.leak": "let out all data that gets there",
+    "a.kinds.conduit": "pass on all data that gets there",
+    "a.countries": "Members of the EEA and adequacy decisions as of {date}; check them.",
+    "a.limit": "How long {element} keeps {data} was not judged: no label file states a limit.",
+    "a.law": "The law is that of {date}, as the ontology of the program knows it. Proposals of new law are not applied.",
+    "a.labels": "Labels are a person's word. The program cannot check what a node does inside, or what leaves it past ROS.",
+    "t.files": "Files that were read",
+    "c.file": "File",
+    "c.role": "Role",
+    "c.hash": "SHA-256",
+    "file.policies": "policy",
+    "file.labels": "labels",
+    "file.ontologies": "categories of the user",
+    "file.standard": "standard channels",
+    "file.none": "No label file was given.",
+    "diagnostics": "What was said when the files were read",
+    "severity.error": "error",
+    "severity.warning": "warning",
+    "severity.notice": "notice",
+    # --- changes
+    "ch.intro": "Compared with the document {file} (SHA-256 {sha}).",
+    "ch.none": "Nothing changed in what was found.",
+    "ch.verdict": "The verdict was '{before}' and is now '{now}'.",
+    "ch.verdict.same": "The verdict is the same as before: '{now}'.",
+    "ch.new": "New ways",
+    "ch.gone": "Ways that are gone",
+    "ch.changed": "Ways that changed",
+    "ch.open.new": "Newly open elements",
+    "ch.open.gone": "Elements that are no longer open",
+    "ch.kinds.new": "Kinds of data that are new: {names}",
+    "ch.kinds.gone": "Kinds of data that are no longer followed: {names}",
+    "ch.scope": ("The two reports were not made in the same way. A way that is new or gone can come from that alone:"),
+    "ch.scope.view": "view: '{before}', now '{now}'",
+    "ch.scope.categories_asked": "kinds asked for: {before}, now {now}",
+    "ch.scope.data_types_asked": "types of data asked for: {before}, now {now}",
+    "ch.scope.article9_only": "only what can fall under Article 9: {before}, now {now}",
+    "ch.scope.standard_channels": "file of the standard channels: {before}, now {now}",
+    "ch.scope.law_as_of": "date of the law: {before}, now {now}",
+    "ch.scope.rosprivacy": "version of the program: {before}, now {now}",
+    "ch.scope.ontologies": "ontologies of the user: {before}, now {now}",
+    "ch.files": "Files that differ: {names}.",
+    "ch.files.same": "All policy and label files are the same.",
+    "ch.what.witness": "another shortest way",
+    "ch.what.pseudonymised": "in another form (pseudonymised or not)",
+    "ch.what.dismissed": "now or no longer only through another recipient",
+    "ch.what.accepted": "another decision",
+    "ch.what.disjoint_paths": "another number of separate ways",
+    "ch.what.article9": "another statement on Article 9",
+    "ch.what.law": "other provisions",
+    "ch.what.special_from": "data become special elsewhere",
+    "ch.what.reason": "another reason",
+    "badge.new": "new",
+    "badge.changed": "changed",
+    # --- tables
+    "t.subjects": "Whose data, by kind",
+    "t.recipients": "Who can get data, by kind",
+    "t.part": "{title} (part {part} of {parts})",
+    "t.subjects.intro": (
+        "Rows are groups of persons, as the labels of sources name them. A cell says what can happen to data of that kind "
+        "about these persons."
+    ),
+    "t.recipients.intro": (
+        "Rows are elements that let data out, keep it, or lie outside ROS. A cell says whether data of that kind can get "
+        "there, and links to the first way."
+    ),
+    "t.subjects.missing": (
+        "Labels do not say whom the data of these sources are about; 'subjects' in a label file says it: {names}."
+    ),
+    "c.subject": "Persons",
+    "c.recipient": "Recipient or place",
+    "subject.unknown": "persons not stated",
+    "cell.brought": "brought in, no way found",
+    "cell.made": "can be made of it",
+    "cell.through": "only through another recipient",
+    "cell.gets": "gets there",
+    "cell.no": "no way found",
+    "cell.none": "–",
+    "cell.hidden": "pseudonymised",
+    "cell.accepted": "accepted",
+    "t.subjects.legend": "'–': no source that brings in or leads to data of this kind is labelled with these persons.",
+    "table.legend": "'no way found' holds under the labels given, and only if nothing on the way is left to review.",
+    # --- findings
+    "f.intro": (
+        "Each entry is one way to assess: one kind of data, from one source, to one place. The list below each heading "
+        "is a shortest way; each step names the policy line that allows it. To close a way, change one of these lines, or "
+        "put an element in between that cleans the data. Questions for each: is the disclosure wanted? On which basis of "
+        "Article 6, and of Article 9(2) where the data are special? Who is the recipient, and in which role?"
+    ),
+    "f.none": "There is no way to assess.",
+    "f.filter": "Find and filter",
+    "f.search": "Search in names, lines and ids",
+    "f.all": "all",
+    "f.reset": "Show all",
+    "f.filter.kind": "Kind of finding",
+    "f.filter.state": "State",
+    "f.shown": "{shown} of {all} shown",
+    "f.noscript": "Searching and filtering need JavaScript; everything is shown without it.",
+    "state.open": "to assess",
+    "state.accepted": "accepted",
+    "state.decided": "decided, not accepted",
+    "state.dismissed": "only through another recipient",
+    "finding.disclosure": "disclosure",
+    "finding.storage-limitation": "storage limitation",
+    "finding.third-country-transfer": "transfer to a third country",
+    "f.disclosure": "{data} can get from {source} to {leak}, which lets it out.",
+    "f.storage-limitation": "{data} from {source} is kept at {leak}: without a stated end, or too long.",
+    "f.third-country-transfer": "{data} from {source} can get to {leak}, outside the EEA, without a stated basis.",
+    "f.single": "{data} is brought in and let out at {source} itself.",
+    "f.pseudonymised": (
+        "The data arrives pseudonymised only. That is still personal data for whoever can tell the persons "
+        "(recital 26 GDPR). To be answered: can this recipient do so, alone or with what others hold?"
+    ),
+    "f.dismissed": "Every way to it goes through {names}, which has an entry of its own. Assess that one first.",
+    "f.special": "{element} makes data of this kind, which can be a special category, of data that are none.",
+    "f.ways": "{n} ways share no step; closing one leaves the others.",
+    "f.paths": "Further ways",
+    "f.bounded": "There are more ways than the {n} that are listed.",
+    "f.robots": "The same on {robots}. The policy lines are those of the first.",
+    "f.reason": "Reason",
+    "f.id": "id",
+    "f.way": "Shortest way",
+    "f.picture": "Picture of the way: {way}",
+    "f.picture.left": "Pictures of the remaining ways were left out, so that the file stays small.",
+    "f.now": "from here: {data}",
+    "f.data": "{data} (pseudonymised)",
+    "f.from.to": "{source} to {leak}",
+    "f.number": "Way {n}",
+    "f.kind.none": "No way to assess was found for this kind.",
+    # --- decisions
+    "d.decision": "Decision",
+    "d.accept": "accepted",
+    "d.mitigate": "to be mitigated",
+    "d.delegate": "delegated",
+    "d.avoid": "to be avoided",
+    "d.reason": "Reason",
+    "d.owner": "Owner",
+    "d.legal_basis": "Legal basis (Articles of the GDPR)",
+    "d.date": "Decided on",
+    "d.ticket": "Tracked at",
+    "d.expires": "Valid until",
+    "d.state": "State",
+    "d.state.valid": "in force",
+    "d.state.expired": "expired: it no longer counts",
+    "d.state.orphaned": "matches no way any more",
+    "d.none": "No decision is recorded.",
+    "d.basis.missing": "No legal basis of Article 6 is recorded.",
+    "d.special.missing": "The data can be a special category, and no exception of Article 9(2) is recorded.",
+    "d.orphans": "Decisions that match no way",
+    # --- outside ROS
+    "o.none": (
+        "No label file states a storage, server or other thing outside ROS. That there are none is not shown by this: what "
+        "nodes and recipients keep, and for how long, is for a person to complete."
+    ),
+    "o.intro": "What people stated about them. An empty field was not stated, and is for a person to complete.",
+    "t.storages": "Storages and how long they keep data",
+    "t.systems": "External systems and other things outside ROS",
+    "c.element": "Element",
+    "c.holds": "Data that gets there",
+    "c.retention": "Kept for",
+    "c.backups": "In backups",
+    "c.encrypted": "Encrypted at rest",
+    "c.place": "Country",
+    "c.operator": "Operator",
+    "c.recipient.role": "Role of the recipient",
+    "c.transfer": "Basis of a transfer",
+    "o.every": "everything: {duration}",
+    "o.of": "{data}: {duration}",
+    "o.backups.unknown": "yes, for how long is not stated",
+    "o.unlimited": "limit for {data}",
+    "area.eea": "in the EEA",
+    "area.adequate": "adequacy decision",
+    "area.partly": "adequacy decision for some recipients",
+    "area.third": "third country",
+    "recipient.controller": "controller",
+    "recipient.joint-controller": "joint controller",
+    "recipient.processor": "processor",
+    "recipient.third-party": "third party",
+    # --- sanitizers
+    "s.none": "No label says that an element cleans data.",
+    "s.intro": (
+        "Anonymising, aggregating and dropping end a kind of data; pseudonymising does not. Whether an element does what "
+        "its label says is for a person to check. What passes beside is as important: others that read the same channels "
+        "get the data as it is."
+    ),
+    "t.sanitizers": "Elements that clean data",
+    "c.cleans": "Cleans",
+    "c.method": "Method",
+    "c.leaves": "Leaves it all the same",
+    "c.beside": "Get it beside",
+    "c.past": "Ways past it",
+    "method.anonymise": "anonymises",
+    "method.aggregate": "aggregates",
+    "method.drop": "drops",
+    "method.pseudonymise": "pseudonymises: still personal data",
+    "method.unstated": "not stated: taken as pseudonymising, still personal data",
+    "s.unreached": "does not get there",
+    "t.derivations": "Elements that make one kind of data of another",
+    "c.from": "Of",
+    "c.to": "It makes",
+    "s.special": "can be a special category from here on",
+    # --- open questions
+    "q.none": "Every element that data gets to is covered by a label.",
+    "q.intro": (
+        "Data can get to these elements, and no label speaks of them. Each may be a recipient. They are in the order in "
+        "which to review them: nodes that data reaches first, then channels, then what lies behind."
+    ),
+    "q.first": "Review next: nodes that data reaches before any other open node",
+    "q.channels": "Channels",
+    "q.behind": "Nodes that lie behind those",
+    "c.data": "Kinds of data",
+    "c.distance": "From a source",
+    "missing.country": "country",
+    # --- criteria
+    "w.intro": (
+        "Article 35 GDPR asks for an assessment where a processing is likely to result in a high risk. The nine criteria "
+        "are those of the guidelines WP 248 rev.01. As a rule two of them call for an assessment; one can be enough, and "
+        "two need not be. The program shows what it sees; it never says that no assessment is needed."
+    ),
+    "t.criteria": "The nine criteria of WP 248 rev.01",
+    "c.criterion": "Criterion",
+    "c.shows": "What the analysis shows",
+    "c.answer": "Answer of a person",
+    "w.1": "Evaluation or scoring",
+    "w.2": "Automated decisions with legal or similar effect",
+    "w.3": "Systematic monitoring",
+    "w.4": "Sensitive or highly personal data",
+    "w.5": "Large scale",
+    "w.6": "Matching or combining data",
+    "w.7": "Vulnerable persons",
+    "w.8": "Innovative use of technology",
+    "w.9": "Persons are kept from a right or a service",
+    "w.person": "nothing; only a person can say",
+    "w.make": "{element} makes {data} of {of}",
+    "w.makes": "Elements infer data from other data: {names}",
+    "w.observes": "Sources that can observe persons: {names}",
+    "w.special": "Data that can fall under Article 9(1), or of which it is not known: {names}",
+    "w.special.none": "No kind of data here that is known to fall under Article 9(1) by itself; location and "
+    "communication can be highly personal all the same",
+    "w.scale": "{robots} analysed; how many persons, how long and where, only a person can say",
+    "w.combines": "{elements} with more than one kind of data, such as {names}",
+    "w.subjects": "Persons that labels name: {names}",
+    "w.article35": (
+        "Article 35(3) names cases that always need one: (a) systematic and extensive evaluation of persons with legal or "
+        "similar effect, (b) Article 9 or 10 data on a large scale, (c) systematic monitoring of a publicly accessible "
+        "area on a large scale."
+    ),
+    # --- inventory
+    "i.intro": "{elements} and {flows} were analysed. The table lists the elements that personal data can get to.",
+    "i.search": "Search in the inventory",
+    "t.inventory": "Elements that personal data can get to",
+    "c.name": "Name",
+    "c.robots": "Robots",
+    "c.said": "What labels say",
+    "c.reviewed": "Reviewed",
+    "i.rest": "Elements that none of these kinds of data can get to",
+    "i.rest.none": "There are none.",
+    "i.enclaves": "Enclaves of the policies, with their nodes",
+    "i.enclaves.none": "No enclave is known.",
+    "i.denied": "Allowed by one policy line and taken back by another that denies: {flows}.",
+    # --- method
+    "m.1": "Input",
+    "m.1.text": (
+        "A robot with ROS 2 is made of programs, called nodes, that send each other data over channels: topics, services "
+        "and actions. An SROS 2 policy says, line by line, which node may use which channel. The policies were read as "
+        "they are, together with label files in which people say what nodes do with personal data."
+    ),
+    "m.2": "What people say",
+    "m.2.text": (
+        "A source brings a kind of personal data in. A recipient (in the program: a leak) lets it out of the system: to a "
+        "cloud, a log, a display. A cleaning element (sanitizer) ends a kind of data or pseudonymises it. A deriving "
+        "element makes one kind of another, as a face recogniser makes face templates of video. Everything else passes "
+        "data on. The same element can be each of these for different kinds of data."
+    ),
+    "m.3": "What the program computes",
+    "m.3.text": (
+        "From policies and labels it builds a directed graph and follows every kind of data from its sources to every "
+        "place that it can get to. It takes the cautious side: an element that nobody reviewed passes on all that gets to "
+        "it. Whether data really goes a way, and how often, a policy does not tell; the report says what is allowed."
+    ),
+    "m.4": "Kinds of data",
+    "m.4.text": (
+        "Kinds of data form a hierarchy. Data of a kind may be of any narrower kind: what a label says of a broader kind "
+        "as cleaned holds for the narrower; what it says of a narrower kind as let out may concern the broader. Each kind "
+        "carries what the law says of it, with the condition and the source, tied to the Data Privacy Vocabulary."
+    ),
+    "m.5": "Pseudonymised data",
+    "m.5.text": (
+        "Only anonymous data leave the law of data protection. Data that were pseudonymised are followed on, marked as "
+        "such (recital 26). Where a label does not state how an element cleans, pseudonymising is assumed."
+    ),
+    "m.6": "Ways to assess",
+    "m.6.text": (
+        "For each kind of data, source and place there is one entry, with a shortest way as proof and the number of ways "
+        "that share no step. A way that leads only through another recipient of the same kind is listed as such, since "
+        "that one has to be assessed first. The id of an entry stays the same as long as kind, source and place do."
+    ),
+    "m.7": "Verdict",
+    "m.7.text": (
+        "'leak': there is a way to assess. 'undetermined': there is none, but elements on the way are not reviewed, or no "
+        "source was named. 'no-leak-found': there is none, and nothing is open. None of these is a statement of law."
+    ),
+    "m.8": "What the report cannot know",
+    "m.8.text": (
+        "What a node does inside, what leaves it past ROS, what a policy that was written by observation did not see, who "
+        "stands behind a recipient, for which purpose and on which basis: only people know. The report leaves these "
+        "fields empty."
+    ),
+    "m.9": "The law in this report",
+    "m.9.text": (
+        "Texts on the law are in the program's own words, with the date of the law and the sources that were read. They "
+        "help to find the provision; what counts is the law itself. Guidelines and judgments say how it is read."
+    ),
+    "m.10": "Can it be repeated?",
+    "m.10.text": (
+        "The same files give the same report, byte for byte, apart from its date. The hashes above say which files these "
+        "were."
+    ),
+    # --- signature
+    "sign.intro": (
+        "The fields below are for the person who assesses. The program leaves them empty: it cannot know the answers."
+    ),
+    "t.sign": "Assessment",
+    "c.field": "Field",
+    "sign.purpose": "Purpose of the processing",
+    "sign.controller": "Controller, and data protection officer",
+    "sign.basis": "Legal basis (Article 6, and Article 9(2) for special categories)",
+    "sign.necessity": "Necessity and proportion",
+    "sign.measures": "Measures that were decided",
+    "sign.residual": "Remaining risk, and next review",
+    "sign.name": "Name and role",
+    "sign.date": "Place and date",
+    "sign.signature": "Signature",
+    "redacted": (
+        "Names of elements, files, enclaves, robots and persons were replaced in this copy, and free texts left out. Ids "
+        "of entries are those of the full report."
+    ),
+    "redacted.mark": "redacted copy",
+    # --- data types of the ontology
+    "types": "Types of data",
+    "type.image": "image",
+    "type.video": "video",
+    "type.depth": "depth image",
+    "type.point-cloud": "point cloud",
+    "type.thermal": "thermal image",
+    "type.audio": "sound",
+    "type.text": "text",
+    "type.number": "number",
+    "type.position": "position",
+    "type.map": "map",
+    "type.identifier": "identifier",
+    "type.template": "template",
+    "type.class-label": "class label",
+    "type.record": "record",
+    # --- bases of a transfer, Articles 45, 46 and 49
+    "transfer.adequacy": "adequacy decision (Article 45)",
+    "transfer.public-instrument": "instrument between public bodies (Article 46(2)(a))",
+    "transfer.binding-corporate-rules": "binding corporate rules (Article 46(2)(b))",
+    "transfer.standard-clauses": "standard contractual clauses (Article 46(2)(c) and (d))",
+    "transfer.code-of-conduct": "code of conduct (Article 46(2)(e))",
+    "transfer.certification": "certification (Article 46(2)(f))",
+    "transfer.authorised-clauses": "clauses that an authority authorised (Article 46(3))",
+    "transfer.derogation": "derogation (Article 49)",
+    # --- the record of processing
+    "r.category": "Categories of personal data (30(1)(c))",
+    "r.article9": "Special category, Article 9(1)",
+    "r.provisions": "Provisions to look at",
+    "r.subjects": "Categories of data subjects (30(1)(c))",
+    "r.recipient": "Categories of recipients (30(1)(d))",
+    "r.role": "Role of the recipient",
+    "r.form": "Form in which the data arrives",
+    "r.transfer": "Transfers to third countries and safeguards (30(1)(e))",
+    "r.retention": "Time limits for erasure (30(1)(f))",
+    "r.measures": "Technical and organisational measures (30(1)(g))",
+    "r.controller": "Controller, joint controller, representative, DPO (30(1)(a))",
+    "r.purpose": "Purposes (30(1)(b))",
+    "r.findings": "Findings",
+    "r.complete": "To be completed by a person",
+    "r.as.is": "as it is",
+    "r.hidden": "pseudonymised",
+    "r.norecipient": "no recipient found under the labels given",
+    "r.measure.enclaves": "SROS 2 access control, {enclaves}",
+    "r.measure.cleans": "{element} {method}",
+    "r.measure.encrypted": "{element}: encrypted at rest",
+    "r.measure.unencrypted": "{element}: not encrypted at rest",
+    "r.note": "Note",
+    "r.note.open": "not reviewed, though this data can get there: {elements}; there may be more recipients",
+    "r.kept": "{element}: {duration}",
+}
