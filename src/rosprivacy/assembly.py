@@ -25,6 +25,7 @@ from rosprivacy.ingest.saved import read_saved
 from rosprivacy.ingest.xinclude import MAX_BYTES
 from rosprivacy.ontology.vocabulary import TOP, load
 from rosprivacy.report.document import document
+from rosprivacy.report.fleet import fleet_document
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from neo4j import Driver
 
     from rosprivacy.analysis.model import Analysis, Bound, FlowGraph, Policy
+    from rosprivacy.analysis.patterns import FleetView
     from rosprivacy.ingest.labels import Labels
     from rosprivacy.ingest.rows import RobotRows
     from rosprivacy.ontology.vocabulary import Vocabulary
@@ -75,7 +77,13 @@ class Settings:
 
 @dataclass(frozen=True, slots=True)
 class Result:
-    """An analysis and what it rests on."""
+    """An analysis and what it rests on.
+
+    Attributes
+    ----------
+    fleet
+        Which robots of the graph stand for which, and what they have in common; None for a single robot.
+    """
 
     analysis: Analysis
     bound: Bound
@@ -83,11 +91,14 @@ class Result:
     policies: tuple[Policy, ...]
     diagnostics: tuple[Diagnostic, ...]
     assumptions: dict[str, Any]
+    fleet: FleetView | None = None
 
     def document(self) -> dict[str, Any]:
         """Return the JSON document of the contract."""
         vocabulary = self.vocabulary
-        return document(self.analysis, vocabulary.categories, vocabulary.hierarchy, self.diagnostics, self.assumptions)
+        analysis = self.fleet.shown(self.analysis) if self.fleet else self.analysis
+        told = document(analysis, vocabulary.categories, vocabulary.hierarchy, self.diagnostics, self.assumptions)
+        return fleet_document(told, self.analysis, self.fleet) if self.fleet else told
 
 
 def run(policies: tuple[str, ...], labels: tuple[str, ...], settings: Settings) -> Result:
@@ -99,15 +110,22 @@ def run(policies: tuple[str, ...], labels: tuple[str, ...], settings: Settings) 
         With every problem of the input, one line each.
     """
     vocabulary = load()
-    asked = _asked(vocabulary, settings.categories)
+    asked = asked_for(vocabulary, settings.categories)
     system, diagnostics = read_system(policies, settings)
-    files = _read_labels(labels, vocabulary, settings)
+    files = read_label_files(labels, vocabulary, settings)
     graph = extend(build(system, settings.view), files)
     bound = bind(graph, files)
     analysis = analyse(graph, bound, vocabulary.hierarchy, Options(asked, settings.paths, settings.max_paths))
     said = tuple(d for policy in system for d in policy.diagnostics) + diagnostics
     said += tuple(d for file in files for d in file.diagnostics)
-    return Result(analysis, bound, vocabulary, system, said, _assumptions(graph, system, files, analysis, settings))
+    return Result(
+        analysis,
+        bound,
+        vocabulary,
+        system,
+        said,
+        what_it_rests_on(graph, sources_of(system), files, analysis, settings),
+    )
 
 
 def run_stored(driver: Driver, settings: Settings) -> Result:
@@ -124,7 +142,7 @@ def run_stored(driver: Driver, settings: Settings) -> Result:
     from rosprivacy.ingest.writeback import write_back  # noqa: PLC0415
 
     vocabulary = load()
-    asked = _asked(vocabulary, settings.categories)
+    asked = asked_for(vocabulary, settings.categories)
     stored = read_stored(driver, vocabulary)
     everything = Options(None, settings.paths, settings.max_paths)
     analysis = analyse(stored.graph, stored.bound, vocabulary.hierarchy, everything)
@@ -201,12 +219,12 @@ def read_system(policies: tuple[str, ...], settings: Settings) -> tuple[tuple[Po
 
 def standard_channels(graph: FlowGraph, vocabulary: Vocabulary, settings: Settings) -> set[tuple[str, str]]:
     """Return (kind, name) of the channels that the standard file takes as mundane (rule S13)."""
-    bound = bind(graph, _read_labels((), vocabulary, settings))
+    bound = bind(graph, read_label_files((), vocabulary, settings))
     return {(graph.elements[vertex].kind, graph.elements[vertex].name) for vertex in bound.elements}
 
 
-def _read_labels(labels: tuple[str, ...], vocabulary: Vocabulary, settings: Settings) -> list[Labels]:
-    """The standard channels' file and the user's, with the problems of all of them."""
+def read_label_files(labels: tuple[str, ...], vocabulary: Vocabulary, settings: Settings) -> list[Labels]:
+    """Read the standard channels' file and the user's, with the problems of all of them."""
     files: list[Labels] = []
     problems: list[InputError] = []
     standard = [settings.standard_channels] if settings.standard_channels else []
@@ -221,8 +239,8 @@ def _read_labels(labels: tuple[str, ...], vocabulary: Vocabulary, settings: Sett
     return files
 
 
-def _asked(vocabulary: Vocabulary, names: tuple[str, ...]) -> set[str] | None:
-    """The categories that the answer is about, narrower ones included."""
+def asked_for(vocabulary: Vocabulary, names: tuple[str, ...]) -> set[str] | None:
+    """Return the categories that the answer is about, narrower ones included; None for all."""
     asked: set[str] = set()
     problems = []
     for name in names:
@@ -237,11 +255,19 @@ def _asked(vocabulary: Vocabulary, names: tuple[str, ...]) -> set[str] | None:
     return asked if names else None
 
 
-def _assumptions(
-    graph: FlowGraph, system: tuple[Policy, ...], files: list[Labels], analysis: Analysis, settings: Settings
+def sources_of(system: Iterable[Policy]) -> list[tuple[str, str]]:
+    """Return (file, SHA-256) of policies and all that they include, sorted."""
+    return sorted({source for policy in system for source in policy.sources})
+
+
+def what_it_rests_on(
+    graph: FlowGraph,
+    sources: Iterable[tuple[str, str]],
+    files: Iterable[Labels],
+    analysis: Analysis,
+    settings: Settings,
 ) -> dict[str, Any]:
-    """What the answer rests on (rule S12)."""
-    sources = sorted({source for policy in system for source in policy.sources})
+    """Return the assumptions of a report (rule S12)."""
     hashes = [(file, {"file": file.file, "sha256": file.sha256}) for file in files]
     standard = [entry for file, entry in hashes if file.shipped and file.file == settings.standard_channels]
     return {

@@ -17,6 +17,7 @@ from rosprivacy import cli_db, cli_graph
 from rosprivacy.analysis.errors import InputError, RosPrivacyError
 from rosprivacy.cli_options import (
     FailOn,
+    FleetFile,
     Format,
     IncludeRoot,
     LabelFiles,
@@ -68,6 +69,7 @@ def analyze(
         bool, typer.Option("--from-database", help="Analyse what is in Neo4j, and write the answer back there.")
     ] = False,
     neo4j: Server = None,
+    fleet: FleetFile = None,
     add: Annotated[
         list[str] | None,
         typer.Option(metavar="GRAPH.json", help="Add to a graph saved before; may be repeated.", show_default=False),
@@ -115,15 +117,21 @@ def analyze(
         max_bytes=max_bytes,
         progress=progress_of,
     )
+    if fleet and (policies or labels or add or save_graph):
+        raise typer.BadParameter("--fleet takes what the fleet file names: no POLICY, --labels, --add, --save-graph")
     if from_database:
-        if policies or labels or add or save_graph:
+        if policies or labels or add or save_graph or fleet:
             raise typer.BadParameter(
-                "--from-database takes what is in the database: no POLICY, --labels, --add, --save-graph"
+                "--from-database takes what is in the database: no POLICY, --labels, --add, --save-graph, --fleet"
             )
         from rosprivacy.assembly import run_stored
 
         with cli_graph.driver_of(neo4j) as driver:
             result = run_stored(driver, settings)
+    elif fleet:
+        from rosprivacy.fleets import run_fleet
+
+        result = run_fleet(fleet, settings)
     else:
         result = run(_named(policies, settings), tuple(labels or ()), settings)
     texts = {}

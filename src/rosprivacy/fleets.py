@@ -1,0 +1,148 @@
+"""The way of a fleet through the house: fleet file -> each kind of robot once -> one graph -> analysis.
+
+In: a fleet file. Out: a ``Result`` with ``fleet``. Robots that are alike are read and analysed once.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.errors import InputError, InputErrors
+from rosprivacy.analysis.findings import Options, analyse
+from rosprivacy.analysis.patterns import FleetView
+from rosprivacy.assembly import Result, Settings, asked_for, sources_of, what_it_rests_on
+from rosprivacy.ingest.alike import Alike, alike
+from rosprivacy.ingest.binding import bind
+from rosprivacy.ingest.domains import Member, stripped
+from rosprivacy.ingest.files import read_policies
+from rosprivacy.ingest.fleet import Fleet, Robot, read_fleet
+from rosprivacy.ingest.graph import build
+from rosprivacy.ingest.labels import Labels, read_labels
+from rosprivacy.ingest.outside import extend
+from rosprivacy.ingest.parts import Part
+from rosprivacy.ingest.placing import Placed, place
+from rosprivacy.ontology.vocabulary import load
+
+if TYPE_CHECKING:
+    from rosprivacy.analysis.model import Diagnostic
+    from rosprivacy.ontology.vocabulary import Vocabulary
+
+
+@dataclass(frozen=True, slots=True)
+class Read:
+    """A fleet that was read, before it is analysed.
+
+    Attributes
+    ----------
+    members
+        By id of the first robot of each group.
+    """
+
+    fleet: Fleet
+    groups: tuple[Alike, ...]
+    members: dict[str, Member]
+    placed: Placed
+    labels: tuple[Labels, ...]
+    diagnostics: tuple[Diagnostic, ...]
+
+
+def run_fleet(file: str, settings: Settings) -> Result:
+    """Read a fleet, analyse it, and keep what the answer rests on.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the input, one line each.
+    """
+    vocabulary = load()
+    asked = asked_for(vocabulary, settings.categories)
+    read = read_all(file, vocabulary, settings)
+    placed = read.placed
+    options = Options(asked, settings.paths, settings.max_paths)
+    analysis = analyse(placed.graph, placed.bound, vocabulary.hierarchy, options)
+    policies = [policy for member in read.members.values() for policy in member.policies]
+    assumptions = what_it_rests_on(placed.graph, sources_of(policies), read.labels, analysis, settings)
+    assumptions["fleet"] = [{"file": name, "sha256": digest} for name, digest in read.fleet.sources]
+    system = tuple({policy.file: policy for policy in policies}.values())
+    view = FleetView.of(analysis, placed.likeness)
+    return Result(analysis, placed.bound, vocabulary, system, read.diagnostics, assumptions, view)
+
+
+def read_all(file: str, vocabulary: Vocabulary, settings: Settings) -> Read:
+    """Read a fleet file and what it names, each kind of robot once.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the input, one line each.
+    """
+    fleet = read_fleet(file, vocabulary)
+    groups = alike(fleet)
+    reader = _Reader(vocabulary, settings)
+    members = {}
+    problems: list[InputError] = []
+    for group in groups:
+        try:
+            members[group.robots[0].id] = reader.member(group.robots[0])
+        except InputErrors as error:
+            problems += error.errors
+    if problems:
+        raise InputErrors(problems)
+    placed = place(fleet, groups, members, settings.view)
+    labels = tuple(sorted(reader.labels.values(), key=lambda labels: (labels.file, labels.own)))
+    return Read(fleet, groups, members, placed, labels, tuple(reader.diagnostics))
+
+
+class _Reader:
+    """Reads policies and label files, each once, and makes the graph of one robot of them."""
+
+    def __init__(self, vocabulary: Vocabulary, settings: Settings) -> None:
+        self.labels: dict[tuple[str, bool], Labels] = {}
+        self.diagnostics: dict[Diagnostic, None] = {}
+        self._vocabulary = vocabulary
+        self._settings = settings
+        self._members: dict[object, Member] = {}
+
+    def member(self, robot: Robot) -> Member:
+        """Return a robot with its graph."""
+        key = (robot.policies, robot.labels, robot.own, robot.strip)
+        if key not in self._members:
+            self._members[key] = self._made(robot)
+        return replace(self._members[key], robot=robot)
+
+    def _made(self, robot: Robot) -> Member:
+        settings = self._settings
+        files = self._read_labels(robot)
+        policies, said = read_policies(
+            robot.policies,
+            include_root=settings.include_root,
+            max_bytes=settings.max_bytes,
+            progress=settings.progress,
+        )
+        self.diagnostics |= dict.fromkeys([d for policy in policies for d in policy.diagnostics] + list(said))
+        graph, full = stripped(build(policies, settings.view), robot.strip)
+        extended = extend(graph, files)
+        part = Part.of(extended, bind(extended, files))
+        limits = tuple(limit for file in files for limit in file.limits)
+        return Member(robot, policies, part, full, graph.profiles, limits)
+
+    def _read_labels(self, robot: Robot) -> list[Labels]:
+        settings = self._settings
+        standard = settings.standard_channels
+        wanted = [(file, False) for file in ([standard] if standard else []) + list(robot.labels)]
+        wanted += [(file, True) for file in robot.own]
+        problems: list[InputError] = []
+        for file, own in [key for key in dict.fromkeys(wanted) if key not in self.labels]:
+            shipped = file == standard and file not in (*robot.labels, *robot.own)
+            try:
+                self.labels[file, own] = read_labels(
+                    file, self._vocabulary, category=settings.category, shipped=shipped, own=own
+                )
+            except InputErrors as error:
+                problems += error.errors
+        if problems:
+            raise InputErrors(problems)
+        files = [self.labels[key] for key in dict.fromkeys(wanted)]
+        self.diagnostics |= dict.fromkeys(d for labels in files for d in labels.diagnostics)
+        return files
