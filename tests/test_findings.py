@@ -103,10 +103,10 @@ def facts(draw: st.DrawFn, names: tuple[str, ...]) -> tuple[str, Outside]:
 
 
 @st.composite
-def systems(draw: st.DrawFn, names: tuple[str, ...] = tuple(PARENTS)) -> System:
+def systems(draw: st.DrawFn, names: tuple[str, ...] = tuple(PARENTS), most: tuple[int, int, int] = (7, 6, 3)) -> System:
     """Dense enough that most have a leak, a third something derived, pseudonymised or dismissed (measured)."""
-    ros, channels = draw(st.integers(1, 7)), draw(st.integers(1, 6))
-    outside = draw(st.lists(facts(names), max_size=3))
+    ros, channels = draw(st.integers(1, most[0])), draw(st.integers(1, most[1]))
+    outside = draw(st.lists(facts(names), max_size=most[2]))
     nodes = ros + len(outside)
     ends = st.sets(st.integers(0, nodes - 1), min_size=1, max_size=3)
     edges: set[tuple[int, int]] = set()
