@@ -51,7 +51,7 @@ class FleetReader(LabelReader):
 
     def text_of(self, value: Value, what: str, form: re.Pattern[str] = ID, hint: str = ID_HINT) -> str:
         """Return a text of some form."""
-        text = value.text if value.kind in ("text", "number") else ""
+        text = value.text if value.kind == "text" or value.text.isdigit() else ""
         if form.fullmatch(text):
             return text
         self.problem(value.line, f"{shown(text or value.kind)!r} cannot be {what}", hint)
@@ -76,7 +76,7 @@ class FleetReader(LabelReader):
 
     def _files(self, key: str, value: Value) -> Iterator[str]:
         for item in value.items if value.kind == "list" else (value,):
-            if item.kind == "text" and item.text.isprintable():
+            if item.kind == "text" and item.text and item.text.isprintable():
                 yield item.text if item.text.startswith(OURS) else str(Path(self.file).parent / item.text)
             else:
                 self.problem(item.line, f"{key}: a {item.kind}", "name files, relative to this one")
