@@ -68,6 +68,9 @@ class Likeness:
         return self.members.get(finding.source.robot) or self.members.get(finding.leak.robot, ())
 
 
+NO_ROBOTS = Likeness({})
+
+
 @dataclass(frozen=True, slots=True)
 class Pattern:
     """Findings that differ only in the robot.

@@ -18,9 +18,9 @@ from rosprivacy.ingest.parts import Part, together
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from rosprivacy.analysis.model import Flow, Grant, Policy, Profile
-    from rosprivacy.ingest.elements import Limit
+    from rosprivacy.analysis.model import Diagnostic, Flow, Grant, Policy, Profile
     from rosprivacy.ingest.fleet import Robot
+    from rosprivacy.ingest.labels import Labels
 
 MARK = "\0"  # between robot and name; no policy has it
 
@@ -39,8 +39,10 @@ class Member:
         Those of ROS -> the same under their full names.
     profiles
         Of the policies, with the nodes under the names of ``part``.
-    limits
-        How long kinds of data may be kept, from its label files.
+    files
+        Its label files.
+    diagnostics
+        Of its policies and label files.
     """
 
     robot: Robot
@@ -48,7 +50,8 @@ class Member:
     part: Part
     full: Mapping[Element, Element]
     profiles: tuple[Profile, ...] = ()
-    limits: tuple[Limit, ...] = ()
+    files: tuple[Labels, ...] = ()
+    diagnostics: tuple[Diagnostic, ...] = ()
 
 
 def stripped(graph: FlowGraph, namespace: str) -> tuple[FlowGraph, dict[Element, Element]]:

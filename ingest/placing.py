@@ -139,7 +139,7 @@ class _Placing:
         """The facts with the limits that hold there: for what is shared, those of every robot."""
         limits: set[Limit] = {*facts.limits, *self._fleet.limits}
         if element.robot == self._fleet.name:
-            limits |= {limit for member in self._members for limit in member.limits}
+            limits |= {limit for member in self._members for file in member.files for limit in file.limits}
         return replace(facts, limits=tuple(sorted(limits, key=lambda pair: (pair[0], str(pair[1])))))
 
     def _add_flows(self, whole: Part) -> None:

@@ -28,7 +28,11 @@ def fleet_document(told: dict[str, Any], analysis: Analysis, view: FleetView) ->
     analysis
         Of the whole graph.
     """
-    return {**told, **_counts(analysis, view.likeness), "fleet": _fleet(view)}
+    counts = _counts(analysis, view.likeness)
+    assumptions = dict(told["assumptions"])
+    if assumptions["standard_channels"]:
+        assumptions["standard_channels"] = {**assumptions["standard_channels"], "taken": counts["standard_channels"]}
+    return {**told, **counts, "assumptions": assumptions, "fleet": _fleet(view)}
 
 
 def _counts(analysis: Analysis, likeness: Likeness) -> dict[str, int]:

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass, field
-from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import rosprivacy
@@ -15,6 +14,7 @@ from rosprivacy.analysis.errors import InputError, InputErrors, OntologyError, s
 from rosprivacy.analysis.findings import MAX_PATHS, Options, analyse
 from rosprivacy.analysis.model import Diagnostic, Place, Severity
 from rosprivacy.analysis.paths import WITNESS
+from rosprivacy.analysis.patterns import FleetView
 from rosprivacy.ingest.binding import bind
 from rosprivacy.ingest.countries import countries
 from rosprivacy.ingest.files import read_policies
@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from neo4j import Driver
 
     from rosprivacy.analysis.model import Analysis, Bound, FlowGraph, Policy
-    from rosprivacy.analysis.patterns import FleetView
     from rosprivacy.ingest.labels import Labels
     from rosprivacy.ingest.rows import RobotRows
     from rosprivacy.ontology.vocabulary import Vocabulary
@@ -151,18 +150,24 @@ def run_stored(driver: Driver, settings: Settings) -> Result:
         chosen = Options(asked, settings.paths, settings.max_paths)
         analysis = analyse(stored.graph, stored.bound, vocabulary.hierarchy, chosen)
     said, assumptions = _remembered(stored.robots.values(), stored.graph, analysis, settings)
-    return Result(analysis, stored.bound, vocabulary, (), said, assumptions)
+    view = FleetView.of(analysis, stored.likeness) if len(stored.robots) > 1 else None
+    return Result(analysis, stored.bound, vocabulary, (), said, assumptions, view)
 
 
 def robot_of(name: str, result: Result) -> RobotRows:
     """Return the rows of a robot for the database; what the answer rests on goes with it."""
     from rosprivacy.ingest.rows import robot_rows  # noqa: PLC0415
 
-    more = {
-        "assumptions": json.dumps(result.assumptions, sort_keys=True),
-        "diagnostics": json.dumps([_as_dict(diagnostic) for diagnostic in result.diagnostics]),
-    }
+    more = remembered(result.assumptions, result.diagnostics)
     return robot_rows(name, result.analysis, result.bound, result.vocabulary, more)
+
+
+def remembered(assumptions: Mapping[str, Any], diagnostics: Iterable[Diagnostic]) -> dict[str, str]:
+    """Return what the answer rests on as properties of a ``Robot``."""
+    return {
+        "assumptions": json.dumps(assumptions, sort_keys=True),
+        "diagnostics": json.dumps([_as_dict(diagnostic) for diagnostic in diagnostics]),
+    }
 
 
 def _as_dict(diagnostic: Diagnostic) -> dict[str, Any]:
@@ -174,11 +179,14 @@ def _remembered(
     robots: Iterable[Mapping[str, Any]], graph: FlowGraph, analysis: Analysis, settings: Settings
 ) -> tuple[tuple[Diagnostic, ...], dict[str, Any]]:
     """What the robots were loaded with, put together (rule S12)."""
+    robots = list(robots)
     loaded = [json.loads(robot["assumptions"]) for robot in robots if robot.get("assumptions")]
+    count = sum(bool(robot.get("assumptions")) and not robot.get("shared") for robot in robots)
     files: dict[str, list[dict[str, str]]] = {}
-    for kind in ("policies", "labels"):
-        named = {(entry["file"], entry["sha256"]) for entry in chain.from_iterable(said[kind] for said in loaded)}
-        files[kind] = [{"file": name, "sha256": digest} for name, digest in sorted(named)]
+    for kind in ("policies", "labels", "fleet"):
+        named = {(entry["file"], entry["sha256"]) for said in loaded for entry in said.get(kind, ())}
+        if named or kind != "fleet":
+            files[kind] = [{"file": name, "sha256": digest} for name, digest in sorted(named)]
     standard = [said["standard_channels"] for said in loaded]
     distinct = {(entry["file"], entry["sha256"]) for entry in standard if entry}
     taken = [{"file": name, "sha256": digest} for name, digest in sorted(distinct)]
@@ -192,7 +200,7 @@ def _remembered(
         **_adequacy(analysis),
         **files,
         "standard_channels": {**taken[0], "taken": analysis.standard_channels} if taken else None,
-        "database": {"robots": len(loaded)},
+        "database": {"robots": count},
     }
     if len(taken) > 1 or (taken and not all(standard)):
         message = "robots were loaded with different files of standard channels; one of them is named"

@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.analysis.findings import Options, analyse
 from rosprivacy.analysis.patterns import FleetView
-from rosprivacy.assembly import Result, Settings, asked_for, sources_of, what_it_rests_on
+from rosprivacy.assembly import Result, Settings, asked_for, remembered, sources_of, what_it_rests_on
 from rosprivacy.ingest.alike import Alike, alike
 from rosprivacy.ingest.binding import bind
 from rosprivacy.ingest.domains import Member, stripped
 from rosprivacy.ingest.files import read_policies
 from rosprivacy.ingest.fleet import Fleet, Robot, read_fleet
+from rosprivacy.ingest.fleetrows import FleetRows
 from rosprivacy.ingest.graph import build
 from rosprivacy.ingest.labels import Labels, read_labels
 from rosprivacy.ingest.outside import extend
@@ -56,8 +57,18 @@ def run_fleet(file: str, settings: Settings) -> Result:
         With every problem of the input, one line each.
     """
     vocabulary = load()
+    return analysed(read_all(file, vocabulary, settings), vocabulary, settings)
+
+
+def analysed(read: Read, vocabulary: Vocabulary, settings: Settings) -> Result:
+    """Analyse a fleet that was read.
+
+    Raises
+    ------
+    InputErrors
+        If labels contradict each other, or a category that is asked for is not known.
+    """
     asked = asked_for(vocabulary, settings.categories)
-    read = read_all(file, vocabulary, settings)
     placed = read.placed
     options = Options(asked, settings.paths, settings.max_paths)
     analysis = analyse(placed.graph, placed.bound, vocabulary.hierarchy, options)
@@ -67,6 +78,26 @@ def run_fleet(file: str, settings: Settings) -> Result:
     system = tuple({policy.file: policy for policy in policies}.values())
     view = FleetView.of(analysis, placed.likeness)
     return Result(analysis, placed.bound, vocabulary, system, read.diagnostics, assumptions, view)
+
+
+def rows_of_fleet(read: Read, result: Result, settings: Settings) -> FleetRows:
+    """Return the rows of all robots for the database; with each goes what its part of the answer rests on.
+
+    Parameters
+    ----------
+    result
+        About all categories.
+    """
+    more = {}
+    for group in read.groups:
+        member = read.members[group.robots[0].id]
+        said = what_it_rests_on(
+            result.analysis.graph, sources_of(member.policies), member.files, result.analysis, settings
+        )
+        more[group.robots[0].id] = remembered(said, member.diagnostics)
+    everything = {**result.assumptions, "policies": [], "labels": []}
+    more[read.fleet.name] = remembered(everything, ())
+    return FleetRows(read.placed, result.analysis, result.vocabulary, more)
 
 
 def read_all(file: str, vocabulary: Vocabulary, settings: Settings) -> Read:
@@ -91,7 +122,8 @@ def read_all(file: str, vocabulary: Vocabulary, settings: Settings) -> Read:
         raise InputErrors(problems)
     placed = place(fleet, groups, members, settings.view)
     labels = tuple(sorted(reader.labels.values(), key=lambda labels: (labels.file, labels.own)))
-    return Read(fleet, groups, members, placed, labels, tuple(reader.diagnostics))
+    diagnostics = dict.fromkeys(d for member in members.values() for d in member.diagnostics)
+    return Read(fleet, groups, members, placed, labels, tuple(diagnostics))
 
 
 class _Reader:
@@ -99,7 +131,6 @@ class _Reader:
 
     def __init__(self, vocabulary: Vocabulary, settings: Settings) -> None:
         self.labels: dict[tuple[str, bool], Labels] = {}
-        self.diagnostics: dict[Diagnostic, None] = {}
         self._vocabulary = vocabulary
         self._settings = settings
         self._members: dict[object, Member] = {}
@@ -120,12 +151,12 @@ class _Reader:
             max_bytes=settings.max_bytes,
             progress=settings.progress,
         )
-        self.diagnostics |= dict.fromkeys([d for policy in policies for d in policy.diagnostics] + list(said))
+        told = [*(d for policy in policies for d in policy.diagnostics), *said]
+        told += [d for labels in files for d in labels.diagnostics]
         graph, full = stripped(build(policies, settings.view), robot.strip)
         extended = extend(graph, files)
         part = Part.of(extended, bind(extended, files))
-        limits = tuple(limit for file in files for limit in file.limits)
-        return Member(robot, policies, part, full, graph.profiles, limits)
+        return Member(robot, policies, part, full, graph.profiles, tuple(files), tuple(dict.fromkeys(told)))
 
     def _read_labels(self, robot: Robot) -> list[Labels]:
         settings = self._settings
@@ -143,6 +174,4 @@ class _Reader:
                 problems += error.errors
         if problems:
             raise InputErrors(problems)
-        files = [self.labels[key] for key in dict.fromkeys(wanted)]
-        self.diagnostics |= dict.fromkeys(d for labels in files for d in labels.diagnostics)
-        return files
+        return [self.labels[key] for key in dict.fromkeys(wanted)]
