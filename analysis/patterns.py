@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.findings import finding_id
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Collection, Iterable, Mapping
 
     from rosprivacy.analysis.model import Analysis, Element, Finding, OpenQuestion
 
@@ -174,8 +174,14 @@ class FleetView:
 
 def pattern_id(finding: Finding, likeness: Likeness) -> str:
     """Return the id of the pattern of a finding; without robots it is that of the finding."""
-    kind = f"across {finding.kind}" if likeness.across(finding) else finding.kind
-    return finding_id(finding.category, likeness.alike(finding.source), likeness.alike(finding.leak), kind)
+    return pattern_of(finding.kind, finding.category, finding.source, finding.leak, likeness)
+
+
+def pattern_of(kind: str, category: str, source: Element, leak: Element, likeness: Likeness) -> str:
+    """Return the id of the pattern of what would be a finding."""
+    across = source.robot != leak.robot and likeness.is_robot(source.robot) and likeness.is_robot(leak.robot)
+    kind = f"across {kind}" if across else kind
+    return finding_id(category, likeness.alike(source), likeness.alike(leak), kind)
 
 
 def patterns(findings: Iterable[Finding], likeness: Likeness) -> tuple[Pattern, ...]:
@@ -209,9 +215,23 @@ def _pattern(key: str, found: list[Finding], likeness: Likeness) -> Pattern:
 Result = tuple[frozenset[Share], frozenset["Element"]]
 
 
-def deviants(findings: Iterable[Finding], questions: Iterable[OpenQuestion], likeness: Likeness) -> tuple[Deviant, ...]:
+def deviants(
+    findings: Iterable[Finding], questions: Iterable[OpenQuestion], likeness: Likeness
+) -> tuple[Deviant, ...]:
     """Return the robots that differ from most of their model, by model and id; of equally many, the first are most."""
-    results = _results(findings, questions, likeness)
+    return deviants_of(_shares(findings, likeness), questions, likeness)
+
+
+def deviants_of(
+    shares: Mapping[str, Collection[Share]], questions: Iterable[OpenQuestion], likeness: Likeness
+) -> tuple[Deviant, ...]:
+    """Return the same, when it is known how each robot of the graph takes part in patterns."""
+    open_at: dict[str, set[Element]] = defaultdict(set)
+    for question in questions:
+        open_at[question.element.robot].add(likeness.alike(question.element))
+    results = {
+        robot: (frozenset(shares.get(robot, ())), frozenset(open_at[robot])) for robot in likeness.members
+    }
     of_model: dict[str, list[str]] = defaultdict(list)
     for robot, model in sorted(likeness.models.items()):
         if model:
@@ -222,27 +242,21 @@ def deviants(findings: Iterable[Finding], questions: Iterable[OpenQuestion], lik
         for robot in robots:
             many[results[robot]] += likeness.weight(robot)
         usual = max(many, key=lambda result: many[result])  # of equally many the first that was put in
-        found += [
-            _deviant(robot, model, results[robot], usual, likeness) for robot in robots if results[robot] != usual
-        ]
+        found += [_deviant(robot, model, results[robot], usual, likeness) for robot in robots if results[robot] != usual]
     return tuple(found)
 
 
-def _results(findings: Iterable[Finding], questions: Iterable[OpenQuestion], likeness: Likeness) -> dict[str, Result]:
-    """What was found of each robot that stands for itself and others."""
+def _shares(findings: Iterable[Finding], likeness: Likeness) -> dict[str, set[Share]]:
+    """How each robot that stands for itself and others takes part in patterns."""
     shares: dict[str, set[Share]] = defaultdict(set)
     for finding in findings:
         if not likeness.count(finding):
             continue
         key, source = pattern_id(finding, likeness), finding.source.robot
         leak = likeness.second.get(finding.leak.robot, finding.leak.robot)
-        across = likeness.across(finding)
         shares[source].add(Share(key, False, finding.dismissed, finding.pseudonymised))
-        shares[leak].add(Share(key, across, finding.dismissed, finding.pseudonymised))
-    open_at: dict[str, set[Element]] = defaultdict(set)
-    for question in questions:
-        open_at[question.element.robot].add(likeness.alike(question.element))
-    return {robot: (frozenset(shares[robot]), frozenset(open_at[robot])) for robot in likeness.members}
+        shares[leak].add(Share(key, likeness.across(finding), finding.dismissed, finding.pseudonymised))
+    return shares
 
 
 def _deviant(robot: str, model: str, result: Result, usual: Result, likeness: Likeness) -> Deviant:

@@ -36,7 +36,7 @@ FLEET = str(EXAMPLES / "fleet" / "fleet.yaml")
 
 def rows(file: str) -> FleetRows:
     read = read_all(file, VOCABULARY, Settings())
-    return rows_of_fleet(read, analysed(read, VOCABULARY, Settings()), Settings())
+    return rows_of_fleet(read, analysed(read, VOCABULARY, Settings(), every=True), Settings())
 
 
 @pytest.fixture

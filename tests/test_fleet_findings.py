@@ -10,7 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rosprivacy.analysis.errors import InputErrors
-from rosprivacy.analysis.findings import analyse
+from rosprivacy.analysis.findings import Options, analyse
+from rosprivacy.analysis.groups import Groups
 from rosprivacy.analysis.model import Element, Place
 from rosprivacy.analysis.patterns import FleetView, pattern_id
 from rosprivacy.ingest.alike import alike, chosen
@@ -188,6 +189,22 @@ def test_patterns_are_those_of_all_robots_in_one_graph(case: Case) -> None:
 
 def _alike(element: Element, case: Case) -> Element:
     return replace(element, robot="") if element.robot in case.robots else element
+
+
+@given(fleets())
+def test_patterns_made_of_pairs_are_those_made_of_findings(case: Case) -> None:
+    """Counted in arrays before any way is looked for: the same patterns, deviants and verdict."""
+    result = found_in(case)
+    if result is None:
+        return
+    analysis, placed = result
+    groups = Groups(placed.likeness)
+    chosen = analyse(placed.graph, placed.bound, HIERARCHY, Options(choose=groups))
+    expected, got = FleetView.of(analysis, placed.likeness), groups.view(chosen)
+    assert {pattern.id: pattern for pattern in got.patterns} == {pattern.id: pattern for pattern in expected.patterns}
+    assert got.deviants == expected.deviants
+    assert chosen.verdict == analysis.verdict
+    assert set(chosen.findings) == {pattern.finding for pattern in expected.patterns}
 
 
 @given(fleets())

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 import rosprivacy
-from rosprivacy import cli_db, cli_fleet, cli_graph
+from rosprivacy import cli_db, cli_diff, cli_fleet, cli_graph
 from rosprivacy.analysis.errors import InputError, RosPrivacyError
 from rosprivacy.cli_options import (
     FailOn,
@@ -46,6 +46,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 app.add_typer(cli_db.app, name="db", help="The private Neo4j: start it, stop it, see where it is.")
+app.command()(cli_diff.diff)
 app.command()(cli_fleet.fleet)
 app.command()(cli_graph.load)
 app.command()(cli_graph.unload)

@@ -106,7 +106,7 @@ def _load_fleet(file: str, settings: Settings, neo4j: str | None) -> None:
 
     vocabulary = load()
     read = read_all(file, vocabulary, settings)
-    result = analysed(read, vocabulary, settings)
+    result = analysed(read, vocabulary, settings, every=True)
     rows = rows_of_fleet(read, result, settings)
     with driver_of(neo4j) as driver, _bar(None) as advance:
         done = database.load(driver, rows, vocabulary, advance)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.analysis.findings import Options, analyse
+from rosprivacy.analysis.groups import Groups
 from rosprivacy.analysis.patterns import FleetView
 from rosprivacy.assembly import Result, Settings, asked_for, remembered, sources_of, what_it_rests_on
 from rosprivacy.ingest.alike import Alike, alike
@@ -60,8 +61,13 @@ def run_fleet(file: str, settings: Settings) -> Result:
     return analysed(read_all(file, vocabulary, settings), vocabulary, settings)
 
 
-def analysed(read: Read, vocabulary: Vocabulary, settings: Settings) -> Result:
+def analysed(read: Read, vocabulary: Vocabulary, settings: Settings, *, every: bool = False) -> Result:
     """Analyse a fleet that was read.
+
+    Parameters
+    ----------
+    every
+        Make every finding of the graph, not one of each pattern.
 
     Raises
     ------
@@ -70,13 +76,14 @@ def analysed(read: Read, vocabulary: Vocabulary, settings: Settings) -> Result:
     """
     asked = asked_for(vocabulary, settings.categories)
     placed = read.placed
-    options = Options(asked, settings.paths, settings.max_paths)
+    groups = None if every else Groups(placed.likeness)
+    options = Options(asked, settings.paths, settings.max_paths, groups)
     analysis = analyse(placed.graph, placed.bound, vocabulary.hierarchy, options)
     policies = [policy for member in read.members.values() for policy in member.policies]
     assumptions = what_it_rests_on(placed.graph, sources_of(policies), read.labels, analysis, settings)
     assumptions["fleet"] = [{"file": name, "sha256": digest} for name, digest in read.fleet.sources]
     system = tuple({policy.file: policy for policy in policies}.values())
-    view = FleetView.of(analysis, placed.likeness)
+    view = groups.view(analysis) if groups else FleetView.of(analysis, placed.likeness)
     return Result(analysis, placed.bound, vocabulary, system, read.diagnostics, assumptions, view)
 
 
@@ -86,7 +93,7 @@ def rows_of_fleet(read: Read, result: Result, settings: Settings) -> FleetRows:
     Parameters
     ----------
     result
-        About all categories.
+        With every finding, about all categories.
     """
     more = {}
     for group in read.groups:
