@@ -34,7 +34,7 @@ from rosprivacy.analysis.search import START, Net, Search, path_to, present, sea
 from rosprivacy.analysis.spread import Spread, bits_of, spread
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
     from typing import Any
 
     from rosprivacy.analysis.hierarchy import Hierarchy
@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.outside import Concern
 
 MAX_PATHS = 100
+Chosen = tuple[str, int, int]  # kind, leak, number of the category
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,12 +60,16 @@ class Options:
     accepts
         Whether a person has accepted that a category of a source reaches a leak, in one form; such a leak hides
         nothing that lies behind it (rule S10).
+    choose
+        Of a spread, the kinds of findings and the bits of the categories: source -> (kind, leak, number of the
+        category) of the findings to make; None for all.
     """
 
     categories: Collection[str] | None = None
     paths: str = WITNESS
     max_paths: int = MAX_PATHS
     accepts: Callable[[Case], bool] | None = None
+    choose: Callable[[Spread, Sequence[Concern], int], Mapping[int, Collection[Chosen]]] | None = None
 
 
 def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Options | None = None) -> Analysis:
@@ -120,24 +125,27 @@ def _no_source(options: Options) -> Diagnostic:
     return Diagnostic(Place("labels", 0), Severity.WARNING, message)
 
 
-def _findings(net: Net, mask: int, kinds: Iterable[Concern], options: Options) -> Iterator[Finding]:
+def _findings(net: Net, mask: int, kinds: Sequence[Concern], options: Options) -> Iterator[Finding]:
     """All findings, sorted by category, source, leak and kind."""
     found = net.spread
     ends = [(c, {v: b & mask for v, b in c.bits.items() if b & mask & found.present(v)}) for c in kinds]
     reached = [(concern, leaks) for concern, leaks in ends if leaks]
     results: list[tuple[int, int, int, str, Finding]] = []
     memory: dict[Any, Any] = {}
-    for source in [v for v in found.facts if found.begins(v)] if reached else []:
+    chosen = options.choose(found, kinds, mask) if options.choose and reached else None
+    sources = [v for v in found.facts if found.begins(v)] if chosen is None else chosen
+    for source in sorted(sources) if reached else ():
+        only = None if chosen is None else chosen[source]
         whole = search(net, [source], found.all_bits, {})
         for concern, leaks in reached:
-            for leak, category, finding in _findings_of(net, source, whole, concern, leaks, options, memory):
+            for leak, category, finding in _findings_of(net, source, whole, concern, leaks, options, memory, only):
                 results.append((category, source, leak, finding.kind, finding))
     yield from (finding for *_, finding in sorted(results, key=lambda row: row[:4]))
 
 
 def _findings_of(
     net: Net, source: int, whole: Search, concern: Concern, leaks: dict[int, int], options: Options,
-    memory: dict[Any, Any],
+    memory: dict[Any, Any], only: Collection[Chosen] | None,
 ) -> Iterator[tuple[int, int, Finding]]:  # fmt: skip
     """(leak, number of the category, finding) of one source and kind.
 
@@ -150,6 +158,8 @@ def _findings_of(
     free: dict[int, Search] = {}  # number of the category -> search that stops at other leaks of it
     for leak, bits in reached.items():
         for i in sorted({bit % k for bit in bits_of(bits)}):
+            if only is not None and (concern.kind, leak, i) not in only:
+                continue
             if concern.kind != DISCLOSURE:
                 free[i] = whole
             elif i not in free:

@@ -10,18 +10,14 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from rosprivacy.analysis.edges import Edges
 from rosprivacy.analysis.errors import InputError, InputErrors
-from rosprivacy.analysis.flow import WORD, fixpoint
+from rosprivacy.analysis.flow import fixpoint
+from rosprivacy.analysis.network import Network, as_numbers
 from rosprivacy.analysis.roles import NOTHING_SAID, Facts, facts
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
     from typing import Any
-
-    from numpy.typing import NDArray
 
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.model import Bound, FlowGraph, Statement
@@ -232,45 +228,11 @@ def _closed(derives: Mapping[str, tuple[str, ...]]) -> dict[str, set[str]]:
 
 
 def _carry(found: Spread) -> None:
-    """Run the fixpoint. A flow that emits or blocks something becomes a vertex of its own on the way."""
-    graph = found.graph
-    count = len(graph.elements)
-    special = sorted({*found.flow_emits, *found.flow_keeps})
-    sources = [flow.source for flow in graph.flows]
-    targets = [flow.target for flow in graph.flows]
-    for number, index in enumerate(special):
-        sources.append(count + number)
-        targets.append(targets[index])
-        targets[index] = count + number
-    words = max(1, -(-2 * len(found.categories) // WORD))
-    emitted = np.zeros((count + len(special), words), np.uint64)
-    keep = np.full((count + len(special), words), ~np.uint64(0))
-    for vertex, bits in found.emits.items():
-        emitted[vertex] = _words(bits, words)
-    for vertex, bits in found.keeps.items():
-        keep[vertex] = _words(bits, words)
-    for number, index in enumerate(special):
-        emitted[count + number] = _words(found.flow_emits.get(index, 0), words)
-        keep[count + number] = _words(found.flow_keeps.get(index, found.all_bits), words)
-    derivations = [(vertex, *pair) for vertex, pairs in found.derives.items() for pair in pairs]
-    nodes = sum(not element.is_channel for element in graph.elements)
-    edges = Edges.of(count + len(special), np.array(sources, np.int64), np.array(targets, np.int64), nodes)
-    arrives, leaves = fixpoint(edges, emitted, keep, np.array(derivations, np.int64))
-    found.arrives = _as_numbers(arrives[:count])
-    found.leaves = _as_numbers(leaves[:count])
+    """Run the fixpoint."""
+    network = Network.of(found)
+    arrives, leaves = fixpoint(network.edges, network.emitted, network.keep, network.derivations)
+    found.arrives = as_numbers(arrives[: network.count])
+    found.leaves = as_numbers(leaves[: network.count])
     found.sent = dict(found.leaves)
     for vertex, bits in found.flow_begins.items():  # through one channel only is still from here
         found.leaves[vertex] = found.leaves.get(vertex, 0) | bits
-
-
-def _words(bits: int, words: int) -> list[int]:
-    mask = (1 << WORD) - 1
-    return [bits >> WORD * word & mask for word in range(words)]
-
-
-def _as_numbers(bits: NDArray[np.uint64]) -> dict[int, int]:
-    """Rows that are not empty, as numbers of any length."""
-    numbers = {}
-    for vertex in np.flatnonzero(bits.any(axis=1)).tolist():
-        numbers[vertex] = sum(word << WORD * i for i, word in enumerate(bits[vertex].tolist()))
-    return numbers

@@ -82,7 +82,8 @@ def join(graph: FlowGraph, labels: Sequence[Labels]) -> tuple[Bound, list[InputE
 def _outside(graph: FlowGraph, labels: Iterable[Labels]) -> dict[int, Outside]:
     """What is stated about the elements outside ROS, and how long they may keep what they hold."""
     files = list(labels)
-    stated = {(entry.kind, entry.name): entry.outside for file in files for entry in file.elements}
+    ranked = sorted(files, key=lambda file: file.own)
+    stated = {(entry.kind, entry.name): entry.outside for file in ranked for entry in file.elements}
     limits = tuple(sorted({limit for file in files for limit in file.limits}, key=lambda pair: (pair[0], str(pair[1]))))
     return {
         vertex: replace(stated[element.kind, element.name], limits=limits)

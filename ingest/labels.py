@@ -47,6 +47,7 @@ STANDARD = f"{OURS}standard"
 LONGEST_GROUP = 100  # characters of a group of persons
 EXACT = 1_000_000  # a name outranks every glob
 SHIPPED, OWN = 0, 1  # tiers: a person's own word outranks what comes with the program
+ROBOT = 2 * EXACT  # added to what is said of one robot of a fleet, which outranks what is said of its model
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,6 +92,8 @@ class Labels:
         Elements outside ROS (rule S9).
     limits
         How long kinds of data may be kept at most.
+    own
+        Whether it is about one robot of a fleet, and outranks its model's.
     """
 
     file: str
@@ -101,9 +104,12 @@ class Labels:
     shipped: bool = False
     elements: tuple[Stated, ...] = ()
     limits: tuple[Limit, ...] = ()
+    own: bool = False
 
 
-def read_labels(file: str, vocabulary: Vocabulary, *, category: str = "PersonalData", shipped: bool = False) -> Labels:
+def read_labels(
+    file: str, vocabulary: Vocabulary, *, category: str = "PersonalData", shipped: bool = False, own: bool = False
+) -> Labels:
     """Read one label file.
 
     Parameters
@@ -114,6 +120,8 @@ def read_labels(file: str, vocabulary: Vocabulary, *, category: str = "PersonalD
         What the paper's six lists are about; of no effect on other files.
     shipped
         Read it as one that comes with the program: of lower rank, and free to name what is not there.
+    own
+        It is about one robot of a fleet, and outranks what its model's files say.
 
     Raises
     ------
@@ -130,7 +138,7 @@ def read_labels(file: str, vocabulary: Vocabulary, *, category: str = "PersonalD
         top, data = yamlfile.read(_shipped_path(name) if file.startswith(OURS) and shipped else file, fail)
     except InputError as error:
         raise InputErrors([error]) from None
-    reader = _Reader(file, vocabulary, category, SHIPPED if shipped else OWN)
+    reader = LabelReader(file, vocabulary, category, SHIPPED if shipped else OWN, ROBOT if own else 0)
     reader.document(top)
     if reader.problems:
         raise InputErrors(reader.problems)
@@ -143,6 +151,7 @@ def read_labels(file: str, vocabulary: Vocabulary, *, category: str = "PersonalD
         shipped,
         tuple(reader.elements),
         tuple(reader.limits),
+        own,
     )
 
 
@@ -165,21 +174,28 @@ def specificity(name: str) -> int:
 
 
 @dataclass
-class _Reader:
+class LabelReader:
     """Walks the file once, from the outside in."""
 
     file: str
     vocabulary: Vocabulary
     category: str
     tier: int
+    above: int = 0
     problems: list[InputError] = field(default_factory=list)
     diagnostics: list[Diagnostic] = field(default_factory=list)
     entries: list[Entry] = field(default_factory=list)
     flows: list[FlowEntry] = field(default_factory=list)
     elements: list[Stated] = field(default_factory=list)
     limits: list[Limit] = field(default_factory=list)
+    error: type[InputError] = LabelError
+
+    def rank(self, specific: int) -> tuple[int, int]:
+        """Return the rank of a statement."""
+        return (self.tier, specific + self.above)
 
     def document(self, top: Value) -> None:
+        """Read a label file."""
         if top.kind != "map":
             self.problem(top.line, f"a label file is a map, not a {top.kind}", "begin with 'labels: 1'")
         elif top.get("labels") is None and any(top.get(key) for key in SIX_LISTS):
@@ -218,7 +234,7 @@ class _Reader:
         if stated is None:
             return
         labels = replace(value, entries=tuple(entry for entry in value.entries if entry[0] in NODE_KEYS))
-        statements = tuple(self._node(labels, stated.place, (self.tier, EXACT)))
+        statements = tuple(self._node(labels, stated.place, self.rank(EXACT)))
         if stated.kind == "device" and all(key in SAYS_NOTHING for key, *_ in labels.entries):
             self.problem(line, f"device {shown(name)!r} does nothing", "say what comes from it: source: [Voice]")
         self.elements.append(stated)
@@ -236,7 +252,7 @@ class _Reader:
             if len(name) > LONGEST_NAME:
                 self.problem(at, f"a name of {len(name)} characters", f"no more than {LONGEST_NAME} are read")
                 continue
-            rank = (self.tier, specificity(name))
+            rank = self.rank(specificity(name))
             read = self._node if section == "nodes" else self._channel
             statements = tuple(read(label, Place(self.file, at), rank))
             subjects = self._subjects(label) if section == "nodes" else ()
@@ -347,18 +363,22 @@ class _Reader:
             return
         place = Place(self.file, item.line)
         ends = {key: self._end(value) for key, _, value in item.entries if key in ("from", "to")}
-        rank = (self.tier, sum(specificity(name) for name in ends.values()))
+        rank = self.rank(sum(specificity(name) for name in ends.values()))
         statements = tuple(self._restrictions(item, FLOW_KEYS, rank))
         if len(ends) < len(("from", "to")):
             self.problem(item.line, "a flow needs from and to", "write {from: /a, to: /b, never: [Video]}")
             return
-        stated = any(map(is_outside, ends.values()))
+        stated = self.states(ends.values())
         if not stated and not (item.get("only") or item.get("never")):
             hint = "write {from: /a, to: /b, never: [Video]}; what policies do not know goes through an element"
             self.problem(item.line, "a flow between nodes and channels needs only or never", hint)
             return
         if statements or (stated and all(ends.values())):
             self.flows.append(FlowEntry(ends["from"], ends["to"], place, statements))
+
+    def states(self, ends: Iterable[str]) -> bool:
+        """Return whether a line about a flow states it; flows between nodes and channels are in the policies."""
+        return any(map(is_outside, ends))
 
     def _six_lists(self, top: Value) -> None:
         """The paper's JSON: six lists of names, one kind of data; there a sanitizer ends it (rule S8)."""
@@ -367,7 +387,7 @@ class _Reader:
             kinds = SECTIONS["channels" if role in ("sensitive", "mundane") else "nodes"]
             for item in self._list(value, role):
                 element = self._name(item)
-                place, rank = Place(self.file, item.line), (self.tier, specificity(element))
+                place, rank = Place(self.file, item.line), self.rank(specificity(element))
                 method = Method.ANONYMISE if role == "sanitizer" else None
                 statement = Statement(role, (name,), rank, place, method)
                 self.entries.append(Entry(kinds, element, place, (statement,)))
@@ -438,4 +458,5 @@ class _Reader:
         return value.text
 
     def problem(self, line: int, problem: str, hint: str) -> None:
-        self.problems.append(LabelError(self.file, line, problem, hint))
+        """Take a problem."""
+        self.problems.append(self.error(self.file, line, problem, hint))

@@ -208,6 +208,7 @@ def _write_robots(transaction: ManagedTransaction, robots: list[RobotRows], labe
     old = [row for rows in robots for row in rows.elements if rows.robot in known]
     write(transaction, cypher.CREATE_ELEMENTS, fresh)
     write(transaction, cypher.REPLACE_ELEMENTS, old, labels=labels)
+    write(transaction, cypher.MERGE_FOREIGN, _foreign(robots))
     write(transaction, cypher.MERGE_ENCLAVES, [row for rows in robots for row in rows.enclaves])
     for kind, part in ((IN_ENCLAVE, "memberships"), (FLOWS_TO, "flows"), (DERIVES_FROM, "derived")):
         statement = cypher.create_relationships(kind)
@@ -220,6 +221,11 @@ def _write_robots(transaction: ManagedTransaction, robots: list[RobotRows], labe
     if known:
         run(transaction, cypher.DELETE_EMPTY_ENCLAVES, names=known)
     run(transaction, cypher.WRITE_ROBOTS, rows=[{"robot": r.robot, "properties": r.properties} for r in robots])
+
+
+def _foreign(robots: list[RobotRows]) -> list[Row]:
+    """Elements that these robots name and that belong to others, each once."""
+    return list({row["id"]: row for rows in robots for row in rows.foreign}.values())
 
 
 def _element_ids(transaction: ManagedTransaction, names: list[str]) -> list[str]:

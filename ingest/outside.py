@@ -11,12 +11,12 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, shown
-from rosprivacy.analysis.model import CHANNELS, Element, Flow, FlowGraph, Grant
+from rosprivacy.analysis.model import Element, Flow, FlowGraph, Grant
 from rosprivacy.ingest.elements import is_outside
 from rosprivacy.ingest.names import covers, is_pattern, matcher
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
     from rosprivacy.analysis.model import Place
     from rosprivacy.ingest.elements import Stated
@@ -36,8 +36,11 @@ def extend(graph: FlowGraph, files: Sequence[Labels]) -> FlowGraph:
     if not any(file.elements or file.flows for file in files):
         return graph
     problems: list[InputError] = []
-    stated = merged((entry for file in files for entry in file.elements), problems)
-    ends = Ends(graph, stated)
+    stated: dict[str, Stated] = {}
+    for own in (False, True):  # what one robot's file states takes the place of its model's
+        stated |= merged((entry for file in files if file.own == own for entry in file.elements), problems)
+    added = [Element(entry.kind, entry.name) for entry in stated.values()]
+    ends = Ends([*graph.elements, *added])
     flows: list[tuple[Element, Element, Place]] = []
     for file in files:
         for flow in file.flows:
@@ -49,17 +52,19 @@ def extend(graph: FlowGraph, files: Sequence[Labels]) -> FlowGraph:
             flows += ends.between(entry.name, name, entry.place, problems)
     if problems:
         raise InputErrors(problems)
-    return with_flows(graph, (Element(entry.kind, entry.name) for entry in stated.values()), flows)
+    return with_flows(graph, added, flows)
 
 
-def merged(entries: Iterable[Stated], problems: list[InputError]) -> dict[str, Stated]:
+def merged(
+    entries: Iterable[Stated], problems: list[InputError], error: type[InputError] = LabelError
+) -> dict[str, Stated]:
     """Return elements by name; one that is defined twice with different facts is a problem."""
     found: dict[str, Stated] = {}
     for entry in entries:
         known = found.setdefault(entry.name, entry)
         if _facts(known) != _facts(entry):
             what = f"element {shown(entry.name)!r} again, with other facts than at {known.place}"
-            problems.append(LabelError(entry.place.file, entry.place.line, what, "define it once"))
+            problems.append(error(entry.place.file, entry.place.line, what, "define it once"))
     return found
 
 
@@ -75,11 +80,11 @@ class Ends:
     A name of ROS means nodes, and channels only where no node has it; a glob means nodes if it covers any.
     """
 
-    def __init__(self, graph: FlowGraph, stated: Mapping[str, Stated]) -> None:
-        self._stated = stated
-        self._ros: dict[bool, dict[str, list[Element]]] = {True: defaultdict(list), False: defaultdict(list)}
-        for element in graph.elements:
-            self._ros[element.kind not in CHANNELS][element.name].append(element)
+    def __init__(self, elements: Iterable[Element]) -> None:
+        self.names: dict[str, dict[str, list[Element]]] = {kind: defaultdict(list) for kind in ("", "node", "channel")}
+        for element in elements:
+            kind = "channel" if element.is_channel else "node" if element.is_node else ""
+            self.names[kind][element.name].append(element)
 
     def between(
         self, source: str, target: str, place: Place, problems: list[InputError]
@@ -88,30 +93,30 @@ class Ends:
         sources, targets = self.find(source), self.find(target)
         for name, found in ((source, sources), (target, targets)):
             if not found:
-                problems.append(self._missing(name, place))
+                known = [other for kind in self.names for other in self.names[kind]]
+                problems.append(missing(name, known, place))
         yield from ((a, b, place) for a in sources for b in targets)
 
     def find(self, name: str) -> list[Element]:
         """The elements of a name or glob."""
-        if is_outside(name):
-            return [Element(self._stated[name].kind, name)] if name in self._stated else []
-        return self._of(True, name) or self._of(False, name)
+        return self._of("", name) if is_outside(name) else self._of("node", name) or self._of("channel", name)
 
-    def _of(self, nodes: bool, name: str) -> list[Element]:  # noqa: FBT001 - which half of the names
-        known = self._ros[nodes]
-        if not is_pattern(name):
+    def _of(self, kind: str, name: str) -> list[Element]:
+        known = self.names[kind]
+        if not kind or not is_pattern(name):
             return known.get(name, [])
         plain = matcher(name)
         covered = [n for n in known if (covers(name, n) if is_pattern(n) else plain(n))]
         return [element for other in covered for element in known[other]]
 
-    def _missing(self, name: str, place: Place) -> LabelError:
-        known = list(self._stated) if is_outside(name) else [n for half in self._ros.values() for n in half]
-        close = get_close_matches(name, known, n=3, cutoff=0.5)
-        hint = f"did you mean {' or '.join(map(shown, close))}?" if close else "define it under elements"
-        if not is_outside(name) and not close:
-            hint = "see the names with rosprivacy labels --init"
-        return LabelError(place.file, place.line, f"a flow names {shown(name)!r}, which is not there", hint)
+
+def missing(name: str, known: Iterable[str], place: Place, error: type[InputError] = LabelError) -> InputError:
+    """Return the error for the end of a flow that is not there, with the nearest names."""
+    alike = [other for other in known if is_outside(other) == is_outside(name)]
+    close = get_close_matches(name, alike, n=3, cutoff=0.5)
+    hint = "define it under elements" if is_outside(name) else "see the names with rosprivacy labels --init"
+    hint = f"did you mean {' or '.join(map(shown, close))}?" if close else hint
+    return error(place.file, place.line, f"a flow names {shown(name)!r}, which is not there", hint)
 
 
 def with_flows(
@@ -124,7 +129,7 @@ def with_flows(
     lines: dict[tuple[int, int], list[Place]] = defaultdict(list)
     for source, target, place in flows:
         lines[number[source], number[target]].append(place)
-    added = [Flow(*ends, FLOW, tuple(_line(place) for place in _sorted(places))) for ends, places in lines.items()]
+    added = [Flow(*ends, FLOW, tuple(line_of(place) for place in _sorted(places))) for ends, places in lines.items()]
 
     def renumbered(old: tuple[Flow, ...], new: Sequence[Flow] = ()) -> tuple[Flow, ...]:
         kept = [Flow(moved[f.source], moved[f.target], f.role, f.grants, f.denials) for f in old]
@@ -137,6 +142,6 @@ def _sorted(places: Iterable[Place]) -> list[Place]:
     return sorted(set(places), key=lambda place: (place.file, place.line))
 
 
-def _line(place: Place) -> Grant:
-    """The line that states a flow, in the form of the lines that grant others."""
+def line_of(place: Place) -> Grant:
+    """Return the line that states a flow, in the form of the lines that grant others."""
     return Grant(True, FLOW, FLOW, "", "", "", place)

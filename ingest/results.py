@@ -6,19 +6,20 @@ what is in the database is written back.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import LabelError
-from rosprivacy.analysis.findings import finding_id
 from rosprivacy.analysis.legal import turned_special
 from rosprivacy.analysis.origins import origins
+from rosprivacy.analysis.patterns import NO_ROBOTS, pattern_id
 from rosprivacy.analysis.roles import facts
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.model import Analysis, Bound, Element, Finding, Statement
+    from rosprivacy.analysis.origins import Origin
+    from rosprivacy.analysis.patterns import Likeness
     from rosprivacy.analysis.spread import Spread
     from rosprivacy.ontology.vocabulary import Vocabulary
 
@@ -177,29 +178,58 @@ def origin_rows(analysis: Analysis, ids: Sequence[str], robots: Sequence[str]) -
     ids, robots
         By vertex.
     """
-    elements, flows = analysis.graph.elements, analysis.graph.flows
     for origin in origins(analysis.spread):
-        lines = [flows[index].grants[0].place if flows[index].grants else "" for index in origin.flows]
-        properties = {
-            "category": origin.category,
-            "way": [elements[vertex].name for vertex in origin.way],
-            "policy": [str(line) for line in lines],
-            "past_leak": origin.past_leak,
-            "robot": robots[origin.maker],
-        }
+        properties = origin_properties(analysis, origin, robots[origin.maker])
         yield {"source": ids[origin.maker], "target": ids[origin.source], "properties": properties}
 
 
+def origin_properties(analysis: Analysis, origin: Origin, robot: str) -> Row:
+    """Return the properties of one ``DERIVES_FROM``."""
+    elements, flows = analysis.graph.elements, analysis.graph.flows
+    lines = [flows[index].grants[0].place if flows[index].grants else "" for index in origin.flows]
+    return {
+        "category": origin.category,
+        "way": [elements[vertex].name for vertex in origin.way],
+        "policy": [str(line) for line in lines],
+        "past_leak": origin.past_leak,
+        "robot": robot,
+    }
+
+
 def finding_rows(
-    analysis: Analysis, vocabulary: Vocabulary, ids: Mapping[Element, str], robots: Mapping[Element, str]
+    analysis: Analysis,
+    vocabulary: Vocabulary,
+    ids: Mapping[Element, str],
+    robots: Mapping[Element, str],
+    likeness: Likeness = NO_ROBOTS,
 ) -> tuple[list[Row], list[Row]]:
-    """Return the rows of findings, and those of the elements that they go across."""
+    """Return the rows of findings, and those of the elements that they go across.
+
+    Parameters
+    ----------
+    likeness
+        Which names are those of robots.
+    """
     rows, across = [], []
     for finding in analysis.findings:
-        robot = robots[finding.source]
-        pattern = finding_id(finding.category, _alike(finding.source), _alike(finding.leak), finding.kind)
-        key = f"{robot}|{pattern}" if robots[finding.leak] == robot else f"{robot}|{pattern}|{ids[finding.leak]}"
-        properties = {
+        row, steps = finding_row(finding, pattern_id(finding, likeness), vocabulary, ids, robots)
+        rows.append(row)
+        across += steps
+    return rows, across
+
+
+def finding_row(
+    finding: Finding, pattern: str, vocabulary: Vocabulary, ids: Mapping[Element, str], robots: Mapping[Element, str]
+) -> tuple[Row, list[Row]]:
+    """Return the row of a finding, and those of the elements that it goes across."""
+    robot = robots[finding.source]
+    key = f"{robot}|{pattern}" if robots[finding.leak] == robot else f"{robot}|{pattern}|{ids[finding.leak]}"
+    row = {
+        "id": key,
+        "source": ids[finding.source],
+        "target": ids[finding.leak],
+        "category": vocabulary.categories[finding.category].iri,
+        "properties": {
             "pattern": pattern,
             "robot": robot,
             "kind": finding.kind,
@@ -211,23 +241,9 @@ def finding_rows(
             "dismissed": finding.dismissed,
             "disjoint_paths": finding.disjoint_paths,
             "special_from": turned.name if (turned := turned_special(finding, vocabulary.categories)) else None,
-        }
-        rows.append(
-            {
-                "id": key,
-                "source": ids[finding.source],
-                "target": ids[finding.leak],
-                "category": vocabulary.categories[finding.category].iri,
-                "properties": properties,
-            }
-        )
-        across += [{"source": key, "target": ids[element], "properties": step} for element, step in _steps(finding)]
-    return rows, across
-
-
-def _alike(element: Element) -> Element:
-    """The element as it would be on another robot."""
-    return replace(element, robot="")
+        },
+    }
+    return row, [{"source": key, "target": ids[element], "properties": step} for element, step in _steps(finding)]
 
 
 def _steps(finding: Finding) -> Iterator[tuple[Element, Row]]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.outside import BY_KIND
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.model import Analysis, Bound, Element, Flow, Grant, Statement
+    from rosprivacy.analysis.outside import Outside
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 Row = dict[str, Any]
@@ -48,6 +49,9 @@ class RobotRows:
         ``id``, ``source``, ``target`` (ids), ``category`` (IRI), ``properties``.
     across
         ``source`` (id of the finding), ``target`` (id of the element), ``properties``.
+    foreign
+        Elements of other robots at which flows and findings of this one end: as ``elements``, without what is said
+        of them.
     """
 
     robot: str
@@ -60,6 +64,7 @@ class RobotRows:
     derived: list[Row]
     findings: list[Row]
     across: list[Row]
+    foreign: list[Row] = field(default_factory=list)
 
     @property
     def digest(self) -> str:
@@ -114,13 +119,21 @@ def robot_rows(
     properties: Row = {
         "verdict": str(analysis.verdict),
         "view": graph.view,
+        **(more or {}),
+    }
+    return rows_of(robot, properties, parts)
+
+
+def rows_of(robot: str, properties: Row, parts: Mapping[str, Any]) -> RobotRows:
+    """Return the rows of a robot with their digest and counts."""
+    counts = {
         "elements": len(parts["elements"]),
         "flows": len(parts["flows"]),
         "roles": sum(map(len, parts["roles"].values())),
-        **(more or {}),
     }
-    text = json.dumps([robot, properties, parts], sort_keys=True)
-    return RobotRows(robot, {**properties, "digest": hashlib.sha256(text.encode()).hexdigest()}, **parts)
+    known = {**counts, **properties}
+    text = json.dumps([robot, known, parts], sort_keys=True)
+    return RobotRows(robot, {**known, "digest": hashlib.sha256(text.encode()).hexdigest()}, **parts)
 
 
 def kind_labels(element: Element) -> list[str]:
@@ -137,16 +150,23 @@ def _elements(
     robot: str, ids: Sequence[str], results: Iterable[tuple[Row, list[str]]], analysis: Analysis
 ) -> Iterator[Row]:
     for element, key, (properties, labels) in zip(analysis.graph.elements, ids, results, strict=True):
-        known = {
-            "name": element.name,
-            "robot": robot,
-            "kind": element.kind,
-            "leg": element.leg or None,
-            "side": element.side or None,
-            "without": list(element.without) or None,
-            **(properties_of(analysis.outside[element]) if element in analysis.outside else {}),
-        }
-        yield {"id": key, "labels": [*kind_labels(element), *labels], "properties": {**known, **properties}}
+        yield element_row(robot, key, element, properties, labels, analysis.outside.get(element))
+
+
+def element_row(
+    robot: str, key: str, element: Element, properties: Row, labels: Iterable[str], facts: Outside | None
+) -> Row:
+    """Return the row of an element with what the analysis says of it."""
+    known = {
+        "name": element.name,
+        "robot": robot,
+        "kind": element.kind,
+        "leg": element.leg or None,
+        "side": element.side or None,
+        "without": list(element.without) or None,
+        **(properties_of(facts) if facts else {}),
+    }
+    return {"id": key, "labels": [*kind_labels(element), *labels], "properties": {**known, **properties}}
 
 
 def _memberships(robot: str, analysis: Analysis) -> Iterator[Row]:
@@ -163,20 +183,30 @@ def _memberships(robot: str, analysis: Analysis) -> Iterator[Row]:
 def _flows(robot: str, analysis: Analysis, bound: Bound, names: Names, ids: Sequence[str]) -> Iterator[Row]:
     results = flow_results(analysis, names)
     for index, (flow, result) in enumerate(zip(analysis.graph.flows, results, strict=True)):
-        said = _restrictions(bound.flows.get(index, ()))
-        yield _flow(robot, flow, ids, {"decision": "allow", **result, **said})
+        said = bound.flows.get(index, ())
+        yield flow_row(robot, flow, ids[flow.source], ids[flow.target], allowed(result, said))
     for flow in analysis.graph.denied:
-        denied_by = [str(grant.place) for grant in flow.denials]
-        yield _flow(robot, flow, ids, {"decision": "deny", "carries": [], "denied_by": denied_by})
+        yield flow_row(robot, flow, ids[flow.source], ids[flow.target], denied(flow))
 
 
-def _flow(robot: str, flow: Flow, ids: Sequence[str], properties: Row) -> Row:
+def allowed(result: Row, said: Sequence[Statement]) -> Row:
+    """Return the properties of an allowed flow."""
+    return {"decision": "allow", **result, **_restrictions(said)}
+
+
+def denied(flow: Flow) -> Row:
+    """Return the properties of a denied flow."""
+    return {"decision": "deny", "carries": [], "denied_by": [str(grant.place) for grant in flow.denials]}
+
+
+def flow_row(robot: str, flow: Flow, source: str, target: str, properties: Row) -> Row:
+    """Return the row of a flow between two ids."""
     known: Row = {"role": flow.role, "robot": robot}
     if flow.grants:
         known |= _grant(flow.grants[0])
         further = [json.dumps(_grant(grant), sort_keys=True) for grant in flow.grants[1:]]
         known["further"] = further or None
-    return {"source": ids[flow.source], "target": ids[flow.target], "properties": known | properties}
+    return {"source": source, "target": target, "properties": known | properties}
 
 
 def _grant(grant: Grant) -> Row:
@@ -193,29 +223,33 @@ def _restrictions(said: Sequence[Statement]) -> Row:
 
 
 def _roles(robot: str, bound: Bound, vocabulary: Vocabulary, ids: Sequence[str]) -> dict[str, list[Row]]:
-    """One relationship per category that a statement names; one about every category goes to those at the top."""
     rows: dict[str, list[Row]] = {}
-    top = [category.name for category in vocabulary.categories.values() if not category.broader]
     for vertex, said in bound.elements.items():
-        for statement in said:
-            if statement.rank == BY_KIND:  # nobody said it; whoever reads the graph takes it so too
-                continue
-            properties: Row = {
-                "file": statement.place.file,
-                "line": statement.place.line,
-                "tier": statement.rank[0],
-                "specificity": statement.rank[1],
-                "every": None if statement.categories else True,
-                "robot": robot,
-                **_particulars(statement),
-            }
-            named = [statement.to] if statement.role == "derivation" else statement.categories or top
-            for name in named:
-                iri = vocabulary.categories[name].iri
-                rows.setdefault(statement.role, []).append(
-                    {"source": ids[vertex], "target": iri, "properties": properties}
-                )
+        add_roles(rows, robot, ids[vertex], said, vocabulary)
     return rows
+
+
+def add_roles(
+    rows: dict[str, list[Row]], robot: str, key: str, said: Iterable[Statement], vocabulary: Vocabulary
+) -> None:
+    """Add one relationship per category that a statement names; one about every category goes to those at the top."""
+    for statement in said:
+        if statement.rank == BY_KIND:  # nobody said it; whoever reads the graph takes it so too
+            continue
+        properties: Row = {
+            "file": statement.place.file,
+            "line": statement.place.line,
+            "tier": statement.rank[0],
+            "specificity": statement.rank[1],
+            "every": None if statement.categories else True,
+            "robot": robot,
+            **_particulars(statement),
+        }
+        top = [category.name for category in vocabulary.categories.values() if not category.broader]
+        named = [statement.to] if statement.role == "derivation" else statement.categories or top
+        for name in named:
+            iri = vocabulary.categories[name].iri
+            rows.setdefault(statement.role, []).append({"source": key, "target": iri, "properties": properties})
 
 
 def _particulars(statement: Statement) -> Row:

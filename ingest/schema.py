@@ -122,9 +122,11 @@ ELEMENT = NodeKind(
 ROBOT = NodeKind(
     "Robot",
     "name",
-    "A robot that was loaded.",
+    "A robot that was loaded; or, marked as shared, what the robots of a fleet have in common.",
     (
         Property("name", STRING, "unique"),
+        Property("model", STRING, "of a robot of a fleet, if it has one"),
+        Property("shared", BOOLEAN, "true for infrastructure, a DDS domain, or the fleet itself: no robot"),
         Property("verdict", STRING, "leak, undetermined or no-leak-found"),
         Property("view", STRING, "declared or enforced"),
         Property("version", INTEGER, "how often it was written"),
@@ -178,7 +180,11 @@ FINDING = NodeKind(
     "A kind of data reaches a leak, or a place where it is kept too long or has left the EEA.",
     (
         Property("id", STRING, "unique: robot and pattern"),
-        Property("pattern", STRING, "made from kind, category, source and leak: the same on every robot"),
+        Property(
+            "pattern",
+            STRING,
+            "made from kind, category, source, leak, and across robots or not: the same on each",
+        ),
         Property("robot", STRING, "name of its robot"),
         Property("kind", STRING, "disclosure, storage-limitation or third-country-transfer"),
         Property("reason", STRING, "of other kinds than disclosure: what is wrong there"),

@@ -69,6 +69,11 @@ REPLACE_ELEMENTS = (
     "REMOVE n:$(stale) SET n:$(row.labels) "
     "MERGE (n)-[of:`OF_ROBOT`]->(r) SET of.`robot` = r.`name`"
 )
+# Elements of other robots at which flows end: they may be loaded later, then with all that is said of them.
+MERGE_FOREIGN = (
+    f"UNWIND $rows AS row OPTIONAL MATCH {_node('n', ELEMENT, 'row.id')} WITH row WHERE n IS NULL "
+    f"CREATE {_node('n', ELEMENT, 'row.id')} SET n += row.properties SET n:$(row.labels)"
+)
 CREATE_FINDINGS = (
     f"UNWIND $rows AS row MATCH {_node('a', ELEMENT, 'row.source')} MATCH {_node('b', ELEMENT, 'row.target')} "
     f"MATCH {_node('c', CATEGORY, 'row.category')} "

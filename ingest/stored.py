@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.errors import GraphError, InputError, InputErrors, shown
 from rosprivacy.analysis.model import NON_ROS, Bound, Element, Flow, FlowGraph, Grant, Method, Place, Profile, Statement
 from rosprivacy.analysis.outside import by_kind
+from rosprivacy.analysis.patterns import NO_ROBOTS, Likeness
 from rosprivacy.ingest.facts import facts_of
 from rosprivacy.ingest.labels import EXACT
 from rosprivacy.ingest.names import covers
@@ -83,6 +84,15 @@ class Stored:
     def robot_of(self, vertex: int) -> str:
         """Name of an element's robot in the database; empty for what belongs to none."""
         return str(self.properties[vertex].get("robot") or "")
+
+    @property
+    def likeness(self) -> Likeness:
+        """Which names are those of robots: all but what is shared; none where there is only one."""
+        if len(self.robots) == 1:
+            return NO_ROBOTS
+        robots = {name: said for name, said in self.robots.items() if not said.get("shared")}
+        models = {name: str(said.get("model") or "") for name, said in robots.items()}
+        return Likeness({name: (name,) for name in robots}, {}, models)
 
 
 def read_stored(driver: Driver, vocabulary: Vocabulary) -> Stored:

@@ -6,7 +6,7 @@
 // returns robots: integer, how many
 // returns some_robots: list of string, the first five of them
 // order: verdict, view
-MATCH (r:Robot)
+MATCH (r:Robot) WHERE r.shared IS NULL
 WITH r ORDER BY r.name
 WITH r.verdict AS verdict, r.view AS view, collect(r.name) AS names
 RETURN verdict, view, size(names) AS robots, names[..5] AS some_robots

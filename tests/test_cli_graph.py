@@ -16,7 +16,7 @@ import pytest
 from rosprivacy import database
 from rosprivacy.analysis.errors import DatabaseError
 from rosprivacy.queries.library import pack
-from tests.test_cli import LINE, run
+from tests.command import LINE, run
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from neo4j import Driver
 
     from rosprivacy.database import Connection
-    from tests.test_cli import Done
+    from tests.command import Done
 
 ROOT = Path(__file__).resolve().parent.parent
 HOME = ROOT / "examples" / "care-home"

@@ -17,12 +17,12 @@ from jsonschema import Draft202012Validator
 import rosprivacy
 from rosprivacy.analysis.changes import Weights
 from rosprivacy.ingest.policy import read_policy
-from tests.test_cli import XI, Cli, Done, cli, refused, run
+from tests.command import Cli, Done, refused, run
+from tests.test_cli import XI
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-__all__ = ["cli"]
 ROOT = Path(__file__).resolve().parent.parent
 FACTORY = ROOT / "examples" / "factory"
 SCHEMA = json.loads((ROOT / "docs" / "mitigation.schema.json").read_text("utf-8"))

@@ -18,6 +18,35 @@ pytestmark = pytest.mark.corpus
 
 PAPER = "JonasWoh__ROS2PrivacyGraph"
 TURTLEBOT3 = "policies/ros-swg__turtlebot3_demo/policies/tb3_gazebo_policy.xml"
+COSTMAP = """labels: 1
+nodes:
+  /root: {sanitizer: {HomeMap: drop}}  # an administrator's shell, not what the paper looks at
+  /turtlebot3_laserscan: {source: [HomeMap]}
+  /recoveries_server: {leak: [HomeMap]}
+  /local_costmap/local_costmap_rclcpp_node: conduit
+  /local_costmap/local_costmap: conduit
+  /rviz2: conduit
+  /amcl_rclcpp_node: conduit
+  /amcl: conduit
+  /slam_toolbox: conduit
+  /global_costmap/*: conduit
+channels:
+  /scan: sensitive
+  /map: sensitive
+  /local_costmap/costmap_raw: sensitive
+  /tf: mundane
+  /FollowWaypoints: mundane
+  /navigate_to_pose: mundane
+  /global_costmap/clear_entirely_global_costmap: mundane
+  /local_costmap/clear_entirely_local_costmap: mundane
+  /local_costmap/published_footprint: mundane
+"""
+MEMORY = """
+elements:
+  costmap in memory:
+    kind: side-channel
+    between: [/local_costmap/local_costmap_rclcpp_node, /local_costmap/local_costmap]
+"""
 
 
 def analyze(corpus: Path, policy: str, labels: str, **options: Any) -> dict[str, Any]:
@@ -108,6 +137,29 @@ class TestTurtleBot3:
     def test_the_leaks_of_the_first_label_file_that_names_some(self, corpus: Path) -> None:
         document = analyze(corpus, TURTLEBOT3, "turtlebot3_step_1")
         assert {f["leak"]["name"] for f in document["findings"]} == {"/local_costmap/local_costmap_rclcpp_node"}
+
+    @pytest.mark.parametrize("stated", [True, False])
+    def test_the_side_channel_between_the_mapping_nodes_is_stated_as_an_element(
+        self,
+        corpus: Path,
+        tmp_path: Path,
+        stated: bool,  # noqa: FBT001 - a column
+    ) -> None:
+        """'After 6 steps and the identification of a side channel between two mapping nodes …': the paper states it
+        by calling the second node a source too. As an element the way of the laser's data shows it."""
+        (tmp_path / "l.yaml").write_text(COSTMAP + (MEMORY if stated else ""), "utf-8")
+        result = rosprivacy.analyze([str(corpus / TURTLEBOT3)], [str(tmp_path / "l.yaml")])
+        assert [[e.name for e in finding.witness] for finding in result.analysis.findings] == stated * [
+            [
+                "/turtlebot3_laserscan",
+                "/scan",
+                "/local_costmap/local_costmap_rclcpp_node",
+                "costmap in memory",
+                "/local_costmap/local_costmap",
+                "/local_costmap/costmap_raw",
+                "/recoveries_server",
+            ]
+        ]
 
     def test_five_enclaves_64_profiles_1429_grants(self, corpus: Path) -> None:
         policy = read_policy(str(corpus / TURTLEBOT3))

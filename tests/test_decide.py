@@ -18,13 +18,12 @@ from rosprivacy.analysis.model import Place
 from rosprivacy.ingest.decide import with_decision
 from rosprivacy.ingest.decisions import parse_decisions
 from rosprivacy.ontology.vocabulary import load
-from tests.test_cli import Cli, cli, refused
+from tests.command import Cli, refused
 from tests.test_cli_mitigate import BEFORE, RUN3
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-__all__ = ["cli"]
 VOCABULARY = load()
 ID, OTHER = "7ac677bf059b5beb", "0123456789abcdef"
 SIGNED = ("--reason", "needed for safety", "--owner", "A. Person", "--legal-basis", "6(1)(f)")

@@ -14,12 +14,12 @@ from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.model import Element, Place
 from rosprivacy.ingest.decisions import parse_decisions, today
 from rosprivacy.ontology.vocabulary import load
-from tests.test_cli import XI, Cli, cli, refused, run
+from tests.command import Cli, refused, run
+from tests.test_cli import XI
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["cli"]
 ROOT = Path(__file__).resolve().parent.parent
 CARE: list[str | Path] = [
     ROOT / "examples/care-home/care-home.policy.xml",

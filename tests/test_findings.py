@@ -104,11 +104,13 @@ def facts(draw: st.DrawFn, names: tuple[str, ...]) -> tuple[str, Outside]:
 
 
 @st.composite
-def systems(draw: st.DrawFn, names: tuple[str, ...] = tuple(PARENTS), most: int = 7, degree: int = 3) -> System:
+def systems(
+    draw: st.DrawFn, names: tuple[str, ...] = tuple(PARENTS), most: int = 7, degree: int = 3, outside: int = 3
+) -> System:
     """Dense enough that most have a leak, a third something derived, pseudonymised or dismissed (measured)."""
     ros, channels = draw(st.integers(1, most)), draw(st.integers(1, most - 1))
-    outside = draw(st.lists(facts(names), max_size=3))
-    nodes = ros + len(outside)
+    beside = draw(st.lists(facts(names), max_size=outside))
+    nodes = ros + len(beside)
     ends = st.sets(st.integers(0, nodes - 1), min_size=1, max_size=degree)
     edges: set[tuple[int, int]] = set()
     for element in range(ros, nodes):
@@ -133,7 +135,7 @@ def systems(draw: st.DrawFn, names: tuple[str, ...] = tuple(PARENTS), most: int 
     said |= {vertex: draw(st.one_of(plain, plain, part)) for vertex in range(nodes, nodes + channels)}
     never = draw(st.dictionaries(st.integers(0, len(edges) - 1), some, max_size=2))
     unique = {vertex: list(dict.fromkeys(rows)) for vertex, rows in said.items()}
-    return System(nodes, channels, sorted(edges), unique, never, outside=outside)
+    return System(nodes, channels, sorted(edges), unique, never, outside=beside)
 
 
 def analysed(system: System) -> Analysis | None:

@@ -16,7 +16,7 @@ import pytest
 from rosprivacy import database
 from rosprivacy.analysis.findings import analyse
 from rosprivacy.analysis.model import Category, Element, Flow, FlowGraph, Legal
-from rosprivacy.assembly import Settings, read_system
+from rosprivacy.assembly import read_system
 from rosprivacy.ingest.binding import bind
 from rosprivacy.ingest.graph import build
 from rosprivacy.ingest.labels import STANDARD, read_labels
@@ -25,6 +25,7 @@ from rosprivacy.ingest.rows import robot_rows
 from rosprivacy.ontology.vocabulary import Vocabulary
 from rosprivacy.queries.library import COLUMN_TYPES, find, pack
 from rosprivacy.queries.run import run
+from rosprivacy.settings import Settings
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

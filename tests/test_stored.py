@@ -11,12 +11,13 @@ import rosprivacy
 from rosprivacy import database
 from rosprivacy.analysis.errors import DatabaseError, InputErrors
 from rosprivacy.analysis.findings import analyse
-from rosprivacy.assembly import Settings, robot_of, run_stored
+from rosprivacy.assembly import robot_of, run_stored
 from rosprivacy.ingest.neo4j import load
 from rosprivacy.ingest.rows import robot_rows
 from rosprivacy.ingest.stored import read_stored
 from rosprivacy.ingest.writeback import write_back
 from rosprivacy.ontology.vocabulary import load as load_vocabulary
+from rosprivacy.settings import Settings
 from tests.graphs import care_home, dump, factory, rows_of
 from tests.test_cases import CASES
 from tests.test_cypher import VOCABULARY as SMALL

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.assembly import Result
 
-__all__ = ["__version__", "analyze"]
+__all__ = ["__version__", "analyze", "analyze_fleet"]
 __version__ = "0.1.0"
 
 
@@ -44,6 +44,34 @@ def analyze(policies: Iterable[str], labels: Iterable[str] = (), **options: Any)
     InputErrors
         With every problem of the input, one line each.
     """
-    from rosprivacy.assembly import Settings, run  # noqa: PLC0415 - light start
+    from rosprivacy.assembly import run  # noqa: PLC0415 - light start
+    from rosprivacy.settings import Settings  # noqa: PLC0415 - light start
 
     return run(tuple(policies), tuple(labels), Settings(**options))
+
+
+def analyze_fleet(file: str, **options: Any) -> Result:
+    """Analyse the robots of a fleet file together.
+
+    Parameters
+    ----------
+    file
+        Fleet file, YAML or JSON.
+    **options
+        Fields of ``rosprivacy.assembly.Settings``.
+
+    Returns
+    -------
+    Result
+        With ``fleet``: which robots are alike, and what they have in common. In the graph one robot stands for all
+        that are alike.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the input, one line each.
+    """
+    from rosprivacy.fleets import run_fleet  # noqa: PLC0415
+    from rosprivacy.settings import Settings  # noqa: PLC0415 - light start
+
+    return run_fleet(file, Settings(**options))

@@ -14,11 +14,22 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 import rosprivacy
-from rosprivacy import cli_categories, cli_db, cli_decide, cli_graph, cli_mitigate, cli_report, cli_views
+from rosprivacy import (
+    cli_categories,
+    cli_db,
+    cli_decide,
+    cli_diff,
+    cli_fleet,
+    cli_graph,
+    cli_mitigate,
+    cli_report,
+    cli_views,
+)
 from rosprivacy.analysis.errors import InputError, RosPrivacyError
 from rosprivacy.cli_options import (
     DecisionsFile,
     FailOn,
+    FleetFile,
     Format,
     IncludeRoot,
     LabelFiles,
@@ -38,7 +49,8 @@ from rosprivacy.cli_options import (
 from rosprivacy.cli_output import emit, progress_of
 
 if TYPE_CHECKING:
-    from rosprivacy.assembly import Result, Settings
+    from rosprivacy.assembly import Result
+    from rosprivacy.settings import Settings
 
 app = typer.Typer(
     name="rosprivacy",
@@ -48,6 +60,8 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 app.add_typer(cli_db.app, name="db", help="The private Neo4j: start it, stop it, see where it is.")
+app.command()(cli_diff.diff)
+app.command()(cli_fleet.fleet)
 app.command()(cli_graph.load)
 app.command()(cli_graph.unload)
 app.command()(cli_graph.query)
@@ -76,6 +90,7 @@ def analyze(
         bool, typer.Option("--from-database", help="Analyse what is in Neo4j, and write the answer back there.")
     ] = False,
     neo4j: Server = None,
+    fleet: FleetFile = None,
     add: Annotated[
         list[str] | None,
         typer.Option(metavar="GRAPH.json", help="Add to a graph saved before; may be repeated.", show_default=False),
@@ -124,7 +139,8 @@ def analyze(
     verbose: Annotated[bool, typer.Option("--verbose", "-v", help="Print every open element and notice.")] = False,
 ) -> None:
     """Find where each kind of personal data can get from its sources, and whether it reaches a leak."""
-    from rosprivacy.assembly import Settings, run
+    from rosprivacy.assembly import run
+    from rosprivacy.settings import Settings
 
     settings = Settings(
         add=tuple(add or ()),
@@ -142,15 +158,21 @@ def analyze(
         progress=progress_of,
         decisions=str(decisions) if decisions else None,
     )
+    if fleet and (policies or labels or add or save_graph):
+        raise typer.BadParameter("--fleet takes what the fleet file names: no POLICY, --labels, --add, --save-graph")
     if from_database:
-        if policies or labels or add or save_graph:
+        if policies or labels or add or save_graph or fleet:
             raise typer.BadParameter(
-                "--from-database takes what is in the database: no POLICY, --labels, --add, --save-graph"
+                "--from-database takes what is in the database: no POLICY, --labels, --add, --save-graph, --fleet"
             )
         from rosprivacy.assembly import run_stored
 
         with cli_graph.driver_of(neo4j) as driver:
             result = run_stored(driver, settings)
+    elif fleet:
+        from rosprivacy.fleets import run_fleet
+
+        result = run_fleet(fleet, settings)
     else:
         result = run(_named(policies, settings), tuple(labels or ()), settings)
     texts = {}
@@ -179,7 +201,7 @@ def labels(
     max_bytes: MaxBytes = 64 * 2**20,
 ) -> None:
     """Make a first label file, or print the schema or the files that come with the program."""
-    from rosprivacy.assembly import Settings
+    from rosprivacy.settings import Settings
 
     if [init, schema, standard, infrastructure].count(True) != 1:
         raise typer.BadParameter("name one of --init, --schema, --standard, --infrastructure")

@@ -15,6 +15,7 @@ import typer
 
 from rosprivacy.analysis.errors import QueryError, reason, shown
 from rosprivacy.cli_options import (
+    FleetFile,
     IncludeRoot,
     LabelFiles,
     MaxBytes,
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.queries.library import Query
     from rosprivacy.queries.run import Rows
+    from rosprivacy.settings import Settings
 
 
 class RowFormat(StrEnum):
@@ -59,6 +61,7 @@ def load(
     policies: Policies = None,
     labels: LabelFiles = None,
     robot: Annotated[str, typer.Option(metavar="NAME", help="What the robot is called in the database.")] = "robot",
+    fleet: FleetFile = None,
     neo4j: Server = None,
     ontology: Ontologies = None,
     category: SixLists = "PersonalData",
@@ -68,11 +71,14 @@ def load(
     include_root: IncludeRoot = None,
     max_bytes: MaxBytes = 64 * 2**20,
 ) -> None:
-    """Analyse policies and write the robot into Neo4j, in place of what it was there before."""
-    from rosprivacy.assembly import Settings, robot_of, run
+    """Analyse policies and write the robot into Neo4j, or all robots of a fleet, in place of what was there before."""
+    from rosprivacy.assembly import robot_of, run
     from rosprivacy.ingest import neo4j as database
+    from rosprivacy.settings import Settings
 
-    if not policies:
+    if fleet and (policies or labels):
+        raise typer.BadParameter("--fleet takes what the fleet file names: no POLICY, --labels")
+    if not policies and not fleet:
         raise typer.BadParameter("name at least one policy: a file, a folder or a glob", param_hint="POLICY")
     settings = Settings(
         view=view.value,
@@ -83,8 +89,11 @@ def load(
         max_bytes=max_bytes,
         progress=progress_of,
     )
+    if fleet:
+        _load_fleet(fleet, settings, neo4j)
+        return
     name = database.check_robot_name(robot)
-    result = run(tuple(policies), tuple(labels or ()), settings)
+    result = run(tuple(policies or ()), tuple(labels or ()), settings)
     rows = robot_of(name, result)
     with driver_of(neo4j) as driver, _bar(rows.size) as advance:
         done = database.load(driver, [rows], result.vocabulary, advance)
@@ -93,19 +102,57 @@ def load(
     emit(f"robot {shown(name)} {how}: {count}; verdict {result.analysis.verdict}\n", None)
 
 
+def _load_fleet(file: str, settings: Settings, neo4j: str | None) -> None:
+    from rosprivacy.fleets import analysed, read_all, rows_of_fleet
+    from rosprivacy.ingest import neo4j as database
+    from rosprivacy.ingest.fleetrows import MOST_ACROSS
+    from rosprivacy.ontology.vocabulary import load
+
+    vocabulary = load()
+    read = read_all(file, vocabulary, settings)
+    result = analysed(read, vocabulary, settings, every=True)
+    rows = rows_of_fleet(read, result, settings)
+    with driver_of(neo4j) as driver, _bar(None) as advance:
+        done = database.load(driver, rows, vocabulary, advance)
+    robots = len(read.fleet.robots)
+    what = f"fleet {shown(file)}: {robots:,} robots and what they share"
+    emit(
+        f"{what}: {done.written:,} written, {done.unchanged:,} as they were; verdict {result.analysis.verdict}\n", None
+    )
+    if rows.left_out:
+        message = f"{rows.left_out:,} findings from one robot to another are not written one by one: of each pattern"
+        print(f"{message} with more than {MOST_ACROSS:,} only one for each robot that data comes from", file=sys.stderr)
+
+
 def unload(
-    robot: Annotated[list[str], typer.Option(metavar="NAME", help="Robot to remove; may be repeated.")],
+    robot: Annotated[
+        list[str] | None, typer.Option(metavar="NAME", help="Robot to remove; may be repeated.", show_default=False)
+    ] = None,
+    fleet: FleetFile = None,
     neo4j: Server = None,
 ) -> None:
-    """Remove a robot from Neo4j; what people added by hand stays, but for what hangs on its elements."""
+    """Remove a robot from Neo4j, or a fleet; what people added by hand stays, but for what hangs on its elements."""
     from rosprivacy.ingest.neo4j import unload
 
+    if bool(robot) == bool(fleet):
+        raise typer.BadParameter("name robots with --robot, or a fleet file with --fleet")
+    robot = list(robot or ()) or _names_in(fleet or "")
     with driver_of(neo4j) as driver:
         gone = unload(driver, robot)
     missing = [name for name in robot if name not in gone]
     emit("".join(f"robot {shown(name)} is removed\n" for name in gone), None)
     if missing:
         raise QueryError(f"no robot {', '.join(map(shown, missing))} in the database; see rosprivacy query robots")
+
+
+def _names_in(fleet: str) -> list[str]:
+    """The names under which a fleet is filed in the database."""
+    from rosprivacy.ingest.alike import known_to_flows
+    from rosprivacy.ingest.fleet import read_fleet
+    from rosprivacy.ontology.vocabulary import load
+
+    read = read_fleet(fleet, load())
+    return [*known_to_flows(read), *([read.name] if read.elements else [])]
 
 
 def complete_query(incomplete: str) -> list[str]:
@@ -235,7 +282,7 @@ def _table(columns: tuple[str, ...], cells: list[list[str]], *, wide: bool) -> s
 
 
 @contextmanager
-def _bar(total: int) -> Iterator[Callable[[int], None]]:
+def _bar(total: int | None) -> Iterator[Callable[[int], None]]:
     """A bar with rates on a terminal: rows written, rows per second."""
     if not sys.stderr.isatty():
         yield lambda _: None
@@ -243,7 +290,7 @@ def _bar(total: int) -> Iterator[Callable[[int], None]]:
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-    rate = TextColumn("{task.speed:,.0f} rows/s" if total else "")
+    rate = TextColumn("{task.speed:,.0f} rows/s" if total != 0 else "")
     columns = (TextColumn("Writing"), BarColumn(), MofNCompleteColumn(), rate, TimeRemainingColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
         task = progress.add_task("", total=total)

@@ -75,10 +75,11 @@ def mitigate(
     Ends with 1 if a finding stays that no change removes.
     """
     from rosprivacy.analysis.changes import CHANGES
-    from rosprivacy.assembly import Settings, run
+    from rosprivacy.assembly import run
     from rosprivacy.mitigation import run_mitigation
     from rosprivacy.report.document import as_text
     from rosprivacy.report.mitigation import print_mitigation
+    from rosprivacy.settings import Settings
 
     if not policies:
         raise typer.BadParameter("name at least one policy: a file, a folder or a glob", param_hint="POLICY")

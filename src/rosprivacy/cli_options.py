@@ -78,6 +78,10 @@ LabelFiles = Annotated[
 SixLists = Annotated[
     str, typer.Option(metavar="NAME", autocompletion=complete_category, help="What a six-list JSON is about.")
 ]
+FleetFile = Annotated[
+    str | None,
+    typer.Option("--fleet", metavar="FILE", show_default=False, help="Fleet file: many robots and what they share."),
+]
 ViewChosen = Annotated[View, typer.Option(help="What nodes declare, or what DDS enforces per enclave.")]
 DecisionsFile = Annotated[
     Path | None,

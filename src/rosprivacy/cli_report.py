@@ -28,7 +28,8 @@ from rosprivacy.cli_options import (
 from rosprivacy.cli_output import emit_bytes, progress_of
 
 if TYPE_CHECKING:
-    from rosprivacy.assembly import Result, Settings
+    from rosprivacy.assembly import Result
+    from rosprivacy.settings import Settings
 
 
 class ReportFormat(StrEnum):
@@ -102,7 +103,7 @@ def report(
 
     It ends with 0 when the report is written, whatever that says; a gate in CI is ``analyze``.
     """
-    from rosprivacy.assembly import Settings
+    from rosprivacy.settings import Settings
 
     settings = Settings(
         add=tuple(add or ()),

@@ -126,7 +126,8 @@ def graph(
     max_bytes: MaxBytes = 64 * 2**20,
 ) -> None:
     """Draw the ROS graph, or where personal data can go in it. Gives no verdict: exit code 0 once it is drawn."""
-    from rosprivacy.assembly import Settings, run
+    from rosprivacy.assembly import run
+    from rosprivacy.settings import Settings
 
     if not policies:
         raise typer.BadParameter("name at least one policy: a file, a folder or a glob", param_hint="POLICY")

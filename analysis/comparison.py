@@ -1,0 +1,97 @@
+"""Two states of a system -> what is new, gone and changed, whatever the names that change at every start.
+
+In: facts by key, before and after. Out: ``Changes``. Nodes that a program makes for itself have names with a process
+id or an address in them (``transform_listener_impl_5591c2d0``, ``rviz2_31337``). What has no counterpart of the very
+same name is matched by a name without these.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+Key = tuple[str, ...]
+Record = dict[str, Any]
+# At the end of a part of a name: an address (hexadecimal, with a digit), or a number of three digits or more.
+_MADE_UP = re.compile(r"(?:_(?:(?=[a-f]*[0-9])[0-9a-f]{8,}|[0-9]{3,}))+(?=/|$)")
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """Something that is there before or after, or both and not the same.
+
+    Attributes
+    ----------
+    key
+        After, if it is there.
+    before, after
+        What is said of it; None where it is not there.
+    """
+
+    key: Key
+    before: Record | None
+    after: Record | None
+
+
+@dataclass(frozen=True, slots=True)
+class Changes:
+    """What differs, each sorted by key."""
+
+    new: tuple[Change, ...]
+    gone: tuple[Change, ...]
+    changed: tuple[Change, ...]
+
+    def __bool__(self) -> bool:
+        return bool(self.new or self.gone or self.changed)
+
+
+def normalised(name: str) -> str:
+    """Return a name without what differs at every start.
+
+    >>> normalised("/transform_listener_impl_5591c2d0/get_parameters"), normalised("/rviz2_31337")
+    ('/transform_listener_impl_*/get_parameters', '/rviz2_*')
+    >>> normalised("/camera_1"), normalised("/feedface")
+    ('/camera_1', '/feedface')
+    """
+    return _MADE_UP.sub("_*", name)
+
+
+def compare(before: Mapping[Key, Record], after: Mapping[Key, Record]) -> Changes:
+    """Return what differs between two states; linear in their size, but for sorting."""
+    both = before.keys() & after.keys()
+    pairs = [(key, key) for key in both]
+    waiting: dict[Key, list[Key]] = defaultdict(list)
+    for key in sorted(before.keys() - both):
+        waiting[_plain(key)].append(key)
+    new = []
+    for key in sorted(after.keys() - both):
+        known = waiting.get(_plain(key))
+        if known:
+            pairs.append((known.pop(0), key))
+        else:
+            new.append(Change(key, None, after[key]))
+    gone = [Change(key, before[key], None) for key in sorted(key for keys in waiting.values() for key in keys)]
+    changed = [
+        Change(theirs, before[ours], after[theirs])
+        for ours, theirs in sorted(pairs, key=lambda pair: pair[1])
+        if _same(before[ours]) != _same(after[theirs])
+    ]
+    return Changes(tuple(new), tuple(gone), tuple(changed))
+
+
+def _plain(key: Iterable[str]) -> Key:
+    return tuple(map(normalised, key))
+
+
+def _same(value: Any) -> Any:
+    """A record with normalised names in it."""
+    if isinstance(value, str):
+        return normalised(value)
+    if isinstance(value, dict):
+        return {key: _same(inside) for key, inside in value.items()}
+    return [_same(inside) for inside in value] if isinstance(value, (list, tuple)) else value

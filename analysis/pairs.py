@@ -1,0 +1,217 @@
+"""Which sources reach which leaks, for all sources at once: the kernel with one bit per source (rules S8, S10).
+
+In: a spread, and where each kind of finding can be. Out: pairs, as arrays. A word has 64 bits, so one pass of the
+kernel does 64 sources of a category; where the category is made of others, or pseudonymised on the way, a source takes
+a bit for each form in which its data can be. No way is looked for: that is done for the pairs that are shown.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rosprivacy.analysis.flow import WORD, fixpoint
+from rosprivacy.analysis.model import DISCLOSURE
+from rosprivacy.analysis.network import Network, as_bits
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from numpy.typing import NDArray
+
+    from rosprivacy.analysis.outside import Concern
+    from rosprivacy.analysis.spread import Spread
+
+    Indices = NDArray[np.int64]
+    Bits = NDArray[np.uint64]
+    Flags = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True)
+class Pairs:
+    """The pairs of one kind and category: what a finding is without its way.
+
+    Attributes
+    ----------
+    category
+        Its number.
+    sources, leaks
+        Vertices, shape (n,), sorted by source and leak.
+    pseudonymised, dismissed
+        Shape (n,).
+    """
+
+    kind: str
+    category: int
+    sources: Indices
+    leaks: Indices
+    pseudonymised: Flags
+    dismissed: Flags
+
+
+def pairs(found: Spread, kinds: Sequence[Concern], mask: int) -> Iterator[Pairs]:
+    """Return all pairs, by kind and category.
+
+    Parameters
+    ----------
+    mask
+        Bits of the categories that the answer is about.
+
+    Notes
+    -----
+    Two runs of the kernel per category and 64 bits of sources: one that stops at leaks of the category, one that does
+    not.
+    """
+    k = len(found.categories)
+    ends = [as_bits(found, len(found.graph.elements), concern.bits, 0) for concern in kinds]
+    network: Network | None = None
+    for i in range(k):
+        leaks = [np.flatnonzero(_has(bits, i)) for bits in ends]
+        if not mask >> i & 1 or not any(len(some) for some in leaks):
+            continue
+        network = network or Network.of(found)
+        yield from _Category(found, network, i).pairs(kinds, leaks)
+
+
+def _has(bits: Bits, bit: int) -> Flags:
+    """Whether a bit is set, by row."""
+    return (bits[:, bit // WORD] >> np.uint64(bit % WORD) & np.uint64(1)).astype(bool)
+
+
+class _Category:
+    """One category: from whom it can come, and in which forms its data can be on the way.
+
+    A form is a bit of the spread: the category itself or one that it can be made of, as it is or pseudonymised.
+    """
+
+    def __init__(self, found: Spread, network: Network, category: int) -> None:
+        self._network = network
+        self._number = category
+        k = len(found.categories)
+        self._own = (category, category + k)
+        steps = {(before, after) for pairs in found.derives.values() for before, after in pairs}
+        back = _closure({category, category + k}, {(after, before) for before, after in steps})
+        ahead = _closure({form for form in back if form < k}, steps)  # a form that nothing turns into is none
+        self._forms = sorted(back & ahead)
+        both = sum(1 << form for form in self._forms)
+        self._sources = np.array(sorted(v for v in found.facts if found.begins(v) & both), np.int64)
+        self._leaks = as_bits(found, len(network.keep), found.leaks, 0)
+        self._is_leak = _has(self._leaks, category)
+        self._derivations = network.derivations[np.isin(network.derivations[:, 1:], self._forms).all(axis=1)]
+        self._begins = {source: found.begins(source) for source in self._sources.tolist()}
+        flows: dict[int, list[int]] = {vertex: [] for vertex in self._sources.tolist()}
+        for number, index in enumerate(network.special):
+            source = found.graph.flows[index].source
+            if source in flows and found.flow_emits.get(index, 0) & both:
+                flows[source].append(network.count + number)
+        self._flows = flows
+
+    def pairs(self, kinds: Sequence[Concern], leaks: Sequence[Indices]) -> Iterator[Pairs]:
+        """The pairs of each kind."""
+        at_once = max(1, WORD // len(self._forms))
+        rows: list[list[tuple[Indices, Indices, Flags, Flags]]] = [[] for _ in kinds]
+        disclosed = next(number for number, concern in enumerate(kinds) if concern.kind == DISCLOSURE)
+        everywhere = np.unique(np.concatenate(leaks))
+        for start in range(0, len(self._sources), at_once):
+            sources = self._sources[start : start + at_once]
+            through = self._reached(sources, everywhere, stop=False)
+            free = self._reached(sources, leaks[disclosed], stop=True) if len(leaks[disclosed]) else through
+            for number, concern in enumerate(kinds):
+                if len(leaks[number]):
+                    ways = (free, through) if concern.kind == DISCLOSURE else (through, through)
+                    rows[number].append(_rows(sources, leaks[number], *ways))
+        for concern, found in zip(kinds, rows, strict=True):
+            if found:
+                columns = [np.concatenate(column) for column in zip(*found, strict=True)]
+                if len(columns[0]):
+                    yield Pairs(concern.kind, self._number, *columns)
+
+    def _reached(self, sources: Indices, leaks: Indices, *, stop: bool) -> tuple[Flags, Flags, Indices]:
+        """(as it is, pseudonymised): shape (leaks, sources), whether data is there; and the leaks."""
+        network, n = self._network, len(sources)
+        words = -(-n * len(self._forms) // WORD)
+        emitted, keep = np.zeros((2, len(network.keep), words), np.uint64)
+        there = np.zeros_like(emitted)  # at the beginning, what sources bring in
+        for at, form in enumerate(self._forms):
+            keeps = _has(network.keep, form)
+            if stop and form in self._own:
+                keeps &= ~self._is_leak
+            for word, bits in _split(((1 << n) - 1) << n * at):
+                keep[keeps, word] |= bits
+            begins = _has(network.emitted, form)
+            for number, source in enumerate(sources.tolist()):
+                ((word, bit),) = _split(1 << n * at + number)
+                starts = [vertex for vertex in (source, *self._flows[source]) if begins[vertex]]
+                emitted[starts, word] |= bit
+                if self._begins[source] >> form & 1:
+                    there[source, word] |= bit
+        derivations, made = self._derived(n, stop=stop)
+        arrives, leaves = fixpoint(network.edges, emitted, keep, derivations)
+        there |= arrives
+        there |= leaves
+        vertices, before, after = made.T  # what is made at a leak ends there, but gets there
+        fired = arrives[vertices, before // WORD] >> (before % WORD).astype(np.uint64) & np.uint64(1)
+        np.bitwise_or.at(there, (vertices, after // WORD), fired << (after % WORD).astype(np.uint64))
+        return self._at(there[leaks], 0, n), self._at(there[leaks], 1, n), leaks
+
+    def _derived(self, n: int, *, stop: bool) -> tuple[Indices, Indices]:
+        """Derivations for each source: those that go on, and those that stop at a leak once they are made."""
+        rows = self._derivations
+        made = np.zeros(len(rows), bool)
+        if stop:
+            at_leak = self._is_leak[rows[:, 0]]
+            rows = rows[~(at_leak & np.isin(rows[:, 1], self._own))]
+            made = self._is_leak[rows[:, 0]] & np.isin(rows[:, 2], self._own)
+        place = np.searchsorted(self._forms, rows[:, 1:]) * n
+        number = np.tile(np.arange(n), len(rows))[:, None]
+        each = np.column_stack([np.repeat(rows[:, 0], n), np.repeat(place, n, axis=0) + number]).astype(np.int64)
+        ends = np.repeat(made, n)
+        return each[~ends], each[ends]
+
+    def _at(self, there: Bits, plane: int, n: int) -> Flags:
+        if self._own[plane] not in self._forms:
+            return np.zeros((len(there), n), bool)
+        first = n * self._forms.index(self._own[plane])
+        return np.column_stack([_has(there, first + number) for number in range(n)])
+
+
+def _split(bits: int) -> Iterator[tuple[int, np.uint64]]:
+    """A number of any length -> (number of the word, word), where there is something in it."""
+    word = 0
+    while bits:
+        if part := bits & ((1 << WORD) - 1):
+            yield word, np.uint64(part)
+        bits >>= WORD
+        word += 1
+
+
+def _closure(start: set[int], steps: set[tuple[int, int]]) -> set[int]:
+    """What can be got to by some steps."""
+    found: set[int] = set()
+    new = start
+    while new:
+        found |= new
+        new = {after for before, after in steps if before in new} - found
+    return found
+
+
+def _rows(
+    sources: Indices,
+    leaks: Indices,
+    free: tuple[Flags, Flags, Indices],
+    through: tuple[Flags, Flags, Indices],
+) -> tuple[Indices, Indices, Flags, Flags]:
+    """The pairs, as a finding would be shown: not through another leak before through one, as it is before hidden."""
+    clear, hidden = (_of(free, plane, leaks) for plane in (0, 1))
+    anyway = _of(through, 0, leaks) | _of(through, 1, leaks)
+    source, leak = np.nonzero(anyway.T)
+    dismissed = ~(clear | hidden)
+    shown_clear = clear | (dismissed & _of(through, 0, leaks))
+    return sources[source], leaks[leak], ~shown_clear[leak, source], dismissed[leak, source]
+
+
+def _of(reached: tuple[Flags, Flags, Indices], plane: int, leaks: Indices) -> Flags:
+    flags: Flags = (reached[0], reached[1])[plane]
+    return flags[np.searchsorted(reached[2], leaks)]

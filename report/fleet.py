@@ -1,0 +1,104 @@
+"""The JSON document of a fleet: how many robots, which are alike, patterns of findings, robots that differ.
+
+In: the document of the graph in which a robot stands for all that are alike. Out: the same with ``fleet``, and with
+counts of the whole fleet.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.report.document import element_dict
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rosprivacy.analysis.model import Analysis
+    from rosprivacy.analysis.patterns import Deviant, FleetView, Likeness, Pattern, Share
+
+
+def fleet_document(told: dict[str, Any], analysis: Analysis, view: FleetView) -> dict[str, Any]:
+    """Return the document of a fleet.
+
+    Parameters
+    ----------
+    told
+        Of the analysis as ``FleetView.shown`` gives it.
+    analysis
+        Of the whole graph.
+    """
+    counts = _counts(analysis, view.likeness)
+    assumptions = dict(told["assumptions"])
+    if assumptions["standard_channels"]:
+        assumptions["standard_channels"] = {**assumptions["standard_channels"], "taken": counts["standard_channels"]}
+    return {**told, **counts, "assumptions": assumptions, "fleet": _fleet(view)}
+
+
+def _counts(analysis: Analysis, likeness: Likeness) -> dict[str, int]:
+    """Elements, flows and standard channels of the fleet, not of its graph."""
+    elements = analysis.graph.elements
+
+    def weight(source: int, target: int) -> int:
+        a, b = elements[source].robot, elements[target].robot
+        if a == b or not likeness.is_robot(a) or not likeness.is_robot(b):
+            return likeness.weight(a) * likeness.weight(b) if a != b else likeness.weight(a)
+        if likeness.second.get(b) == a:
+            return likeness.weight(a) * (likeness.weight(a) - 1)
+        return likeness.weight(a) * likeness.weight(b)
+
+    identities = {element.identity for element in elements}
+    taken = {elements[vertex].identity for vertex in analysis.spread.standard}
+    return {
+        "flows": sum(weight(flow.source, flow.target) for flow in analysis.graph.flows),
+        "denied_flows": sum(weight(flow.source, flow.target) for flow in analysis.graph.denied),
+        "elements": sum(likeness.weight(robot) for robot, *_ in identities),
+        "standard_channels": sum(likeness.weight(robot) for robot, *_ in taken),
+    }
+
+
+def _fleet(view: FleetView) -> dict[str, Any]:
+    likeness = view.likeness
+    models = Counter(dict.fromkeys(sorted(set(likeness.models.values())), 0))
+    for robot, model in likeness.models.items():
+        models[model] += likeness.weight(robot)
+    return {
+        "robots": sum(models.values()),
+        "models": dict(models),
+        "alike": [
+            {"robot": robot, "model": likeness.models[robot], "robots": list(robots)}
+            for robot, robots in sorted(likeness.members.items())
+        ],
+        "patterns": [_pattern(pattern) for pattern in view.patterns],
+        "deviants": [_deviant(deviant) for deviant in view.deviants],
+    }
+
+
+def _pattern(pattern: Pattern) -> dict[str, Any]:
+    return {
+        "id": pattern.id,
+        "finding": pattern.finding.id,
+        "across": pattern.across,
+        "findings": pattern.count,
+        "dismissed": pattern.dismissed,
+        "pseudonymised": pattern.pseudonymised,
+        "robots": list(pattern.robots),
+    }
+
+
+def _deviant(deviant: Deviant) -> dict[str, Any]:
+    return {
+        "robots": list(deviant.robots),
+        "model": deviant.model,
+        "more": _shares(deviant.more),
+        "fewer": _shares(deviant.fewer),
+        "more_open": [element_dict(element) for element in deviant.more_open],
+        "fewer_open": [element_dict(element) for element in deviant.fewer_open],
+    }
+
+
+def _shares(shares: Iterable[Share]) -> list[dict[str, Any]]:
+    return [
+        {"pattern": s.pattern, "ends": s.ends, "dismissed": s.dismissed, "pseudonymised": s.pseudonymised}
+        for s in shares
+    ]

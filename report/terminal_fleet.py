@@ -1,0 +1,74 @@
+"""A fleet in the report for the terminal: how many robots, on how many each finding is, which robots differ.
+
+In: a JSON document of the contract. Out: lines.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.errors import shown
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+Line = tuple[str, str]  # text, style
+NAMED = 5  # robots that are named
+
+
+def fleet_lines(report: Mapping[str, Any]) -> Iterator[Line]:
+    """Return how many robots there are, and which differ from most of their model."""
+    fleet = report.get("fleet")
+    if not fleet:
+        return
+    models = ", ".join(f"{count} {model}" for model, count in fleet["models"].items() if model)
+    yield f"{_robots(fleet['robots'])}{f' ({models})' if models else ''}; each finding below stands for all like it", ""
+    titles = {f["id"]: f"{f['category']}: {f['source']['name']} -> {f['leak']['name']}" for f in report["findings"]}
+    titles = {p["id"]: titles[p["finding"]] for p in fleet["patterns"]}
+    for deviant in fleet["deviants"]:
+        yield "", ""
+        yield f"{named(deviant['robots'])}: not as most of model {deviant['model']}", "bold yellow"
+        for word, key in (("more", "more"), ("not", "fewer")):
+            for share in deviant[key]:
+                yield f"   {word}: {_form(share)}{shown(titles[share['pattern']])}", ""
+        for word, key in (("more to review", "more_open"), ("not to review", "fewer_open")):
+            if deviant[key]:
+                yield f"   {word}: {named([element['name'] for element in deviant[key]])}", ""
+
+
+def robots_of(report: Mapping[str, Any], finding: Mapping[str, Any]) -> Iterator[Line]:
+    """Return on how many robots a finding is."""
+    fleet = report.get("fleet")
+    pattern = next((p for p in fleet["patterns"] if p["finding"] == finding["id"]), None) if fleet else None
+    if not fleet or not pattern or not pattern["robots"]:
+        return
+    how_many = f"{len(pattern['robots'])} of {_robots(fleet['robots'])}"
+    across = f", from one to another, {pattern['findings']:,} times" if pattern["across"] else ""
+    parts = [
+        f"{pattern[key]:,} {what}"
+        for key, what in (("dismissed", "only through another leak"), ("pseudonymised", "pseudonymised"))
+        if 0 < pattern[key] < pattern["findings"]
+    ]
+    more = f" ({', '.join(parts)})" if parts else ""
+    yield f"   on {how_many}{across}{more}: {named(pattern['robots'])}", ""
+
+
+def named(names: Iterable[str]) -> str:
+    """Return some names, and how many more there are.
+
+    >>> named(["a", "b", "c", "d", "e", "f"])
+    'a, b, c, d, e and 1 more'
+    """
+    everything = list(names)
+    more = f" and {len(everything) - NAMED} more" if len(everything) > NAMED else ""
+    return shown(", ".join(everything[:NAMED])) + more
+
+
+def _form(share: Mapping[str, Any]) -> str:
+    where = "ends here, " if share["ends"] else ""
+    dismissed = "only through another leak, " if share["dismissed"] else ""
+    return where + dismissed + ("pseudonymised " if share["pseudonymised"] else "")
+
+
+def _robots(number: int) -> str:
+    return f"{number:,} robot" if number == 1 else f"{number:,} robots"

@@ -1,0 +1,121 @@
+"""What an answer rests on (rule S12): files with their hashes, the view, what is taken so where nobody says anything.
+
+In: what was read and asked. Out: the ``assumptions`` of a document, and what a database keeps of them.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import rosprivacy
+from rosprivacy.analysis.model import Diagnostic, Place, Severity
+from rosprivacy.ingest.countries import countries
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from rosprivacy.analysis.decisions import Decisions
+    from rosprivacy.analysis.model import Analysis, FlowGraph, Policy
+    from rosprivacy.ingest.labels import Labels
+    from rosprivacy.ontology.vocabulary import Vocabulary
+    from rosprivacy.settings import Settings
+
+
+def own_assumptions(graph: FlowGraph, settings: Settings, vocabulary: Vocabulary) -> dict[str, Any]:
+    """Return what is assumed whatever is read."""
+    return {
+        "rosprivacy": rosprivacy.__version__,
+        "view": graph.view,
+        "ontologies": [{"file": name, "sha256": digest} for name, digest in vocabulary.sources],
+        "law_as_of": vocabulary.law_as_of,
+        "unlabelled_node": "conduit, not reviewed",
+        "unlabelled_channel": "sensitive, not reviewed",
+        "categories_asked": list(settings.categories) or "all",
+        "article9_only": settings.article9,
+        "data_types_asked": list(settings.data_types) or "all",
+        "paths": settings.paths,
+        "max_paths": settings.max_paths,
+    }
+
+
+def what_it_rests_on(
+    graph: FlowGraph,
+    sources: Iterable[tuple[str, str]],
+    files: Iterable[Labels],
+    analysis: Analysis,
+    settings: Settings,
+    vocabulary: Vocabulary,
+) -> dict[str, Any]:
+    """Return the assumptions of a report (rule S12)."""
+    hashes = [(file, {"file": file.file, "sha256": file.sha256}) for file in files]
+    standard = [entry for file, entry in hashes if file.shipped and file.file == settings.standard_channels]
+    return {
+        **own_assumptions(graph, settings, vocabulary),
+        **_adequacy(analysis),
+        "policies": [{"file": name, "sha256": digest} for name, digest in sources],
+        "labels": [entry for _, entry in hashes if entry not in standard],
+        "standard_channels": {**standard[0], "taken": analysis.standard_channels} if standard else None,
+    }
+
+
+def sources_of(system: Iterable[Policy]) -> list[tuple[str, str]]:
+    """Return (file, SHA-256) of policies and all that they include, sorted."""
+    return sorted({source for policy in system for source in policy.sources})
+
+
+def _adequacy(analysis: Analysis) -> dict[str, str]:
+    """The date of the list of countries, where it counts (rule S10)."""
+    return {"countries_as_of": countries().as_of} if any(facts.country for facts in analysis.outside.values()) else {}
+
+
+def assumed_decisions(decisions: Decisions | None) -> dict[str, Any]:
+    """Return which decisions an answer takes into account, and on which day."""
+    if decisions is None:
+        return {}
+    return {"decisions": {"file": decisions.file, "sha256": decisions.sha256, "today": decisions.today}}
+
+
+def remembered(assumptions: Mapping[str, Any], diagnostics: Iterable[Diagnostic]) -> dict[str, str]:
+    """Return what the answer rests on as properties of a ``Robot``."""
+    return {
+        "assumptions": json.dumps(assumptions, sort_keys=True),
+        "diagnostics": json.dumps([_as_dict(diagnostic) for diagnostic in diagnostics]),
+    }
+
+
+def _as_dict(diagnostic: Diagnostic) -> dict[str, Any]:
+    place = diagnostic.place
+    return {"file": place.file, "line": place.line, "severity": diagnostic.severity, "message": diagnostic.message}
+
+
+def put_together(
+    robots: Iterable[Mapping[str, Any]], analysis: Analysis
+) -> tuple[tuple[Diagnostic, ...], dict[str, Any]]:
+    """Return what the robots of a database were loaded with, put together (rule S12)."""
+    robots = list(robots)
+    loaded = [json.loads(robot["assumptions"]) for robot in robots if robot.get("assumptions")]
+    count = sum(bool(robot.get("assumptions")) and not robot.get("shared") for robot in robots)
+    files: dict[str, list[dict[str, str]]] = {}
+    for kind in ("policies", "labels", "fleet"):
+        named = {(entry["file"], entry["sha256"]) for said in loaded for entry in said.get(kind, ())}
+        if named or kind != "fleet":
+            files[kind] = [{"file": name, "sha256": digest} for name, digest in sorted(named)]
+    standard = [said["standard_channels"] for said in loaded]
+    distinct = {(entry["file"], entry["sha256"]) for entry in standard if entry}
+    taken = [{"file": name, "sha256": digest} for name, digest in sorted(distinct)]
+    diagnostics = {
+        Diagnostic(Place(d["file"], d["line"]), Severity(d["severity"]), d["message"])
+        for robot in robots
+        for d in json.loads(robot.get("diagnostics") or "[]")
+    }
+    assumptions = {
+        **_adequacy(analysis),
+        **files,
+        "standard_channels": {**taken[0], "taken": analysis.standard_channels} if taken else None,
+        "database": {"robots": count},
+    }
+    if len(taken) > 1 or (taken and not all(standard)):
+        message = "robots were loaded with different files of standard channels; one of them is named"
+        diagnostics.add(Diagnostic(Place("the database", 0), Severity.WARNING, message))
+    return tuple(sorted(diagnostics, key=lambda d: (d.place.file, d.place.line, d.message))), assumptions

@@ -1,0 +1,145 @@
+"""``rosprivacy diff``: what is new, gone and changed between two states of a system; an exit code for CI."""
+
+from __future__ import annotations
+
+import json
+from enum import StrEnum
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from rosprivacy.analysis.errors import GraphError, InputErrors, shown
+from rosprivacy.cli_options import (
+    Format,
+    IncludeRoot,
+    LabelFiles,
+    MaxBytes,
+    NoStandard,
+    Output,
+    Standard,
+    View,
+    ViewChosen,
+)
+from rosprivacy.cli_output import emit, progress_of
+
+if TYPE_CHECKING:
+    from rosprivacy.report.snapshot import Snapshot
+    from rosprivacy.settings import Settings
+
+MAX_BYTES = 2**30
+
+
+class FailOnChange(StrEnum):
+    """Which differences end with exit code 1."""
+
+    worse = "worse"
+    any = "any"
+    never = "never"
+
+
+State = "a policy, a folder of them, a fleet file, a saved analysis or a saved graph."
+
+
+def diff(
+    old: Annotated[str, typer.Argument(metavar="OLD", show_default=False, help=f"Before: {State}")],
+    new: Annotated[str, typer.Argument(metavar="NEW", show_default=False, help="After.")],
+    labels: LabelFiles = None,
+    old_labels: Annotated[
+        list[str] | None,
+        typer.Option(metavar="FILE", help="Label file for OLD, in place of --labels.", show_default=False),
+    ] = None,
+    format: Annotated[Format, typer.Option("--format", "-f", help="Of the report.")] = Format.text,  # noqa: A002 - the option's name
+    output: Output = None,
+    view: ViewChosen = View.declared,
+    standard_channels: Standard = "rosprivacy:standard",
+    no_standard_channels: NoStandard = False,
+    fail_on: Annotated[
+        FailOnChange, typer.Option(help="Exit with 1 on a finding that is new or worse, or on any difference.")
+    ] = FailOnChange.worse,
+    include_root: IncludeRoot = None,
+    max_bytes: MaxBytes = 64 * 2**20,
+) -> None:
+    """Compare two states: grants, elements and findings that are new, gone or changed.
+
+    Nodes whose names change at every start (a process id, an address) are matched without these.
+    """
+    from rosprivacy.report.difference import difference, difference_lines, differs
+    from rosprivacy.report.document import as_text
+    from rosprivacy.settings import Settings
+
+    settings = Settings(
+        view=view.value,
+        standard_channels=None if no_standard_channels else standard_channels,
+        include_root=str(include_root) if include_root else None,
+        max_bytes=max_bytes,
+        progress=progress_of,
+    )
+    given = tuple(labels or ())
+    before = _snapshot(old, tuple(old_labels) if old_labels else given, settings)
+    document = difference(before, _snapshot(new, given, settings))
+    text = "".join(f"{line}\n" for line in difference_lines(document))
+    emit(as_text(document) if format is Format.json else text, output)
+    failed = document["worse"] if fail_on is FailOnChange.worse else differs(document)
+    raise typer.Exit(1 if failed and fail_on is not FailOnChange.never else 0)
+
+
+def _snapshot(state: str, labels: tuple[str, ...], settings: Settings) -> Snapshot:
+    """Read a state, whatever it is."""
+    from dataclasses import replace
+
+    from rosprivacy.assembly import run
+    from rosprivacy.fleets import run_fleet
+    from rosprivacy.report.snapshot import snapshot
+
+    kind = _kind(state)
+    if kind == "analysis":
+        saved = _saved_analysis(state)
+        try:
+            return snapshot(saved, None)
+        except (KeyError, TypeError, AttributeError, ValueError) as error:
+            what = f"a damaged analysis: {shown(f'{type(error).__name__} at {error}')}"
+            raise InputErrors([GraphError(state, 1, what, "save it again with analyze --format json")]) from None
+    if kind == "fleet":
+        result = run_fleet(state, settings)
+    elif kind == "graph":
+        result = run((), labels, replace(settings, add=(state,)))
+    else:
+        result = run((state,), labels, settings)
+    return snapshot(result.document(), result.policies)
+
+
+def _kind(state: str) -> str:
+    """What a file is, by how it begins; folders and globs hold policies."""
+    from pathlib import Path
+
+    try:
+        path = Path(state)
+        head = path.read_bytes()[:4096] if path.is_file() else b""
+    except (OSError, ValueError):
+        return "policies"
+    if b'"rosprivacy.analysis/' in head:
+        return "analysis"
+    if b'"rosprivacy.graph/' in head:
+        return "graph"
+    return "policies" if head.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<") or not head else "fleet"
+
+
+def _saved_analysis(file: str) -> dict[str, object]:
+    from rosprivacy.ingest.regular import read_regular
+    from rosprivacy.report.document import FORMAT
+
+    def fail(line: int, problem: str, hint: str) -> GraphError:
+        return GraphError(file, line, problem, hint)
+
+    try:
+        document = json.loads(read_regular(file, MAX_BYTES, fail))
+    except GraphError as error:
+        raise InputErrors([error]) from None
+    except (ValueError, RecursionError) as error:
+        raise InputErrors([fail(getattr(error, "lineno", 1), "not JSON", "save it again")]) from None
+    needed = ("verdict", "findings", "open", "carries", "roles")
+    lacking = [key for key in needed if not isinstance(document, dict) or key not in document]
+    if lacking or document.get("format") != FORMAT:
+        what = f"no saved analysis ({FORMAT}): it lacks {', '.join(lacking)}" if lacking else f"not {FORMAT}"
+        raise InputErrors([fail(1, shown(what), "save one with analyze --format json")])
+    return dict(document)

@@ -1,0 +1,192 @@
+"""The way of a fleet through the house: fleet file -> each kind of robot once -> one graph -> analysis.
+
+In: a fleet file. Out: a ``Result`` with ``fleet``. Robots that are alike are read and analysed once.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.errors import InputError, InputErrors
+from rosprivacy.analysis.findings import Options, analyse
+from rosprivacy.analysis.groups import Groups
+from rosprivacy.analysis.patterns import FleetView
+from rosprivacy.asked import asked_for
+from rosprivacy.assembly import Result
+from rosprivacy.assumptions import remembered, sources_of, what_it_rests_on
+from rosprivacy.ingest.alike import Alike, alike
+from rosprivacy.ingest.binding import bind
+from rosprivacy.ingest.domains import Member, stripped
+from rosprivacy.ingest.files import read_policies
+from rosprivacy.ingest.fleet import Fleet, Robot, read_fleet
+from rosprivacy.ingest.fleetrows import FleetRows
+from rosprivacy.ingest.graph import build
+from rosprivacy.ingest.labels import Labels, read_labels
+from rosprivacy.ingest.outside import extend
+from rosprivacy.ingest.parts import Part
+from rosprivacy.ingest.placing import Placed, place
+from rosprivacy.ontology.vocabulary import load
+
+if TYPE_CHECKING:
+    from rosprivacy.analysis.model import Diagnostic
+    from rosprivacy.ontology.vocabulary import Vocabulary
+    from rosprivacy.settings import Settings
+
+
+@dataclass(frozen=True, slots=True)
+class Read:
+    """A fleet that was read, before it is analysed.
+
+    Attributes
+    ----------
+    members
+        By id of the first robot of each group.
+    """
+
+    fleet: Fleet
+    groups: tuple[Alike, ...]
+    members: dict[str, Member]
+    placed: Placed
+    labels: tuple[Labels, ...]
+    diagnostics: tuple[Diagnostic, ...]
+
+
+def run_fleet(file: str, settings: Settings) -> Result:
+    """Read a fleet, analyse it, and keep what the answer rests on.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the input, one line each.
+    """
+    vocabulary = load(ontologies=settings.ontologies)
+    return analysed(read_all(file, vocabulary, settings), vocabulary, settings)
+
+
+def analysed(read: Read, vocabulary: Vocabulary, settings: Settings, *, every: bool = False) -> Result:
+    """Analyse a fleet that was read.
+
+    Parameters
+    ----------
+    every
+        Make every finding of the graph, not one of each pattern.
+
+    Raises
+    ------
+    InputErrors
+        If labels contradict each other, or a category that is asked for is not known.
+    """
+    asked = asked_for(vocabulary, settings)
+    placed = read.placed
+    groups = None if every else Groups(placed.likeness)
+    options = Options(asked, settings.paths, settings.max_paths, choose=groups)
+    analysis = analyse(placed.graph, placed.bound, vocabulary.hierarchy, options)
+    policies = [policy for member in read.members.values() for policy in member.policies]
+    assumptions = what_it_rests_on(placed.graph, sources_of(policies), read.labels, analysis, settings, vocabulary)
+    assumptions["fleet"] = [{"file": name, "sha256": digest} for name, digest in read.fleet.sources]
+    system = tuple({policy.file: policy for policy in policies}.values())
+    view = groups.view(analysis) if groups else FleetView.of(analysis, placed.likeness)
+    return Result(analysis, placed.bound, vocabulary, system, read.diagnostics, assumptions, read.labels, fleet=view)
+
+
+def rows_of_fleet(read: Read, result: Result, settings: Settings) -> FleetRows:
+    """Return the rows of all robots for the database; with each goes what its part of the answer rests on.
+
+    Parameters
+    ----------
+    result
+        With every finding, about all categories.
+    """
+    more = {}
+    for group in read.groups:
+        member = read.members[group.robots[0].id]
+        said = what_it_rests_on(
+            result.analysis.graph,
+            sources_of(member.policies),
+            member.files,
+            result.analysis,
+            settings,
+            result.vocabulary,
+        )
+        more[group.robots[0].id] = remembered(said, member.diagnostics)
+    everything = {**result.assumptions, "policies": [], "labels": []}
+    more[read.fleet.name] = remembered(everything, ())
+    return FleetRows(read.placed, result.analysis, result.vocabulary, more)
+
+
+def read_all(file: str, vocabulary: Vocabulary, settings: Settings) -> Read:
+    """Read a fleet file and what it names, each kind of robot once.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the input, one line each.
+    """
+    fleet = read_fleet(file, vocabulary)
+    groups = alike(fleet)
+    reader = _Reader(vocabulary, settings)
+    members = {}
+    problems: list[InputError] = []
+    for group in groups:
+        try:
+            members[group.robots[0].id] = reader.member(group.robots[0])
+        except InputErrors as error:
+            problems += error.errors
+    if problems:
+        raise InputErrors(problems)
+    placed = place(fleet, groups, members, settings.view)
+    labels = tuple(sorted(reader.labels.values(), key=lambda labels: (labels.file, labels.own)))
+    diagnostics = dict.fromkeys(d for member in members.values() for d in member.diagnostics)
+    return Read(fleet, groups, members, placed, labels, tuple(diagnostics))
+
+
+class _Reader:
+    """Reads policies and label files, each once, and makes the graph of one robot of them."""
+
+    def __init__(self, vocabulary: Vocabulary, settings: Settings) -> None:
+        self.labels: dict[tuple[str, bool], Labels] = {}
+        self._vocabulary = vocabulary
+        self._settings = settings
+        self._members: dict[object, Member] = {}
+
+    def member(self, robot: Robot) -> Member:
+        """Return a robot with its graph."""
+        key = (robot.policies, robot.labels, robot.own, robot.strip)
+        if key not in self._members:
+            self._members[key] = self._made(robot)
+        return replace(self._members[key], robot=robot)
+
+    def _made(self, robot: Robot) -> Member:
+        settings = self._settings
+        files = self._read_labels(robot)
+        policies, said = read_policies(
+            robot.policies,
+            include_root=settings.include_root,
+            max_bytes=settings.max_bytes,
+            progress=settings.progress,
+        )
+        told = [*(d for policy in policies for d in policy.diagnostics), *said]
+        told += [d for labels in files for d in labels.diagnostics]
+        graph, full = stripped(build(policies, settings.view), robot.strip)
+        extended = extend(graph, files)
+        part = Part.of(extended, bind(extended, files))
+        return Member(robot, policies, part, full, graph.profiles, tuple(files), tuple(dict.fromkeys(told)))
+
+    def _read_labels(self, robot: Robot) -> list[Labels]:
+        settings = self._settings
+        standard = settings.standard_channels
+        wanted = [(file, False) for file in ([standard] if standard else []) + list(robot.labels)]
+        wanted += [(file, True) for file in robot.own]
+        problems: list[InputError] = []
+        for file, own in [key for key in dict.fromkeys(wanted) if key not in self.labels]:
+            shipped = file == standard and file not in (*robot.labels, *robot.own)
+            try:
+                self.labels[file, own] = read_labels(
+                    file, self._vocabulary, category=settings.category, shipped=shipped, own=own
+                )
+            except InputErrors as error:
+                problems += error.errors
+        if problems:
+            raise InputErrors(problems)
+        return [self.labels[key] for key in dict.fromkeys(wanted)]

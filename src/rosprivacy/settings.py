@@ -1,0 +1,67 @@
+"""How to read and what to ask: what the options of the command line mean to the library."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.findings import MAX_PATHS
+from rosprivacy.analysis.paths import WITNESS
+from rosprivacy.ingest.graph import DECLARED
+from rosprivacy.ingest.labels import STANDARD
+from rosprivacy.ingest.xinclude import MAX_BYTES
+from rosprivacy.ontology.vocabulary import TOP
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """How to read and what to ask.
+
+    Attributes
+    ----------
+    add
+        Saved graphs to add to.
+    view
+        ``declared`` or ``enforced``, rule S6.
+    categories
+        Names; the answer is about these and narrower ones. Empty for all.
+    article9
+        Answer only for kinds that fall or may fall under Article 9(1) GDPR, or of which that is not known.
+    data_types
+        Answer only for kinds that are represented so, such as video. Empty for all.
+    ontologies
+        Users' own, beside the shipped one.
+    category
+        What the paper's six lists are about.
+    standard_channels
+        The label file of the standard channels, or None to take none as mundane (rule S13).
+    paths, max_paths
+        See ``Options``.
+    include_root, max_bytes
+        See ``read_policy``.
+    progress
+        Wraps the list of files, to show how far it is.
+    decisions
+        A decisions file.
+    today
+        ISO date on which decisions are valid or expired; None for the date of now (or ``SOURCE_DATE_EPOCH``).
+    """
+
+    add: tuple[str, ...] = ()
+    view: str = DECLARED
+    categories: tuple[str, ...] = ()
+    article9: bool = False
+    data_types: tuple[str, ...] = ()
+    ontologies: tuple[str, ...] = ()
+    category: str = TOP
+    standard_channels: str | None = STANDARD
+    paths: str = WITNESS
+    max_paths: int = MAX_PATHS
+    include_root: str | None = None
+    max_bytes: int = MAX_BYTES
+    progress: Callable[[Sequence[str]], Iterable[str]] = field(default=lambda files: files)
+    decisions: str | None = None
+    today: str | None = None
