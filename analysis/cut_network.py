@@ -36,7 +36,7 @@ class Group:
     kept
         Leaks where ways end that need not, or cannot, be cut.
     others
-        Places with an open finding that are no leaks: data is not to arrive there, but goes on.
+        Places with an open finding of another kind: data is not to arrive there, but goes on, also from leaks.
     """
 
     sources: tuple[int, ...]
@@ -66,10 +66,13 @@ class Ways:
         In the order in which they were found.
     at
         State -> where it is; not for ``BEGIN`` and ``END``.
+    past
+        States of ways that leaks do not end: those to findings of other kinds than disclosure.
     """
 
     arcs: list[Arc] = field(default_factory=list)
     at: dict[int, At] = field(default_factory=dict)
+    past: set[int] = field(default_factory=set)
 
 
 def merged(bits: int, k: int) -> int:
@@ -93,20 +96,23 @@ def ways(net: Net, groups: Iterable[Group], categories: Collection[int]) -> Ways
     found = Ways()
     for group in groups:
         for category in sorted(categories):
-            _Builder(net, group, category, found).build()
+            _Builder(net, group, category, found, past=False).build()
+            if any(i == category for _, i in group.others):
+                _Builder(net, group, category, found, past=True).build()
     return _pruned(found)
 
 
 class _Builder:
     """Walks forward from what the sources of one group emit, to where one category may not get."""
 
-    def __init__(self, net: Net, group: Group, category: int, found: Ways) -> None:
+    def __init__(self, net: Net, group: Group, category: int, found: Ways, *, past: bool) -> None:
         self.net = net
         self.spread: Spread = net.spread
         self.k = len(net.spread.categories)
         self.group = group
         self.category = category
         self.found = found
+        self.past = past
         self.numbers: dict[tuple[bool, int, int], int] = {}
         self.waiting: deque[tuple[bool, int, int]] = deque()
 
@@ -126,6 +132,8 @@ class _Builder:
         if key not in self.numbers:
             self.numbers[key] = len(self.found.at) + 2
             self.found.at[self.numbers[key]] = (vertex, i)
+            if self.past:
+                self.found.past.add(self.numbers[key])
             self.waiting.append(key)
         return self.numbers[key]
 
@@ -133,16 +141,18 @@ class _Builder:
         self.found.arcs.append(Arc(tail, head, category, flow, channel))
 
     def _stops(self, vertex: int, i: int) -> bool:
-        """Whether ways end here: at a leak of the category that is not accepted."""
+        """Whether ways to leaks end here: at a leak of the category that is not accepted."""
+        if self.past:
+            return False
         leaks = merged(self.spread.leaks.get(vertex, 0), self.k) >> i & 1
         return bool(leaks and i == self.category and (vertex, i) not in self.group.accepted)
 
     def _open(self, vertex: int, i: int) -> bool:
         """Whether data of the category may not get here."""
         at = (vertex, i)
-        return i == self.category and (
-            at in self.group.others or (at not in self.group.kept and self._stops(vertex, i))
-        )
+        if self.past:
+            return i == self.category and at in self.group.others
+        return at not in self.group.kept and self._stops(vertex, i)
 
     def _arrive(self, vertex: int, i: int) -> None:
         here = self._state(False, vertex, i)
@@ -180,7 +190,7 @@ def _pruned(found: Ways) -> Ways:
                 alive.add(before)
                 waiting.append(before)
     arcs = [arc for arc in dict.fromkeys(found.arcs) if arc.tail in alive and arc.head in alive]
-    return Ways(arcs, found.at)
+    return Ways(arcs, found.at, found.past)
 
 
 def a_way(found: Ways, passable: Callable[[Arc], bool]) -> list[Arc] | None:
@@ -201,24 +211,33 @@ def a_way(found: Ways, passable: Callable[[Arc], bool]) -> list[Arc] | None:
     return way[::-1]
 
 
-def open_ends(found: Ways, passable: Callable[[Arc], bool]) -> Iterator[tuple[At, list[Arc]]]:
-    """Yield every open finding's place and category that is reached along passable arcs, with a shortest way."""
+def open_ends(found: Ways, passable: Callable[[Arc], bool]) -> Iterator[tuple[At, bool, list[Arc]]]:
+    """Yield every open finding's place that is reached along passable arcs, with a shortest way.
+
+    Yields
+    ------
+    at
+        Vertex, and number of the category.
+    past
+        Whether it is a finding of another kind than disclosure.
+    """
     ahead = _ahead(found.arcs, passable)
     came: dict[int, Arc] = {}
     waiting = deque([BEGIN])
-    last: dict[At, Arc] = {}
+    last: dict[tuple[At, bool], Arc] = {}
     while waiting:
         for arc in ahead.get(waiting.popleft(), ()):
             if arc.head == END:
-                last.setdefault((found.at[arc.tail][0], arc.category), arc)
+                end = (found.at[arc.tail][0], arc.category)
+                last.setdefault((end, arc.tail in found.past), arc)
             elif arc.head not in came:
                 came[arc.head] = arc
                 waiting.append(arc.head)
-    for at, arc in sorted(last.items()):
+    for (at, past), arc in sorted(last.items(), key=lambda item: item[0]):
         way = [arc]
         while way[-1].tail != BEGIN:
             way.append(came[way[-1].tail])
-        yield at, way[::-1]
+        yield at, past, way[::-1]
 
 
 def _ahead(arcs: Sequence[Arc], passable: Callable[[Arc], bool]) -> dict[int, list[Arc]]:

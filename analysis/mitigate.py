@@ -19,6 +19,7 @@ from rosprivacy.analysis.changes import DENY, FILTER, REVIEW, Limits, changes, u
 from rosprivacy.analysis.cut_network import Group, a_way, merged, open_ends, ways
 from rosprivacy.analysis.cuts import BUDGET, cheapest
 from rosprivacy.analysis.findings import Options, analyse
+from rosprivacy.analysis.model import DISCLOSURE
 from rosprivacy.analysis.places import Places
 from rosprivacy.analysis.proposals import ITSELF, NOT_ALLOWED, Kept, Proposal, Step
 from rosprivacy.analysis.search import Net
@@ -145,14 +146,16 @@ class _Work:
 
     def _group(self, source: int) -> Group:
         """What is decided of one source."""
-        accepted, others = set(), set()
+        accepted: set[At] = set()
+        others: set[At] = set()
         for finding in self.analysis.findings:
-            at = (self.vertex[finding.leak], self.number[finding.category])
-            if self.vertex[finding.source] == source and at[1] in self.wanted:
-                if finding.accepted:
-                    accepted.add(at)
-                elif not finding.dismissed and not self._leaks(at):
-                    others.add(at)
+            at = self._at(finding)
+            if self.vertex[finding.source] != source or at[1] not in self.wanted:
+                continue
+            if finding.kind != DISCLOSURE:
+                others |= {at} if not finding.accepted and len(finding.witness) > 1 else set()
+            elif finding.accepted:
+                accepted.add(at)
         begun = merged(self.analysis.spread.begins(source), len(self.number))
         itself = {(source, i) for i in bits_of(begun) if self._leaks((source, i))}
         return Group((source,), frozenset(accepted), frozenset(itself), frozenset(others))
@@ -164,16 +167,19 @@ class _Work:
     def _kept(self, group: Group, options: Sequence[Change]) -> Iterable[Kept]:
         """The findings of one source that no change removes, with a way on which none can be made."""
         (source,) = group.sources
-        mine = {
-            (self.vertex[f.leak], self.number[f.category]): f for f in self.findings if self.vertex[f.source] == source
-        }
-        for at, finding in sorted(mine.items()):
-            if at[0] == source and len(finding.witness) == 1:
+        mine: dict[tuple[At, bool], list[Finding]] = defaultdict(list)
+        for finding in (f for f in self.findings if self.vertex[f.source] == source):
+            if len(finding.witness) == 1:
                 yield Kept(finding, ITSELF, (finding.source,))
+            else:
+                mine[self._at(finding), finding.kind != DISCLOSURE].append(finding)
         network = ways(self.net, [group], self.wanted)
-        for at, way in open_ends(network, uncut(options)):
-            if at in mine:
-                yield Kept(mine[at], NOT_ALLOWED, self._shown(source, network, way))
+        for at, past, way in open_ends(network, uncut(options)):
+            for finding in mine[at, past]:
+                yield Kept(finding, NOT_ALLOWED, self._shown(source, network, way))
+
+    def _at(self, finding: Finding) -> At:
+        return (self.vertex[finding.leak], self.number[finding.category])
 
     def _shown(self, source: int, network: Ways, way: Iterable[Arc]) -> tuple[Element, ...]:
         shown = [self.elements[source]]
@@ -185,14 +191,14 @@ class _Work:
 
     def _grouped(self, groups: Iterable[Group], kept: Iterable[Kept]) -> list[Group]:
         """Sources of which the same is decided together: in one network, each flow is one arc."""
-        stays: dict[int, set[At]] = defaultdict(set)
+        stays: dict[tuple[int, bool], set[At]] = defaultdict(set)
         for one in kept:
-            at = (self.vertex[one.finding.leak], self.number[one.finding.category])
-            stays[self.vertex[one.finding.source]].add(at)
+            stays[self.vertex[one.finding.source], one.finding.kind == DISCLOSURE].add(self._at(one.finding))
         together: dict[tuple[frozenset[At], ...], list[int]] = defaultdict(list)
         for group in groups:
-            mine = frozenset(stays[group.sources[0]])
-            together[group.accepted, group.kept | mine, group.others - mine].append(group.sources[0])
+            (source,) = group.sources
+            leaks, others = stays[source, True], stays[source, False]
+            together[group.accepted, group.kept | leaks, group.others - others].append(source)
         return [Group(tuple(sources), *decided) for decided, sources in together.items()]
 
     def _proven(self, plain: Proposal, chosen: Sequence[tuple[Change, frozenset[int]]]) -> Proposal:

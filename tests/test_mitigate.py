@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from rosprivacy.analysis.decisions import Case
-    from rosprivacy.analysis.model import Analysis, Bound, Element, FlowGraph
+    from rosprivacy.analysis.model import Analysis, Bound, Element, Finding, FlowGraph
     from rosprivacy.analysis.proposals import Proposal, Step
 
 
@@ -56,12 +56,18 @@ def with_changes(random: Random, filters: Iterable[int], reviews: dict[int, set[
     return replace(random, said=said, never=never)
 
 
-def left(random: Random, accepted: set[tuple[str, int, int]] | None = None) -> set[tuple[str, int, int]]:
+Key = tuple[str, str, int, int]  # kind, category, source, leak
+
+
+def left(random: Random, accepted: set[Key] | None = None) -> set[Key]:
     """The open findings by brute force."""
     taken = accepted or set()
-    found = random.brute().findings(lambda c, s, leak, _: (c, s, leak) in taken)
-    open_ = {(c, s, leak) for (_, c, s, leak), (_, dismissed, _) in found.items() if not dismissed}
-    return open_ - taken
+    found = random.brute().findings(lambda c, s, leak, _: ("disclosure", c, s, leak) in taken)
+    return {key for key, (_, dismissed, _) in found.items() if not dismissed} - taken
+
+
+def key_of(finding: Finding, number: dict[Element, int]) -> Key:
+    return (finding.kind, finding.category, number[finding.source], number[finding.leak])
 
 
 def cheaper(random: Random, weights: Weights, than: int) -> Iterator[Random]:
@@ -107,13 +113,13 @@ def test_a_proposal_leaves_nothing_and_no_cheaper_one_does(random: Random, weigh
     number = {element: v for v, element in enumerate(found.graph.elements)}
     for proposal in proposals:
         assert proposal.proven
-        kept = {(k.finding.category, number[k.finding.source], number[k.finding.leak]) for k in proposal.kept}
-        assert all(source == leak for _, source, leak in kept)  # with nothing forbidden, all else can be cut
-        after = {key for key in left(applied(random, proposal)) if key[0] in proposal.categories}
+        kept = {key_of(k.finding, number) for k in proposal.kept}
+        assert all(source == leak for _, _, source, leak in kept)  # with nothing forbidden, all else can be cut
+        after = {key for key in left(applied(random, proposal)) if key[1] in proposal.categories}
         assert after == kept
         assert proposal.lower <= proposal.cost
         for other in cheaper(random, weights, proposal.lower):
-            assert not {key for key in left(other) if key[0] in proposal.categories} <= kept
+            assert not {key for key in left(other) if key[1] in proposal.categories} <= kept
     names = {finding.category for finding in open_findings(found)}
     assert {p.categories for p in proposals if len(p.categories) == 1} == {(name,) for name in names}
     assert len(names) < 2 or set(proposals[-1].categories) == names
@@ -146,19 +152,19 @@ def test_an_accepted_finding_is_left_and_what_lies_behind_it_is_removed(random: 
     if plain is None or not plain.findings:
         return
     number = {element: v for v, element in enumerate(plain.graph.elements)}
-    keys = sorted({(f.category, number[f.source], number[f.leak]) for f in plain.findings})
+    keys = sorted({key_of(finding, number) for finding in plain.findings})
     taken = set(data.draw(st.lists(st.sampled_from(keys))))
 
     def accepts(case: Case) -> bool:
-        return (case.category, number[case.source], number[case.leak]) in taken
+        return (case.kind, case.category, number[case.source], number[case.leak]) in taken
 
     system = replace(system, options=Options(accepts=accepts))
     found = analysed(system)
     assert found is not None
     for proposal in mitigate(system, found):
         assert proposal.proven
-        after = {key for key in left(applied(random, proposal), taken) if key[0] in proposal.categories}
-        assert after == {(k.finding.category, number[k.finding.source], number[k.finding.leak]) for k in proposal.kept}
+        after = {key for key in left(applied(random, proposal), taken) if key[1] in proposal.categories}
+        assert after == {key_of(kept.finding, number) for kept in proposal.kept}
 
 
 def flows_between(random: Random, number: dict[Element, int], step: Step) -> set[int]:
