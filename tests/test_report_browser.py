@@ -142,6 +142,8 @@ def fill(browser: WebDriver, name: str, value: str) -> None:
 
 
 def test_search_and_filters_find_what_they_should(browser: WebDriver, pages: dict[str, Path]) -> None:
+    from selenium.webdriver.support.wait import WebDriverWait
+
     chrome.open_page(browser, pages["all-en"].as_uri())
     document = with_decisions(with_outside(care()))
     every = [f"way-{finding['id']}" for finding in document["findings"]]
@@ -167,7 +169,7 @@ def test_search_and_filters_find_what_they_should(browser: WebDriver, pages: dic
     fill(browser, "words", "nothing has this")
     assert shown(browser) == []
     browser.find_element("css selector", "#filters button").click()
-    assert len(shown(browser)) == 4
+    WebDriverWait(browser, 10).until(lambda _: len(shown(browser)) == 4)  # fields are empty after the event only
 
 
 def test_a_link_to_what_is_filtered_away_shows_it_again(browser: WebDriver, pages: dict[str, Path]) -> None:
