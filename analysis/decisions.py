@@ -16,7 +16,7 @@ from rosprivacy.analysis.errors import DecisionError
 from rosprivacy.analysis.model import Diagnostic, Severity
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.model import Element, Finding, Place
@@ -43,7 +43,15 @@ class State(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """What a decision can be about: a finding, or one that may be made."""
+    """What a decision can be about: a finding, or one that may be made.
+
+    Attributes
+    ----------
+    id
+        Of the finding; empty where it stands for more than itself.
+    pattern
+        On a fleet, the id of the pattern that it belongs to.
+    """
 
     id: str
     kind: str
@@ -51,6 +59,7 @@ class Case:
     source: Element
     leak: Element
     pseudonymised: bool
+    pattern: str = ""
 
     @classmethod
     def of(cls, finding: Finding) -> Case:
@@ -66,7 +75,7 @@ class Decision:
     Attributes
     ----------
     id
-        Of a finding; empty for a pattern.
+        Of a finding, or of a pattern of findings on a fleet; empty where names and globs say what it is about.
     category
         A name; it stands for the narrower ones too.
     source, leak, robot
@@ -101,7 +110,7 @@ class Decision:
         """Whether it is about a case."""
         robots = (case.source.robot, case.leak.robot)
         return (
-            self.id in ("", case.id)
+            self.id in ("", case.id, case.pattern)
             and self.kind in ("", case.kind)
             and (not self.category or hierarchy.distance(case.category, self.category) is not None)
             and _covers(self.source, case.source.name)
@@ -159,6 +168,10 @@ class Decisions:
         found = self.foremost(case)
         return found[0] if len({entry.choice for entry in found}) == 1 else None
 
+    def told_apart(self, robot: str) -> tuple[bool, ...]:
+        """Return which entries that name robots mean this one: robots are alike only if all do so alike."""
+        return tuple(_covers(entry.robot, robot) for entry in self.entries if entry.robot)
+
     def accepts(self, case: Case) -> bool:
         """Whether a valid decision accepts a case (rule S10)."""
         decision = self.on(case)
@@ -192,7 +205,12 @@ class Decided:
 
 
 def decided(
-    decisions: Decisions, findings: Iterable[Finding], special: Mapping[str, str], *, everything: bool
+    decisions: Decisions,
+    findings: Iterable[Finding],
+    special: Mapping[str, str],
+    *,
+    everything: bool,
+    case_of: Callable[[Finding], Case] = Case.of,
 ) -> Decided:
     """Join decisions to findings.
 
@@ -202,24 +220,26 @@ def decided(
         Category -> the provision for special categories that it can fall under; for those that do.
     everything
         Whether the findings are all there are: else no decision is called orphaned.
+    case_of
+        What a decision can be about, of a finding.
 
     Raises
     ------
     DecisionError
         If two decisions of one rank differ; the message names both lines.
     """
-    cases = [(finding, Case.of(finding)) for finding in findings]
+    cases = [(finding, case_of(finding)) for finding in findings]
     on: dict[str, Decision] = {}
-    for _, case in cases:
+    for finding, case in cases:
         found = decisions.foremost(case)
         other = next((entry for entry in found if entry.choice != found[0].choice), None)
         if other:
-            what = f"to {other.choice} {case.id} contradicts line {found[0].place.line}: to {found[0].choice}"
+            what = f"to {other.choice} {finding.id} contradicts line {found[0].place.line}: to {found[0].choice}"
             raise DecisionError(other.place.file, other.place.line, what, "make one more specific, or remove it")
         if found:
-            on[case.id] = found[0]
+            on[finding.id] = found[0]
     about = tuple(
-        tuple(sorted({case.id for _, case in cases if entry.about(case, decisions.hierarchy)}))
+        tuple(sorted({finding.id for finding, case in cases if entry.about(case, decisions.hierarchy)}))
         for entry in decisions.entries
     )
     states = tuple(

@@ -58,6 +58,11 @@ class Likeness:
             return self.weight(source) * (self.weight(source) - 1)
         return self.weight(source) * (1 if leak == source else self.weight(leak))
 
+    def alone(self, source: Element, leak: Element) -> bool:
+        """Return whether what begins and ends so stands for no other of its kind."""
+        robots = {source.robot, leak.robot}
+        return not robots & self.second.keys() and all(self.weight(robot) == 1 for robot in robots)
+
     def across(self, finding: Finding) -> bool:
         """Return whether data gets from one robot to another."""
         source, leak = finding.source.robot, finding.leak.robot
@@ -81,14 +86,14 @@ class Pattern:
         16 hexadecimal digits made from kind, category, source and leak without their robots, and whether it goes
         across robots.
     finding
-        The one that is shown: not dismissed and not pseudonymised if there is such a one, of the first robot.
+        The one that is shown: if there is such a one not dismissed, accepted or pseudonymised; of the first robot.
     count
         How many findings there are.
     robots
         Where they begin, or where they end if that is on no robot; sorted.
     across
         Whether data gets from one robot to another.
-    dismissed, pseudonymised
+    dismissed, pseudonymised, accepted
         How many of the findings are.
     """
 
@@ -99,6 +104,7 @@ class Pattern:
     across: bool
     dismissed: int
     pseudonymised: int
+    accepted: int = 0
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -111,7 +117,7 @@ class Share:
         Id.
     ends
         Whether data gets to this robot, from another; else it begins here, or here and nowhere else.
-    dismissed, pseudonymised
+    dismissed, pseudonymised, accepted
         The finding is.
     """
 
@@ -119,6 +125,7 @@ class Share:
     ends: bool
     dismissed: bool
     pseudonymised: bool
+    accepted: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -203,12 +210,13 @@ def _pattern(key: str, found: list[Finding], likeness: Likeness) -> Pattern:
     robots = sorted({robot for finding in found for robot in likeness.robots(finding)})
     return Pattern(
         key,
-        min(found, key=lambda finding: (finding.dismissed, finding.pseudonymised)),
+        min(found, key=lambda finding: (finding.dismissed, finding.accepted, finding.pseudonymised)),
         sum(counts),
         tuple(robots),
         likeness.across(found[0]),
         sum(count for count, finding in zip(counts, found, strict=True) if finding.dismissed),
         sum(count for count, finding in zip(counts, found, strict=True) if finding.pseudonymised),
+        sum(count for count, finding in zip(counts, found, strict=True) if finding.accepted),
     )
 
 
@@ -252,8 +260,9 @@ def _shares(findings: Iterable[Finding], likeness: Likeness) -> dict[str, set[Sh
             continue
         key, source = pattern_id(finding, likeness), finding.source.robot
         leak = likeness.second.get(finding.leak.robot, finding.leak.robot)
-        shares[source].add(Share(key, False, finding.dismissed, finding.pseudonymised))
-        shares[leak].add(Share(key, likeness.across(finding), finding.dismissed, finding.pseudonymised))
+        forms = finding.dismissed, finding.pseudonymised, finding.accepted
+        shares[source].add(Share(key, False, *forms))
+        shares[leak].add(Share(key, likeness.across(finding), *forms))
     return shares
 
 

@@ -53,8 +53,13 @@ class Alike:
         return self.robots[: 2 if self.joined else 1]
 
 
-def alike(fleet: Fleet) -> tuple[Alike, ...]:
+def alike(fleet: Fleet, told_apart: Callable[[str], object] = lambda _: None) -> tuple[Alike, ...]:
     """Group the robots of a fleet; infrastructure stands alone.
+
+    Parameters
+    ----------
+    told_apart
+        Robots of which this is not the same are not alike, such as those that a decision names.
 
     Notes
     -----
@@ -71,7 +76,7 @@ def alike(fleet: Fleet) -> tuple[Alike, ...]:
         means = tuple(i for i, test in enumerate(tests) if test(robot.id))
         several = bool(robot.domain) and domains[robot.domain] > 1
         alone = robot.id if several and (robot.strip or robot.add) else ""
-        key = (robot.model, _contents(robot), robot.domain, robot.strip, alone, means)
+        key = (robot.model, _contents(robot), robot.domain, robot.strip, alone, means, told_apart(robot.id))
         groups[key].append(robot)
         joined[key] = bool(means) or several
     found = [Alike(tuple(robots), joined[key]) for key, robots in groups.items()]

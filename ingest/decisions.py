@@ -7,10 +7,9 @@ problems of a file are raised at once. What an entry means for findings is ``ana
 from __future__ import annotations
 
 import hashlib
-import os
 import re
 from dataclasses import dataclass, field
-from datetime import UTC, date, datetime
+from datetime import date
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
@@ -34,22 +33,6 @@ _ID = re.compile(r"[0-9a-f]{16}")
 _DATE = re.compile(r"\d{4}-\d\d-\d\d", re.ASCII)
 _BASIS = re.compile(r"(?:art(?:icle|\.)?\s*)?(6\(1\)\([a-f]\)|9\(2\)\([a-j]\)|10)(?:\s*gdpr)?", re.IGNORECASE)
 _DPV = re.compile(r"(?:eu-gdpr:)?A(\d+)-(\d)-([a-j])")
-
-
-def today() -> str:
-    """Return the date, in UTC: that of ``SOURCE_DATE_EPOCH`` where it is set (rule S14).
-
-    Raises
-    ------
-    InputError
-        If ``SOURCE_DATE_EPOCH`` is not a number of seconds.
-    """
-    fixed = os.environ.get("SOURCE_DATE_EPOCH")
-    try:
-        return (datetime.fromtimestamp(int(fixed), UTC) if fixed else datetime.now(UTC)).date().isoformat()
-    except (ValueError, OverflowError, OSError):
-        what = f"{shown(fixed or '')!r} is no time"
-        raise InputError("SOURCE_DATE_EPOCH", 0, what, "write seconds since 1970, or unset it") from None
 
 
 def read_decisions(file: str, vocabulary: Vocabulary, day: str) -> Decisions:

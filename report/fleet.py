@@ -82,6 +82,7 @@ def _pattern(pattern: Pattern) -> dict[str, Any]:
         "findings": pattern.count,
         "dismissed": pattern.dismissed,
         "pseudonymised": pattern.pseudonymised,
+        "accepted": pattern.accepted,
         "robots": list(pattern.robots),
     }
 
@@ -99,6 +100,12 @@ def _deviant(deviant: Deviant) -> dict[str, Any]:
 
 def _shares(shares: Iterable[Share]) -> list[dict[str, Any]]:
     return [
-        {"pattern": s.pattern, "ends": s.ends, "dismissed": s.dismissed, "pseudonymised": s.pseudonymised}
+        {
+            "pattern": s.pattern,
+            "ends": s.ends,
+            "dismissed": s.dismissed,
+            "pseudonymised": s.pseudonymised,
+            "accepted": s.accepted,
+        }
         for s in shares
     ]

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
 Line = tuple[str, str]  # text, style
 NAMED = 5  # robots that are named
+FORMS = (("dismissed", "only through another leak"), ("accepted", "accepted"), ("pseudonymised", "pseudonymised"))
 
 
 def fleet_lines(report: Mapping[str, Any]) -> Iterator[Line]:
@@ -44,11 +45,7 @@ def robots_of(report: Mapping[str, Any], finding: Mapping[str, Any]) -> Iterator
         return
     how_many = f"{len(pattern['robots'])} of {_robots(fleet['robots'])}"
     across = f", from one to another, {pattern['findings']:,} times" if pattern["across"] else ""
-    parts = [
-        f"{pattern[key]:,} {what}"
-        for key, what in (("dismissed", "only through another leak"), ("pseudonymised", "pseudonymised"))
-        if 0 < pattern[key] < pattern["findings"]
-    ]
+    parts = [f"{pattern[key]:,} {what}" for key, what in FORMS if 0 < pattern[key] < pattern["findings"]]
     more = f" ({', '.join(parts)})" if parts else ""
     yield f"   on {how_many}{across}{more}: {named(pattern['robots'])}", ""
 
@@ -66,8 +63,8 @@ def named(names: Iterable[str]) -> str:
 
 def _form(share: Mapping[str, Any]) -> str:
     where = "ends here, " if share["ends"] else ""
-    dismissed = "only through another leak, " if share["dismissed"] else ""
-    return where + dismissed + ("pseudonymised " if share["pseudonymised"] else "")
+    forms = [what for key, what in FORMS if share[key]]
+    return where + (", ".join(forms) + " " if forms else "")
 
 
 def _robots(number: int) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +13,8 @@ import pytest
 from rosprivacy.analysis.decisions import Case, Choice, Decision, Decisions, State, missing
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.model import Element, Place
-from rosprivacy.ingest.decisions import parse_decisions, today
+from rosprivacy.clock import today
+from rosprivacy.ingest.decisions import parse_decisions
 from rosprivacy.ontology.vocabulary import load
 from tests.command import Cli, refused, run
 from tests.test_cli import XI
@@ -195,7 +197,7 @@ def test_an_id_that_yaml_takes_for_a_number_is_an_id(id_: str) -> None:
 
 def test_today_can_be_fixed(monkeypatch: pytest.MonkeyPatch, cli: Cli, tmp_path: Path) -> None:
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
-    assert today() == "1970-01-01"
+    assert today(os.environ) == "1970-01-01"
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "soon")
     (tmp_path / "d.yaml").write_text("decisions: 1")
     assert refused(cli("analyze", *CARE, "--decisions", tmp_path / "d.yaml"))[0].startswith("SOURCE_DATE_EPOCH:0: ")

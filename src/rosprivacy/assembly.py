@@ -20,7 +20,7 @@ from rosprivacy.assumptions import (
     sources_of,
     what_it_rests_on,
 )
-from rosprivacy.decided import decisions_of, joined_to
+from rosprivacy.decided import accepts, decisions_of, joined_to
 from rosprivacy.ingest.binding import bind
 from rosprivacy.ingest.files import read_policies
 from rosprivacy.ingest.graph import build
@@ -103,7 +103,7 @@ def run(policies: tuple[str, ...], labels: tuple[str, ...], settings: Settings) 
     graph = extend(build(system, settings.view), files)
     bound = bind(graph, files)
     decisions = decisions_of(settings, vocabulary)
-    options = Options(asked, settings.paths, settings.max_paths, decisions.accepts if decisions else None)
+    options = Options(asked, settings.paths, settings.max_paths, accepts(decisions))
     analysis = analyse(graph, bound, vocabulary.hierarchy, options)
     joined = joined_to(decisions, analysis, vocabulary, asked)
     said = tuple(d for policy in system for d in policy.diagnostics) + diagnostics
@@ -134,10 +134,10 @@ def run_stored(driver: Driver, settings: Settings) -> Result:
     analysis = analyse(stored.graph, stored.bound, vocabulary.hierarchy, everything)
     write_back(driver, stored, analysis, vocabulary)
     decisions = decisions_of(settings, vocabulary)
-    chosen = Options(asked, settings.paths, settings.max_paths, decisions.accepts if decisions else None)
+    chosen = Options(asked, settings.paths, settings.max_paths, accepts(decisions, stored.likeness))
     if chosen != everything:
         analysis = analyse(stored.graph, stored.bound, vocabulary.hierarchy, chosen)
-    joined = joined_to(decisions, analysis, vocabulary, asked)
+    joined = joined_to(decisions, analysis, vocabulary, asked, stored.likeness)
     said, loaded = put_together(stored.robots.values(), analysis)
     said += joined.diagnostics if joined else ()
     assumptions = own_assumptions(stored.graph, settings, vocabulary) | loaded | assumed_decisions(decisions)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from datetime import date
 from enum import StrEnum
 from pathlib import Path
@@ -73,8 +74,9 @@ def decide(
     ] = None,
 ) -> None:
     """Decide about findings, or about a pattern of them, in a file that analyze and mitigate take into account."""
+    from rosprivacy.clock import today
     from rosprivacy.ingest.decide import with_decision
-    from rosprivacy.ingest.decisions import is_date, today
+    from rosprivacy.ingest.decisions import is_date
     from rosprivacy.ontology.vocabulary import load
     from rosprivacy.report.atomic import write_texts
 
@@ -94,7 +96,7 @@ def decide(
         "reason": reason,
         "owner": owner,
         "legal_basis": list(legal_basis) if legal_basis else None,
-        "date": date.fromisoformat(today()),
+        "date": date.fromisoformat(today(os.environ)),
         "expires": date.fromisoformat(expires) if expires else None,
         "ticket": ticket,
     }

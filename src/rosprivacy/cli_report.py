@@ -142,9 +142,8 @@ def _result(
 def _text(result: Result, form: ReportFormat, language: str, title: str, since: Path | None, *, redact: bool) -> str:
     """The report; everything in it comes from the documents."""
     from dataclasses import replace
-    from datetime import UTC, datetime
 
-    from rosprivacy.clock import source_date
+    from rosprivacy.clock import today
     from rosprivacy.report.earlier import read_earlier
     from rosprivacy.report.outline import outline
 
@@ -160,7 +159,7 @@ def _text(result: Result, form: ReportFormat, language: str, title: str, since: 
         from rosprivacy.report.article30 import record
 
         return record(document, language)
-    made = (source_date(os.environ) or datetime.now(UTC)).date().isoformat()
+    made = today(os.environ)
     told = outline(document, language, title=title, made=made, earlier=earlier, redacted=redact)
     if form is ReportFormat.markdown:
         from rosprivacy.report.markdown import markdown

@@ -32,3 +32,12 @@ def source_date(environment: Mapping[str, str]) -> datetime | None:
     except (ValueError, OverflowError, OSError):
         hint = "give whole seconds since 1970, or unset it"
         raise InputError(VARIABLE, 0, f"{shown(given)!r} is no time", hint) from None
+
+
+def today(environment: Mapping[str, str]) -> str:
+    """Return the date, in UTC, as ``YYYY-MM-DD``: that of the environment, else that of now (rule S14).
+
+    >>> today({"SOURCE_DATE_EPOCH": "1767225600"})
+    '2026-01-01'
+    """
+    return (source_date(environment) or datetime.now(UTC)).date().isoformat()

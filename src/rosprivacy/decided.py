@@ -1,15 +1,25 @@
-"""Decisions taken into account: the file is read, and joined to what was found."""
+"""Decisions taken into account: the file is read, and joined to what was found.
+
+On a fleet a decision is about patterns, or about robots by name: what a robot stands for is decided as it is.
+"""
 
 from __future__ import annotations
 
+import os
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.decisions import decided
+from rosprivacy.analysis.decisions import Case, decided
+from rosprivacy.analysis.patterns import NO_ROBOTS, pattern_of
+from rosprivacy.clock import today
 from rosprivacy.ontology.special import special_provision
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from rosprivacy.analysis.decisions import Decided, Decisions
-    from rosprivacy.analysis.model import Analysis
+    from rosprivacy.analysis.model import Analysis, Finding
+    from rosprivacy.analysis.patterns import Likeness
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.settings import Settings
 
@@ -18,17 +28,38 @@ def decisions_of(settings: Settings, vocabulary: Vocabulary) -> Decisions | None
     """Read the decisions file, if one is named."""
     if settings.decisions is None:
         return None
-    from rosprivacy.ingest.decisions import read_decisions, today  # noqa: PLC0415 - only where there are some
+    from rosprivacy.ingest.decisions import read_decisions  # noqa: PLC0415 - only where there are some
 
-    return read_decisions(settings.decisions, vocabulary, settings.today or today())
+    return read_decisions(settings.decisions, vocabulary, settings.today or today(os.environ))
 
 
 def joined_to(
-    decisions: Decisions | None, analysis: Analysis, vocabulary: Vocabulary, asked: set[str] | None
+    decisions: Decisions | None,
+    analysis: Analysis,
+    vocabulary: Vocabulary,
+    asked: set[str] | None,
+    likeness: Likeness = NO_ROBOTS,
 ) -> Decided | None:
     """Join decisions to findings; where only some categories were asked for, none is called orphaned."""
     if decisions is None:
         return None
     special = {name: special_provision(vocabulary, name) for name in analysis.emitted}
     held = {name: provision for name, provision in special.items() if provision}
-    return decided(decisions, analysis.findings, held, everything=asked is None)
+
+    def case_of(finding: Finding) -> Case:
+        return in_fleet(Case.of(finding), likeness)
+
+    return decided(decisions, analysis.findings, held, everything=asked is None, case_of=case_of)
+
+
+def accepts(decisions: Decisions | None, likeness: Likeness = NO_ROBOTS) -> Callable[[Case], bool] | None:
+    """Return the test whether a case is accepted; None where nobody decided anything."""
+    if decisions is None:
+        return None
+    return lambda case: decisions.accepts(in_fleet(case, likeness))
+
+
+def in_fleet(case: Case, likeness: Likeness) -> Case:
+    """Return a case with its pattern; where it stands for more than itself it has no id of its own."""
+    pattern = pattern_of(case.kind, case.category, case.source, case.leak, likeness)
+    return replace(case, id=case.id if likeness.alone(case.source, case.leak) else "", pattern=pattern)

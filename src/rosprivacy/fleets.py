@@ -14,7 +14,8 @@ from rosprivacy.analysis.groups import Groups
 from rosprivacy.analysis.patterns import FleetView
 from rosprivacy.asked import asked_for
 from rosprivacy.assembly import Result
-from rosprivacy.assumptions import remembered, sources_of, what_it_rests_on
+from rosprivacy.assumptions import assumed_decisions, remembered, sources_of, what_it_rests_on
+from rosprivacy.decided import accepts, decisions_of, joined_to
 from rosprivacy.ingest.alike import Alike, alike
 from rosprivacy.ingest.binding import bind
 from rosprivacy.ingest.domains import Member, stripped
@@ -29,6 +30,7 @@ from rosprivacy.ingest.placing import Placed, place
 from rosprivacy.ontology.vocabulary import load
 
 if TYPE_CHECKING:
+    from rosprivacy.analysis.decisions import Decisions
     from rosprivacy.analysis.model import Diagnostic
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.settings import Settings
@@ -50,6 +52,7 @@ class Read:
     placed: Placed
     labels: tuple[Labels, ...]
     diagnostics: tuple[Diagnostic, ...]
+    decisions: Decisions | None = None
 
 
 def run_fleet(file: str, settings: Settings) -> Result:
@@ -79,15 +82,19 @@ def analysed(read: Read, vocabulary: Vocabulary, settings: Settings, *, every: b
     """
     asked = asked_for(vocabulary, settings)
     placed = read.placed
-    groups = None if every else Groups(placed.likeness)
-    options = Options(asked, settings.paths, settings.max_paths, choose=groups)
+    decisions = read.decisions
+    groups = None if every or decisions else Groups(placed.likeness)
+    options = Options(asked, settings.paths, settings.max_paths, accepts(decisions, placed.likeness), groups)
     analysis = analyse(placed.graph, placed.bound, vocabulary.hierarchy, options)
     policies = [policy for member in read.members.values() for policy in member.policies]
     assumptions = what_it_rests_on(placed.graph, sources_of(policies), read.labels, analysis, settings, vocabulary)
+    assumptions |= assumed_decisions(decisions)
     assumptions["fleet"] = [{"file": name, "sha256": digest} for name, digest in read.fleet.sources]
     system = tuple({policy.file: policy for policy in policies}.values())
     view = groups.view(analysis) if groups else FleetView.of(analysis, placed.likeness)
-    return Result(analysis, placed.bound, vocabulary, system, read.diagnostics, assumptions, read.labels, fleet=view)
+    joined = joined_to(decisions, analysis, vocabulary, asked, placed.likeness)
+    said = read.diagnostics + (joined.diagnostics if joined else ())
+    return Result(analysis, placed.bound, vocabulary, system, said, assumptions, read.labels, options, joined, view)
 
 
 def rows_of_fleet(read: Read, result: Result, settings: Settings) -> FleetRows:
@@ -124,7 +131,8 @@ def read_all(file: str, vocabulary: Vocabulary, settings: Settings) -> Read:
         With every problem of the input, one line each.
     """
     fleet = read_fleet(file, vocabulary)
-    groups = alike(fleet)
+    decisions = decisions_of(settings, vocabulary)
+    groups = alike(fleet, decisions.told_apart) if decisions else alike(fleet)
     reader = _Reader(vocabulary, settings)
     members = {}
     problems: list[InputError] = []
@@ -138,7 +146,7 @@ def read_all(file: str, vocabulary: Vocabulary, settings: Settings) -> Read:
     placed = place(fleet, groups, members, settings.view)
     labels = tuple(sorted(reader.labels.values(), key=lambda labels: (labels.file, labels.own)))
     diagnostics = dict.fromkeys(d for member in members.values() for d in member.diagnostics)
-    return Read(fleet, groups, members, placed, labels, tuple(diagnostics))
+    return Read(fleet, groups, members, placed, labels, tuple(diagnostics), decisions)
 
 
 class _Reader:

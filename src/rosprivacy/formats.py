@@ -14,6 +14,7 @@ from rosprivacy.clock import source_date
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from rosprivacy.analysis.decisions import Decision
     from rosprivacy.analysis.model import Analysis
     from rosprivacy.analysis.outside import Outside
     from rosprivacy.assembly import Result
@@ -27,7 +28,7 @@ def sarif_log(result: Result, accepted: Mapping[str, str] | None = None) -> dict
     Parameters
     ----------
     accepted
-        Id of a finding -> why a person accepted it. Only decisions that hold now.
+        Id of a finding -> why a person accepted it; what the decisions of the result say by default.
     """
     from rosprivacy.report.artifacts import repository_root  # noqa: PLC0415 - light start
     from rosprivacy.report.sarif import sarif  # noqa: PLC0415
@@ -43,7 +44,7 @@ def sarif_log(result: Result, accepted: Mapping[str, str] | None = None) -> dict
         result.diagnostics,
         assumptions,
         repository_root(named),
-        accepted or {},
+        accepted_of(result) if accepted is None else accepted,
     )
 
 
@@ -57,7 +58,7 @@ def pia_file(
     Parameters
     ----------
     accepted
-        Id of a finding -> why a person accepted it.
+        Id of a finding -> why a person accepted it; what the decisions of the result say by default.
     stated
         (robot, kind, name) of a storage or recipient -> what people stated of it; what the analysis knows by default.
 
@@ -77,9 +78,22 @@ def pia_file(
         vocabulary.hierarchy,
         result.assumptions,
         created,
-        accepted or {},
+        accepted_of(result) if accepted is None else accepted,
         stated_of(result.analysis) if stated is None else stated,
     )
+
+
+def accepted_of(result: Result) -> dict[str, str]:
+    """Return the findings that a valid decision accepts: id -> reason, owner, legal basis, until when (rule S10)."""
+    if result.decided is None:
+        return {}
+    held = ((f.id, result.decided.valid(f)) for f in result.analysis.findings if f.accepted)
+    return {finding: _why(decision) for finding, decision in held if decision}
+
+
+def _why(decision: Decision) -> str:
+    more = [decision.owner, *decision.legal_basis, f"until {decision.expires}" if decision.expires else ""]
+    return f"{decision.reason} ({', '.join(part for part in more if part)})"
 
 
 def stated_of(analysis: Analysis) -> dict[tuple[str, str, str], dict[str, str]]:
