@@ -13,6 +13,7 @@ from rich.text import Text
 
 from rosprivacy.analysis.changes import DENY, FILTER, REVIEW
 from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.model import STORAGE_LIMITATION, THIRD_COUNTRY
 from rosprivacy.analysis.proposals import ITSELF
 from rosprivacy.report.document import element_dict
 
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.affected import Affected, Shown
     from rosprivacy.analysis.changes import Limits
-    from rosprivacy.analysis.model import Analysis, Element, Grant
+    from rosprivacy.analysis.model import Analysis, Element, Finding, Grant
     from rosprivacy.analysis.proposals import Proposal, Step
 
 FORMAT = "rosprivacy.mitigation/1"
@@ -32,6 +33,10 @@ LESS = {
     "unread": "can no longer read",
     "unwritten": "can no longer write to",
     "narrowed": "gets fewer names through",
+}
+STATED = {
+    STORAGE_LIMITATION: "a retention within the limit",
+    THIRD_COUNTRY: "another country, or the basis of the transfer",
 }
 SHOWN, PARTS = 12, 4  # elements that get less, and what of each
 Line = tuple[str, str]  # text, style
@@ -95,6 +100,7 @@ def _proposal(proposal: Proposal, critical: set[Element]) -> dict[str, Any]:
         "keeps": [
             {
                 "finding": kept.finding.id,
+                "kind": kept.finding.kind,
                 "category": kept.finding.category,
                 "reason": kept.reason,
                 "way": [element_dict(one) for one in kept.way],
@@ -102,12 +108,28 @@ def _proposal(proposal: Proposal, critical: set[Element]) -> dict[str, Any]:
             for kept in proposal.kept
         ],
         "steps": [_step(step, element) for step in proposal.steps],
+        "statements": [_statement(f) for f in _findings(proposal) if f.kind in STATED],
         "cost": proposal.cost,
         "no_cheaper_than": proposal.lower,
         "cheapest": bool(proposal.steps) and proposal.cost == proposal.lower,
         "proven": proposal.proven,
         "verdict_then": str(proposal.verdict),
         "affected": [_affected(less, element) for less in proposal.affected],
+    }
+
+
+def _findings(proposal: Proposal) -> tuple[Finding, ...]:
+    return (*proposal.removed, *(kept.finding for kept in proposal.kept))
+
+
+def _statement(finding: Finding) -> dict[str, Any]:
+    """What a person could state or arrange at the end of a way, so that no flow has to change (rule S10)."""
+    return {
+        "finding": finding.id,
+        "kind": finding.kind,
+        "element": element_dict(finding.leak),
+        "category": finding.category,
+        "reason": finding.reason,
     }
 
 
@@ -194,8 +216,18 @@ def _of_proposal(proposal: Mapping[str, Any]) -> Iterator[Line]:
         yield f"   Proven: analysed anew with {this}, {stays}; the verdict is then {proposal['verdict_then']}.", "green"
     else:
         yield f"{title}: no change can be proposed", "bold red"
+    yield from _statements(proposal["statements"])
     for one in kept:
         yield f"   Stays: {_kept(one)}", "yellow"
+
+
+def _statements(statements: Sequence[Mapping[str, Any]]) -> Iterator[Line]:
+    """Once per element and reason, whatever the sources."""
+    if statements:
+        yield "   Without a change of flows, if it is so or can be arranged, label files can state:", ""
+    told = {(_of(one["element"]), one["kind"], one["category"], one["reason"]) for one in statements}
+    for element, kind, category, reason in sorted(told):
+        yield f"      of {element}: {STATED[kind]} for {category}  ({shown(reason)})", ""
 
 
 def _verb(steps: Sequence[Any]) -> str:
@@ -290,6 +322,8 @@ def _breaks(proposal: Mapping[str, Any]) -> Iterator[Line]:
 def _kept(one: Mapping[str, Any]) -> str:
     way = " -> ".join(_name(element) for element in one["way"])
     if one["reason"] == ITSELF:
+        if one["kind"] in STATED:
+            return f"{one['category']} at {way}: it begins there, so there is no way to cut   [{one['finding']}]"
         return (
             f"{one['category']} at {way}: it is source and leak, so there is no way to cut; only another role helps, "
             f"after the node itself has changed   [{one['finding']}]"

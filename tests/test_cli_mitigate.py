@@ -74,6 +74,27 @@ def test_the_text_says_the_same_in_words(cli: Cli) -> None:
     assert any(line.startswith("Proven: analysed anew with this, and if the review finds none,") for line in lines)
 
 
+def test_storages_and_transfers_can_be_cut_off_or_stated(cli: Cli, tmp_path: Path) -> None:
+    """Rule S10: their ways go on from leaks, so the filter before the leak alone does not do."""
+    labels = tmp_path / "l.yaml"
+    labels.write_text(
+        "labels: 1\nnodes: {/safety_camera: {source: [Video]}, /archive_server: {leak: [Video]}}\n"
+        "elements:\n  tapes: {kind: storage, country: US, retention: P2Y}\nlimits: {Video: P30D}\n"
+        "flows: [{from: /archive_server, to: tapes}]\n",
+        "utf-8",
+    )
+    (proposal,) = proposals(cli, BEFORE, "-l", labels)["proposals"]
+    assert proposal["proven"]
+    assert len(proposal["removes"]) == 3
+    assert [(s["kind"], s["element"]["name"]) for s in proposal["statements"]] == [
+        ("storage-limitation", "tapes"),
+        ("third-country-transfer", "tapes"),
+    ]
+    text = cli("mitigate", BEFORE, "-l", labels).stdout
+    assert "   Without a change of flows, if it is so or can be arranged, label files can state:" in text.splitlines()
+    assert "      of tapes (storage): a retention within the limit for Video  (" in text
+
+
 def test_what_the_review_and_the_filter_of_the_paper_leave_is_nothing(cli: Cli) -> None:
     """Run 5 is run 3 with both changes made."""
     done = cli("mitigate", FACTORY / "after.policy.xml", "-l", FACTORY / "run5.labels.yaml")
