@@ -47,7 +47,7 @@ def robots_of(report: Mapping[str, Any], finding: Mapping[str, Any]) -> Iterator
     across = f", from one to another, {pattern['findings']:,} times" if pattern["across"] else ""
     parts = [f"{pattern[key]:,} {what}" for key, what in FORMS if 0 < pattern[key] < pattern["findings"]]
     more = f" ({', '.join(parts)})" if parts else ""
-    yield f"   on {how_many}{across}{more}: {named(pattern['robots'])}", ""
+    yield f"   on {how_many}{across}{more}: {named(pattern['robots'])}   [pattern {pattern['id']}]", ""
 
 
 def named(names: Iterable[str]) -> str:

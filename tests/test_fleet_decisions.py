@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -50,6 +51,17 @@ def test_a_pattern_is_accepted_by_its_id(cli: Cli) -> None:
     (found,) = document["fleet"]["patterns"]
     assert (document["verdict"], document["code"]) == ("undetermined", 0)  # nobody reviewed /image
     assert (found["findings"], found["accepted"]) == (5, 5)
+
+
+def test_decide_takes_the_ids_of_patterns_from_a_report(cli: Cli) -> None:
+    cli("analyze", "--fleet", "five.yaml", "-f", "json", "-o", "r.json")
+    said = ("--report", "r.json", "--reason", "agreed", "--owner", "me", "--decisions", "d.yaml")
+    (shown,) = json.loads(Path("r.json").read_text("utf-8"))["fleet"]["patterns"]
+    assert cli("decide", "accept", shown["finding"], *said).returncode == 2
+    assert cli("decide", "accept", shown["id"][:6], *said).returncode == 0
+    assert told(cli)["fleet"]["patterns"][0]["accepted"] == 5
+    text = cli("analyze", "--fleet", "five.yaml", "--decisions", "d.yaml").stdout
+    assert f"[pattern {shown['id']}]" in text
 
 
 def test_names_and_globs_are_about_all_robots(cli: Cli) -> None:

@@ -128,14 +128,23 @@ def _text(file: Path) -> str | None:
 
 
 def _findings(report: Path) -> dict[str, dict[str, Any]]:
-    """The findings of a JSON report, by id."""
+    """The findings of a JSON report by id, those of a fleet by the ids of their patterns."""
     hint = "write it with rosprivacy analyze --format json -o FILE"
     try:
         document = json.loads(report.read_text("utf-8"))
-        return {finding["id"]: finding for finding in document["findings"]}
+        findings = {finding["id"]: finding for finding in document["findings"]}
+        if not document.get("fleet"):
+            return findings
+        patterns = document["fleet"]["patterns"]
+        return {p["id"]: findings[p["finding"]] | _all_of(p) for p in patterns}
     except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
         what = "not found" if isinstance(error, FileNotFoundError) else "is no report of an analysis"
         raise DecisionError(str(report), 0, what, hint) from None
+
+
+def _all_of(pattern: dict[str, Any]) -> dict[str, Any]:
+    """What holds for all findings of a pattern."""
+    return {"pseudonymised": pattern["pseudonymised"] == pattern["findings"]}
 
 
 def _chosen(findings: dict[str, dict[str, Any]], written: str, report: str) -> dict[str, Any]:
