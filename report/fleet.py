@@ -12,10 +12,13 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.report.document import element_dict
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
     from rosprivacy.analysis.model import Analysis
     from rosprivacy.analysis.patterns import Deviant, FleetView, Likeness, Pattern, Share
+
+
+OF_ELEMENTS = ("subjects", "sanitizers", "derivations")
 
 
 def fleet_document(told: dict[str, Any], analysis: Analysis, view: FleetView) -> dict[str, Any]:
@@ -32,7 +35,19 @@ def fleet_document(told: dict[str, Any], analysis: Analysis, view: FleetView) ->
     assumptions = dict(told["assumptions"])
     if assumptions["standard_channels"]:
         assumptions["standard_channels"] = {**assumptions["standard_channels"], "taken": counts["standard_channels"]}
+    told = {**told, **_without_second(told, view.likeness)}
     return {**told, **counts, "assumptions": assumptions, "fleet": _fleet(view)}
+
+
+def _without_second(told: Mapping[str, Any], likeness: Likeness) -> dict[str, Any]:
+    """The lists that speak of elements, without robots that only stand beside others."""
+
+    def shown(elements: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
+        return [element for element in elements if element["robot"] not in likeness.second]
+
+    rows = {key: [row for row in told[key] if shown([row["element"]])] for key in OF_ELEMENTS}
+    rows["sanitizers"] = [{**row, "beside": shown(row["beside"])} for row in rows["sanitizers"]]
+    return {**rows, "unreached": shown(told["unreached"])}
 
 
 def _counts(analysis: Analysis, likeness: Likeness) -> dict[str, int]:

@@ -89,6 +89,18 @@ def found(text: str, **options: Any) -> dict[str, int]:
     }
 
 
+def test_a_document_names_one_robot_for_those_that_are_alike() -> None:
+    """Two stand for all where they are joined; the second is in no list."""
+    document = rosprivacy.analyze_fleet(str(EXAMPLES / "fleet" / "fleet.yaml")).document()
+    shown = {alike["robot"] for alike in document["fleet"]["alike"]}
+    every = {robot for alike in document["fleet"]["alike"] for robot in alike["robots"]}
+    for key in ("carries", "roles", "open", "sanitizers", "derivations", "subjects", "outside"):
+        assert not {row["element"]["robot"] for row in document[key]} & (every - shown), key
+    assert not {element["robot"] for element in document["unreached"]} & (every - shown)
+    assert not {e["robot"] for row in document["sanitizers"] for e in row["beside"]} & (every - shown)
+    assert all(document[key] for key in ("carries", "roles", "sanitizers", "derivations", "outside", "unreached"))
+
+
 def refused(text: str) -> list[str]:
     with pytest.raises(InputErrors) as caught:
         run_fleet(_written(text), Settings())
