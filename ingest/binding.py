@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.model import FlowGraph, Statement
     from rosprivacy.analysis.outside import Outside
-    from rosprivacy.ingest.labels import Entry, FlowEntry, Labels
+    from rosprivacy.ingest.entries import Entry, FlowEntry
+    from rosprivacy.ingest.labels import Labels
 
 NEAREST = 3
 COMPARISONS = 50_000  # of names, in the search for the nearest; a label file of another system is refused soon

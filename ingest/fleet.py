@@ -16,15 +16,16 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import FleetError, InputError, InputErrors, shown
 from rosprivacy.ingest import yamlfile
+from rosprivacy.ingest.entries import OWN
 from rosprivacy.ingest.fleetfile import GROUP_KEYS, ID, ID_HINT, ROBOT_KEYS, SECTIONS, SPEC, FleetReader, Spec
-from rosprivacy.ingest.labels import OURS, OWN
+from rosprivacy.ingest.labels import OURS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from rosprivacy.analysis.model import Place
     from rosprivacy.ingest.elements import Limit, Stated
-    from rosprivacy.ingest.labels import Entry, FlowEntry
+    from rosprivacy.ingest.entries import Entry, FlowEntry
     from rosprivacy.ingest.yamlfile import Value
     from rosprivacy.ontology.vocabulary import Vocabulary
 

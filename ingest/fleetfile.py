@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import Place
-from rosprivacy.ingest.labels import OURS, LabelReader
+from rosprivacy.ingest.labelreader import LabelReader
+from rosprivacy.ingest.labels import OURS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.model import NON_ROS, Method
 from rosprivacy.analysis.outside import RECIPIENTS, TRANSFERS
 from rosprivacy.ingest.elements import CARRIERS
-from rosprivacy.ingest.labels import LONGEST_GROUP, SAYS_NOTHING
+from rosprivacy.ingest.labelreader import LONGEST_GROUP, SAYS_NOTHING
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -16,8 +16,8 @@ from rosprivacy.analysis.errors import GraphError, InputError, InputErrors, show
 from rosprivacy.analysis.model import NON_ROS, Bound, Element, Flow, FlowGraph, Grant, Method, Place, Profile, Statement
 from rosprivacy.analysis.outside import by_kind
 from rosprivacy.analysis.patterns import NO_ROBOTS, Likeness
+from rosprivacy.ingest.entries import EXACT
 from rosprivacy.ingest.facts import facts_of
-from rosprivacy.ingest.labels import EXACT
 from rosprivacy.ingest.names import covers
 from rosprivacy.ingest.schema import KIND_LABELS, ROLES
 

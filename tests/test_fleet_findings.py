@@ -17,8 +17,8 @@ from rosprivacy.analysis.patterns import FleetView, pattern_id
 from rosprivacy.ingest.alike import alike, chosen
 from rosprivacy.ingest.domains import Member
 from rosprivacy.ingest.elements import Stated
+from rosprivacy.ingest.entries import Entry, FlowEntry
 from rosprivacy.ingest.fleet import Fleet, Robot
-from rosprivacy.ingest.labels import Entry, FlowEntry
 from rosprivacy.ingest.parts import Part
 from rosprivacy.ingest.placing import place
 from tests.brute import Brute

@@ -20,7 +20,8 @@ from jsonschema import Draft202012Validator
 
 import rosprivacy
 from rosprivacy.analysis.errors import InputErrors, LabelError
-from rosprivacy.ingest.labels import STANDARD, Labels, read_labels, shipped_text, specificity
+from rosprivacy.ingest.entries import specificity
+from rosprivacy.ingest.labels import STANDARD, Labels, read_labels, shipped_text
 from rosprivacy.ingest.labelschema import label_schema
 from rosprivacy.ontology.vocabulary import load
 

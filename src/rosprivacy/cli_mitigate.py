@@ -78,7 +78,7 @@ def mitigate(
     from rosprivacy.assembly import run
     from rosprivacy.mitigation import run_mitigation
     from rosprivacy.report.document import as_text
-    from rosprivacy.report.mitigation import print_mitigation
+    from rosprivacy.report.terminal_mitigation import print_mitigation
     from rosprivacy.settings import Settings
 
     if not policies:

@@ -1,0 +1,57 @@
+"""What label files say, before it is joined to a graph: entries about elements and flows, and which of two outranks.
+
+Made by ``labelreader.py``; ``binding.py`` joins it to the graph.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rosprivacy.ingest.names import is_pattern, literals
+
+if TYPE_CHECKING:
+    from rosprivacy.analysis.model import Place, Statement
+
+EXACT = 1_000_000  # a name outranks every glob
+SHIPPED, OWN = 0, 1  # tiers: a person's own word outranks what comes with the program
+ROBOT = 2 * EXACT  # added to what is said of one robot of a fleet, which outranks what is said of its model
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """What is said of the elements of some kinds that a name or glob covers.
+
+    Attributes
+    ----------
+    subjects
+        Of a source: whom its data are about, in a person's words.
+    """
+
+    kinds: tuple[str, ...]
+    name: str
+    place: Place
+    statements: tuple[Statement, ...]
+    subjects: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class FlowEntry:
+    """What is said of the flows from one element to another, by names or globs.
+
+    One with an end outside ROS is stated by it; others are in the policies.
+    """
+
+    source: str
+    target: str
+    place: Place
+    statements: tuple[Statement, ...]
+
+
+def specificity(name: str) -> int:
+    """Return the rank of a name among those that cover an element: the more that is spelt out, the higher.
+
+    >>> specificity("/robot/*") < specificity("/robot/cam*") < specificity("/a")
+    True
+    """
+    return literals(name) if is_pattern(name) else EXACT
