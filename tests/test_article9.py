@@ -88,6 +88,7 @@ class TestFilters:
             document(data_types=("vidoe",))
 
 
+@pytest.mark.slow
 @pytest.mark.database
 def test_cypher_says_the_same(neo4j_server: Connection) -> None:
     result = care_home()

@@ -105,6 +105,7 @@ def test_the_action_writes_sarif_json_a_summary_and_outputs(runner: dict[str, st
     assert "leak: data can reach a leak" in lines
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("fail_on", "code"), [("never", 0), ("leak", 0), ("undetermined", 4)])
 def test_the_action_fails_when_it_is_told_to(fail_on: str, code: int, runner: dict[str, str], tmp_path: Path) -> None:
     shutil.copytree(FACTORY, tmp_path / "p")

@@ -118,6 +118,7 @@ class TestQuery:
     def test_show_prints_the_file(self) -> None:
         assert run("query", "leak-paths", "--show").stdout == pack()["leak-paths"].text
 
+    @pytest.mark.slow
     @pytest.mark.usefixtures("loaded")
     def test_the_three_formats_say_the_same(self) -> None:
         rows = json.loads(run("query", "leak-paths", "--format", "json").stdout)
@@ -128,6 +129,7 @@ class TestQuery:
         shown = run("query", "leak-paths").stdout
         assert all(row["leak"] in shown and " -> ".join(row["path"]) in shown for row in rows)
 
+    @pytest.mark.slow
     def test_parameters_limit_and_an_output_file(self, loaded: Driver, tmp_path: Path) -> None:
         done = run("query", "findings", "category=Biometric", "-f", "json")
         assert [row["category"] for row in json.loads(done.stdout)] == ["FaceTemplate"]
@@ -146,6 +148,7 @@ class TestQuery:
             assert (done.returncode, done.stdout) == (0, "name\n/uplink\n")
         assert run("query", "--cypher", "MATCH (n:Nothing) RETURN n").stdout == "no rows\n"
 
+    @pytest.mark.slow
     @pytest.mark.parametrize(
         ("arguments", "message"),
         [
@@ -205,6 +208,7 @@ class TestNoServer:
         assert len(lines(done)) == 1
         assert f"{uri}: no Neo4j answers there" in done.stderr
 
+    @pytest.mark.slow
     def test_a_wrong_password_is_3_and_says_where_it_came_from(self, private_neo4j: Connection) -> None:
         """Again and again too: the server then lets nobody in for some seconds, which pass before other tests go on."""
         for _ in range(5):

@@ -295,6 +295,7 @@ SHAPES: dict[str, Callable[[Path], str]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shape", SHAPES)
 def test_a_patch_fits_the_way_a_policy_is_written(tmp_path: Path, shape: str) -> None:
     file, diff = tmp_path / "p.xml", tmp_path / "fix.diff"
@@ -377,6 +378,7 @@ def test_a_hostile_name_is_quoted_in_the_label_and_harmless_in_the_text(cli: Cli
     assert yaml.safe_load(line) == {f"/{name}": {"never": ["Video"]}}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", ["text", "json"])
 def test_the_same_input_gives_the_same_bytes(form: str) -> None:  # S14
     care = ROOT / "examples" / "care-home"

@@ -178,6 +178,7 @@ def test_no_server_named_is_the_private_one(private_neo4j: Connection) -> None:
     assert servers() == before
 
 
+@pytest.mark.slow
 @pytest.mark.database
 def test_two_starts_at_once_after_a_stop_make_one_server(private_neo4j: Connection) -> None:
     """Also: data, password and ports are kept, and a process number that is another program's now is survived."""
@@ -205,6 +206,7 @@ def test_two_starts_at_once_after_a_stop_make_one_server(private_neo4j: Connecti
     assert ask(private_neo4j, "MATCH (n:Kept) RETURN n.x") == [42]
 
 
+@pytest.mark.slow
 @pytest.mark.database
 def test_a_killed_server_is_seen_and_started_again(private_neo4j: Connection, monkeypatch: pytest.MonkeyPatch) -> None:
     killed = process()
@@ -239,6 +241,7 @@ def test_a_killed_server_is_seen_and_started_again(private_neo4j: Connection, mo
     assert ask(private_neo4j, "RETURN 1") == [1]
 
 
+@pytest.mark.slow
 @pytest.mark.database
 def test_a_server_that_cannot_start_says_why(
     private_neo4j: Connection, nowhere: Path, monkeypatch: pytest.MonkeyPatch

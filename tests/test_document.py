@@ -68,6 +68,7 @@ def test_no_word_of_it_is_a_legal_verdict(document: dict[str, Any]) -> None:
     assert not any(word in text for word in ("compliant", "violation", "illegal", '"safe"'))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", ["text", "json", "turtle", "json-ld", "sarif", "cnil-pia"])
 def test_the_bytes_are_the_same_in_every_process(form: str) -> None:
     """Across runs, hash seeds and the order in which files are named."""

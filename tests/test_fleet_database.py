@@ -89,6 +89,7 @@ def test_the_answer_from_the_database_is_that_of_the_file(driver: Driver, monkey
     assert [set(x) ^ set(y) for x, y in zip(after, before, strict=True)] == [set(), set()]
 
 
+@pytest.mark.slow
 @pytest.mark.database
 def test_the_same_load_again_writes_nothing(driver: Driver) -> None:
     load(driver, rows(FLEET), VOCABULARY)
@@ -96,6 +97,7 @@ def test_the_same_load_again_writes_nothing(driver: Driver) -> None:
     assert (done.written, done.unchanged) == (0, 42)
 
 
+@pytest.mark.slow
 @pytest.mark.database
 def test_a_changed_robot_is_written_anew_and_nothing_is_left_behind(driver: Driver, tmp_path: Path) -> None:
     for file in ((ROOT / "examples") / "fleet").iterdir():
@@ -114,6 +116,7 @@ def test_a_changed_robot_is_written_anew_and_nothing_is_left_behind(driver: Driv
     assert driver.execute_query("MATCH (n:Element|Finding|Enclave|Robot) RETURN count(n)").records[0][0] == 0
 
 
+@pytest.mark.slow
 @pytest.mark.database
 def test_the_questions_about_robots_leave_out_what_is_shared(driver: Driver) -> None:
     load(driver, rows(FLEET), VOCABULARY)
@@ -123,6 +126,7 @@ def test_the_questions_about_robots_leave_out_what_is_shared(driver: Driver) -> 
     assert [row[0] for row in patterns] == [24, 24]
 
 
+@pytest.mark.slow
 @pytest.mark.database
 def test_findings_across_robots_are_bounded_and_it_is_said(driver: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(fleetrows, "MOST_ACROSS", 100)

@@ -190,6 +190,7 @@ def _saved_graph(root: Path, random: Random) -> None:
 TARGETS = [_policy, _fragment, _label, _analysis_of_policy, _analysis_of_label, _saved_graph]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("target", TARGETS, ids=lambda target: target.__name__.strip("_"))
 def test_a_mutation_is_read_or_refused(root: Path, target: Callable[[Path, Random], None]) -> None:
     @WEEKDAYS

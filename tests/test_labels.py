@@ -522,6 +522,7 @@ def test_the_schema_accepts_what_uses_every_key(tmp_path: Path) -> None:
     assert validator().is_valid(FULL)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("way", list(places(FULL)), ids=lambda way: ".".join(map(str, way)))
 def test_the_reader_and_the_schema_agree_on_a_wrong_type_anywhere(tmp_path: Path, way: tuple[Any, ...]) -> None:
     for other in OTHERS:

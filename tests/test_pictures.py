@@ -203,6 +203,7 @@ def test_hostile_names_come_through_the_command_line(tmp_path: Path) -> None:
         assert "<script>" in "".join(root.itertext())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", ["dot", "svg", "graphml", "mermaid"])
 def test_the_same_input_gives_the_same_bytes(form: str) -> None:
     """Rule S14, whatever the order of hashes."""

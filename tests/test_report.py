@@ -683,6 +683,7 @@ def command(*arguments: str, cwd: Path = ROOT, **environment: str) -> subprocess
 SYSTEM = ["examples/care-home/care-home.policy.xml", "-l", "examples/care-home/care-home.labels.yaml"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", ["html", "markdown", "article30"])
 def test_the_bytes_are_the_same_in_every_process(form: str) -> None:
     done = [command(*SYSTEM, "-f", form, "--lang", "de", PYTHONHASHSEED=seed) for seed in ("0", "4711")]

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from selenium.webdriver.chrome.webdriver import WebDriver
 
-pytestmark = pytest.mark.browser
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
 PAGES = ["care-en", "care-de", "all-en", "open-de", "fleet-en", "none-en", "hostile-en", "hostile-de"]
 SVG = (
     '<svg xmlns="http://www.w3.org/2000/svg" width="1400" height="120" viewBox="0 0 1400 120">'

@@ -52,6 +52,7 @@ class TestShapes:
         assert problems(OWN.replace("rp:PhysicalCharacteristic", "pd:PhysicalCharacteristic")) == set()
         assert problems(OWN.replace("rp:dataType", f"{LAW} ; rp:dataType")) == set()
 
+    @pytest.mark.slow
     @pytest.mark.parametrize(
         ("old", "new", "problem"),
         [

@@ -119,6 +119,7 @@ class TestOwnOntology:
         assert [done.stdout.split()[-1] for done in runs] == ["True", "False"]
         assert runs[0].stdout.rpartition(" ")[0] == runs[1].stdout.rpartition(" ")[0]
 
+    @pytest.mark.slow
     @pytest.mark.parametrize(
         ("old", "new", "problem"),
         [
