@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     Indices = NDArray[np.int64]
 
 LONGEST_ROW = 12  # in-edges per vertex that are pulled row by row
+BLOCK = 2**17  # vertices that are pulled several times in a row, while what they need is in the processor's cache
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,8 +48,9 @@ class Edges:
         Number of vertices.
     pointers
         Shape (count + 1,): the out-edges of v are ``targets[pointers[v]:pointers[v + 1]]``.
-    rows
-        The in-edges, grouped for pulling; sources are vertices here.
+    blocks
+        The in-edges, grouped for pulling; sources are vertices here. Of a large graph several blocks, each of vertices
+        that follow each other, before the split and from it on: in a fleet those of some robots.
     order
         The vertices by slot, without ``single``.
     single
@@ -60,7 +62,7 @@ class Edges:
     count: int
     pointers: Indices
     targets: Indices
-    rows: tuple[Rows, ...]
+    blocks: tuple[tuple[Rows, ...], ...]
     order: Indices
     single: Indices
     slot: Indices
@@ -85,27 +87,39 @@ class Edges:
         single = np.flatnonzero(one)
         single = single[~one[before[starts[single]]]]
         incoming[single] = -1  # they stand in no row
-        rows: list[Rows] = []
+        blocks: list[tuple[Rows, ...]] = []
         order = [np.empty(0, np.int64)]
         end = 0
-        for length, vertices in (*_by_length(incoming, 0, split), *_by_length(incoming, split, count)):
-            order.append(vertices)
-            start, end = end, end + len(vertices)
-            if length > LONGEST_ROW:
-                lengths = incoming[vertices]
-                rows.append(Rows(start, end, before[ranges(starts[vertices], lengths)], np.cumsum(lengths) - lengths))
-            elif length:
-                rows.append(Rows(start, end, before[starts[vertices] + np.arange(length)[:, None]]))
+        for low, high in _blocks(count, split):
+            rows: list[Rows] = []
+            for length, vertices in (*_by_length(incoming, *low), *_by_length(incoming, *high)):
+                order.append(vertices)
+                start, end = end, end + len(vertices)
+                if length > LONGEST_ROW:
+                    lengths = incoming[vertices]
+                    first = np.cumsum(lengths) - lengths
+                    rows.append(Rows(start, end, before[ranges(starts[vertices], lengths)], first))
+                elif length:
+                    rows.append(Rows(start, end, before[starts[vertices] + np.arange(length)[:, None]]))
+            blocks.append(tuple(rows))
         by_slot = np.concatenate(order)
         slot = np.empty(count, np.int64)
         slot[by_slot] = np.arange(end)
         slot[single] = slot[before[starts[single]]]
-        return cls(count, pointers, targets[by_source], tuple(rows), by_slot, single, slot)
+        return cls(count, pointers, targets[by_source], tuple(blocks), by_slot, single, slot)
 
 
 def _running(lengths: Indices) -> Indices:
     """Where each of some ranges begins, one after the other, and where the last ends."""
     return np.concatenate(([0], np.cumsum(lengths))).astype(np.int64)
+
+
+def _blocks(count: int, split: int) -> Iterator[tuple[tuple[int, int], tuple[int, int]]]:
+    """Ranges of vertices before the split, and those from it on that are about as far along."""
+    number = max(1, count // BLOCK)
+    for i in range(number):
+        low, high = ([part * k // number for k in (i, i + 1)] for part in (split, count - split))
+        yield (low[0], low[1]), (split + high[0], split + high[1])
 
 
 def _by_length(incoming: Indices, low: int, high: int) -> Iterator[tuple[int, Indices]]:

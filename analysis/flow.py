@@ -47,7 +47,7 @@ class _Folded:
     """
 
     edges: Edges
-    rows: tuple[Rows, ...]
+    blocks: tuple[tuple[Rows, ...], ...]
     order: Indices
     slot: Indices
     gone: Flags
@@ -59,14 +59,16 @@ class _Folded:
         gone[edges.single] = True
         gone &= ~busy
         own = edges.single[busy[edges.single]]
-        order, slot, rows = edges.order, edges.slot, []
+        order, slot, more = edges.order, edges.slot, []
         if len(own):
             start, end = len(order), len(order) + len(own)
-            rows.append(Rows(start, end, slot[own][None]))
+            more.append((Rows(start, end, slot[own][None]),))
             order, slot = np.concatenate((order, own)), slot.copy()
             slot[own] = np.arange(start, end)
-        renamed = (Rows(row.start, row.end, slot.take(row.sources), row.cuts) for row in edges.rows)
-        return cls(edges, (*renamed, *rows), order, slot, gone)
+        renamed = (
+            tuple(Rows(row.start, row.end, slot.take(row.sources), row.cuts) for row in rows) for rows in edges.blocks
+        )
+        return cls(edges, (*renamed, *more), order, slot, gone)
 
     def many(self, slots: Indices) -> bool:
         """Whether so much leaves these slots that all should pull."""
@@ -178,7 +180,7 @@ def _one(bits: Indices) -> Bits:
 def _step(graph: _Folded, word: _Word) -> None:
     """Follow what changed by one step, in place."""
     if graph.many(word.changed):
-        word.changed = np.concatenate([word.changed[:0], *(_pull(row, word) for row in graph.rows)])
+        word.changed = np.concatenate([word.changed[:0], *(_sweep(rows, word) for rows in graph.blocks)])
         return
     slots, bits = graph.following(word.changed, word.leaves[word.changed])
     np.bitwise_or.at(word.arrives, slots, bits)
@@ -188,6 +190,17 @@ def _step(graph: _Folded, word: _Word) -> None:
     different = new != old
     word.changed = slots[different]
     word.leaves[word.changed] = new[different]
+
+
+def _sweep(rows: tuple[Rows, ...], word: _Word) -> Indices:
+    """Pull a block until little changes there: what it needs is in the processor's cache. Return what changed."""
+    if not rows:
+        return word.changed[:0]
+    start, end = rows[0].start, rows[-1].end
+    before = word.leaves[start:end].copy()
+    while sum(len(_pull(row, word)) for row in rows) > DENSE * (end - start):
+        pass
+    return np.flatnonzero(word.leaves[start:end] != before) + start
 
 
 def _pull(row: Rows, word: _Word) -> Indices:

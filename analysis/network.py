@@ -65,8 +65,11 @@ class Network:
         emitted = as_bits(found, vertices, found.emits, 0)
         keep = as_bits(found, vertices, found.keeps, found.all_bits)
         for number, index in enumerate(special):
-            emitted[count + number] = _words(found.flow_emits.get(index, 0), emitted.shape[1])
-            keep[count + number] = _words(found.flow_keeps.get(index, found.all_bits), keep.shape[1])
+            passing = found.flow_keeps.get(
+                index, found.all_bits
+            )  # what never goes along it is not emitted there either
+            emitted[count + number] = _words(found.flow_emits.get(index, 0) & passing, emitted.shape[1])
+            keep[count + number] = _words(passing, keep.shape[1])
         derivations = [(vertex, *pair) for vertex, pairs in found.derives.items() for pair in pairs]
         nodes = sum(not element.is_channel for element in graph.elements)
         edges = Edges.of(vertices, np.array(sources, np.int64), np.array(targets, np.int64), nodes)

@@ -28,6 +28,9 @@ if TYPE_CHECKING:
     Bits = NDArray[np.uint64]
     Flags = NDArray[np.bool_]
 
+MOST_WORDS = 16  # in one run of the kernel, which then folds channels once for all of them
+MOST_BITS = 2**28  # of all vertices in one run: 32 MB for each of the few arrays that a run takes
+
 
 @dataclass(frozen=True, slots=True)
 class Pairs:
@@ -61,8 +64,8 @@ def pairs(found: Spread, kinds: Sequence[Concern], mask: int) -> Iterator[Pairs]
 
     Notes
     -----
-    Two runs of the kernel per category and 64 bits of sources: one that stops at leaks of the category, one that does
-    not.
+    Two runs of the kernel per category and so many sources: one that stops at leaks of the category, one that does not.
+    So many are ``MOST_WORDS`` times 64 for each form, fewer in a large graph.
     """
     k = len(found.categories)
     ends = [as_bits(found, len(found.graph.elements), concern.bits, 0) for concern in kinds]
@@ -99,6 +102,7 @@ class _Category:
         self._sources = np.array(sorted(v for v in found.facts if found.begins(v) & both), np.int64)
         self._leaks = as_bits(found, len(network.keep), found.leaks, 0)
         self._is_leak = _has(self._leaks, category)
+        self._passes = {form: _has(network.keep, form) for form in self._forms}
         self._derivations = network.derivations[np.isin(network.derivations[:, 1:], self._forms).all(axis=1)]
         self._begins = {source: found.begins(source) for source in self._sources.tolist()}
         flows: dict[int, list[int]] = {vertex: [] for vertex in self._sources.tolist()}
@@ -110,7 +114,8 @@ class _Category:
 
     def pairs(self, kinds: Sequence[Concern], leaks: Sequence[Indices]) -> Iterator[Pairs]:
         """The pairs of each kind."""
-        at_once = max(1, WORD // len(self._forms))
+        words = max(1, min(MOST_WORDS, MOST_BITS // WORD // len(self._network.keep)))
+        at_once = max(1, words * WORD // len(self._forms))
         rows: list[list[tuple[Indices, Indices, Flags, Flags]]] = [[] for _ in kinds]
         disclosed = next(number for number, concern in enumerate(kinds) if concern.kind == DISCLOSURE)
         everywhere = np.unique(np.concatenate(leaks))
@@ -132,29 +137,31 @@ class _Category:
         """(as it is, pseudonymised): shape (leaks, sources), whether data is there; and the leaks."""
         network, n = self._network, len(sources)
         words = -(-n * len(self._forms) // WORD)
-        emitted, keep = np.zeros((2, len(network.keep), words), np.uint64)
-        there = np.zeros_like(emitted)  # at the beginning, what sources bring in
+        emitted, keep = np.zeros((2, words, len(network.keep)), np.uint64).transpose(0, 2, 1)
+        there = np.zeros((len(leaks), words), np.uint64)  # at the beginning, what sources bring in
+        at_leak = {leak: row for row, leak in enumerate(leaks.tolist())}
         for at, form in enumerate(self._forms):
-            keeps = _has(network.keep, form)
+            keeps = self._passes[form]
             if stop and form in self._own:
-                keeps &= ~self._is_leak
+                keeps = keeps & ~self._is_leak
             for word, bits in _split(((1 << n) - 1) << n * at):
-                keep[keeps, word] |= bits
+                np.bitwise_or(keep[:, word], bits, out=keep[:, word], where=keeps)
             begins = _has(network.emitted, form)
             for number, source in enumerate(sources.tolist()):
-                ((word, bit),) = _split(1 << n * at + number)
+                word, place = divmod(n * at + number, WORD)
+                bit = np.uint64(1 << place)
                 starts = [vertex for vertex in (source, *self._flows[source]) if begins[vertex]]
                 emitted[starts, word] |= bit
-                if self._begins[source] >> form & 1:
-                    there[source, word] |= bit
+                if source in at_leak and self._begins[source] >> form & 1:
+                    there[at_leak[source], word] |= bit
         derivations, made = self._derived(n, stop=stop)
         arrives, leaves = fixpoint(network.edges, emitted, keep, derivations)
-        there |= arrives
-        there |= leaves
+        there |= arrives[leaks] | leaves[leaks]
         vertices, before, after = made.T  # what is made at a leak ends there, but gets there
         fired = arrives[vertices, before // WORD] >> (before % WORD).astype(np.uint64) & np.uint64(1)
-        np.bitwise_or.at(there, (vertices, after // WORD), fired << (after % WORD).astype(np.uint64))
-        return self._at(there[leaks], 0, n), self._at(there[leaks], 1, n), leaks
+        rows = np.searchsorted(leaks, vertices)
+        np.bitwise_or.at(there, (rows, after // WORD), fired << (after % WORD).astype(np.uint64))
+        return self._at(there, 0, n), self._at(there, 1, n), leaks
 
     def _derived(self, n: int, *, stop: bool) -> tuple[Indices, Indices]:
         """Derivations for each source: those that go on, and those that stop at a leak once they are made."""

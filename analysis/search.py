@@ -102,15 +102,14 @@ def search(net: Net, starts: Iterable[int], allowed: int, stop: Mapping[int, int
     level = 0
     leaving: dict[int, int] = defaultdict(int)
     first = {vertex: spread.emits.get(vertex, 0) & allowed for vertex in sorted(starts)}
-    found.begun.update(first)
+    found.begun.update({vertex: spread.begins(vertex) & allowed for vertex in first})
     for vertex, bits in first.items():
         _leave(found, vertex, bits, START, leaving)
     single = _through_flows(net, first, allowed)
     while leaving or single:
         level += 1
         arriving: dict[int, int] = defaultdict(int)
-        for vertex, index, target, bits in single:
-            found.begun[vertex] |= bits
+        for index, target, bits in single:
             _arrive(found, target, bits, level, index, arriving)
         single = []
         for vertex in sorted(leaving):
@@ -124,14 +123,14 @@ def search(net: Net, starts: Iterable[int], allowed: int, stop: Mapping[int, int
     return found
 
 
-def _through_flows(net: Net, first: Mapping[int, int], allowed: int) -> list[tuple[int, int, int, int]]:
-    """What sources emit through single flows only."""
+def _through_flows(net: Net, first: Mapping[int, int], allowed: int) -> list[tuple[int, int, int]]:
+    """What sources emit through single flows only: flow, its target, bits."""
     single = []
     for vertex in first:
         for index, target, passing in net.flows.get(vertex, ()):
             bits = net.spread.flow_emits.get(index, 0) & allowed & passing
             if bits:
-                single.append((vertex, index, target, bits))
+                single.append((index, target, bits))
     return single
 
 

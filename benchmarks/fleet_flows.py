@@ -53,9 +53,16 @@ class Fleet:
     derivations: Indices
 
 
-def fleet(robots: int, seed: int = 1) -> Fleet:
+def fleet(robots: int, seed: int = 1, labelled: int = LABELLED, deriving: int = DERIVING) -> Fleet:
     """Make a fleet.
 
+    Parameters
+    ----------
+    labelled, deriving
+        Sources (and sanitizers) of one kind, and nodes that make one kind of another, in the whole fleet.
+
+    Notes
+    -----
     A robot's nodes form a pipeline from sensors to actuators: a topic is mostly read by the one to three nodes that
     come next, now and then by any other. The first topic of a robot goes to the cloud too, the last comes from there.
     As in a real graph, numbers follow names and not the pipeline.
@@ -80,10 +87,12 @@ def fleet(robots: int, seed: int = 1) -> Fleet:
     uplink = np.arange(robots) * TOPICS + split
     sources = np.concatenate((publisher, subscribed + split, uplink))
     targets = np.concatenate((topic + split, subscriber, np.full(robots, CLOUD)))
-    return Fleet(count, split, sources, targets, *_labels(random, count, split))
+    return Fleet(count, split, sources, targets, *_labels(random, count, split, labelled, deriving))
 
 
-def _labels(random: np.random.Generator, count: int, split: int) -> tuple[Bits, Bits, Indices]:
+def _labels(
+    random: np.random.Generator, count: int, split: int, labelled: int, deriving: int
+) -> tuple[Bits, Bits, Indices]:
     """What nodes emit, keep and derive, as ``analysis/spread.py`` hands it over: bit i plain, bit i + k pseudonymised.
 
     Every second sanitizer pseudonymises, the others end the kind of data in both planes.
@@ -92,7 +101,7 @@ def _labels(random: np.random.Generator, count: int, split: int) -> tuple[Bits, 
     emitted = np.zeros((count, -(-2 * k // WORD)), np.uint64)
     keep = np.full_like(emitted, ~np.uint64(0))
     derivations = []
-    share = min(LABELLED, split // 20)
+    share = min(labelled, split // 20)
     for category in range(k):
         nodes = random.choice(np.arange(1, split), 2 * share, replace=False)
         sources, sanitizers = nodes[:share], nodes[share:]
@@ -101,7 +110,7 @@ def _labels(random: np.random.Generator, count: int, split: int) -> tuple[Bits, 
             keep[sanitizers, bit // WORD] &= ~(np.uint64(1) << np.uint64(bit % WORD))
         pseudonymising = sanitizers[::2]
         derivations.append(np.stack(np.broadcast_arrays(pseudonymising, category, category + k), axis=1))
-    makers = random.choice(np.arange(1, split), 2 * share, replace=False)
+    makers = random.choice(np.arange(1, split), min(deriving, split // 10), replace=False)
     before = random.integers(0, k, len(makers))
     after = (before + random.integers(1, k, len(makers))) % k
     derivations += [np.stack((makers, before, after), axis=1), np.stack((makers, before + k, after + k), axis=1)]

@@ -99,6 +99,21 @@ def compared(
     return Line(what, _shown(ours), _shown(other), ratio, bound, goal=goal, note=note)
 
 
+def per_robot(
+    what: str,
+    seconds: Sequence[Sequence[float]],
+    robots: tuple[int, int],
+    bound: float | None = None,
+    *,
+    note: str = "",
+) -> Line:
+    """Return the line for what one robot costs in a large fleet and in a small one, round by round."""
+    each = [[one / count for one in some] for some, count in zip(seconds, robots, strict=True)]
+    ratio = median(a / b for a, b in zip(*each, strict=True))
+    ours, other = (f"{median(some) * 1e6:,.0f} us" for some in each)
+    return Line(what, ours, other, ratio, bound, note=note)
+
+
 def _shown(seconds: Sequence[float]) -> str:
     """Return the median of some seconds, for people."""
     middle = median(seconds)

@@ -45,7 +45,7 @@ def compare(corpus: Path, folder: Path, *, quick: bool) -> Iterator[Line]:
     policy = corpus / POLICY
     first: list[list[float]] = []
     for count in (1, 3, MANY):
-        names, extra = _categories(count)
+        names, extra = chosen_categories(count)
         lists = {name: six_lists(base, number) for number, name in enumerate(names)}
         ours = _ours(policy, folder, lists, extra)
         papers = [_paper(policy, folder, name, one) for name, one in lists.items()]
@@ -61,7 +61,7 @@ def compare(corpus: Path, folder: Path, *, quick: bool) -> Iterator[Line]:
     yield compared(what, first, bound=1, goal=True, note=START)
 
 
-def _categories(count: int) -> tuple[list[str], int]:
+def chosen_categories(count: int) -> tuple[list[str], int]:
     """Return names of kinds of data of which none is broader than another, and how many of them are made up.
 
     The paper's runs know nothing of each other, so no statement about one kind may hold for another.

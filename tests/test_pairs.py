@@ -71,3 +71,35 @@ def test_more_sources_than_a_word_has_bits() -> None:
     }
     system = System(count, count, sorted(edges), said, {})
     same(system, system.bound())
+
+
+def through(system: System, flow: int) -> Bound:
+    """Sources emit along one flow only."""
+    bound = system.bound()
+    elements = {
+        vertex: tuple(replace(s, through=("x",)) if s.role == "source" else s for s in said)
+        for vertex, said in bound.elements.items()
+    }
+    ways: dict[tuple[int, tuple[str, ...]], tuple[int, ...]] = {
+        (vertex, ("x",)): (flow,) for vertex in elements if system.edges[flow][0] == vertex
+    }
+    return replace(bound, elements=elements, through=ways)
+
+
+def test_a_source_whose_only_channel_carries_nothing_is_still_a_leak_by_itself() -> None:
+    """Rule S10: a node that is source and leak of one category is a finding by itself."""
+    said = {0: [statement("source", "Any"), statement("leak", "Any")], 1: [statement("never", "Any")]}
+    system = System(1, 1, [(0, 1), (1, 0)], said, {})
+    found = analyse(system.graph(), through(system, 0), system.hierarchy)
+    assert [len(finding.witness) for finding in found.findings] == [1]
+    same(system, through(system, 0))
+
+
+def test_what_never_goes_along_a_flow_is_not_emitted_along_it() -> None:
+    """Rule S8: a single flow can be restricted, also the one that a source names."""
+    said = {0: [statement("source", "Any")], 1: [statement("leak", "Any")]}
+    system = System(2, 1, [(0, 2), (2, 1)], said, {0: {"Any"}})
+    found = analyse(system.graph(), through(system, 0), system.hierarchy)
+    assert not found.findings
+    assert [carried.element.name for carried in found.carried] == ["/n0"]
+    same(system, through(system, 0))

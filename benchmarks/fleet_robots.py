@@ -1,0 +1,169 @@
+"""Equal robots made from the public TurtleBot3 policy: 24 kinds of data, one cloud that all write to and hear from.
+
+The program reads equal robots once and lets two of them stand for all. So a fleet is measured both ways: through the
+fleet file, as a user would, and with every robot placed as itself, as if it was like no other.
+"""
+
+from __future__ import annotations
+
+import json
+import multiprocessing
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from measure import Line, compared, corpus, per_robot, side_by_side
+from turtlebot import MANY, POLICY, STEP_5, chosen_categories, label_file, six_lists
+
+from rosprivacy.analysis.groups import Groups
+from rosprivacy.analysis.outside import concerns
+from rosprivacy.analysis.spread import spread
+from rosprivacy.fleets import analysed, read_all
+from rosprivacy.ingest.alike import Alike
+from rosprivacy.ingest.placing import place
+from rosprivacy.ontology.vocabulary import load
+from rosprivacy.settings import Settings
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from typing import Any
+
+    from rosprivacy.analysis.spread import Spread
+    from rosprivacy.ingest.placing import Placed
+    from rosprivacy.ontology.vocabulary import Vocabulary
+
+ROBOTS = 1_000
+SMALL = ("/camera", "/filter", "/planner", "/uplink", "/base")  # nodes of a small robot that have a label
+
+
+def turtlebots(folder: Path, robots: int) -> str:
+    """Write the file of a fleet of so many robots; return its name."""
+    base = json.loads((corpus() / STEP_5).read_text("utf-8"))
+    names, made_up = chosen_categories(MANY)
+    assert not made_up, "the ontology has so many kinds"
+    labels = folder / "turtlebot.labels.json"
+    labels.write_text(label_file({name: six_lists(base, i) for i, name in enumerate(names)}), "utf-8")
+    model = {"policies": [str(corpus() / POLICY)], "labels": [labels.name]}
+    flows = [{"from": "*:/recoveries_server", "to": "cloud"}, {"from": "cloud", "to": "*:/amcl"}]
+    return _written(folder / f"turtlebots{robots}.json", robots, model, flows)
+
+
+def small_robots(folder: Path, robots: int) -> str:
+    """The same for robots of 20 nodes and 60 topics."""
+    policy = folder / "small.policy.xml"
+    nodes = [*SMALL, *(f"/node{i:02}" for i in range(20 - len(SMALL)))]
+    profiles = []
+    for i, node in enumerate(nodes):
+        written = "".join(f"<topic>/topic{3 * i + j:02}</topic>" for j in range(3))
+        read = "".join(f"<topic>/topic{(3 * i - 1 - 2 * j) % 60:02}</topic>" for j in range(6))
+        lines = f'<topics publish="ALLOW">{written}</topics><topics subscribe="ALLOW">{read}</topics>'
+        profiles.append(f'<profile ns="/" node="{node[1:]}">{lines}</profile>')
+    enclave = f'<enclave path="/robot"><profiles>{"".join(profiles)}</profiles></enclave>'
+    policy.write_text(f'<policy version="0.2.0"><enclaves>{enclave}</enclaves></policy>', "utf-8")
+    labels = folder / "small.labels.json"
+    said = {"/camera": {"source": ["Video"]}, "/uplink": {"leak": ["Voice"]}, "/base": {"source": ["Location"]}}
+    labels.write_text(json.dumps({"labels": 1, "nodes": said}), "utf-8")
+    model = {"policies": [policy.name], "labels": [labels.name]}
+    flows = [{"from": "*:/uplink", "to": "cloud"}, {"from": "cloud", "to": "*:/planner"}]
+    return _written(folder / f"small{robots}.json", robots, model, flows)
+
+
+def _written(file: Path, robots: int, model: dict[str, Any], flows: list[dict[str, str]]) -> str:
+    fleet = {
+        "fleet": 1,
+        "models": {"robot": model},
+        "groups": [{"robots": robots, "model": "robot"}],
+        "elements": {"cloud": {"kind": "external-system", "country": "DE"}},
+        "flows": flows,
+    }
+    file.write_text(json.dumps(fleet), "utf-8")
+    return str(file)
+
+
+def answered(file: str, known: Vocabulary) -> dict[str, Any]:
+    """Read a fleet, analyse it, and make the report: all that a command does but start."""
+    return analysed(read_all(file, known, Settings()), known, Settings()).document()
+
+
+def as_themselves(file: str, known: Vocabulary) -> Placed:
+    """The graph of a fleet in which each robot stands for itself, as if no two were alike."""
+    read = read_all(file, known, Settings())
+    (member,) = read.members.values()
+    groups = [Alike((robot,), joined=True) for robot in read.fleet.robots]
+    return place(read.fleet, groups, {r.id: replace(member, robot=r) for r in read.fleet.robots}, "declared")
+
+
+def sets(placed: Placed, known: Vocabulary) -> Spread:
+    """All categories through the graph."""
+    return spread(placed.graph, placed.bound, known.hierarchy)
+
+
+def patterns(placed: Placed, known: Vocabulary) -> int:
+    """The same, and all pairs of source and leak put into patterns: everything but the ways."""
+    found = sets(placed, known)
+    kinds = tuple(concerns(found, placed.bound, known.hierarchy))
+    return sum(len(some) for some in Groups(placed.likeness)(found, kinds, found.all_bits).values())
+
+
+def compare(folder: Path, *, quick: bool) -> Iterator[Line]:
+    """Time equal robots through the fleet file, and the same each placed as itself.
+
+    Raises
+    ------
+    AssertionError
+        If the cloud does not join the robots: then it would be a thousand times one robot.
+    """
+    known = load()
+    robots = ROBOTS // 10 if quick else ROBOTS
+    many, one = turtlebots(folder, robots), turtlebots(folder, 1)
+    told = answered(many, known)
+    across = [p for p in told["fleet"]["patterns"] if p["across"]]
+    assert across[0]["findings"] == robots * (robots - 1), "everything is connected"
+    seconds = side_by_side(3 if quick else 5, lambda: answered(many, known), lambda: answered(one, known))
+    size = f"{told['elements']:,} elements, {told['flows']:,} flows, {MANY} kinds; read and analysed once, two for all"
+    yield compared(f"(a) {robots:,} equal TurtleBot3 / one, fleet file to report", seconds, bound=20, note=size)
+
+    large, small = (100_000, 1_000) if not quick else (10_000, 1_000)
+    files = [small_robots(folder, robots) for robots in (large, small)]
+    seconds = side_by_side(2 if quick else 3, *(lambda file=file: answered(file, known) for file in files))
+    note = "equal robots, fleet file to report: there is little to do for each, so the cost of each falls"
+    yield per_robot(f"(b) per robot: {large:,} equal / {small:,}", seconds, (large, small), bound=1.5, note=note)
+
+    large, small = (30, 10) if quick else (300, 30)
+    placed = [as_themselves(turtlebots(folder, robots), known) for robots in (large, small)]
+    size = f"{len(placed[0].graph.elements):,} elements, {len(placed[0].graph.flows):,} flows as Python objects"
+    seconds = side_by_side(1, *(lambda some=some: sets(some, known) for some in placed))
+    what = f"(b) per TurtleBot3: {large} placed as themselves / {small}"
+    yield per_robot(what, seconds, (large, small), bound=1.5, note=f"{size}; labels decided, sets at every element")
+    seconds = side_by_side(1, *(lambda some=some: patterns(some, known) for some in placed))
+    note = (
+        f"no bound: pairs are counted one by one ({large * (large - 1):,} for each pattern across), which grows with "
+        "the square of the robots that differ; robots that are alike are counted, not paired"
+    )
+    yield per_robot("(b) the same, with patterns of all pairs", seconds, (large, small), note=note)
+    yield _memory(folder, large)
+
+
+def _memory(folder: Path, robots: int) -> Line:
+    """Peak of a process of its own that does the same."""
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        peak, flows = pool.apply(_peak, (turtlebots(folder, robots),))
+    what = f"(c) memory of {robots} TurtleBot3 placed as themselves, per million flows"
+    note = "resident peak of a process of its own, less what it has before it reads: graph, sets and pairs"
+    return Line(what, f"{peak / flows:.0f} MB", note=note)
+
+
+def _peak(file: str) -> tuple[int, int]:
+    """(bytes more than at the start, flows)."""
+    known = load()
+    answered(file, known)  # imports and caches; one robot's worth of objects
+    before = _resident()
+    placed = as_themselves(file, known)
+    patterns(placed, known)
+    return _resident() - before, len(placed.graph.flows)
+
+
+def _resident() -> int:
+    """The most that this process has held in memory so far, in bytes; not what its parent held, as getrusage says."""
+    lines = Path("/proc/self/status").read_text("ascii").splitlines()
+    return next(int(line.split()[1]) * 1024 for line in lines if line.startswith("VmHWM"))
