@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import CHANNELS, DISCLOSURE
 from rosprivacy.report.looks import DERIVATION, LEAK, OPEN, REVIEWED, SANITIZER, SOURCE
+from rosprivacy.report.phrases import Phrases
 from rosprivacy.report.picture import Box
 from rosprivacy.report.wording import counted, listed
 
@@ -36,10 +37,15 @@ class Reached:
     ----------
     categories
         That arrive; what they are made of on the way is drawn too. None for all.
+    say
+        The words on the boxes.
     """
 
-    def __init__(self, analysis: Analysis, categories: Collection[str] | None = None) -> None:
+    def __init__(
+        self, analysis: Analysis, categories: Collection[str] | None = None, say: Phrases | None = None
+    ) -> None:
         self.analysis, self.graph, self._found = analysis, analysis.graph, analysis.spread
+        self._say = say or Phrases()
         found = self._found
         wanted = analysis.emitted if categories is None else sorted(categories)
         self._mask = sum(found.both(category) for category in wanted)
@@ -123,7 +129,7 @@ class Reached:
         look = next(role for role, holds in roles if holds)
         words = self._words(key, bits, made, cleaned, vertices)
         if open_for and set(self._found.names(bits["present"])) != open_for:
-            words.append(f"not reviewed: {listed(sorted(open_for), MOST)}")
+            words.append(self._say.of("unreviewed", sorted(open_for), MOST))
         pattern = self.graph.elements[vertices[0]].pattern
         return Box(key, (key[2],), look, tuple(words), bool(open_for), pattern=pattern)
 
@@ -136,29 +142,33 @@ class Reached:
                 fact = self._found.facts.get(vertex, {}).get(category)
                 if fact is None or self.graph.elements[vertex].is_channel:
                     continue
-                made.update(dict.fromkeys(f"makes {to} of {category}" for to in fact.derives if to != category))
+                made.update(dict.fromkeys(self._makes(category, to) for to in fact.derives if to != category))
                 if fact.pseudonymises:
-                    cleaned[f"pseudonymises {category}"] = None
+                    cleaned[self._say.of("pseudonymises", [category], MOST)] = None
                 elif not fact.passes:
-                    cleaned[f"ends {category}"] = None
+                    cleaned[self._say.of("cleans", [category], MOST)] = None
         return list(made), list(cleaned)
+
+    def _makes(self, category: str, to: str) -> str:
+        return self._say.of("makes", [category], MOST, to=self._say.title(to))
 
     def _words(
         self, key: Key, bits: dict[str, int], made: list[str], cleaned: list[str], vertices: list[int]
     ) -> list[str]:
-        found = self._found
+        found, say = self._found, self._say
         if key[1] in CHANNELS:
             plain, hidden = found.planes(bits["present"])
-            names = [*(plain if self._several else ()), *(f"pseudonymised {c}" for c in hidden if c not in plain)]
-            return [listed(names, MOST)] if names else []
+            names = list(plain if self._several else ())
+            names += [say.of("hidden", [c], MOST) for c in hidden if c not in plain]
+            return [say.listed(names, MOST)] if names else []
         words = []
         own = self._own(vertices, bits["begins"])
         if own:
-            words.append(f"source of {listed(own, MOST)}")
+            words.append(say.of("source", own, MOST))
         if bits["leaks"]:
-            words.append(f"leak of {listed(found.names(bits['leaks']), MOST)}")
+            words.append(say.of("leak", found.names(bits["leaks"]), MOST))
         if bits["ends"]:
-            words.append(f"kept too long, or outside the EEA: {listed(found.names(bits['ends']), MOST)}")
+            words.append(say.of("ends", found.names(bits["ends"]), MOST))
         return [*words, *made[:MOST], *cleaned[:MOST]]
 
     def _own(self, vertices: list[int], begins: int) -> list[str]:

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.model import Analysis, Finding, Flow, FlowGraph, Grant, Place
+    from rosprivacy.report.phrases import Phrases
     from rosprivacy.report.picture import Key
 
 VERDICTS = {
@@ -207,13 +208,18 @@ def _ways_to_all(analysis: Analysis, net: Net, findings: Iterable[Finding]) -> I
 class FindingViews:
     """Pictures of findings; what they share is made once.
 
+    Parameters
+    ----------
+    say
+        The words on the boxes.
+
     Notes
     -----
     O(flows) to begin with, and per finding what ``ways`` takes.
     """
 
-    def __init__(self, analysis: Analysis) -> None:
-        self._analysis = analysis
+    def __init__(self, analysis: Analysis, say: Phrases | None = None) -> None:
+        self._analysis, self._say = analysis, say
         self._net = Net.of(analysis.spread)
         self._number = {element: vertex for vertex, element in enumerate(analysis.graph.elements)}
         self._reached: dict[str, Reached] = {}
@@ -229,7 +235,7 @@ class FindingViews:
             Take only the shorter ways, with about so many flows: on a large graph much quicker. None for all.
         """
         category, graph = finding.category, self._analysis.graph
-        reached = self._reached.setdefault(category, Reached(self._analysis, {category}))
+        reached = self._reached.setdefault(category, Reached(self._analysis, {category}, self._say))
         source, leak = self._number[finding.source], self._number[finding.leak]
         found = Ways({})
         if finding.steps:

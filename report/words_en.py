@@ -286,7 +286,39 @@ WORDS = {
     "f.id": "id",
     "f.way": "Shortest way",
     "f.picture": "Picture of the way: {way}",
-    "f.picture.left": "Pictures of the remaining ways were left out, so that the file stays small.",
+    "f.picture.part": "Only the shorter ways are drawn; for all of them, with the files of this report: {command}",
+    "f.picture.none": "Not drawn here; for a picture, with the files of this report: {command}",
+    "f.picture.left": (
+        "{n} of the ways below have no picture here, so that the file stays one that can be mailed, or because Graphviz "
+        "could not draw them. Each of them says how to get it."
+    ),
+    "f.picture.extra": (
+        "There are no pictures, because Graphviz was not installed where the report was made. With "
+        "pip install 'rosprivacy[views]' it draws one of each way."
+    ),
+    "p.legend": "How to read the pictures",
+    "p.shapes": (
+        "Ovals are nodes, rectangles topics; round corners are services, tabs actions. Other shapes are things outside "
+        "ROS. Arrows show where the data goes."
+    ),
+    "p.source": "brings in {names}",
+    "p.leak": "lets out {names}",
+    "p.ends": "kept too long, or outside the EEA: {names}",
+    "p.makes": "makes {to} of {names}",
+    "p.pseudonymises": "pseudonymises {names}",
+    "p.cleans": "ends {names}",
+    "p.unreviewed": "not reviewed: {names}",
+    "p.hidden": "{names} (pseudonymised)",
+    "p.more": "{names} and {n} more",
+    "p.look.source": "brings data in",
+    "p.look.leak": "lets data out, or is a place to assess",
+    "p.look.derivation": "makes one kind of data of another",
+    "p.look.sanitizer": "cleans, but not all",
+    "p.look.reviewed": "reviewed: passes on what it gets",
+    "p.look.open": "not reviewed: passes on what it gets, as far as is known",
+    "p.look.shortest": "step of the shortest way",
+    "p.look.way": "step of a longer way",
+    "p.look.hidden": "only pseudonymised data",
     "f.now": "from here: {data}",
     "f.data": "{data} (pseudonymised)",
     "f.from.to": "{source} to {leak}",

@@ -150,10 +150,13 @@ def _text(result: Result, form: ReportFormat, language: str, title: str, since: 
 
     document = result.document()
     earlier = read_earlier(str(since)) if since else None
+    aliases = None
     if redact:
         from rosprivacy.report.redact import redacted
+        from rosprivacy.report.renamed import aliases_of
 
         copies = redacted([document, *([earlier.document] if earlier else [])])
+        aliases = aliases_of(document, copies[0])
         document = copies[0]
         earlier = replace(earlier, document=copies[1], file="file-0") if earlier else None
     if form is ReportFormat.article30:
@@ -166,6 +169,7 @@ def _text(result: Result, form: ReportFormat, language: str, title: str, since: 
         from rosprivacy.report.markdown import markdown
 
         return markdown(told)
+    from rosprivacy.report.figures import figures
     from rosprivacy.report.html import html
 
-    return html(told)
+    return html(told, figures(result.analysis, told, aliases))

@@ -71,8 +71,12 @@ def graph(
     policies: Policies = None,
     labels: LabelFiles = None,
     show: Annotated[
-        Shown, typer.Option(help="The whole ROS graph, or where personal data can go under the labels.")
-    ] = Shown.ros,
+        Shown | None,
+        typer.Option(
+            show_default=False,
+            help="The whole ROS graph, which is the default, or where personal data can go under the labels.",
+        ),
+    ] = None,
     format: Annotated[  # noqa: A002 - the option's name
         PictureFormat | None,
         typer.Option("--format", "-f", show_default=False, help="Of the picture; by default what --output ends in."),
@@ -91,7 +95,7 @@ def graph(
     ] = None,
     finding: Annotated[
         str | None,
-        typer.Option(metavar="ID", show_default=False, help="Draw the ways of this finding only (privacy view)."),
+        typer.Option(metavar="ID", show_default=False, help="Draw the ways of this finding only: a privacy view."),
     ] = None,
     robot: Annotated[
         str | None, typer.Option(metavar="NAME", show_default=False, help="Draw this robot and what it is joined to.")
@@ -133,6 +137,7 @@ def graph(
         raise typer.BadParameter("name at least one policy: a file, a folder or a glob", param_hint="POLICY")
     if show is Shown.ros and (finding or most):
         raise typer.BadParameter("--finding and --most are for --show privacy")
+    show = show or (Shown.privacy if finding or most else Shown.ros)
     form = _format(format, output)
     settings = Settings(
         view=view.value,
