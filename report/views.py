@@ -235,7 +235,9 @@ class FindingViews:
             Take only the shorter ways, with about so many flows: on a large graph much quicker. None for all.
         """
         category, graph = finding.category, self._analysis.graph
-        reached = self._reached.setdefault(category, Reached(self._analysis, {category}, self._say))
+        if category not in self._reached:
+            self._reached[category] = Reached(self._analysis, {category}, self._say)
+        reached = self._reached[category]
         source, leak = self._number[finding.source], self._number[finding.leak]
         found = Ways({})
         if finding.steps:

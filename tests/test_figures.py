@@ -17,6 +17,7 @@ from rosprivacy.report.inline import Wishes, picture_of, pictures_of
 from rosprivacy.report.looks import ROLE_LOOKS
 from rosprivacy.report.outline import outline
 from rosprivacy.report.page_svg import DRAWS, SAYS, page_svg
+from rosprivacy.report.privacy import Reached
 from rosprivacy.report.redact import redacted
 from rosprivacy.report.renamed import aliases_of, renamed
 from rosprivacy.report.views import FindingViews, finding_view
@@ -216,6 +217,21 @@ def test_the_legend_explains_every_role_in_both_languages() -> None:
     samples = page.xpath("//div[@class='legend']//li")
     assert [sample.text_content().strip() for sample in samples] == [w for *_, w in page_legend(Words("en"))]
     assert all(sample.find("svg").get("aria-hidden") == "true" for sample in samples)
+
+
+def test_what_pictures_share_is_made_once_for_each_kind_of_data(monkeypatch: pytest.MonkeyPatch) -> None:
+    """So that the time grows with the findings, not with findings times elements."""
+    asked: list[str] = []
+
+    def reached(analysis: Analysis, categories: set[str], say: Any) -> Any:
+        asked.extend(categories)
+        return Reached(analysis, categories, say)
+
+    monkeypatch.setattr("rosprivacy.report.views.Reached", reached)
+    found = factory(2).analysis
+    made(found)
+    assert len(found.findings) > 1
+    assert sorted(asked) == sorted({finding.category for finding in found.findings})
 
 
 def test_the_room_is_that_of_a_file_that_can_be_mailed() -> None:
