@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Analysis
     from rosprivacy.analysis.patterns import Deviant, FleetView, Likeness, Pattern, Share
 
+ROWS = ("subjects", "sanitizers", "derivations", "unreached")  # what the whole graph tells; the rest is shown already
+
 
 def fleet_document(told: dict[str, Any], analysis: Analysis, view: FleetView) -> dict[str, Any]:
     """Return the document of a fleet.
@@ -32,7 +34,22 @@ def fleet_document(told: dict[str, Any], analysis: Analysis, view: FleetView) ->
     assumptions = dict(told["assumptions"])
     if assumptions["standard_channels"]:
         assumptions["standard_channels"] = {**assumptions["standard_channels"], "taken": counts["standard_channels"]}
-    return {**told, **counts, "assumptions": assumptions, "fleet": _fleet(view)}
+    shown = {key: _without(told[key], view.likeness) for key in ROWS}
+    return {**told, **shown, **counts, "assumptions": assumptions, "fleet": _fleet(view)}
+
+
+def _without(value: Any, likeness: Likeness) -> Any:
+    """Rows without elements of robots that only stand beside others: what is true of them, the others tell."""
+    if isinstance(value, list):
+        return [_without(item, likeness) for item in value if not _second(item, likeness)]
+    if isinstance(value, dict) and "robot" not in value:
+        return {key: _without(item, likeness) for key, item in value.items()}
+    return value
+
+
+def _second(item: Any, likeness: Likeness) -> bool:
+    element = item.get("element", item) if isinstance(item, dict) else {}
+    return element.get("robot") in likeness.second
 
 
 def _counts(analysis: Analysis, likeness: Likeness) -> dict[str, int]:

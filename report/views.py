@@ -70,7 +70,7 @@ def ros_view(analysis: Analysis, denials: Iterable[Grant] = (), *, standard: boo
             words = f"covers {counted(len(covered[key] - {key}), 'name')}"
             boxes[key] = replace(boxes[key], words=(words,))
     title = f"ROS graph ({graph.view}): {_inventory(boxes)}"
-    notes = _left_out(hidden, undrawn)
+    notes = _left_out(hidden, undrawn, robots=len({element.robot for element in graph.elements}))
     return Picture(ROS, title, sorted_boxes(boxes.values()), lines.made(), notes)
 
 
@@ -100,9 +100,11 @@ def _inventory(boxes: Mapping[Key, Box]) -> str:
     return ", ".join(counted(number, kind.replace("-", " ")) for kind, number in kinds.items()) or "nothing"
 
 
-def _left_out(hidden: Collection[Key], undrawn: int) -> tuple[str, ...]:
+def _left_out(hidden: Collection[Key], undrawn: int, *, robots: int) -> tuple[str, ...]:
     notes = [f"Not drawn: {counted(len(hidden), 'standard ROS channel')}"] if hidden else []
-    if undrawn:
+    if undrawn and robots > 1:
+        notes.append(f"Not drawn: {counted(undrawn, 'DENY', 'DENYs')} that take nothing away")
+    elif undrawn:
         notes.append(f"Not drawn: {counted(undrawn, 'DENY', 'DENYs')} without a channel of that very name")
     return tuple(notes)
 

@@ -163,7 +163,7 @@ WORDS = {
         "{element} is labelled as cleaning {data}, but no label states how. It was taken as pseudonymisation: the data "
         "is still personal."
     ),
-    "a.kinds": "A {kind} is taken to {role}, unless a label says otherwise.",
+    "a.kinds": "Each {kind} is taken to {role}, unless a label says otherwise.",
     "a.kinds.leak": "let out all data that gets there",
     "a.kinds.conduit": "pass on all data that gets there",
     "a.countries": "Members of the EEA and adequacy decisions as of {date}; check them.",
@@ -324,6 +324,38 @@ WORDS = {
     "f.from.to": "{source} to {leak}",
     "f.number": "Way {n}",
     "f.kind.none": "No way to assess was found for this kind.",
+    # --- fleets
+    "h.fleet": "The robots of the fleet",
+    "fl.intro": (
+        "The fleet has {robots}: {kinds}, told apart by their policies and labels. Robots of one kind are alike, so one of them "
+        "is shown for all, here and on each way. How many robots a way is on stands with it; the numbers of elements and "
+        "flows are those of the whole fleet. Infrastructure, and what the robots share, counts as no robot."
+    ),
+    "t.robots": "Robots that are alike",
+    "c.model": "Model",
+    "c.shown": "Shown for all",
+    "c.number": "Number",
+    "fl.deviants": "Robots that are not as most of their model",
+    "fl.deviants.none": "There are none.",
+    "fl.deviant": "{robots}, not as most of the model {model}",
+    "fl.more": "There, and not at most",
+    "fl.fewer": "At most, and not there",
+    "fl.begins": "data begins there",
+    "fl.ends": "data ends there, from another robot",
+    "fl.dismissed": "only through another recipient",
+    "fl.hidden": "pseudonymised",
+    "fl.plain": "not pseudonymised",
+    "fl.more_open": "not reviewed: {names}",
+    "fl.fewer_open": "not reviewed: {names}",
+    "f.fleet": "On {n} of {all}.",
+    "f.fleet.none": "It begins and ends outside the robots.",
+    "f.fleet.across": "From one robot to another; {n} such ways in the fleet.",
+    "f.fleet.dismissed": "{n} of {all} like it lead only through another recipient.",
+    "f.fleet.pseudonymised": "In {n} of {all} like it the data are pseudonymised.",
+    "n.robots": "robots in the fleet",
+    "robotkind.one": "{n} kind of robot",
+    "robotkind.many": "{n} kinds of robots",
+    "file.fleet": "fleet",
     # --- decisions
     "d.decision": "Decision",
     "d.accept": "accepted",
