@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosprivacy.report.looks import DERIVATION, LEAK, OPEN, REVIEWED, SANITIZER, SOURCE
+from rosprivacy.report.looks import DATA, DERIVATION, LEAK, OPEN, REVIEWED, SANITIZER, SHORTEST, SOURCE, WAY
 from rosprivacy.report.picture import Box, Line, Picture, sorted_boxes, sorted_lines
 from rosprivacy.report.wording import counted
 
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.patterns import Likeness
     from rosprivacy.report.picture import Key
 
+WAYS = (DATA, WAY, SHORTEST)  # the later hides the earlier
 ROLES = (LEAK, SOURCE, DERIVATION, SANITIZER, OPEN, REVIEWED)  # what a box in several roles is coloured by
 
 
@@ -56,8 +57,9 @@ def represented(picture: Picture, likeness: Likeness) -> Picture:
         source, target = moved(line.source), moved(line.target)
         if source != target:
             now_line = replace(line, source=source, target=target)
-            old_line = lines.get((source, target, line.look))
-            lines[source, target, line.look] = _joined(old_line, now_line) if old_line else now_line
+            slot = (source, target, "" if line.look in WAYS else line.look)
+            old_line = lines.get(slot)
+            lines[slot] = _joined(old_line, now_line) if old_line else now_line
     standing = sum(likeness.weight(robot) > 1 for robot in likeness.members)
     all_robots = counted(sum(map(likeness.weight, likeness.members)), "robot")
     note = f"A fleet of {all_robots}; {counted(standing, 'robot')} drawn for all that are alike"
@@ -77,9 +79,11 @@ def _both(one: Box, other: Box) -> Box:
 
 
 def _joined(one: Line, other: Line) -> Line:
+    """What leads to a leak hides what leads to none."""
     lengths = [line.length for line in (one, other) if line.length]
     return replace(
         one,
+        look=max(one.look, other.look, key=WAYS.index) if one.look != other.look else one.look,
         roles=_all(one.roles, other.roles),
         carries=_all(one.carries, other.carries),
         pseudonymised=one.pseudonymised and other.pseudonymised,

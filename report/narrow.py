@@ -182,7 +182,7 @@ def grouped(
     profiles
         Of the whole graph.
     own
-        Robot -> its profiles, where there are several robots.
+        Robot -> its profiles, where there are several robots; what has none is no robot.
     """
     group_of = _namers(profiles, own or {})[by]
     names = {box.key: group_of(box) for box in picture.boxes if by == "robot" or not box.is_channel}
@@ -197,16 +197,14 @@ def grouped(
     return replace(picture, boxes=tuple(replace(box, group=names.get(box.key, "")) for box in picture.boxes))
 
 
-def _namers(
-    profiles: Iterable[Profile], own: Mapping[str, Iterable[Profile]]
-) -> Mapping[str, Callable[[Box], str]]:
+def _namers(profiles: Iterable[Profile], own: Mapping[str, Iterable[Profile]]) -> Mapping[str, Callable[[Box], str]]:
     enclaves: dict[tuple[str, str], set[str]] = defaultdict(set)
     for name, some in (own or {"": profiles}).items():
         for profile in some:
             enclaves[name, profile.node].add(profile.enclave)
 
     def robot(box: Box) -> str:
-        return f"robot {box.robot}" if box.robot else ""
+        return f"robot {box.robot}" if box.robot and (not own or box.robot in own) else box.robot
 
     def enclave(box: Box) -> str:
         at = box.robot if own else ""

@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
 SECTIONS = (
-    "summary", "fleet", "assumptions", "changes", "tables", "findings", "outside", "sanitizers", "questions", "criteria",
-    "inventory", "method", "sign",
+    "summary", "fleet", "assumptions", "changes", "tables", "findings", "outside", "sanitizers", "questions",
+    "criteria", "inventory", "method", "sign",
 )  # fmt: skip
 PARAGRAPHS = 10  # of the method note
 SIGNED = ("purpose", "controller", "basis", "necessity", "measures", "residual", "name", "date", "signature")

@@ -14,7 +14,8 @@ LONGEST = 60
 TEXTS = {
     "source": "source of {names}",
     "leak": "leak of {names}",
-    "ends": "kept too long, or outside the EEA: {names}",
+    "storage-limitation": "kept without an end, or too long: {names}",
+    "third-country-transfer": "outside the EEA, no basis stated: {names}",
     "makes": "makes {to} of {names}",
     "pseudonymises": "pseudonymises {names}",
     "cleans": "ends {names}",

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from functools import reduce
+from operator import or_
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import CHANNELS, DISCLOSURE
@@ -20,14 +22,14 @@ if TYPE_CHECKING:
 MOST = 4  # categories that are named on a box
 
 
-def ends_of(analysis: Analysis) -> dict[int, int]:
-    """Return where findings end that are no disclosures: vertex -> bits of what is kept too long there, or leaves."""
+def ends_of(analysis: Analysis) -> dict[int, dict[str, int]]:
+    """Return where findings end that are no disclosures: vertex -> their kind -> bits of the data."""
     number = {element: vertex for vertex, element in enumerate(analysis.graph.elements)}
-    ends: dict[int, int] = defaultdict(int)
+    ends: dict[int, dict[str, int]] = defaultdict(lambda: defaultdict(int))
     for finding in analysis.findings:
         if finding.kind != DISCLOSURE:
-            ends[number[finding.leak]] |= analysis.spread.both(finding.category)
-    return dict(ends)
+            ends[number[finding.leak]][finding.kind] |= analysis.spread.both(finding.category)
+    return {vertex: dict(sorted(kinds.items())) for vertex, kinds in ends.items()}
 
 
 class Reached:
@@ -55,7 +57,8 @@ class Reached:
         self._of: dict[Key, list[int]] = defaultdict(list)
         for vertex, element in enumerate(self.graph.elements):
             self._of[element.identity].append(vertex)
-        self._ends = ends_of(analysis)
+        self._ending = ends_of(analysis)
+        self._ends = {vertex: reduce(or_, kinds.values()) for vertex, kinds in self._ending.items()}
         self._open: dict[Key, set[str]] = defaultdict(set)
         shown = set(found.names(self._mask))
         for question in analysis.open:
@@ -90,11 +93,17 @@ class Reached:
         plain, hidden = found.planes(bits)
         return found.names(bits), bool(hidden) and not plain
 
-    def left_out(self) -> tuple[str, ...]:
-        """Say what is not there: what ends the data, and what it does not get to."""
+    def left_out(self, beside: Collection[str] = ()) -> tuple[str, ...]:
+        """Say what is not there: what ends the data, and what it does not get to.
+
+        Parameters
+        ----------
+        beside
+            Robots that do not count, see ``views.privacy_view``.
+        """
         ended, apart = [], 0
         for key, vertices in self._of.items():
-            if any(self._goes_on(vertex) for vertex in vertices):
+            if key[0] in beside or any(self._goes_on(vertex) for vertex in vertices):
                 continue
             if key[1] not in CHANNELS and any(self._found.arrives.get(vertex, 0) & self._mask for vertex in vertices):
                 ended.append(key[2])
@@ -167,9 +176,18 @@ class Reached:
             words.append(say.of("source", own, MOST))
         if bits["leaks"]:
             words.append(say.of("leak", found.names(bits["leaks"]), MOST))
-        if bits["ends"]:
-            words.append(say.of("ends", found.names(bits["ends"]), MOST))
+        for kind, ending in self._ending_at(vertices).items():
+            words.append(say.of(kind, found.names(ending & bits["present"]), MOST))
         return [*words, *made[:MOST], *cleaned[:MOST]]
+
+    def _ending_at(self, vertices: list[int]) -> dict[str, int]:
+        """Of one element: kind of a finding that ends there -> bits."""
+        ending: dict[str, int] = defaultdict(int)
+        for vertex in vertices:
+            for kind, bits in self._ending.get(vertex, {}).items():
+                if bits & self._mask:
+                    ending[kind] |= bits & self._mask
+        return dict(sorted(ending.items()))
 
     def _own(self, vertices: list[int], begins: int) -> list[str]:
         """What labels call it a source of; what it makes of its own data begins here too."""

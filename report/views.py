@@ -39,7 +39,9 @@ LONGER = "Not drawn: ways of more"
 BOTH_WAYS = {"request", "reply", "call", "execute"}
 
 
-def ros_view(analysis: Analysis, denials: Iterable[Grant] = (), *, standard: bool = False) -> Picture:
+def ros_view(
+    analysis: Analysis, denials: Iterable[Grant] = (), *, standard: bool = False, beside: Collection[str] = ()
+) -> Picture:
     """Return the whole system: every element and every grant.
 
     Parameters
@@ -48,6 +50,8 @@ def ros_view(analysis: Analysis, denials: Iterable[Grant] = (), *, standard: boo
         Grants of the policies; those that deny are drawn even where nothing allows what they deny.
     standard
         Whether to draw the standard ROS channels too (rule S13).
+    beside
+        Robots that stand beside others like them (``fleet_view.represented`` draws one for both): none of them counts.
     """
     graph = analysis.graph
     hidden = set() if standard else {graph.elements[vertex].identity for vertex in analysis.spread.standard}
@@ -69,7 +73,8 @@ def ros_view(analysis: Analysis, denials: Iterable[Grant] = (), *, standard: boo
         if boxes[key].pattern:
             words = f"covers {counted(len(covered[key] - {key}), 'name')}"
             boxes[key] = replace(boxes[key], words=(words,))
-    title = f"ROS graph ({graph.view}): {_inventory(boxes)}"
+    title = f"ROS graph ({graph.view}): {_inventory([key for key in boxes if key[0] not in beside])}"
+    hidden = {key for key in hidden if key[0] not in beside}
     notes = _left_out(hidden, undrawn, robots=len({element.robot for element in graph.elements}))
     return Picture(ROS, title, sorted_boxes(boxes.values()), lines.made(), notes)
 
@@ -93,11 +98,12 @@ def _deny(lines: _Lines, grant: Grant, graph: FlowGraph, hidden: Collection[Key]
     return channel in lines.boxes or channel in hidden
 
 
-def _inventory(boxes: Mapping[Key, Box]) -> str:
+def _inventory(keys: Iterable[Key]) -> str:
     kinds: dict[str, int] = defaultdict(int)
-    for key in sorted(boxes, key=order):
-        kinds[key[1]] += 1
-    return ", ".join(counted(number, kind.replace("-", " ")) for kind, number in kinds.items()) or "nothing"
+    for key in sorted(keys, key=order):
+        kinds[key[1].replace("-", " ")] += 1
+    plural = {"shared memory": "shared memories"}
+    return ", ".join(counted(number, kind, plural.get(kind, "")) for kind, number in kinds.items()) or "nothing"
 
 
 def _left_out(hidden: Collection[Key], undrawn: int, *, robots: int) -> tuple[str, ...]:
@@ -165,8 +171,13 @@ def _place(place: Place) -> tuple[str, int]:
     return place.file, place.line
 
 
-def privacy_view(analysis: Analysis) -> Picture:
+def privacy_view(analysis: Analysis, beside: Collection[str] = ()) -> Picture:
     """Return what some category reaches, with the ways to leaks marked.
+
+    Parameters
+    ----------
+    beside
+        As in ``ros_view``.
 
     Notes
     -----
@@ -185,9 +196,9 @@ def privacy_view(analysis: Analysis) -> Picture:
     lines = _data_lines(reached, boxes, range(len(analysis.graph.flows)), lengths, _pairs(open_findings))
     what = listed(analysis.emitted, most=6)
     findings = counted(len(open_findings), "finding")
-    open_count = counted(len({q.element.identity for q in analysis.open}), "element")
+    open_count = counted(len({q.element.identity for q in analysis.open if q.element.robot not in beside}), "element")
     title = f"Where {what} can go ({analysis.graph.view}): {VERDICTS[analysis.verdict]}"
-    notes = (f"{findings}, {open_count} not reviewed", *reached.left_out())
+    notes = (f"{findings}, {open_count} not reviewed", *reached.left_out(beside))
     shown = tuple(in_words(finding) for finding in open_findings)
     core = _core(open_findings)
     return Picture(PRIVACY, title, sorted_boxes(boxes.values()), lines.made(), notes, shown, core)

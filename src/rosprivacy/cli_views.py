@@ -203,13 +203,14 @@ def _view(
 ) -> Picture:
     from rosprivacy.report import narrow, views
 
+    beside = result.fleet.likeness.second if result.fleet else ()
     if show is Shown.privacy:
         if finding:
             about = views.PER_BOX * most if most else None
             return views.finding_view(result.analysis, narrow.the_finding(result.analysis, finding), about)
-        return views.privacy_view(result.analysis)
+        return views.privacy_view(result.analysis, beside)
     denials = [grant for policy in result.policies for grant in policy.grants if not grant.allow]
-    picture = views.ros_view(result.analysis, denials, standard=standard)
+    picture = views.ros_view(result.analysis, denials, standard=standard, beside=beside)
     return narrow.carrying(picture, result.analysis) if carried_only else picture
 
 
