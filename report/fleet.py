@@ -30,12 +30,12 @@ def fleet_document(told: dict[str, Any], analysis: Analysis, view: FleetView) ->
     analysis
         Of the whole graph.
     """
-    counts = _counts(analysis, view.likeness)
+    numbers = counts(analysis, view.likeness)
     assumptions = dict(told["assumptions"])
     if assumptions["standard_channels"]:
-        assumptions["standard_channels"] = {**assumptions["standard_channels"], "taken": counts["standard_channels"]}
+        assumptions["standard_channels"] = {**assumptions["standard_channels"], "taken": numbers["standard_channels"]}
     shown = {key: _without(told[key], view.likeness) for key in ROWS}
-    return {**told, **shown, **counts, "assumptions": assumptions, "fleet": _fleet(view)}
+    return {**told, **shown, **numbers, "assumptions": assumptions, "fleet": _fleet(view)}
 
 
 def _without(value: Any, likeness: Likeness) -> Any:
@@ -52,8 +52,8 @@ def _second(item: Any, likeness: Likeness) -> bool:
     return element.get("robot") in likeness.second
 
 
-def _counts(analysis: Analysis, likeness: Likeness) -> dict[str, int]:
-    """Elements, flows and standard channels of the fleet, not of its graph."""
+def counts(analysis: Analysis, likeness: Likeness) -> dict[str, int]:
+    """Return how many elements, flows and standard channels the fleet has, not its graph."""
     elements = analysis.graph.elements
 
     def weight(source: int, target: int) -> int:

@@ -109,6 +109,7 @@ class Reached:
                 ended.append(key[2])
             else:
                 apart += 1
+        ended = list(dict.fromkeys(ended))  # the same on several robots
         notes = [f"Not drawn: {listed(ended, longest=40)}, which ends what comes to it"] if len(ended) == 1 else []
         if len(ended) > 1:
             notes = [f"Not drawn: {listed(ended, longest=40)}, which end what comes to them"]

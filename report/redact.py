@@ -22,7 +22,8 @@ KEPT = {
     "countries_as_of", "country", "data_types_asked", "decision", "expires", "finding", "findings", "format", "from",
     "holds", "id", "kind", "law_as_of", "leaves", "leaves_pseudonymised", "legal_basis", "method", "missing", "paths",
     "pattern", "provision", "pseudonymised", "recipient", "retention", "role", "roles", "rosprivacy", "severity",
-    "sha256", "special_basis", "state", "taken_as", "taken_by_kind", "to", "transfer", "unlabelled_channel", "unlabelled_node",
+    "sha256", "special_basis", "state", "taken_as", "taken_by_kind", "to", "transfer", "unlabelled_channel",
+    "unlabelled_node",
     "verdict", "view", "without_limit",
 }  # fmt: skip
 MAPS = ("retention", "taken_by_kind")  # of kinds of data and kinds of elements, values as they are

@@ -4,13 +4,19 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import pyshacl
 import pytest
+import rdflib
 
+from rosprivacy.analysis.patterns import Likeness
+from rosprivacy.formats import pia_file, sarif_log
 from rosprivacy.report.figures import figures
+from rosprivacy.report.fleet_formats import note
 from rosprivacy.report.fleet_view import label, represented
 from rosprivacy.report.html import html
 from rosprivacy.report.markdown import markdown
@@ -21,7 +27,6 @@ from tests.graphs import hospital
 from tests.pictures import fleet_privacy
 
 if TYPE_CHECKING:
-    from rosprivacy.analysis.patterns import Likeness
     from rosprivacy.assembly import Result
     from tests.command import Cli
 
@@ -196,3 +201,62 @@ def test_decisions_are_refused_for_a_fleet_not_forgotten(cli: Cli, tmp_path: Pat
         done = cli(command, "--fleet", FLEET, "--decisions", str(tmp_path / "decisions.yaml"))
         assert done.returncode == 2
         assert "decisions are not taken into account for a fleet" in done.stderr
+
+
+# ---------------------------------------------------------------- other people's tools
+
+
+def test_sarif_tells_on_how_many_robots_each_finding_is() -> None:
+    (run,) = sarif_log(found())["runs"]
+    said = {result["partialFingerprints"]["rosprivacyFinding/v1"]: result for result in run["results"]}
+    assert len(said) == 6
+    view = found().fleet
+    assert view
+    for pattern in view.patterns:
+        result = said[pattern.finding.id]
+        assert f"On {len(pattern.robots)} of 40 robots" in result["message"]["text"]
+        assert result["properties"]["robots"] == list(pattern.robots)
+        assert result["properties"]["findings"] == pattern.count
+    assert run["properties"]["standardChannels"] == document()["standard_channels"]
+    assert run["properties"]["robots"] == 40
+    notices = [row["message"]["text"] for row in run["invocations"][0]["toolExecutionNotifications"]]
+    assert any("carrier_01 for 23, cleaner_1 for 4, guide_01 for 12" in text for text in notices)
+    targets = {row["location"].get("uri") for row in run["artifacts"]}
+    assert "examples/fleet/fleet.yaml" in targets
+
+
+def test_the_file_of_the_pia_tool_names_one_of_those_that_are_alike_and_says_so() -> None:
+    made = pia_file(found())
+    text = json.dumps(made)
+    assert not [robot for robot in ("carrier_02", "cleaner_2", "guide_02") if robot in text]
+    for answer in made["answers"]:
+        assert answer["data"]["list"] or "carrier_01 for 23" in answer["data"]["text"]
+    assert "25 profiles in 10 enclaves" in text
+
+
+def test_linked_data_names_the_robots_of_each_finding_and_fits_its_shapes() -> None:
+    graph = rdflib.Graph().parse(data=found().linked_data("turtle"), format="turtle")
+    rp = rdflib.Namespace("urn:x-rosprivacy:")
+    view = found().fleet
+    assert view
+    for pattern in view.patterns:
+        (iri,) = graph.subjects(rp.id, rdflib.Literal(pattern.finding.id))
+        assert sorted(map(str, graph.objects(iri, rp.onRobot))) == list(pattern.robots)
+        assert [int(str(n)) for n in graph.objects(iri, rp.findings)] == [pattern.count]
+    shapes = rdflib.Graph().parse(ROOT / "report" / "findings.shapes.ttl")
+    conforms, _, text = pyshacl.validate(graph, shacl_graph=shapes)
+    assert conforms, text
+
+
+@pytest.mark.parametrize("form", ["sarif", "cnil-pia", "turtle", "json-ld", "json", "text"])
+def test_every_format_is_written_for_a_fleet(cli: Cli, form: str) -> None:
+    done = cli("analyze", "--fleet", FLEET, "--format", form)
+    assert (done.returncode, done.stderr) == (1, "")
+    assert len(done.stdout) > 1000
+
+
+def test_a_fleet_of_one_robot_each_says_nothing_of_others_like_it() -> None:
+    result = found()
+    assert result.fleet
+    alone = replace(result.fleet, likeness=Likeness({"carrier_lent": ("carrier_lent",)}, {}, {"carrier_lent": "m"}))
+    assert note(alone) == "A fleet of 1 robot"
