@@ -109,9 +109,9 @@ def lines(folder: Path) -> Iterator[Line]:
     each = [_seconds(partial(_one, analysis, finding)) for finding in analysis.findings]
     note = f"the slowest of {len(each)}, of up to {MOST} elements, with the start of Graphviz"
     yield _line("the privacy view of one finding, SVG", max(each), ONE, note)
-    made: list[str] = []
-    took = _seconds(lambda: made.extend(pictures_of(analysis, analysis.findings)))
-    note = f"{max(map(len, made)) / 1000:.0f} kB the largest; all one after the other"
+    made: list[int] = []
+    took = _seconds(lambda: made.extend(len(one.svg) for one in pictures_of(analysis, analysis.findings) if one))
+    note = f"{max(made) / 1000:.0f} kB the largest; all one after the other"
     yield _line("the picture of one finding for a report, on average", took / len(made), ONE, note)
     yield Line("boxes of the privacy view, folded", f"{len(folded(privacy_view(analysis)).boxes):,}")
 

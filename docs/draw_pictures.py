@@ -59,6 +59,7 @@ SYSTEMS = {
     "factory": System(EXAMPLES / "factory", ("before.policy.xml", "-l", "run2.labels.yaml")),
     "factory-filtered": System(EXAMPLES / "factory", ("after.policy.xml", "-l", "run4.labels.yaml")),
     "care-home": System(EXAMPLES / "care-home", ("care-home.policy.xml", "-l", "care-home.labels.yaml")),
+    "fleet": System(EXAMPLES / "fleet", ("--fleet", "fleet.yaml")),
     "turtlebot3": System(CORPUS, (TB3, "-l", TB3_LABELS)),
 }
 NEAR = "--around /recoveries_server --around /turtlebot3_laserscan --fold --no-loose-ends"
@@ -69,6 +70,10 @@ PICTURES = (
     Drawing("care-home-ros", "care-home", "--fold --cluster enclave --direction down"),
     Drawing("care-home-privacy", "care-home", "--show privacy --fold --direction down"),
     Drawing("care-home-finding", "care-home", "--show privacy --finding 59dc667b --direction down"),
+    Drawing("fleet-ros", "fleet", "--robot carrier_01 --fold --cluster robot --direction down"),
+    Drawing("fleet-ros-all", "fleet", "--fold --cluster robot"),
+    Drawing("fleet-privacy", "fleet", "--show privacy --categories Video --fold --cluster robot --direction down"),
+    Drawing("fleet-privacy-all", "fleet", "--show privacy --fold --cluster robot"),
     Drawing("turtlebot3-ros", "turtlebot3", NEAR),
     Drawing("turtlebot3-ros-all", "turtlebot3", "--fold"),
     Drawing("turtlebot3-privacy", "turtlebot3", "--show privacy --fold --most 20 --direction down"),

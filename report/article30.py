@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.report.index import Index
 from rosprivacy.report.kinds import provision
 from rosprivacy.report.naming import fit, key, name, whole
-from rosprivacy.report.patterns import grouped, names_of
+from rosprivacy.report.patterns import grouped
 from rosprivacy.report.storages import STORAGE, retention
 from rosprivacy.report.tables import OUTSIDE, can_come_from
 from rosprivacy.report.words import Words
@@ -130,7 +130,7 @@ def _entry(category: str, group: Sequence[Mapping[str, Any]], facts: _Facts) -> 
         "article9": words(f"article9.{known['article9']}"),
         "provisions": "; ".join(f"{p.name}: {p.condition}" if p.condition else p.name for p in law),
         "subjects": words.row(facts.sources(category)),
-        "recipient": words.row(names_of(group, words)) if group else words("r.norecipient"),
+        "recipient": words.row(index.names(group)) if group else words("r.norecipient"),
         "role": words.row(dict.fromkeys(_role(row, index) for row in stated if row.get("recipient"))),
         "form": _form(findings, stated, index),
         "transfer": words.row(dict.fromkeys(filter(None, (_transfer(row, index) for row in stated)))),
@@ -185,7 +185,7 @@ def _measures(category: str, facts: _Facts) -> Iterator[str]:
     rows = [row for row in index.document["sanitizers"] if row["category"] == category and row["reached"]]
     for group in grouped(rows, lambda row: (whole(row["element"])[1:], row["method"], row["stated"])):
         method = words(f"method.{group[0]['method']}" if group[0]["stated"] else "method.unstated")
-        names = words.row(names_of([row["element"] for row in group], words))
+        names = words.row(index.names([row["element"] for row in group]))
         yield words("r.measure.cleans", element=names, method=method)
     for row in index.outside.values():
         if "encrypted" in row and category in row["holds"]:

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosprivacy.report.naming import fit, name, printable
-from rosprivacy.report.patterns import names_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -86,7 +85,7 @@ def _unstated(index: Index) -> Iterator[str]:
     rows = index.document["assumptions"]["sanitizers_without_method"]
     for category in dict.fromkeys(row["category"] for row in rows):
         elements = [row["element"] for row in rows if row["category"] == category]
-        for element in names_of(elements, index.words):
+        for element in index.names(elements):
             yield index.words("a.unstated", element=element, data=index.data(category))
 
 
@@ -95,7 +94,7 @@ def files(index: Index) -> tuple[File, ...]:
     said, words = index.document["assumptions"], index.words
     rows = [
         File(words(f"file.{kind}"), fit(entry["file"]), entry["sha256"])
-        for kind in ("policies", "labels", "ontologies")
+        for kind in ("fleet", "policies", "labels", "ontologies")
         for entry in said.get(kind, ())
     ]
     standard = said["standard_channels"]

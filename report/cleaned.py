@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.report.index import SPECIAL
 from rosprivacy.report.naming import key, whole
-from rosprivacy.report.patterns import grouped, names_of, without_robots
+from rosprivacy.report.patterns import grouped, without_robots
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -91,13 +91,13 @@ def _cleaning(group: list[Mapping[str, Any]], past: _Past, index: Index) -> Clea
     leaves = [index.data(category) for category in row["leaves"]]
     leaves += [index.data(category, pseudonymised=True) for category in row["leaves_pseudonymised"]]
     return Cleaning(
-        name=words.row(names_of([r["element"] for r in group], words)),
+        name=words.row(index.names([r["element"] for r in group])),
         kinds=index.all_data(reached),
         method=words(f"method.{row['method']}" if row["stated"] else "method.unstated"),
         weak=row["method"] == "pseudonymise",
         unreached=index.all_data(unreached),
         leaves=words.row(leaves),
-        beside=names_of([element for r in group for element in r["beside"]], words),
+        beside=index.names([element for r in group for element in r["beside"]]),
         past=past.of({whole(r["element"]) for r in group}, reached),
     )
 
@@ -109,7 +109,7 @@ def makings(index: Index) -> tuple[Making, ...]:
     groups = grouped(rows, lambda row: (key(row["element"])[1:], row["from"], row["to"]))
     return tuple(
         Making(
-            name=index.words.row(names_of([row["element"] for row in group], index.words)),
+            name=index.words.row(index.names([row["element"] for row in group])),
             made_of=index.data(group[0]["from"]),
             made=index.data(group[0]["to"]),
             special=article9.get(group[0]["to"], False) and not article9.get(group[0]["from"], False),

@@ -18,7 +18,7 @@ from rosprivacy.analysis.model import Method
 from rosprivacy.report import cnil_answers
 from rosprivacy.report.cnil_answers import NAMES, Known
 from rosprivacy.report.inventory import kinds_of
-from rosprivacy.report.markup import Html, bullets, counted, escaped, joined, paragraph
+from rosprivacy.report.markup import Html, bullets, counted, escaped, joined, paragraph, prose
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -52,6 +52,7 @@ def cnil_pia(
     created: str,
     accepted: Mapping[str, str] = NOTHING,
     stated: Stated = NOTHING,
+    about: str = "",
 ) -> dict[str, Any]:
     """Return the file's content.
 
@@ -64,10 +65,12 @@ def cnil_pia(
     stated
         (robot, kind, name) of a storage or recipient -> what people stated of it: ``retention``, ``country``,
         ``encrypted``, ``operator``, ``role``, ``basis``.
+    about
+        What a reader has to know beside it, such as which robots of a fleet are named.
     """
     known = Known(analysis, kinds_of(analysis, bound, categories, hierarchy), stated, accepted)
     measures = list(_measures(known))
-    note = _note(analysis, assumptions)
+    note = _note(analysis, assumptions, about)
     texts = {
         121: cnil_answers.data(known),
         122: joined(cnil_answers.life_cycle(known), _read(assumptions)),
@@ -103,7 +106,7 @@ def cnil_pia(
 
 def _pia(assumptions: Mapping[str, Any], created: str) -> dict[str, Any]:
     """The record itself. Names are empty texts, not null: the tool sorts by them."""
-    files = [entry["file"] for entry in assumptions.get("policies") or ()]
+    files = [entry["file"] for entry in assumptions.get("fleet") or assumptions.get("policies") or ()]
     named = shown(files[0]) if files else "from the database"
     more = f" and {len(files) - 1} more" if len(files) > 1 else ""
     return {
@@ -168,16 +171,18 @@ def _rows(rows: list[Html]) -> Html:
     return bullets([*rows[:NAMES], *more])
 
 
-def _note(analysis: Analysis, assumptions: Mapping[str, Any]) -> Html:
+def _note(analysis: Analysis, assumptions: Mapping[str, Any], about: str) -> Html:
     """Whose word this is."""
     program = escaped(f"rosprivacy {assumptions.get('rosprivacy', '')}".strip())
     rests = f"view {analysis.graph.view}, verdict {analysis.verdict}, {len(analysis.open):,} elements not reviewed"
-    return Html(f"<p><em>Filled in by {program} from policies and labels ({rests}). A person has to check it.</em></p>")
+    more = f" {prose(about)}." if about else ""
+    said = f"Filled in by {program} from policies and labels ({rests}).{more} A person has to check it."
+    return Html(f"<p><em>{said}</em></p>")
 
 
 def _read(assumptions: Mapping[str, Any]) -> Html:
     """Which files it rests on (rule S12)."""
-    files = [entry for kind in ("policies", "labels") for entry in assumptions.get(kind) or ()]
+    files = [entry for kind in ("fleet", "policies", "labels") for entry in assumptions.get(kind) or ()]
     rows = [escaped(f"{entry['file'][-120:]} (sha256 {entry['sha256'][:12]})") for entry in files[:NAMES]]
     more = [Html(f"and {len(files) - NAMES:,} more")] if len(files) > NAMES else []
     return joined(paragraph(Html("This rests on:")), bullets([*rows, *more])) if files else Html("")

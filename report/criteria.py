@@ -9,8 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosprivacy.report.index import CAN_BE_SPECIAL
-from rosprivacy.report.naming import name
-from rosprivacy.report.patterns import names_of
+from rosprivacy.report.patterns import weight
 
 if TYPE_CHECKING:
     from rosprivacy.report.index import Index
@@ -45,7 +44,7 @@ def _makes(index: Index) -> str:
     texts = [
         index.words("w.make", element=element, data=index.data(made), of=index.data(of))
         for of, made in dict.fromkeys((row["from"], row["to"]) for row in rows)
-        for element in names_of([r["element"] for r in rows if (r["from"], r["to"]) == (of, made)], index.words)
+        for element in index.names([r["element"] for r in rows if (r["from"], r["to"]) == (of, made)])
     ]
     return index.words("w.makes", names=_row(texts, index)) if texts else ""
 
@@ -56,7 +55,7 @@ def _observes(index: Index) -> str:
         for element, categories in index.of_role.get("source", {}).items()
         if any(OBSERVES & set(index.categories[category]["data_types"]) for category in categories)
     ]
-    return index.words("w.observes", names=_row(list(names_of(sources, index.words)), index)) if sources else ""
+    return index.words("w.observes", names=_row(list(index.names(sources)), index)) if sources else ""
 
 
 def _special(index: Index) -> str:
@@ -76,8 +75,10 @@ def _combines(index: Index) -> str:
     at = [row["element"] for row in several if row["element"]["kind"] not in ("topic", "service", "action")]
     if not at:
         return ""
-    names = list(dict.fromkeys(map(name, at)))
-    return index.words("w.combines", elements=index.words.count(len(names), "element"), names=_row(names, index))
+    robots = {(element["kind"], element["name"], element["robot"]) for element in at}
+    number = weight((robot for *_, robot in robots), index.alike)
+    names = _row(list(index.names(at)), index)
+    return index.words("w.combines", elements=index.words.count(number, "element"), names=names)
 
 
 def _subjects(index: Index) -> str:

@@ -64,14 +64,16 @@ def quoted(text: str) -> str:
 
 
 def _lines(texts: list[str]) -> str:
-    """Several lines as one quoted string."""
-    return '"' + "\\n".join(quoted(text)[1:-1] for text in texts) + '"'
+    """Several lines as one quoted string; none is empty: for such a line Graphviz 14 frees what it has not set."""
+    return '"' + "\\n".join(quoted(text)[1:-1] or " " for text in texts) + '"'
 
 
 def label_lines(picture: Picture, box: Box) -> list[str]:
     """Return what stands on a box: its name or names, the robot where there are several, and its words."""
     robots = len({box.robot for box in picture.boxes if box.robot}) > 1
-    lines = [shortened(box.robot, 28)] if robots and box.robot and not box.group.startswith("robot ") else []
+    lines = (
+        [shortened(box.robot, 28)] if robots and box.robot and not box.group.startswith(("robot ", box.robot)) else []
+    )
     if len(box.names) == 1:
         lines += broken(box.names[0])
     else:
@@ -124,8 +126,9 @@ def _box(picture: Picture, box: Box) -> str:
     look, shape = box_look(picture.view, box.look), SHAPES[box.kind]
     name, style = shape.graphviz
     styles = ["filled", *([style] if style else []), *(["dashed"] if box.open or look.style == "dashed" else [])]
+    under_the_lid = [""] if look.double and name == "cylinder" else []
     attributes = [
-        f"label={_lines(label_lines(picture, box))}",
+        f"label={_lines([*under_the_lid, *label_lines(picture, box)])}",
         f"shape={name}",
         f'style="{",".join(styles)}"',
         f'fillcolor="{look.colour}"',

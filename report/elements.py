@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.report.naming import fit, key, name
-from rosprivacy.report.patterns import grouped, names_of
+from rosprivacy.report.patterns import grouped, weight
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -67,10 +67,11 @@ def _item(group: list[Mapping[str, Any]], said: Mapping[Any, Any], open_at: set[
     row, words = group[0], index.words
     element, at = row["element"], key(row["element"])
     hidden = [index.data(category, pseudonymised=True) for category in row["pseudonymised"]]
+    robots = weight((row["element"]["robot"] for row in group), index.alike)
     return Item(
-        name=name(element) if len(group) == 1 else fit(element["name"]),
+        name=name(element) if robots == 1 else fit(element["name"]),
         kind=words.kind(element),
-        robots=len(group),
+        robots=robots,
         data=words.row([*map(index.data, row["categories"]), *hidden]),
         said=tuple(words(f"role.{role}", data=index.all_data(c)) for role, c in said.get(at, {}).items()),
         reviewed=at not in open_at,
@@ -80,7 +81,7 @@ def _item(group: list[Mapping[str, Any]], said: Mapping[Any, Any], open_at: set[
 def rest(index: Index) -> tuple[tuple[str, tuple[str, ...]], ...]:
     """Return the names of the elements that no data gets to, by kind."""
     groups = grouped(index.document["unreached"], lambda element: element["kind"])
-    return tuple((index.words.kind({"kind": some[0]["kind"]}), names_of(some, index.words)) for some in groups)
+    return tuple((index.words.kind({"kind": some[0]["kind"]}), index.names(some)) for some in groups)
 
 
 def enclaves(index: Index) -> tuple[Enclave, ...]:

@@ -12,13 +12,12 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.report.document import element_dict
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable
 
     from rosprivacy.analysis.model import Analysis
     from rosprivacy.analysis.patterns import Deviant, FleetView, Likeness, Pattern, Share
 
-
-OF_ELEMENTS = ("subjects", "sanitizers", "derivations")
+ROWS = ("subjects", "sanitizers", "derivations", "unreached")  # what the whole graph tells; the rest is shown already
 
 
 def fleet_document(told: dict[str, Any], analysis: Analysis, view: FleetView) -> dict[str, Any]:
@@ -31,27 +30,30 @@ def fleet_document(told: dict[str, Any], analysis: Analysis, view: FleetView) ->
     analysis
         Of the whole graph.
     """
-    counts = _counts(analysis, view.likeness)
+    numbers = counts(analysis, view.likeness)
     assumptions = dict(told["assumptions"])
     if assumptions["standard_channels"]:
-        assumptions["standard_channels"] = {**assumptions["standard_channels"], "taken": counts["standard_channels"]}
-    told = {**told, **_without_second(told, view.likeness)}
-    return {**told, **counts, "assumptions": assumptions, "fleet": _fleet(view)}
+        assumptions["standard_channels"] = {**assumptions["standard_channels"], "taken": numbers["standard_channels"]}
+    shown = {key: _without(told[key], view.likeness) for key in ROWS}
+    return {**told, **shown, **numbers, "assumptions": assumptions, "fleet": _fleet(view)}
 
 
-def _without_second(told: Mapping[str, Any], likeness: Likeness) -> dict[str, Any]:
-    """The lists that speak of elements, without robots that only stand beside others."""
-
-    def shown(elements: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
-        return [element for element in elements if element["robot"] not in likeness.second]
-
-    rows = {key: [row for row in told[key] if shown([row["element"]])] for key in OF_ELEMENTS}
-    rows["sanitizers"] = [{**row, "beside": shown(row["beside"])} for row in rows["sanitizers"]]
-    return {**rows, "unreached": shown(told["unreached"])}
+def _without(value: Any, likeness: Likeness) -> Any:
+    """Rows without elements of robots that only stand beside others: what is true of them, the others tell."""
+    if isinstance(value, list):
+        return [_without(item, likeness) for item in value if not _second(item, likeness)]
+    if isinstance(value, dict) and "robot" not in value:
+        return {key: _without(item, likeness) for key, item in value.items()}
+    return value
 
 
-def _counts(analysis: Analysis, likeness: Likeness) -> dict[str, int]:
-    """Elements, flows and standard channels of the fleet, not of its graph."""
+def _second(item: Any, likeness: Likeness) -> bool:
+    element = item.get("element", item) if isinstance(item, dict) else {}
+    return element.get("robot") in likeness.second
+
+
+def counts(analysis: Analysis, likeness: Likeness) -> dict[str, int]:
+    """Return how many elements, flows and standard channels the fleet has, not its graph."""
     elements = analysis.graph.elements
 
     def weight(source: int, target: int) -> int:

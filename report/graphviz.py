@@ -27,6 +27,11 @@ MISSING = (
 )
 
 
+def available() -> bool:
+    """Return whether Graphviz is installed."""
+    return find_spec("pygraphviz") is not None
+
+
 class TooLongError(Exception):
     """The layout took longer than it was given."""
 
@@ -63,7 +68,7 @@ class Graphviz:
     """
 
     def __init__(self) -> None:
-        if find_spec("pygraphviz") is None:
+        if not available():
             raise DrawingError(MISSING)
         self._process: subprocess.Popen[bytes] | None = None
 

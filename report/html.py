@@ -1,8 +1,8 @@
 """The report as one HTML file that asks nobody for anything: style, script and pictures are in it.
 
-In: an ``Outline`` and pictures. Out: HTML. Every value is escaped by jinja2; a Content Security Policy allows the one
-style, the one script (each by its hash) and pictures that are in the file, so that no name from a policy can load or
-run anything. Pictures stand as images: nothing inside an image can run, whatever drew it.
+In: an ``Outline`` and its ``Figures``. Out: HTML. Every value is escaped by jinja2; a Content Security Policy allows
+the one style and the one script, each by its hash, so that no name from a policy can load or run anything. Pictures
+hold nothing but shapes and text, see ``page_svg.py``.
 """
 
 from __future__ import annotations
@@ -15,15 +15,13 @@ from typing import TYPE_CHECKING, Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
+from rosprivacy.report.figures import Figures, page_legend
+from rosprivacy.report.looks import INK
 from rosprivacy.report.outline import PARAGRAPHS, SIGNED
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from rosprivacy.report.outline import Outline
     from rosprivacy.report.words import Words
-
-PICTURES = 5 * 2**20  # bytes of all pictures together, so that the file stays one that can be mailed
 
 
 class _Escaped:
@@ -38,19 +36,17 @@ class _Escaped:
         return escape(self._words(key, **values))
 
 
-def html(report: Outline, pictures: Mapping[str, str] | None = None) -> str:
+def html(report: Outline, drawn: Figures | None = None) -> str:
     """Return the page.
 
     Parameters
     ----------
-    pictures
-        Id of a finding -> SVG. When they become too many for a file that can be mailed, the rest is left out, and the
-        page says so.
+    drawn
+        The pictures; the page says which are missing, and how to get them. None for a page that is to have none.
 
-    Complexity: O(size of the outline).
+    Complexity: O(size of the outline and the pictures).
     """
     environment, css, js = _environment()
-    embedded = _embedded(report, pictures or {})
     page = environment.get_template("report.html.j2").render(
         r=report,
         t=_Escaped(report.words),
@@ -58,8 +54,10 @@ def html(report: Outline, pictures: Mapping[str, str] | None = None) -> str:
         "base-uri 'none'; form-action 'none'",
         css=Markup(css),  # noqa: S704 - our own file
         js=Markup(js),  # noqa: S704 - our own file
-        pictures=embedded,
-        left_out=any(way.id not in embedded for way in report.ways if way.id in (pictures or {})),
+        drawn=drawn,
+        undrawn=sum(way.id not in drawn.of for way in report.ways) if drawn else 0,
+        ink=INK,
+        looks=page_legend(report.words) if drawn and drawn.of else [],
         paragraphs=PARAGRAPHS,
         signed=SIGNED,
     )
@@ -80,18 +78,3 @@ def _environment() -> tuple[Environment, str, str]:
 def _hash(text: str) -> str:
     """The name of a text in a Content Security Policy."""
     return f"sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}"
-
-
-def _embedded(report: Outline, pictures: Mapping[str, str]) -> dict[str, str]:
-    """The pictures as addresses that hold them, as many as fit, in the order of the entries."""
-    found: dict[str, str] = {}
-    room = PICTURES
-    for way in report.ways:
-        if way.id not in pictures:
-            continue
-        address = f"data:image/svg+xml;base64,{base64.b64encode(pictures[way.id].encode()).decode()}"
-        room -= len(address)
-        if room < 0:
-            break
-        found[way.id] = address
-    return found

@@ -11,6 +11,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.report.naming import fit, key, text
+from rosprivacy.report.patterns import names_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -94,8 +95,26 @@ class Index:
         return self.words.row(self.data(category) for category in categories)
 
     def robots(self) -> list[str]:
-        """Return the names of the robots that data or a finding is at."""
+        """Return the names of the robots that data or a finding is at; of a fleet, of all robots."""
+        if self.alike:
+            return sorted(robot for robots in self.alike.values() for robot in robots)
         return sorted({element["robot"] for element in self.elements.values()} - {""})
+
+    @cached_property
+    def alike(self) -> dict[str, list[str]]:
+        """A robot of a fleet that is shown -> all that it stands for, itself included; empty for a single robot."""
+        fleet = self.document.get("fleet")
+        return {group["robot"]: group["robots"] for group in fleet["alike"]} if fleet else {}
+
+    @cached_property
+    def patterns(self) -> dict[str, Mapping[str, Any]]:
+        """Id of a finding of a fleet -> the pattern that it shows."""
+        fleet = self.document.get("fleet")
+        return {pattern["finding"]: pattern for pattern in fleet["patterns"]} if fleet else {}
+
+    def names(self, elements: Iterable[Mapping[str, Any]]) -> tuple[str, ...]:
+        """Return the names of elements, each once; one that several robots have, with their number."""
+        return names_of(elements, self.words, self.alike)
 
 
 def state(finding: Mapping[str, Any]) -> str:

@@ -111,6 +111,8 @@ def cleanings(analysis: Analysis, bound: Bound, hierarchy: Hierarchy) -> Iterato
 def _made(analysis: Analysis) -> Iterator[tuple[Element, str, str]]:
     """(element, of, to) of each derivation."""
     for vertex, decided in sorted(analysis.spread.facts.items()):
+        if analysis.graph.elements[vertex] not in analysis.roles:  # a robot of a fleet that another one stands for
+            continue
         for category, fact in sorted(decided.items()):
             for to in fact.derives:
                 if to == category:  # what is a narrower kind already, made of itself

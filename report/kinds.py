@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.report.naming import fit, printable, text
-from rosprivacy.report.patterns import names_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -108,7 +107,7 @@ def _kind(category: Mapping[str, Any], index: Index, entries: tuple[Way, ...]) -
         law=tuple(provision(legal, of, index) for legal in category["law"]),
         origins=tuple(_origins(of, index)),
         ways=entries,
-        places=names_of(reached, index.words),
+        places=index.names(reached),
         open=sum(of in question["categories"] for question in index.document["open"]),
     )
 
@@ -137,10 +136,10 @@ def _stated(names: str, index: Index) -> str:
 
 def _origins(category: str, index: Index) -> Iterator[tuple[str, str]]:
     sources = index.of_role.get("source", {}).items()
-    for name in names_of([index.elements[e] for e, categories in sources if category in categories], index.words):
+    for name in index.names([index.elements[e] for e, categories in sources if category in categories]):
         yield name, ""
     made = [row for row in index.document["derivations"] if row["to"] == category and row["reached"]]
     for of in dict.fromkeys(row["from"] for row in made):
         said = index.words("made.by", data=index.data(of))
-        for name in names_of([row["element"] for row in made if row["from"] == of], index.words):
+        for name in index.names([row["element"] for row in made if row["from"] == of]):
             yield name, said

@@ -170,15 +170,21 @@ def without_loose_ends(picture: Picture) -> Picture:
     )
 
 
-def grouped(picture: Picture, by: str, profiles: Iterable[Profile]) -> Picture:
+def grouped(
+    picture: Picture, by: str, profiles: Iterable[Profile], own: Mapping[str, Iterable[Profile]] | None = None
+) -> Picture:
     """Return the picture with its boxes in groups; a channel is in a group if all that it is joined to are.
 
     Parameters
     ----------
     by
         ``enclave``, ``namespace`` or ``robot``.
+    profiles
+        Of the whole graph.
+    own
+        Robot -> its profiles, where there are several robots; what has none is no robot.
     """
-    group_of = _namers(profiles)[by]
+    group_of = _namers(profiles, own or {})[by]
     names = {box.key: group_of(box) for box in picture.boxes if by == "robot" or not box.is_channel}
     if by != "robot":
         ends: dict[Key, set[str]] = defaultdict(set)
@@ -191,17 +197,19 @@ def grouped(picture: Picture, by: str, profiles: Iterable[Profile]) -> Picture:
     return replace(picture, boxes=tuple(replace(box, group=names.get(box.key, "")) for box in picture.boxes))
 
 
-def _namers(profiles: Iterable[Profile]) -> Mapping[str, Callable[[Box], str]]:
-    enclaves: dict[str, set[str]] = defaultdict(set)
-    for profile in profiles:
-        enclaves[profile.node].add(profile.enclave)
+def _namers(profiles: Iterable[Profile], own: Mapping[str, Iterable[Profile]]) -> Mapping[str, Callable[[Box], str]]:
+    enclaves: dict[tuple[str, str], set[str]] = defaultdict(set)
+    for name, some in (own or {"": profiles}).items():
+        for profile in some:
+            enclaves[name, profile.node].add(profile.enclave)
 
     def robot(box: Box) -> str:
-        return f"robot {box.robot}" if box.robot else ""
+        return f"robot {box.robot}" if box.robot and (not own or box.robot in own) else box.robot
 
     def enclave(box: Box) -> str:
-        own = sorted(enclaves.get(box.key[2], ())) if box.kind == "node" else []
-        return ", ".join([*([robot(box)] if box.robot else []), f"enclave {' and '.join(own)}"]) if own else ""
+        at = box.robot if own else ""
+        found = sorted(enclaves.get((at, box.key[2]), ())) if box.kind == "node" else []
+        return ", ".join([*([robot(box)] if box.robot else []), f"enclave {' and '.join(found)}"]) if found else ""
 
     def namespace(box: Box) -> str:
         space = box.key[2].rpartition("/")[0] if box.kind == "node" else ""

@@ -13,10 +13,10 @@ from rosprivacy.report import assumed, cleaned, elements, tables
 from rosprivacy.report.changes import ASKED, Changes, changes
 from rosprivacy.report.criteria import Criterion, criteria
 from rosprivacy.report.decision_texts import Decision, orphans
+from rosprivacy.report.fleet_told import Fleet, fleet_told
 from rosprivacy.report.index import CAN_BE_SPECIAL, Index
 from rosprivacy.report.kinds import Kind, kinds
 from rosprivacy.report.naming import fit, name
-from rosprivacy.report.patterns import names_of
 from rosprivacy.report.review import Group, review
 from rosprivacy.report.storages import Outside, outside
 from rosprivacy.report.ways import Way, ways
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
 SECTIONS = (
-    "summary", "assumptions", "changes", "tables", "findings", "outside", "sanitizers", "questions", "criteria",
-    "inventory", "method", "sign",
+    "summary", "fleet", "assumptions", "changes", "tables", "findings", "outside", "sanitizers", "questions",
+    "criteria", "inventory", "method", "sign",
 )  # fmt: skip
 PARAGRAPHS = 10  # of the method note
 SIGNED = ("purpose", "controller", "basis", "necessity", "measures", "residual", "name", "date", "signature")
@@ -100,6 +100,7 @@ class Outline:
     assumptions: tuple[str, ...]
     files: tuple[assumed.File, ...]
     remarks: tuple[assumed.Remark, ...]
+    fleet: Fleet | None
     changes: Changed | None
     subjects: tables.Table
     silent: tuple[str, ...]
@@ -153,7 +154,8 @@ def outline(
     entries = ways(index, differ.marks() if differ else None)
     links = tables.Links(entries)
     subjects, silent = tables.subjects(index, links)
-    names = [name for name in SECTIONS if name != "changes" or differ]
+    there = {"changes": bool(differ), "fleet": bool(index.alike)}
+    names = [name for name in SECTIONS if there.get(name, True)]
     return Outline(
         words=words,
         title=fit(title) if title else _title(index),
@@ -169,6 +171,7 @@ def outline(
         assumptions=tuple(assumed.assumed(index)),
         files=assumed.files(index),
         remarks=assumed.remarks(index),
+        fleet=fleet_told(index, entries),
         changes=_changed(differ, earlier, entries, index) if differ and earlier else None,
         subjects=subjects,
         silent=silent,
@@ -200,8 +203,8 @@ def _count(number: int, thing: str, words: Words) -> str:
 
 
 def _title(index: Index) -> str:
-    robots = index.robots()
-    said = index.document["assumptions"]["policies"]
+    robots = [] if index.alike else index.robots()
+    said = index.document["assumptions"]["fleet" if index.alike else "policies"]
     names = robots or list(dict.fromkeys(entry["file"].rsplit("/", 1)[-1] for entry in said))
     few = 3
     more = [index.words("more", n=len(names) - few)] if len(names) > few else []
@@ -227,6 +230,8 @@ def _means(index: Index, section: int) -> Iterator[str]:
 
 def _numbers(index: Index) -> Iterator[tuple[int, str]]:
     words, to_assess = index.words, index.to_assess
+    if index.alike:
+        yield len(index.robots()), words("n.robots")
     yield len(to_assess), words("n.ways")
     yield sum(finding["article9"] in CAN_BE_SPECIAL for finding in to_assess), words("n.special")
     yield len({tuple(finding["leak"].items()) for finding in to_assess}), words("n.recipients")
@@ -274,8 +279,8 @@ def _changed(differ: Changes, earlier: Earlier, entries: tuple[Way, ...], index:
             )
             for f in differ.gone
         ),
-        opened=names_of(differ.opened, words),
-        closed=names_of(differ.closed, words),
+        opened=index.names(differ.opened),
+        closed=old.names(differ.closed),
     )
 
 

@@ -6,14 +6,16 @@ the order in which they are named, so that a way from one robot to another is no
 
 from __future__ import annotations
 
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from rosprivacy.report.naming import fit, name
 
 Row = TypeVar("Row")
+NOBODY: Mapping[str, Collection[str]] = MappingProxyType({})
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Hashable, Iterable, Mapping
+    from collections.abc import Callable, Collection, Hashable, Iterable, Mapping
 
     from rosprivacy.report.words import Words
 
@@ -50,17 +52,29 @@ def finding_pattern(finding: Mapping[str, Any]) -> Hashable:
     return (same, more, without_robots(elements), steps, tuple(map(len, finding.get("paths", ()))))
 
 
-def names_of(elements: Iterable[Mapping[str, Any]], words: Words) -> tuple[str, ...]:
+def names_of(
+    elements: Iterable[Mapping[str, Any]], words: Words, alike: Mapping[str, Collection[str]] = NOBODY
+) -> tuple[str, ...]:
     """Return the names of elements, each once; one that several robots have, with their number.
+
+    Parameters
+    ----------
+    alike
+        A robot that stands for others -> these and itself.
 
     >>> from rosprivacy.report.words import Words
     >>> names_of([{"robot": r, "kind": "node", "name": "/camera"} for r in ("r1", "r2")], Words("en"))
     ('/camera (2 robots)',)
     """
     groups = grouped(elements, lambda element: (element["kind"], element["name"]))
-    return tuple(dict.fromkeys(_name_of(group, words) for group in groups))
+    return tuple(dict.fromkeys(_name_of(group, words, alike) for group in groups))
 
 
-def _name_of(group: list[Mapping[str, Any]], words: Words) -> str:
-    robots = {element["robot"] for element in group}
-    return name(group[0]) if len(robots) == 1 else f"{fit(group[0]['name'])} ({words.count(len(robots), 'robot')})"
+def _name_of(group: list[Mapping[str, Any]], words: Words, alike: Mapping[str, Collection[str]]) -> str:
+    robots = weight({element["robot"] for element in group}, alike)
+    return name(group[0]) if robots == 1 else f"{fit(group[0]['name'])} ({words.count(robots, 'robot')})"
+
+
+def weight(robots: Iterable[str], alike: Mapping[str, Collection[str]]) -> int:
+    """Return how many robots some robots stand for."""
+    return sum(len(alike.get(robot, ("",))) for robot in robots)

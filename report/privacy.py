@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from functools import reduce
+from operator import or_
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import CHANNELS, DISCLOSURE
 from rosprivacy.report.looks import DERIVATION, LEAK, OPEN, REVIEWED, SANITIZER, SOURCE
+from rosprivacy.report.phrases import Phrases
 from rosprivacy.report.picture import Box
 from rosprivacy.report.wording import counted, listed
 
@@ -19,14 +22,14 @@ if TYPE_CHECKING:
 MOST = 4  # categories that are named on a box
 
 
-def ends_of(analysis: Analysis) -> dict[int, int]:
-    """Return where findings end that are no disclosures: vertex -> bits of what is kept too long there, or leaves."""
+def ends_of(analysis: Analysis) -> dict[int, dict[str, int]]:
+    """Return where findings end that are no disclosures: vertex -> their kind -> bits of the data."""
     number = {element: vertex for vertex, element in enumerate(analysis.graph.elements)}
-    ends: dict[int, int] = defaultdict(int)
+    ends: dict[int, dict[str, int]] = defaultdict(lambda: defaultdict(int))
     for finding in analysis.findings:
         if finding.kind != DISCLOSURE:
-            ends[number[finding.leak]] |= analysis.spread.both(finding.category)
-    return dict(ends)
+            ends[number[finding.leak]][finding.kind] |= analysis.spread.both(finding.category)
+    return {vertex: dict(sorted(kinds.items())) for vertex, kinds in ends.items()}
 
 
 class Reached:
@@ -36,10 +39,15 @@ class Reached:
     ----------
     categories
         That arrive; what they are made of on the way is drawn too. None for all.
+    say
+        The words on the boxes.
     """
 
-    def __init__(self, analysis: Analysis, categories: Collection[str] | None = None) -> None:
+    def __init__(
+        self, analysis: Analysis, categories: Collection[str] | None = None, say: Phrases | None = None
+    ) -> None:
         self.analysis, self.graph, self._found = analysis, analysis.graph, analysis.spread
+        self._say = say or Phrases()
         found = self._found
         wanted = analysis.emitted if categories is None else sorted(categories)
         self._mask = sum(found.both(category) for category in wanted)
@@ -49,7 +57,8 @@ class Reached:
         self._of: dict[Key, list[int]] = defaultdict(list)
         for vertex, element in enumerate(self.graph.elements):
             self._of[element.identity].append(vertex)
-        self._ends = ends_of(analysis)
+        self._ending = ends_of(analysis)
+        self._ends = {vertex: reduce(or_, kinds.values()) for vertex, kinds in self._ending.items()}
         self._open: dict[Key, set[str]] = defaultdict(set)
         shown = set(found.names(self._mask))
         for question in analysis.open:
@@ -84,16 +93,23 @@ class Reached:
         plain, hidden = found.planes(bits)
         return found.names(bits), bool(hidden) and not plain
 
-    def left_out(self) -> tuple[str, ...]:
-        """Say what is not there: what ends the data, and what it does not get to."""
+    def left_out(self, beside: Collection[str] = ()) -> tuple[str, ...]:
+        """Say what is not there: what ends the data, and what it does not get to.
+
+        Parameters
+        ----------
+        beside
+            Robots that do not count, see ``views.privacy_view``.
+        """
         ended, apart = [], 0
         for key, vertices in self._of.items():
-            if any(self._goes_on(vertex) for vertex in vertices):
+            if key[0] in beside or any(self._goes_on(vertex) for vertex in vertices):
                 continue
             if key[1] not in CHANNELS and any(self._found.arrives.get(vertex, 0) & self._mask for vertex in vertices):
                 ended.append(key[2])
             else:
                 apart += 1
+        ended = list(dict.fromkeys(ended))  # the same on several robots
         notes = [f"Not drawn: {listed(ended, longest=40)}, which ends what comes to it"] if len(ended) == 1 else []
         if len(ended) > 1:
             notes = [f"Not drawn: {listed(ended, longest=40)}, which end what comes to them"]
@@ -123,7 +139,7 @@ class Reached:
         look = next(role for role, holds in roles if holds)
         words = self._words(key, bits, made, cleaned, vertices)
         if open_for and set(self._found.names(bits["present"])) != open_for:
-            words.append(f"not reviewed: {listed(sorted(open_for), MOST)}")
+            words.append(self._say.of("unreviewed", sorted(open_for), MOST))
         pattern = self.graph.elements[vertices[0]].pattern
         return Box(key, (key[2],), look, tuple(words), bool(open_for), pattern=pattern)
 
@@ -136,30 +152,43 @@ class Reached:
                 fact = self._found.facts.get(vertex, {}).get(category)
                 if fact is None or self.graph.elements[vertex].is_channel:
                     continue
-                made.update(dict.fromkeys(f"makes {to} of {category}" for to in fact.derives if to != category))
+                made.update(dict.fromkeys(self._makes(category, to) for to in fact.derives if to != category))
                 if fact.pseudonymises:
-                    cleaned[f"pseudonymises {category}"] = None
+                    cleaned[self._say.of("pseudonymises", [category], MOST)] = None
                 elif not fact.passes:
-                    cleaned[f"ends {category}"] = None
+                    cleaned[self._say.of("cleans", [category], MOST)] = None
         return list(made), list(cleaned)
+
+    def _makes(self, category: str, to: str) -> str:
+        return self._say.of("makes", [category], MOST, to=self._say.title(to))
 
     def _words(
         self, key: Key, bits: dict[str, int], made: list[str], cleaned: list[str], vertices: list[int]
     ) -> list[str]:
-        found = self._found
+        found, say = self._found, self._say
         if key[1] in CHANNELS:
             plain, hidden = found.planes(bits["present"])
-            names = [*(plain if self._several else ()), *(f"pseudonymised {c}" for c in hidden if c not in plain)]
-            return [listed(names, MOST)] if names else []
+            names = list(plain if self._several else ())
+            names += [say.of("hidden", [c], MOST) for c in hidden if c not in plain]
+            return [say.listed(names, MOST)] if names else []
         words = []
         own = self._own(vertices, bits["begins"])
         if own:
-            words.append(f"source of {listed(own, MOST)}")
+            words.append(say.of("source", own, MOST))
         if bits["leaks"]:
-            words.append(f"leak of {listed(found.names(bits['leaks']), MOST)}")
-        if bits["ends"]:
-            words.append(f"kept too long, or outside the EEA: {listed(found.names(bits['ends']), MOST)}")
+            words.append(say.of("leak", found.names(bits["leaks"]), MOST))
+        for kind, ending in self._ending_at(vertices).items():
+            words.append(say.of(kind, found.names(ending & bits["present"]), MOST))
         return [*words, *made[:MOST], *cleaned[:MOST]]
+
+    def _ending_at(self, vertices: list[int]) -> dict[str, int]:
+        """Of one element: kind of a finding that ends there -> bits."""
+        ending: dict[str, int] = defaultdict(int)
+        for vertex in vertices:
+            for kind, bits in self._ending.get(vertex, {}).items():
+                if bits & self._mask:
+                    ending[kind] |= bits & self._mask
+        return dict(sorted(ending.items()))
 
     def _own(self, vertices: list[int], begins: int) -> list[str]:
         """What labels call it a source of; what it makes of its own data begins here too."""

@@ -21,12 +21,16 @@ KEPT = {
     "area", "article9", "backups", "beside", "carries", "categories", "categories_asked", "category", "condition",
     "countries_as_of", "country", "data_types_asked", "decision", "expires", "finding", "findings", "format", "from",
     "holds", "id", "kind", "law_as_of", "leaves", "leaves_pseudonymised", "legal_basis", "method", "missing", "paths",
-    "provision", "pseudonymised", "recipient", "retention", "role", "roles", "rosprivacy", "severity", "sha256",
-    "special_basis", "state", "taken_as", "taken_by_kind", "to", "transfer", "unlabelled_channel", "unlabelled_node",
+    "pattern", "provision", "pseudonymised", "recipient", "retention", "role", "roles", "rosprivacy", "severity",
+    "sha256", "special_basis", "state", "taken_as", "taken_by_kind", "to", "transfer", "unlabelled_channel",
+    "unlabelled_node",
     "verdict", "view", "without_limit",
 }  # fmt: skip
 MAPS = ("retention", "taken_by_kind")  # of kinds of data and kinds of elements, values as they are
-NAMED = {"file": "file", "enclave": "enclave", "operator": "operator", "profile": "node", "nodes": "node"}
+NAMED = {
+    "robot": "robot", "robots": "robot", "model": "model", "file": "file", "enclave": "enclave",
+    "operator": "operator", "profile": "node", "nodes": "node",
+}  # fmt: skip
 
 
 def redacted(documents: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
@@ -71,6 +75,8 @@ def _value(key: str, value: Any, change: Callable[[str, str], str]) -> Any:
     if isinstance(value, dict):
         if {"robot", "kind", "name"} <= set(value):
             return _element(value, change)
+        if key == "models":  # of a fleet: name -> number of robots
+            return {change("model", model) if model else "": number for model, number in value.items()}
         return {inner: _value(key if key in MAPS else inner, item, change) for inner, item in value.items()}
     return _text(key, value, change) if isinstance(value, str) and value else value
 

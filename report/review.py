@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.model import CHANNELS
-from rosprivacy.report.patterns import grouped, names_of
+from rosprivacy.report.patterns import grouped
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -55,7 +55,7 @@ def _questions(rows: list[Mapping[str, Any]], index: Index) -> list[Question]:
 
     return [
         Question(
-            name=words.row(names_of([row["element"] for row in group], words)),
+            name=words.row(index.names([row["element"] for row in group])),
             kind=words.kind(group[0]["element"]),
             data=index.all_data(group[0]["categories"]),
             distance=words.count(group[0]["distance"], "step"),

@@ -140,7 +140,9 @@ def _artifacts(assumptions: Mapping[str, Any], files: Files) -> Iterator[dict[st
     standard = assumptions.get("standard_channels")
     read = {
         "analysisTarget": assumptions.get("policies") or (),
-        "userSpecifiedConfiguration": [*(assumptions.get("labels") or ()), *(assumptions.get("ontologies") or ())],
+        "userSpecifiedConfiguration": [
+            entry for kind in ("fleet", "labels", "ontologies") for entry in assumptions.get(kind) or ()
+        ],
         "toolSpecifiedConfiguration": [standard] if standard else [],
     }
     for role, entries in read.items():

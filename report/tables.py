@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.report.index import anchor, state
 from rosprivacy.report.naming import fit, key
-from rosprivacy.report.patterns import grouped, names_of
+from rosprivacy.report.patterns import grouped
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -100,7 +100,7 @@ def recipients(index: Index, links: Links) -> Table:
     rows = []
     for group in grouped(ordered, lambda e: (e["kind"], e["name"])):
         cells = [_gets(group, category, findings, index, links) for category in index.categories]
-        rows.append(Row(index.words.row(names_of(group, index.words)), index.words.kind(group[0]), tuple(cells)))
+        rows.append(Row(index.words.row(index.names(group)), index.words.kind(group[0]), tuple(cells)))
     return Table(_columns(index), tuple(rows))
 
 
@@ -144,7 +144,7 @@ def subjects(index: Index, links: Links) -> tuple[Table, tuple[str, ...]]:
         Row(fit(name), "", tuple(_about(members, c, findings, origins, index, links) for c in index.categories))
         for name, members in rows
     ]
-    return Table(_columns(index), tuple(table)), names_of([index.elements[s] for s in silent], index.words)
+    return Table(_columns(index), tuple(table)), index.names([index.elements[s] for s in silent])
 
 
 def _about(

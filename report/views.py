@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.model import Analysis, Finding, Flow, FlowGraph, Grant, Place
+    from rosprivacy.report.phrases import Phrases
     from rosprivacy.report.picture import Key
 
 VERDICTS = {
@@ -38,7 +39,9 @@ LONGER = "Not drawn: ways of more"
 BOTH_WAYS = {"request", "reply", "call", "execute"}
 
 
-def ros_view(analysis: Analysis, denials: Iterable[Grant] = (), *, standard: bool = False) -> Picture:
+def ros_view(
+    analysis: Analysis, denials: Iterable[Grant] = (), *, standard: bool = False, beside: Collection[str] = ()
+) -> Picture:
     """Return the whole system: every element and every grant.
 
     Parameters
@@ -47,6 +50,8 @@ def ros_view(analysis: Analysis, denials: Iterable[Grant] = (), *, standard: boo
         Grants of the policies; those that deny are drawn even where nothing allows what they deny.
     standard
         Whether to draw the standard ROS channels too (rule S13).
+    beside
+        Robots that stand beside others like them (``fleet_view.represented`` draws one for both): none of them counts.
     """
     graph = analysis.graph
     hidden = set() if standard else {graph.elements[vertex].identity for vertex in analysis.spread.standard}
@@ -68,8 +73,9 @@ def ros_view(analysis: Analysis, denials: Iterable[Grant] = (), *, standard: boo
         if boxes[key].pattern:
             words = f"covers {counted(len(covered[key] - {key}), 'name')}"
             boxes[key] = replace(boxes[key], words=(words,))
-    title = f"ROS graph ({graph.view}): {_inventory(boxes)}"
-    notes = _left_out(hidden, undrawn)
+    title = f"ROS graph ({graph.view}): {_inventory([key for key in boxes if key[0] not in beside])}"
+    hidden = {key for key in hidden if key[0] not in beside}
+    notes = _left_out(hidden, undrawn, robots=len({element.robot for element in graph.elements}))
     return Picture(ROS, title, sorted_boxes(boxes.values()), lines.made(), notes)
 
 
@@ -92,16 +98,19 @@ def _deny(lines: _Lines, grant: Grant, graph: FlowGraph, hidden: Collection[Key]
     return channel in lines.boxes or channel in hidden
 
 
-def _inventory(boxes: Mapping[Key, Box]) -> str:
+def _inventory(keys: Iterable[Key]) -> str:
     kinds: dict[str, int] = defaultdict(int)
-    for key in sorted(boxes, key=order):
-        kinds[key[1]] += 1
-    return ", ".join(counted(number, kind.replace("-", " ")) for kind, number in kinds.items()) or "nothing"
+    for key in sorted(keys, key=order):
+        kinds[key[1].replace("-", " ")] += 1
+    plural = {"shared memory": "shared memories"}
+    return ", ".join(counted(number, kind, plural.get(kind, "")) for kind, number in kinds.items()) or "nothing"
 
 
-def _left_out(hidden: Collection[Key], undrawn: int) -> tuple[str, ...]:
+def _left_out(hidden: Collection[Key], undrawn: int, *, robots: int) -> tuple[str, ...]:
     notes = [f"Not drawn: {counted(len(hidden), 'standard ROS channel')}"] if hidden else []
-    if undrawn:
+    if undrawn and robots > 1:
+        notes.append(f"Not drawn: {counted(undrawn, 'DENY', 'DENYs')} that take nothing away")
+    elif undrawn:
         notes.append(f"Not drawn: {counted(undrawn, 'DENY', 'DENYs')} without a channel of that very name")
     return tuple(notes)
 
@@ -162,8 +171,13 @@ def _place(place: Place) -> tuple[str, int]:
     return place.file, place.line
 
 
-def privacy_view(analysis: Analysis) -> Picture:
+def privacy_view(analysis: Analysis, beside: Collection[str] = ()) -> Picture:
     """Return what some category reaches, with the ways to leaks marked.
+
+    Parameters
+    ----------
+    beside
+        As in ``ros_view``.
 
     Notes
     -----
@@ -182,9 +196,9 @@ def privacy_view(analysis: Analysis) -> Picture:
     lines = _data_lines(reached, boxes, range(len(analysis.graph.flows)), lengths, _pairs(open_findings))
     what = listed(analysis.emitted, most=6)
     findings = counted(len(open_findings), "finding")
-    open_count = counted(len({q.element.identity for q in analysis.open}), "element")
+    open_count = counted(len({q.element.identity for q in analysis.open if q.element.robot not in beside}), "element")
     title = f"Where {what} can go ({analysis.graph.view}): {VERDICTS[analysis.verdict]}"
-    notes = (f"{findings}, {open_count} not reviewed", *reached.left_out())
+    notes = (f"{findings}, {open_count} not reviewed", *reached.left_out(beside))
     shown = tuple(in_words(finding) for finding in open_findings)
     core = _core(open_findings)
     return Picture(PRIVACY, title, sorted_boxes(boxes.values()), lines.made(), notes, shown, core)
@@ -207,13 +221,18 @@ def _ways_to_all(analysis: Analysis, net: Net, findings: Iterable[Finding]) -> I
 class FindingViews:
     """Pictures of findings; what they share is made once.
 
+    Parameters
+    ----------
+    say
+        The words on the boxes.
+
     Notes
     -----
     O(flows) to begin with, and per finding what ``ways`` takes.
     """
 
-    def __init__(self, analysis: Analysis) -> None:
-        self._analysis = analysis
+    def __init__(self, analysis: Analysis, say: Phrases | None = None) -> None:
+        self._analysis, self._say = analysis, say
         self._net = Net.of(analysis.spread)
         self._number = {element: vertex for vertex, element in enumerate(analysis.graph.elements)}
         self._reached: dict[str, Reached] = {}
@@ -229,7 +248,9 @@ class FindingViews:
             Take only the shorter ways, with about so many flows: on a large graph much quicker. None for all.
         """
         category, graph = finding.category, self._analysis.graph
-        reached = self._reached.setdefault(category, Reached(self._analysis, {category}))
+        if category not in self._reached:
+            self._reached[category] = Reached(self._analysis, {category}, self._say)
+        reached = self._reached[category]
         source, leak = self._number[finding.source], self._number[finding.leak]
         found = Ways({})
         if finding.steps:

@@ -70,6 +70,8 @@ class Way:
         What it says, in one sentence.
     robots
         That it is the same on, the first included; empty where there is one.
+    spread
+        On how many robots it is, in a sentence; empty where there is one.
     through
         Other recipients that every way leads through.
     notes
@@ -98,6 +100,7 @@ class Way:
     paths: tuple[str, ...]
     decision: Decision | None
     mark: str = ""
+    spread: str = ""
 
     @property
     def brief(self) -> str:
@@ -121,7 +124,8 @@ def ways(index: Index, marks: Mapping[str, str] | None = None) -> tuple[Way, ...
     def pattern(finding: Mapping[str, Any]) -> Any:
         return finding_pattern(finding), marks.get(finding["id"]), decided[finding["id"]]
 
-    groups = grouped(index.findings, pattern)
+    fleet = index.patterns  # there each finding is one of its pattern
+    groups = [[finding] for finding in index.findings] if fleet else grouped(index.findings, pattern)
     return tuple(_way(number, group, index, decided, marks) for number, group in enumerate(groups, 1))
 
 
@@ -135,7 +139,7 @@ def _way(
     finding = group[0]
     decision = decided[finding["id"]]
     stands = state(finding)
-    robots = tuple(fit(f["source"]["robot"]) for f in group)
+    robots = _robots(group, index)
     return Way(
         id=finding["id"],
         anchor=anchor(finding["id"]),
@@ -153,11 +157,32 @@ def _way(
         notes=tuple(_notes(finding, index)),
         special=_special(finding, index),
         others=tuple(f["id"] for f in group[1:]),
-        robots=robots if len(group) > 1 else (),
+        robots=robots,
         paths=tuple(" → ".join(map(name, path)) for path in finding.get("paths", ())),
         decision=decision,
         mark=marks.get(finding["id"], ""),
+        spread=_spread(finding, robots, index),
     )
+
+
+def _robots(group: list[Mapping[str, Any]], index: Index) -> tuple[str, ...]:
+    if index.alike:
+        return tuple(map(fit, index.patterns[group[0]["id"]]["robots"]))
+    return tuple(fit(finding["source"]["robot"]) for finding in group) if len(group) > 1 else ()
+
+
+def _spread(finding: Mapping[str, Any], robots: tuple[str, ...], index: Index) -> str:
+    words, pattern = index.words, index.patterns.get(finding["id"])
+    if not pattern:
+        return words("f.robots", robots=words.count(len(robots), "robot")) if robots else ""
+    if not robots:
+        return words("f.fleet.none")
+    said = [words("f.fleet", n=len(robots), all=words.count(len(index.robots()), "robot"))]
+    said += [words("f.fleet.across", n=pattern["findings"])] if pattern["across"] else []
+    for what in ("dismissed", "pseudonymised"):
+        if 0 < pattern[what] < pattern["findings"]:
+            said.append(words(f"f.fleet.{what}", n=pattern[what], all=pattern["findings"]))
+    return " ".join(said)
 
 
 def _sentence(finding: Mapping[str, Any], index: Index) -> str:

@@ -21,6 +21,8 @@ def printable(text: str) -> str:
     >>> printable("/a" + chr(10) + chr(0x202E))
     '/a\\n\\u202e'
     """
+    if text.isprintable():  # nearly always, and then it is at once done
+        return text
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
 
 

@@ -30,6 +30,10 @@ class Words:
         said = {name: self.number(value) if isinstance(value, int) else value for name, value in values.items()}
         return TABLES[self.language][key].format(**said)
 
+    def places(self, key: str) -> str:
+        """Return a sentence with its places still open."""
+        return TABLES[self.language][key]
+
     def number(self, number: int) -> str:
         """Return a number with its thousands apart.
 

@@ -163,7 +163,7 @@ WORDS = {
         "{element} is labelled as cleaning {data}, but no label states how. It was taken as pseudonymisation: the data "
         "is still personal."
     ),
-    "a.kinds": "A {kind} is taken to {role}, unless a label says otherwise.",
+    "a.kinds": "Each {kind} is taken to {role}, unless a label says otherwise.",
     "a.kinds.leak": "let out all data that gets there",
     "a.kinds.conduit": "pass on all data that gets there",
     "a.countries": "Members of the EEA and adequacy decisions as of {date}; check them.",
@@ -286,12 +286,77 @@ WORDS = {
     "f.id": "id",
     "f.way": "Shortest way",
     "f.picture": "Picture of the way: {way}",
-    "f.picture.left": "Pictures of the remaining ways were left out, so that the file stays small.",
+    "f.picture.part": "Only the shorter ways are drawn; for all of them, with the files of this report: {command}",
+    "f.picture.none": "Not drawn here; for a picture, with the files of this report: {command}",
+    "f.picture.left": (
+        "{n} of the ways below have no picture here, so that the file stays one that can be mailed, or because Graphviz "
+        "could not draw them. Each of them says how to get it."
+    ),
+    "f.picture.extra": (
+        "There are no pictures, because Graphviz was not installed where the report was made. With "
+        "pip install 'rosprivacy[views]' it draws one of each way."
+    ),
+    "p.legend": "How to read the pictures",
+    "p.shapes": (
+        "Ovals are nodes, rectangles topics; round corners are services, tabs actions. Other shapes are things outside "
+        "ROS. Arrows show where the data goes."
+    ),
+    "p.source": "brings in {names}",
+    "p.leak": "lets out {names}",
+    "p.storage-limitation": "kept without an end, or too long: {names}",
+    "p.third-country-transfer": "outside the EEA, no basis stated: {names}",
+    "p.makes": "makes {to} of {names}",
+    "p.pseudonymises": "pseudonymises {names}",
+    "p.cleans": "ends {names}",
+    "p.unreviewed": "not reviewed: {names}",
+    "p.hidden": "{names} (pseudonymised)",
+    "p.more": "{names} and {n} more",
+    "p.look.source": "brings data in",
+    "p.look.leak": "lets data out, or is a place to assess",
+    "p.look.derivation": "makes one kind of data of another",
+    "p.look.sanitizer": "cleans, but not all",
+    "p.look.reviewed": "reviewed: passes on what it gets",
+    "p.look.open": "not reviewed: passes on what it gets, as far as is known",
+    "p.look.shortest": "step of the shortest way",
+    "p.look.way": "step of a longer way",
+    "p.look.hidden": "only pseudonymised data",
     "f.now": "from here: {data}",
     "f.data": "{data} (pseudonymised)",
     "f.from.to": "{source} to {leak}",
     "f.number": "Way {n}",
     "f.kind.none": "No way to assess was found for this kind.",
+    # --- fleets
+    "h.fleet": "The robots of the fleet",
+    "fl.intro": (
+        "The fleet has {robots}: {kinds}, told apart by their policies and labels. Robots of one kind are alike, so one of them "
+        "is shown for all, here and on each way. How many robots a way is on stands with it; the numbers of elements and "
+        "flows are those of the whole fleet. Infrastructure, and what the robots share, counts as no robot."
+    ),
+    "t.robots": "Robots that are alike",
+    "c.model": "Model",
+    "c.shown": "Shown for all",
+    "c.number": "Number",
+    "fl.deviants": "Robots that are not as most of their model",
+    "fl.deviants.none": "There are none.",
+    "fl.deviant": "{robots}, not as most of the model {model}",
+    "fl.more": "There, and not at most",
+    "fl.fewer": "At most, and not there",
+    "fl.begins": "data begins there",
+    "fl.ends": "data ends there, from another robot",
+    "fl.dismissed": "only through another recipient",
+    "fl.hidden": "pseudonymised",
+    "fl.plain": "not pseudonymised",
+    "fl.more_open": "not reviewed: {names}",
+    "fl.fewer_open": "not reviewed: {names}",
+    "f.fleet": "On {n} of {all}.",
+    "f.fleet.none": "It begins and ends outside the robots.",
+    "f.fleet.across": "From one robot to another; {n} such ways in the fleet.",
+    "f.fleet.dismissed": "{n} of {all} like it lead only through another recipient.",
+    "f.fleet.pseudonymised": "In {n} of {all} like it the data are pseudonymised.",
+    "n.robots": "robots in the fleet",
+    "robotkind.one": "{n} kind of robot",
+    "robotkind.many": "{n} kinds of robots",
+    "file.fleet": "fleet",
     # --- decisions
     "d.decision": "Decision",
     "d.accept": "accepted",

@@ -8,7 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import rosprivacy
+from rosprivacy.fleets import run_fleet
 from rosprivacy.ingest.rows import robot_rows
+from rosprivacy.settings import Settings
 
 if TYPE_CHECKING:
     from neo4j import Driver
@@ -28,6 +30,12 @@ def factory(run: int) -> Result:
 
 def care_home() -> Result:
     return analysed(f"{CARE}/care-home.policy.xml", f"{CARE}/care-home.labels.yaml")
+
+
+def hospital() -> Result:
+    """The fleet of the examples."""
+    with chdir(ROOT):
+        return run_fleet("examples/fleet/fleet.yaml", Settings())
 
 
 def analysed(policy: str, labels: str) -> Result:

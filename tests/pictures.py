@@ -8,7 +8,8 @@ from rosprivacy.analysis.findings import analyse
 from rosprivacy.analysis.hierarchy import Hierarchy
 from rosprivacy.analysis.model import Bound, Category, Element, Flow, FlowGraph, Grant, Place, Profile, Statement
 from rosprivacy.report import narrow, views
-from tests.graphs import care_home, factory
+from rosprivacy.report.fleet_view import represented
+from tests.graphs import care_home, factory, hospital
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -60,7 +61,16 @@ def pictures() -> dict[str, Picture]:
         "care-home-ros": narrow.grouped(narrow.folded(ros(care)), "enclave", profiles),
         "care-home-privacy": narrow.folded(views.privacy_view(care.analysis)),
         "care-home-finding": views.finding_view(care.analysis, finding),
+        "fleet-privacy": narrow.grouped(narrow.folded(fleet_privacy()), "robot", ()),
     }
+
+
+def fleet_privacy() -> Picture:
+    """One robot for all that are alike."""
+    result = hospital()
+    assert result.fleet
+    likeness = result.fleet.likeness
+    return represented(views.privacy_view(result.analysis, likeness.second), likeness)
 
 
 def hostile(names: Iterable[str] = HOSTILE) -> Analysis:

@@ -22,7 +22,6 @@ import rosprivacy
 from rosprivacy.report import looks, narrow, views
 from rosprivacy.report.dot import dot, label_lines, quoted
 from rosprivacy.report.graphml import graphml
-from rosprivacy.report.inline import picture_of, pictures_of
 from rosprivacy.report.layout import drawn
 from rosprivacy.report.mermaid import label, mermaid, too_large
 from rosprivacy.report.wording import broken, printable, shortened
@@ -229,30 +228,6 @@ def test_tips_name_the_policy_line() -> None:
     root = check_svg(drawn(ros(factory(2)), "svg").data)
     tips = [str(title.text) for title in root.iter(f"{SVG}title")]
     assert any(t.startswith("/safety_camera to /safety_video (allowed") and "before.policy.xml:54" in t for t in tips)
-
-
-def test_pictures_for_a_page_have_ids_of_their_own_and_its_colours() -> None:
-    found = care_home().analysis
-    made = list(pictures_of(found, found.findings))
-    page = "<html xmlns='http://www.w3.org/1999/xhtml'>" + "".join(made) + "</html>"
-    ids = [element.get("id") for element in etree.fromstring(page).iter() if element.get("id")]
-    assert len(ids) == len(set(ids))
-    for text, finding in zip(made, found.findings, strict=True):
-        root = check_svg(text)
-        assert all(str(element.get("id")).startswith(f"f{finding.id}-") for element in root.iter() if element.get("id"))
-        assert not re.search(r'(fill|stroke)="(black|#000000|white|#ffffff)"', text)
-        assert 'stroke="currentColor"' in text
-        assert finding.leak.name in "".join(texts(root))
-
-
-def test_a_picture_for_a_page_is_bounded_whatever_the_names() -> None:
-    found = hostile()
-    (finding,) = found.findings
-    text = picture_of(found, finding)
-    assert len(text) < 40_000
-    check_svg(text)
-    many = hostile([f"/topic_with_a_long_name/{i}" for i in range(500)])
-    assert len(picture_of(many, many.findings[0])) < 10_000
 
 
 def test_large_flowcharts_are_known_to_be_refused_by_mermaid() -> None:

@@ -27,7 +27,7 @@ from rosprivacy.analysis.errors import InputError
 from rosprivacy.report import article30
 from rosprivacy.report.changes import changes
 from rosprivacy.report.earlier import read_earlier
-from rosprivacy.report.html import PICTURES, html
+from rosprivacy.report.html import html
 from rosprivacy.report.markdown import markdown
 from rosprivacy.report.outline import Earlier, Outline, outline
 from rosprivacy.report.redact import redacted
@@ -39,7 +39,6 @@ if TYPE_CHECKING:
 
 ROOT = Path(__file__).resolve().parent.parent
 LANGUAGES = ["en", "de"]
-SVG = '<svg xmlns="http://www.w3.org/2000/svg" width="200" height="50"><text x="5" y="30">way</text></svg>'
 # what a report never says: verdicts of law, promises
 FORBIDDEN = re.compile(
     r"\b(violat\w*|illegal\w*|unlawful\w*|breach\w*|complian\w*|comply|safe|harmless|"
@@ -503,28 +502,6 @@ def test_headings_go_down_by_one_and_tables_have_captions_and_headers(document: 
         assert all(cell.get("scope") == "col" for cell in table.findall("thead/tr/th"))
         widths = {len(row) for row in table.iter("tr")}
         assert len(widths) == 1
-
-
-def test_pictures_stand_in_the_page_with_what_they_show_as_text() -> None:
-    document = care()
-    pictures = {finding["id"]: SVG for finding in document["findings"][:1]}
-    root = lxml_html.document_fromstring(html(told(document), pictures))
-    (image,) = root.iter("img")
-    address = str(image.get("src"))
-    assert base64.b64decode(address.removeprefix("data:image/svg+xml;base64,")).decode() == SVG
-    assert image.get("alt") == "Picture of the way: " + " → ".join(
-        e["name"] for e in document["findings"][0]["witness"]
-    )
-
-
-def test_pictures_that_would_make_the_file_too_large_are_left_out_and_it_says_so() -> None:
-    document = care()
-    large = f"<svg>{'x' * (PICTURES // 2)}</svg>"
-    text = html(told(document), {finding["id"]: large for finding in document["findings"]})
-    assert len(text) < PICTURES + 2**20
-    assert text.count("<img ") == 1
-    assert "Pictures of the remaining ways were left out" in text
-    assert "Pictures of the remaining ways" not in html(told(document), {document["findings"][0]["id"]: SVG})
 
 
 # ---------------------------------------------------------------- names that mean harm

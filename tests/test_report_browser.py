@@ -11,10 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from rosprivacy.report.figures import Figures, figures
 from rosprivacy.report.html import html
+from rosprivacy.report.inline import Wishes, pictures_of
 from rosprivacy.report.outline import Earlier, outline
 from tests import browser as chrome
+from tests import pictures
 from tests.browser import A4, DESKTOP, PAPER, PHONE
+from tests.graphs import care_home, factory
 from tests.reports import HOSTILE, care, fleet, hostile, run, with_decisions, with_outside
 
 if TYPE_CHECKING:
@@ -25,10 +29,6 @@ if TYPE_CHECKING:
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 PAGES = ["care-en", "care-de", "all-en", "open-de", "fleet-en", "none-en", "hostile-en", "hostile-de"]
-SVG = (
-    '<svg xmlns="http://www.w3.org/2000/svg" width="1400" height="120" viewBox="0 0 1400 120">'
-    '<rect width="1400" height="120" fill="none" stroke="black"/><text x="20" y="60">a wide picture</text></svg>'
-)
 
 
 @pytest.fixture(scope="module")
@@ -46,18 +46,20 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     folder = tmp_path_factory.mktemp("reports")
     old = Earlier(run(2), "old.json", "0" * 64)
     everything = with_decisions(with_outside(care()))
-    pictures = {finding["id"]: SVG for finding in everything["findings"]}
     harm = hostile(folder)
+    evil = pictures.hostile()
+    drawn = [*pictures_of(evil, evil.findings), *pictures_of(evil, evil.findings, Wishes(most=100))]
+    harmful = Figures({finding["id"]: one for finding, one in zip(harm["findings"], drawn * 9, strict=False) if one})
+    all_told = outline(everything, "en", earlier=old)
+    open_told = outline(run(2), "de", earlier=Earlier(run(1), "old.json", "0" * 64))
     said = {
         "care-en": html(outline(care(), "en", made="2026-11-21")),
         "care-de": html(outline(care(), "de", made="2026-11-21")),
-        "all-en": html(outline(everything, "en", earlier=old), pictures),
-        "open-de": html(outline(run(2), "de", earlier=Earlier(run(1), "old.json", "0" * 64))),
+        "all-en": html(all_told, figures(care_home().analysis, all_told)),
+        "open-de": html(open_told, figures(factory(2).analysis, open_told)),
         "fleet-en": html(outline(fleet(care(), [f"robot{i:03}" for i in range(300)]), "en")),
         "none-en": html(outline(care() | {"findings": [], "verdict": "no-leak-found"}, "en")),
-        "hostile-en": html(
-            outline(harm, "en", title=HOSTILE[0], earlier=Earlier(harm, HOSTILE[1], "0" * 64)), pictures
-        ),
+        "hostile-en": html(outline(harm, "en", title=HOSTILE[0], earlier=Earlier(harm, HOSTILE[1], "0" * 64)), harmful),
         "hostile-de": html(outline(harm, "de")),
     }
     for name, text in said.items():
@@ -90,7 +92,7 @@ def test_a_server_is_asked_for_the_page_and_nothing_else(browser: WebDriver, pag
     with ThreadingHTTPServer(("127.0.0.1", 0), partial(Handler, directory=folder)) as server:
         threading.Thread(target=server.serve_forever, daemon=True).start()
         chrome.open_page(browser, f"http://127.0.0.1:{server.server_address[1]}/all-en.html")
-        browser.execute_script("document.querySelector('img').scrollIntoView()")
+        browser.execute_script("document.querySelector('.drawn').scrollIntoView()")
         server.shutdown()
     assert asked == ["/all-en.html"]
 
@@ -222,7 +224,7 @@ def test_it_can_be_used_with_the_keyboard_alone(browser: WebDriver, pages: dict[
     for _ in range(80):
         reached.add(browser.execute_script("return document.activeElement.id || document.activeElement.className"))
         ActionChains(browser).send_keys(Keys.TAB).perform()
-    assert {"by-words", "by-category", "by-state", "find-elements", "scroll", "picture", "long"} <= reached
+    assert {"by-words", "by-category", "by-state", "find-elements", "scroll", "drawn", "long"} <= reached
 
 
 @pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
@@ -246,7 +248,7 @@ def test_it_is_accessible(browser: WebDriver, pages: dict[str, Path], name: str,
 def test_on_paper_nothing_is_cut_off(browser: WebDriver, pages: dict[str, Path], name: str) -> None:
     chrome.open_page(browser, pages[name].as_uri(), width=PAPER, paper=True)
     assert browser.execute_script("return document.documentElement.scrollWidth") <= PAPER
-    assert chrome.wider(browser, "main, main *, header, nav") == []
+    assert chrome.wider(browser, "main, main :not(svg *), header, nav") == []
 
 
 @pytest.mark.parametrize("name", ["care-en", "all-en", "hostile-en"])
@@ -273,13 +275,50 @@ def test_it_prints_whole_on_a4(browser: WebDriver, pages: dict[str, Path], name:
     assert "nothinghasthis" not in text
 
 
-def test_a_picture_is_as_wide_as_the_page_at_most(browser: WebDriver, pages: dict[str, Path]) -> None:
+PICTURE = """
+const picture = document.querySelector("figure.picture svg"); picture.scrollIntoView();
+const box = picture.getBoundingClientRect(), frame = picture.parentElement.getBoundingClientRect();
+const letters = [...picture.querySelectorAll("text")].map((text) => text.getBoundingClientRect().height);
+return [box.width, box.right, frame.right, Math.min(...letters), picture.getAttribute("aria-label")];
+"""
+
+
+@pytest.mark.parametrize("name", ["all-en", "open-de"])
+def test_a_picture_fits_the_page_and_can_be_read(browser: WebDriver, pages: dict[str, Path], name: str) -> None:
     for width, paper in ((DESKTOP, False), (PHONE, False), (PAPER, True)):
-        chrome.open_page(browser, pages["all-en"].as_uri(), width=width, paper=paper)
-        image = browser.execute_script("""
-          const image = document.querySelector("img"); image.scrollIntoView();
-          return [image.complete && image.naturalWidth, image.getBoundingClientRect().right, image.alt];
-        """)
-        assert image[0] == 1400
-        assert image[1] <= width
-        assert image[2].startswith("Picture of the way: /camera → ")
+        chrome.open_page(browser, pages[name].as_uri(), width=width, paper=paper)
+        wide, right, frame, letters, label = browser.execute_script(PICTURE)
+        assert wide > 100
+        assert frame <= width
+        assert right <= width or width == PHONE  # what is wide is moved inside its frame
+        assert letters >= 9
+        assert label.startswith(("Picture of the way: /", "Bild des Weges: /"))
+
+
+@pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
+def test_lines_and_letters_of_pictures_have_the_colour_of_the_page(
+    browser: WebDriver, pages: dict[str, Path], *, dark: bool
+) -> None:
+    chrome.open_page(browser, pages["open-de"].as_uri(), dark=dark)
+    shown = browser.execute_script("""
+      const style = (node) => getComputedStyle(node);
+      const boxes = [...document.querySelectorAll("figure.picture :is(ellipse, polygon)[stroke=currentColor]")];
+      return [boxes.map((box) => style(box).stroke), style(document.body).color];
+    """)
+    assert len(shown[0]) > 3
+    assert set(shown[0]) == {shown[1]}
+
+
+@pytest.mark.parametrize("name", ["all-en", "hostile-en"])
+def test_there_is_a_picture_of_each_way_or_a_word_how_to_get_it(
+    browser: WebDriver, pages: dict[str, Path], name: str
+) -> None:
+    chrome.open_page(browser, pages[name].as_uri())
+    without = browser.execute_script("""
+      return [...document.querySelectorAll("article.way")].filter((way) => !way.querySelector("figure.picture svg"))
+        .map((way) => way.textContent.includes(`rosprivacy graph … --finding ${way.id.replace("way-", "")}`));
+    """)
+    assert all(without)
+    said = browser.execute_script("return document.querySelector('#findings').textContent")
+    assert ("of the ways below have no picture" in said) == bool(without)
+    assert browser.execute_script("return document.querySelectorAll('figure.picture svg').length") >= 2

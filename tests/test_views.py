@@ -130,7 +130,7 @@ def test_findings_of_other_kinds_have_ways_and_words_of_their_own() -> None:
     kept = replace(leak, kind="storage-limitation", source=camera, leak=place, witness=(camera, place), steps=())
     picture = views.privacy_view(replace(found, findings=(leak, kept)))
     box = next(box for box in picture.boxes if box.names == ("/navigator",))
-    assert (box.look, box.words) == ("leak", ("kept too long, or outside the EEA: Video",))
+    assert (box.look, box.words) == ("leak", ("kept without an end, or too long: Video",))
     assert lines_of(picture)["/robot_camera", "/robot_video"] == "way"
 
 

@@ -84,7 +84,13 @@ class Result:
         from rosprivacy.report.rdf import rdf_graph  # noqa: PLC0415 - rdflib, only where it is used
         from rosprivacy.report.serialise import SERIALISERS  # noqa: PLC0415
 
-        graph = rdf_graph(self.analysis, self.vocabulary, self.diagnostics, self.assumptions, **more)
+        analysis = self.fleet.shown(self.analysis) if self.fleet else self.analysis
+        graph = rdf_graph(analysis, self.vocabulary, self.diagnostics, self.assumptions, **more)
+        if self.fleet:
+            from rosprivacy.report.fleet_formats import robot_triples  # noqa: PLC0415
+
+            for triple in robot_triples(self.fleet):
+                graph.add(triple)
         return SERIALISERS[form](graph)
 
 

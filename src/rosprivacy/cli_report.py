@@ -11,6 +11,7 @@ import typer
 
 from rosprivacy.cli_options import (
     DecisionsFile,
+    FleetFile,
     IncludeRoot,
     LabelFiles,
     MaxBytes,
@@ -50,6 +51,7 @@ class ReportLanguage(StrEnum):
 def report(
     policies: Policies = None,
     labels: LabelFiles = None,
+    fleet: FleetFile = None,
     from_database: Annotated[
         bool, typer.Option("--from-database", help="Report on what is in Neo4j; the answer is written back there.")
     ] = False,
@@ -117,11 +119,18 @@ def report(
         max_bytes=max_bytes,
         progress=progress_of,
     )
-    if from_database and (policies or labels or add):
-        raise typer.BadParameter("--from-database takes what is in the database: no POLICY, --labels, --add")
-    if not from_database and not policies and not add:
+    if from_database and (policies or labels or add or fleet):
+        raise typer.BadParameter("--from-database takes what is in the database: no POLICY, --labels, --add, --fleet")
+    if fleet and (policies or labels or add):
+        raise typer.BadParameter("--fleet takes what the fleet file names: no POLICY, --labels, --add")
+    if not from_database and not policies and not add and not fleet:
         raise typer.BadParameter("name at least one policy: a file, a folder or a glob", param_hint="POLICY")
-    result = _result(policies, labels, settings, neo4j, from_database=from_database)
+    if fleet:
+        from rosprivacy.fleets import run_fleet
+
+        result = run_fleet(fleet, settings)
+    else:
+        result = _result(policies, labels, settings, neo4j, from_database=from_database)
     text = _text(result, format, lang.value, title, since, redact=redact)
     emit_bytes(text.encode(), output)  # it says of itself that it is UTF-8
 
@@ -149,10 +158,13 @@ def _text(result: Result, form: ReportFormat, language: str, title: str, since: 
 
     document = result.document()
     earlier = read_earlier(str(since)) if since else None
+    aliases = None
     if redact:
         from rosprivacy.report.redact import redacted
+        from rosprivacy.report.renamed import aliases_of
 
         copies = redacted([document, *([earlier.document] if earlier else [])])
+        aliases = aliases_of(document, copies[0])
         document = copies[0]
         earlier = replace(earlier, document=copies[1], file="file-0") if earlier else None
     if form is ReportFormat.article30:
@@ -165,6 +177,7 @@ def _text(result: Result, form: ReportFormat, language: str, title: str, since: 
         from rosprivacy.report.markdown import markdown
 
         return markdown(told)
+    from rosprivacy.report.figures import figures
     from rosprivacy.report.html import html
 
-    return html(told)
+    return html(told, figures(result.analysis, told, aliases))

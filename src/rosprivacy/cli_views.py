@@ -11,6 +11,7 @@ import typer
 
 from rosprivacy.analysis.errors import DrawingError
 from rosprivacy.cli_options import (
+    FleetFile,
     IncludeRoot,
     LabelFiles,
     MaxBytes,
@@ -27,8 +28,10 @@ from rosprivacy.cli_options import (
 from rosprivacy.cli_output import emit_bytes, progress_of
 
 if TYPE_CHECKING:
+    from rosprivacy.analysis.model import Profile
     from rosprivacy.assembly import Result
     from rosprivacy.report.picture import Picture
+    from rosprivacy.settings import Settings
 
 
 class Shown(StrEnum):
@@ -70,9 +73,14 @@ SUFFIXES = {".gv": PictureFormat.dot, ".mmd": PictureFormat.mermaid}
 def graph(
     policies: Policies = None,
     labels: LabelFiles = None,
+    fleet: FleetFile = None,
     show: Annotated[
-        Shown, typer.Option(help="The whole ROS graph, or where personal data can go under the labels.")
-    ] = Shown.ros,
+        Shown | None,
+        typer.Option(
+            show_default=False,
+            help="The whole ROS graph, which is the default, or where personal data can go under the labels.",
+        ),
+    ] = None,
     format: Annotated[  # noqa: A002 - the option's name
         PictureFormat | None,
         typer.Option("--format", "-f", show_default=False, help="Of the picture; by default what --output ends in."),
@@ -91,7 +99,7 @@ def graph(
     ] = None,
     finding: Annotated[
         str | None,
-        typer.Option(metavar="ID", show_default=False, help="Draw the ways of this finding only (privacy view)."),
+        typer.Option(metavar="ID", show_default=False, help="Draw the ways of this finding only: a privacy view."),
     ] = None,
     robot: Annotated[
         str | None, typer.Option(metavar="NAME", show_default=False, help="Draw this robot and what it is joined to.")
@@ -126,13 +134,15 @@ def graph(
     max_bytes: MaxBytes = 64 * 2**20,
 ) -> None:
     """Draw the ROS graph, or where personal data can go in it. Gives no verdict: exit code 0 once it is drawn."""
-    from rosprivacy.assembly import run
     from rosprivacy.settings import Settings
 
-    if not policies:
+    if fleet and (policies or labels):
+        raise typer.BadParameter("--fleet takes what the fleet file names: no POLICY, --labels")
+    if not policies and not fleet:
         raise typer.BadParameter("name at least one policy: a file, a folder or a glob", param_hint="POLICY")
     if show is Shown.ros and (finding or most):
         raise typer.BadParameter("--finding and --most are for --show privacy")
+    show = show or (Shown.privacy if finding or most else Shown.ros)
     form = _format(format, output)
     settings = Settings(
         view=view.value,
@@ -144,14 +154,36 @@ def graph(
         max_bytes=max_bytes,
         progress=progress_of,
     )
-    result = run(tuple(policies), tuple(labels or ()), settings)
+    result, own = _drawn_of(policies, labels, fleet, settings)
     picture = _view(result, show, finding, most, carried_only=bool(categories), standard=draw_standard_channels)
+    if result.fleet and not finding:
+        from rosprivacy.report.fleet_view import label, represented
+
+        picture = represented(picture, result.fleet.likeness)
+        own = {label(name, result.fleet.likeness): profiles for name, profiles in own.items()}
+        robot = label(robot, result.fleet.likeness) if robot else None
     picture = _narrowed(picture, robot, around, steps, most, fold=fold, loose_ends=loose_ends)
     if cluster is not Cluster.none:
         from rosprivacy.report.narrow import grouped
 
-        picture = grouped(picture, cluster.value, result.analysis.graph.profiles)
+        picture = grouped(picture, cluster.value, result.analysis.graph.profiles, own)
     _write(picture, form, output, "LR" if direction is Direction.right else "TB", seconds)
+
+
+def _drawn_of(
+    policies: list[str] | None, labels: list[str] | None, fleet: str | None, settings: Settings
+) -> tuple[Result, dict[str, tuple[Profile, ...]]]:
+    """The analysis, and of a fleet the profiles of each robot."""
+    if not fleet:
+        from rosprivacy.assembly import run
+
+        return run(tuple(policies or ()), tuple(labels or ()), settings), {}
+    from rosprivacy.fleets import analysed, read_all
+    from rosprivacy.ontology.vocabulary import load
+
+    vocabulary = load(ontologies=settings.ontologies)
+    read = read_all(fleet, vocabulary, settings)
+    return analysed(read, vocabulary, settings), dict(read.placed.profiles)
 
 
 def _format(given: PictureFormat | None, output: Path | None) -> PictureFormat:
@@ -171,13 +203,14 @@ def _view(
 ) -> Picture:
     from rosprivacy.report import narrow, views
 
+    beside = result.fleet.likeness.second if result.fleet else ()
     if show is Shown.privacy:
         if finding:
             about = views.PER_BOX * most if most else None
             return views.finding_view(result.analysis, narrow.the_finding(result.analysis, finding), about)
-        return views.privacy_view(result.analysis)
+        return views.privacy_view(result.analysis, beside)
     denials = [grant for policy in result.policies for grant in policy.grants if not grant.allow]
-    picture = views.ros_view(result.analysis, denials, standard=standard)
+    picture = views.ros_view(result.analysis, denials, standard=standard, beside=beside)
     return narrow.carrying(picture, result.analysis) if carried_only else picture
 
 

@@ -36,8 +36,8 @@ def sarif_log(result: Result, accepted: Mapping[str, str] | None = None) -> dict
     assumptions = result.assumptions
     named = [entry["file"] for kind in ("policies", "labels") for entry in assumptions.get(kind) or ()]
     vocabulary = result.vocabulary
-    return sarif(
-        result.analysis,
+    log = sarif(
+        result.fleet.shown(result.analysis) if result.fleet else result.analysis,
         result.bound,
         vocabulary.categories,
         vocabulary.hierarchy,
@@ -46,6 +46,11 @@ def sarif_log(result: Result, accepted: Mapping[str, str] | None = None) -> dict
         repository_root(named),
         accepted_of(result) if accepted is None else accepted,
     )
+    if not result.fleet:
+        return log
+    from rosprivacy.report.fleet_formats import with_robots  # noqa: PLC0415
+
+    return with_robots(log, result.analysis, result.fleet)
 
 
 def pia_file(
@@ -69,17 +74,22 @@ def pia_file(
     """
     from rosprivacy.report.cnil import cnil_pia  # noqa: PLC0415 - light start
 
-    vocabulary = result.vocabulary
+    vocabulary, analysis, about = result.vocabulary, result.analysis, ""
+    if result.fleet:
+        from rosprivacy.report.fleet_formats import note, of_shown_robots  # noqa: PLC0415
+
+        analysis, about = of_shown_robots(analysis, result.fleet), note(result.fleet)
     created = (source_date(os.environ) or datetime.now(UTC)).isoformat(timespec="milliseconds").replace("+00:00", "Z")
     return cnil_pia(
-        result.analysis,
+        analysis,
         result.bound,
         vocabulary.categories,
         vocabulary.hierarchy,
         result.assumptions,
         created,
         accepted_of(result) if accepted is None else accepted,
-        stated_of(result.analysis) if stated is None else stated,
+        stated_of(analysis) if stated is None else stated,
+        about,
     )
 
 

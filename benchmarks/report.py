@@ -1,0 +1,136 @@
+"""The report: its size, how long Chromium takes to open it, and whether the time to make it grows with the findings.
+
+    python benchmarks/report.py [--quick]
+
+The systems are made up: stations of a plant, each with cameras, microphones and trackers, a switch that nobody has
+reviewed, filters, and places that let data out, so that a finding has several ways. Chromium and chromedriver are
+needed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from pathlib import Path
+from statistics import median
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING
+
+from measure import REPOSITORY, Line, compared, print_header, print_line, side_by_side
+
+import rosprivacy
+from rosprivacy.report.figures import figures
+from rosprivacy.report.html import html
+from rosprivacy.report.outline import outline
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rosprivacy.assembly import Result
+
+MOST_BYTES, MOST_SECONDS = 10 * 10**6, 3.0
+SIZES = (250, 500, 1000)  # findings
+GROWTH = 2.3  # of the time, at most, for twice the findings
+KINDS = ("Video", "Voice", "PersonTrack", "FaceTemplate", "Location")
+SENSORS = LEAKS = 5
+PER_STATION = SENSORS * LEAKS  # findings
+
+
+def write_system(folder: Path, findings: int) -> tuple[str, str]:
+    """Write a policy and labels with so many findings; return their names."""
+    profiles: list[str] = []
+    labels: list[str] = []
+    for number in range(findings // PER_STATION):
+        place, kind = f"/plant/station_{number:03}", KINDS[number % len(KINDS)]
+        raw = [f"{place}/sensor_{i}/data" for i in range(SENSORS)]
+        profiles += [_profile(f"{place}/sensor_{i}", [topic], []) for i, topic in enumerate(raw)]
+        profiles.append(_profile(f"{place}/switch", [f"{place}/switched", f"{place}/spare"], raw))
+        profiles.append(_profile(f"{place}/filter", [f"{place}/filtered"], [f"{place}/switched"]))
+        read = [f"{place}/switched", f"{place}/filtered", f"{place}/spare"]
+        profiles += [_profile(f"{place}/uplink_{i}", [], read[: 1 + i % len(read)]) for i in range(LEAKS)]
+        labels += [f"  {place}/sensor_{i}: {{source: [{kind}]}}" for i in range(SENSORS)]
+        labels += [f"  {place}/filter: {{sanitizer: {{{kind}: pseudonymise}}}}"]
+        labels += [f"  {place}/uplink_{i}: {{leak: [{kind}]}}" for i in range(LEAKS)]
+    policy, said = folder / f"{findings}.policy.xml", folder / f"{findings}.labels.yaml"
+    inside = "\n".join(profiles)
+    policy.write_text(
+        f'<policy version="0.2.0"><enclaves><enclave path="/plant"><profiles>\n{inside}\n'
+        "</profiles></enclave></enclaves></policy>\n",
+        "utf-8",
+    )
+    said.write_text("\n".join(["labels: 1", "nodes:", *labels, ""]), "utf-8")
+    return str(policy), str(said)
+
+
+def _profile(node: str, writes: list[str], reads: list[str]) -> str:
+    space, _, name = node.rpartition("/")
+    rows = [("publish", topic) for topic in writes] + [("subscribe", topic) for topic in reads]
+    lines = [f'<topics {role}="ALLOW"><topic>{topic}</topic></topics>' for role, topic in rows]
+    return f'<profile ns="{space}" node="{name}">\n{chr(10).join(lines)}\n</profile>'
+
+
+def made(result: Result) -> str:
+    """Make the page of an analysis, as ``rosprivacy report`` does, with all its pictures."""
+    told = outline(result.document(), "en", made="2026-01-01")
+    return html(told, figures(result.analysis, told))
+
+
+def lines(folder: Path, *, quick: bool) -> Iterator[Line]:
+    """Measure."""
+    results = []
+    for size in SIZES:
+        policy, labels = write_system(folder, size)
+        results.append(rosprivacy.analyze([policy], [labels]))
+        found = len(results[-1].analysis.findings)
+        if found != size:
+            sys.exit(f"{found} findings, not {size}: the system is not what it should be")
+    page = folder / "report.html"
+    text = made(results[1])
+    page.write_text(text, "utf-8")
+    bytes_, pictures = page.stat().st_size, text.count("<figure")
+    note = f"{pictures} pictures, {bytes_ / SIZES[1] / 1000:.1f} kB for each finding"
+    size_line = f"{bytes_ / 10**6:.2f} MB", f"{MOST_BYTES / 10**6:g} MB"
+    yield Line(f"a report of {SIZES[1]} findings", *size_line, bytes_ / MOST_BYTES, 1.0, note=note)
+    opened = _opened(page, folder / "profile", 3 if quick else 9)
+    note = f"from the call to the first frame after it is loaded; the slowest of {len(opened)}: {max(opened):.2f} s"
+    open_line = f"{median(opened):.2f} s", f"{MOST_SECONDS:g} s"
+    yield Line("it is open in Chromium", *open_line, median(opened) / MOST_SECONDS, 1.0, note=note)
+    small, middle, large = side_by_side(1 if quick else 5, *(lambda one=one: made(one) for one in results))
+    yield compared(f"to make {SIZES[1]} findings / {SIZES[0]}", [middle, small], GROWTH)
+    yield compared(f"to make {SIZES[2]} findings / {SIZES[1]}", [large, middle], GROWTH)
+
+
+def _opened(page: Path, profile: Path, rounds: int) -> list[float]:
+    """Seconds that Chromium takes to open a page, after one round that does not count."""
+    sys.path.insert(0, str(REPOSITORY))
+    from tests import browser as chrome
+
+    if chrome.missing():
+        sys.exit(f"{', '.join(chrome.missing())} missing: apt-get install chromium chromium-driver")
+    seconds = []
+    with chrome.chromium(profile) as browser:
+        for _ in range(rounds + 1):
+            browser.get("about:blank")
+            begin = time.perf_counter()
+            browser.get(page.as_uri())
+            browser.execute_async_script("requestAnimationFrame(() => requestAnimationFrame(arguments[0]))")
+            seconds.append(time.perf_counter() - begin)
+            if len(browser.find_elements("css selector", "article.way")) != SIZES[1]:
+                sys.exit("the page does not show every finding")
+    return seconds[1:]
+
+
+def main() -> int:
+    """Print the table; return the exit code."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--quick", action="store_true", help="fewer rounds")
+    quick = parser.parse_args().quick
+    print_header()
+    with TemporaryDirectory() as folder:
+        measured = [print_line(line) for line in lines(Path(folder), quick=quick)]
+    return 1 if any(not line.met for line in measured) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
