@@ -123,5 +123,6 @@ def _form(share: Mapping[str, Any], index: Index) -> str:
     words = index.words
     said = [words("fl.ends") if share["ends"] else words("fl.begins")]
     said += [words("fl.dismissed")] if share["dismissed"] else []
+    said += [words("fl.accepted")] if share["accepted"] else []
     said += [words("fl.hidden" if share["pseudonymised"] else "fl.plain")]
     return words.row(said)

@@ -72,6 +72,8 @@ class Way:
         That it is the same on, the first included; empty where there is one.
     spread
         On how many robots it is, in a sentence; empty where there is one.
+    pattern
+        On a fleet, the id of the pattern: what decisions name.
     through
         Other recipients that every way leads through.
     notes
@@ -101,6 +103,7 @@ class Way:
     decision: Decision | None
     mark: str = ""
     spread: str = ""
+    pattern: str = ""
 
     @property
     def brief(self) -> str:
@@ -162,6 +165,7 @@ def _way(
         decision=decision,
         mark=marks.get(finding["id"], ""),
         spread=_spread(finding, robots, index),
+        pattern=index.patterns.get(finding["id"], {}).get("id", ""),
     )
 
 
@@ -179,7 +183,7 @@ def _spread(finding: Mapping[str, Any], robots: tuple[str, ...], index: Index) -
         return words("f.fleet.none")
     said = [words("f.fleet", n=len(robots), all=words.count(len(index.robots()), "robot"))]
     said += [words("f.fleet.across", n=pattern["findings"])] if pattern["across"] else []
-    for what in ("dismissed", "pseudonymised"):
+    for what in ("dismissed", "accepted", "pseudonymised"):
         if 0 < pattern[what] < pattern["findings"]:
             said.append(words(f"f.fleet.{what}", n=pattern[what], all=pattern["findings"]))
     return " ".join(said)

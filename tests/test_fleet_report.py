@@ -196,11 +196,16 @@ def test_the_command_line_reports_on_a_fleet(cli: Cli, tmp_path: Path) -> None:
         assert "--fleet takes what the fleet file names" in " ".join(refused.stderr.split())
 
 
-def test_decisions_are_refused_for_a_fleet_not_forgotten(cli: Cli, tmp_path: Path) -> None:
-    for command in ("analyze", "report"):
-        done = cli(command, "--fleet", FLEET, "--decisions", str(tmp_path / "decisions.yaml"))
-        assert done.returncode == 2
-        assert "decisions are not taken into account for a fleet" in done.stderr
+def test_a_decision_about_one_robot_says_so(cli: Cli, tmp_path: Path) -> None:
+    file = tmp_path / "decisions.yaml"
+    file.write_text(
+        "decisions: 1\nfindings:\n  - {robot: carrier_07, leak: fleet cloud, kind: disclosure, decision: accept,"
+        " reason: the contract is on its way, owner: me, legal_basis: [6(1)(b)]}\n",
+        "utf-8",
+    )
+    text = cli("report", "--fleet", FLEET, "--decisions", str(file), "--format", "markdown").stdout
+    assert "1 of 40 like it are accepted by a decision." in text
+    assert "data begins there, accepted by a decision, not pseudonymised" in text
 
 
 # ---------------------------------------------------------------- other people's tools

@@ -63,9 +63,6 @@ def run_fleet(file: str, settings: Settings) -> Result:
     InputErrors
         With every problem of the input, one line each.
     """
-    if settings.decisions:
-        hint = "decide about a robot by its policies: rosprivacy analyze POLICY --decisions"
-        raise InputErrors([InputError(settings.decisions, 0, "decisions are not taken into account for a fleet", hint)])
     vocabulary = load(ontologies=settings.ontologies)
     return analysed(read_all(file, vocabulary, settings), vocabulary, settings)
 
