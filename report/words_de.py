@@ -183,6 +183,7 @@ WORDS = {
     "ch.what.accepted": "eine andere Entscheidung",
     "ch.what.disjoint_paths": "eine andere Zahl getrennter Wege",
     "ch.what.article9": "eine andere Aussage zu Artikel 9",
+    "ch.what.robots": "auf anderen Robotern",
     "ch.what.law": "andere Vorschriften",
     "ch.what.special_from": "Daten werden an anderer Stelle zu besonderen",
     "ch.what.reason": "ein anderer Grund",

@@ -212,6 +212,7 @@ WORDS = {
     "ch.what.accepted": "another decision",
     "ch.what.disjoint_paths": "another number of separate ways",
     "ch.what.article9": "another statement on Article 9",
+    "ch.what.robots": "on other robots",
     "ch.what.law": "other provisions",
     "ch.what.special_from": "data become special elsewhere",
     "ch.what.reason": "another reason",
