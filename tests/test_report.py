@@ -299,7 +299,7 @@ def test_tables_are_cut_into_parts_that_fit_a_page() -> None:
 
 def test_storages_are_told_with_their_retention_and_what_is_missing() -> None:
     for text in texts(with_outside(care())):
-        assert "video of persons: P30D; everything: P1Y" in text
+        assert "video of persons: 30 days; everything: 1 year" in text
         assert "yes, for how long is not stated" in text
         assert "country: not stated" in text
         assert "US (adequacy decision for some recipients)" in text
@@ -601,7 +601,7 @@ def test_storages_and_recipients_fill_their_fields() -> None:
     speech = rows["voice", "speech service"]
     assert speech["role"] == "processor"
     assert speech["transfer"].startswith("US, adequacy decision for some recipients, standard contractual clauses")
-    assert rows["video of persons", "archive"]["retention"] == "archive: video of persons: P30D; everything: P1Y"
+    assert rows["video of persons", "archive"]["retention"] == "archive: video of persons: 30 days; everything: 1 year"
     assert "archive: not encrypted at rest" in rows["video of persons", "archive"]["measures"]
 
 
