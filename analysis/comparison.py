@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Collection, Iterable, Mapping
 
 Key = tuple[str, ...]
 Record = dict[str, Any]
@@ -61,37 +61,56 @@ def normalised(name: str) -> str:
     return _MADE_UP.sub("_*", name)
 
 
-def compare(before: Mapping[Key, Record], after: Mapping[Key, Record]) -> Changes:
-    """Return what differs between two states; linear in their size, but for sorting."""
-    both = before.keys() & after.keys()
+@dataclass(frozen=True, slots=True)
+class Pairs:
+    """Which key of before is which one of after; each sorted, ``both`` by the key after."""
+
+    both: tuple[tuple[Key, Key], ...]
+    gone: tuple[Key, ...]
+    new: tuple[Key, ...]
+
+
+def paired(before: Collection[Key], after: Collection[Key]) -> Pairs:
+    """Return what is the same before and after: of the same name, or else of one that differs in what is made up."""
+    both = set(before) & set(after)
     pairs = [(key, key) for key in both]
     waiting: dict[Key, list[Key]] = defaultdict(list)
-    for key in sorted(before.keys() - both):
+    for key in sorted(set(before) - both):
         waiting[_plain(key)].append(key)
     new = []
-    for key in sorted(after.keys() - both):
+    for key in sorted(set(after) - both):
         known = waiting.get(_plain(key))
         if known:
             pairs.append((known.pop(0), key))
         else:
-            new.append(Change(key, None, after[key]))
-    gone = [Change(key, before[key], None) for key in sorted(key for keys in waiting.values() for key in keys)]
+            new.append(key)
+    gone = sorted(key for keys in waiting.values() for key in keys)
+    return Pairs(tuple(sorted(pairs, key=lambda pair: pair[1])), tuple(gone), tuple(new))
+
+
+def compare(before: Mapping[Key, Record], after: Mapping[Key, Record]) -> Changes:
+    """Return what differs between two states; linear in their size, but for sorting."""
+    pairs = paired(before.keys(), after.keys())
     changed = [
         Change(theirs, before[ours], after[theirs])
-        for ours, theirs in sorted(pairs, key=lambda pair: pair[1])
-        if _same(before[ours]) != _same(after[theirs])
+        for ours, theirs in pairs.both
+        if same(before[ours]) != same(after[theirs])
     ]
-    return Changes(tuple(new), tuple(gone), tuple(changed))
+    return Changes(
+        tuple(Change(key, None, after[key]) for key in pairs.new),
+        tuple(Change(key, before[key], None) for key in pairs.gone),
+        tuple(changed),
+    )
 
 
 def _plain(key: Iterable[str]) -> Key:
     return tuple(map(normalised, key))
 
 
-def _same(value: Any) -> Any:
-    """A record with normalised names in it."""
+def same(value: Any) -> Any:
+    """Return a record with normalised names in it, to be compared with others."""
     if isinstance(value, str):
         return normalised(value)
     if isinstance(value, dict):
-        return {key: _same(inside) for key, inside in value.items()}
-    return [_same(inside) for inside in value] if isinstance(value, (list, tuple)) else value
+        return {key: same(inside) for key, inside in value.items()}
+    return [same(inside) for inside in value] if isinstance(value, (list, tuple)) else value

@@ -1,7 +1,9 @@
 """What changed between two JSON documents: verdict, ways, open elements, kinds of data, and how they were made.
 
 In: the earlier document and the new one. Out: ``Changes``. A way that is gone because less was asked is no answer, so
-everything that was asked or assumed otherwise is named first.
+everything that was asked or assumed otherwise is named first. This is for a person who assessed the earlier report;
+``difference.py`` is for CI, has grants and labels too, and says what is worse. What is the same in both is told apart
+alike, by ``identity.py`` and ``analysis/comparison.py``.
 """
 
 from __future__ import annotations
@@ -10,18 +12,20 @@ import json
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.report.naming import key, printable
+from rosprivacy.analysis.comparison import paired, same
+from rosprivacy.report.identity import Identity
+from rosprivacy.report.naming import printable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from rosprivacy.report.naming import Key
+    from rosprivacy.analysis.comparison import Key
 
 ASKED = (
     "view", "categories_asked", "data_types_asked", "article9_only", "standard_channels", "ontologies", "law_as_of",
     "rosprivacy",
 )  # fmt: skip
-READ = ("policies", "labels")
+READ = ("fleet", "policies", "labels")
 COMPARED = ("pseudonymised", "dismissed", "accepted", "disjoint_paths", "article9", "reason")
 
 
@@ -72,43 +76,62 @@ class Changes:
 
 def changes(before: Mapping[str, Any], now: Mapping[str, Any]) -> Changes:
     """Compare two documents. Complexity: O(size of both)."""
-    old = {finding["id"]: finding for finding in before["findings"]}
-    new = {finding["id"]: finding for finding in now["findings"]}
-    differ = {finding: tuple(_different(old[finding], new[finding])) for finding in new if finding in old}
-    were, are = _open(before), _open(now)
+    were, are = Identity.of(before), Identity.of(now)
+    old, new = _findings(before, were), _findings(now, are)
+    ways = paired(old, new)
+    differ = {new[b]["id"]: tuple(_different(old[a], new[b], were, are)) for a, b in ways.both}
+    appeared = {new[key]["id"] for key in ways.new}
+    vanished = {old[key]["id"] for key in ways.gone}
+    left, arrived = _open(before, were), _open(now, are)
+    elements = paired(left, arrived)
+    opened, closed = set(elements.new), set(elements.gone)
     kinds = [[category["name"] for category in document["categories"]] for document in (before, now)]
     return Changes(
         before=before["verdict"],
         now=now["verdict"],
         scope=tuple(_scope(before["assumptions"], now["assumptions"])),
         files=tuple(_files(before["assumptions"], now["assumptions"])),
-        new=tuple(finding for finding in new if finding not in old),
-        gone=tuple(finding for key, finding in old.items() if key not in new),
-        changed={finding: what for finding, what in differ.items() if what},
-        opened=tuple(element for at, element in are.items() if at not in were),
-        closed=tuple(element for at, element in were.items() if at not in are),
+        new=tuple(finding["id"] for finding in now["findings"] if finding["id"] in appeared),
+        gone=tuple(finding for finding in before["findings"] if finding["id"] in vanished),
+        changed={f["id"]: differ[f["id"]] for f in now["findings"] if differ.get(f["id"])},
+        opened=tuple(element for at, element in arrived.items() if at in opened),
+        closed=tuple(element for at, element in left.items() if at in closed),
         kinds_new=tuple(name for name in kinds[1] if name not in kinds[0]),
         kinds_gone=tuple(name for name in kinds[0] if name not in kinds[1]),
     )
 
 
-def _different(old: Mapping[str, Any], new: Mapping[str, Any]) -> Iterator[str]:
-    """What differs for a reader; lines that moved in a file are no change."""
-    if list(map(key, old["witness"])) != list(map(key, new["witness"])):
+def _findings(document: Mapping[str, Any], identity: Identity) -> dict[Key, Mapping[str, Any]]:
+    found: dict[Key, Mapping[str, Any]] = {}
+    for finding in document["findings"]:
+        at = identity.finding(finding)
+        found[(*at, finding["id"]) if at in found else at] = finding
+    return found
+
+
+def _different(old: Mapping[str, Any], new: Mapping[str, Any], were: Identity, are: Identity) -> Iterator[str]:
+    """What differs for a reader; lines that moved in a file are no change, nor are names that are made up."""
+    if same(list(map(were.element, old["witness"]))) != same(list(map(are.element, new["witness"]))):
         yield "witness"
     yield from (what for what in COMPARED if (old.get(what) or False) != (new.get(what) or False))
+    if _robots(old, were) != _robots(new, are):
+        yield "robots"
     if [law["provision"] for law in old.get("law", ())] != [law["provision"] for law in new.get("law", ())]:
         yield "law"
-    if _at(old.get("special_from")) != _at(new.get("special_from")):
+    if _at(old.get("special_from"), were) != _at(new.get("special_from"), are):
         yield "special_from"
 
 
-def _at(element: Mapping[str, Any] | None) -> Key | None:
-    return key(element) if element else None
+def _robots(finding: Mapping[str, Any], identity: Identity) -> Any:
+    return identity.patterns.get(finding["id"], {}).get("robots")
 
 
-def _open(document: Mapping[str, Any]) -> dict[Key, Mapping[str, Any]]:
-    return {key(question["element"]): question["element"] for question in document["open"]}
+def _at(element: Mapping[str, Any] | None, identity: Identity) -> Any:
+    return same(identity.element(element)) if element else None
+
+
+def _open(document: Mapping[str, Any], identity: Identity) -> dict[Key, Mapping[str, Any]]:
+    return {identity.element(question["element"]): question["element"] for question in document["open"]}
 
 
 def _scope(before: Mapping[str, Any], now: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:

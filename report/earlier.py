@@ -1,18 +1,21 @@
-"""An earlier JSON document, to compare with: read, and checked as far as the comparison needs it.
+"""A JSON document that was saved, to compare with: read, and checked as far as a comparison needs it.
 
-In: a path. Out: ``Earlier``.
+In: a path. Out: ``Earlier``. For ``diff`` and for ``report --since``.
 """
 
 from __future__ import annotations
 
 import hashlib
 import json
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import InputError, reason, shown
 from rosprivacy.report.document import FORMAT
-from rosprivacy.report.outline import Earlier
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 HINT = "give what 'rosprivacy analyze --format json' printed"
 LARGEST = 512 * 2**20  # bytes
@@ -23,13 +26,32 @@ FINDING = {
     "source": ELEMENT, "leak": ELEMENT, "witness": [ELEMENT],
 }  # fmt: skip
 ENTRY = {"file": TEXT, "sha256": TEXT}
+PATTERN = {"finding": TEXT, "across": TRUTH, "findings": NUMBER, "dismissed": NUMBER, "pseudonymised": NUMBER}
 DOCUMENT = {
     "verdict": TEXT,
     "findings": [FINDING],
-    "open": [{"element": ELEMENT}],
+    "open": [{"element": ELEMENT, "categories": [TEXT]}],
+    "carries": [{"element": ELEMENT, "categories": [TEXT], "pseudonymised": [TEXT]}],
+    "roles": [{"element": ELEMENT, "category": TEXT, "roles": [TEXT]}],
     "categories": [{"name": TEXT, "title": TEXT}],
     "assumptions": {"policies": [ENTRY], "labels": [ENTRY]},
 }
+
+
+FLEET = {
+    "alike": [{"robot": TEXT, "model": TEXT, "robots": [TEXT]}],
+    "patterns": [PATTERN | {"robots": [TEXT]}],
+}
+OUTSIDE = [{"element": ELEMENT}]
+
+
+@dataclass(frozen=True, slots=True)
+class Earlier:
+    """A document to compare with, and the file that it comes from."""
+
+    document: Mapping[str, Any]
+    file: str
+    sha256: str
 
 
 def read_earlier(file: str) -> Earlier:
@@ -53,11 +75,16 @@ def read_earlier(file: str) -> Earlier:
         raise InputError(file, line, f"cannot be read: {reason(error)}", HINT) from None
     if not isinstance(document, dict) or document.get("format") != FORMAT:
         raise InputError(file, 0, f"is no document of the format {FORMAT}", HINT)
-    if wrong := _wrong(document, DOCUMENT, ""):
+    if wrong := _wrong(document, DOCUMENT | _more(document), ""):
         raise InputError(file, 0, f"{shown(wrong)} is missing or of another type", HINT)
     for category in document["categories"]:
         category.setdefault("translations", {})
     return Earlier(document, file, hashlib.sha256(data).hexdigest())
+
+
+def _more(document: dict[str, Any]) -> dict[str, Any]:
+    """What a document may lack."""
+    return {key: shape for key, shape in (("fleet", FLEET), ("outside", OUTSIDE)) if key in document}
 
 
 def _wrong(value: Any, expected: Any, at: str) -> str:

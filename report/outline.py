@@ -25,21 +25,14 @@ from rosprivacy.report.words import Words
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from rosprivacy.report.earlier import Earlier
+
 SECTIONS = (
     "summary", "fleet", "assumptions", "changes", "tables", "findings", "outside", "sanitizers", "questions",
     "criteria", "inventory", "method", "sign",
 )  # fmt: skip
 PARAGRAPHS = 10  # of the method note
 SIGNED = ("purpose", "controller", "basis", "necessity", "measures", "residual", "name", "date", "signature")
-
-
-@dataclass(frozen=True, slots=True)
-class Earlier:
-    """A document to compare with, and the file that it comes from."""
-
-    document: Mapping[str, Any]
-    file: str
-    sha256: str
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,6 +10,8 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.report.identity import Identity
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
@@ -50,13 +52,13 @@ class Snapshot:
 def snapshot(document: Mapping[str, Any], policies: Iterable[Policy] | None) -> Snapshot:
     """Take the facts out of a document."""
     fleet = document.get("fleet")
-    models = {group["robot"]: group["model"] or group["robot"] for group in fleet["alike"]} if fleet else {}
+    identity = Identity.of(document)
     return Snapshot(
         document["verdict"],
         {(robot,): {"model": g["model"]} for g in (fleet["alike"] if fleet else ()) for robot in g["robots"]},
         None if policies is None else _grants(policies, named=bool(fleet)),
-        _elements(document, models),
-        _findings(document, models),
+        _elements(document, identity),
+        _findings(document, identity),
     )
 
 
@@ -69,34 +71,26 @@ def _grants(policies: Iterable[Policy], *, named: bool) -> Facts:
     return {key: {"rule": " and ".join(sorted(found))} for key, found in rules.items()}
 
 
-def _elements(document: Mapping[str, Any], models: Mapping[str, str]) -> Facts:
+def _elements(document: Mapping[str, Any], identity: Identity) -> Facts:
     found: dict[Key, dict[str, set[str]]] = defaultdict(lambda: defaultdict(set))
     for row in document["carries"]:
-        found[_element(row["element"], models)]["carries"] |= set(row["categories"])
-        found[_element(row["element"], models)]["pseudonymised"] |= set(row["pseudonymised"])
+        found[identity.element(row["element"])]["carries"] |= set(row["categories"])
+        found[identity.element(row["element"])]["pseudonymised"] |= set(row["pseudonymised"])
     for row in document["open"]:
-        found[_element(row["element"], models)]["open"] |= set(row["categories"])
+        found[identity.element(row["element"])]["open"] |= set(row["categories"])
     for row in document["roles"]:
         said = {f"{role} of {row['category']}" for role in row["roles"]}
-        found[_element(row["element"], models)]["labels"] |= said
+        found[identity.element(row["element"])]["labels"] |= said
     for row in document.get("outside", ()):
         facts = {key: value for key, value in row.items() if key not in ("element", "file", "line", "holds")}
-        found[_element(row["element"], models)]["stated"] |= {f"{key}: {value}" for key, value in facts.items()}
+        found[identity.element(row["element"])]["stated"] |= {f"{key}: {value}" for key, value in facts.items()}
     return {key: {what: sorted(values) for what, values in row.items() if values} for key, row in found.items()}
 
 
-def _element(element: Mapping[str, Any], models: Mapping[str, str]) -> Key:
-    robot = models.get(element["robot"], element["robot"])
-    return (robot, element["kind"], element["name"], element.get("leg", ""))
-
-
-def _findings(document: Mapping[str, Any], models: Mapping[str, str]) -> Facts:
-    patterns = {p["finding"]: p for p in document["fleet"]["patterns"]} if document.get("fleet") else {}
+def _findings(document: Mapping[str, Any], identity: Identity) -> Facts:
     found: Facts = {}
     for finding in document["findings"]:
-        pattern = patterns.get(finding["id"])
-        ends = (_end(finding["source"], models), _end(finding["leak"], models))
-        across = "across" if pattern and pattern["across"] else ""
+        pattern = identity.patterns.get(finding["id"])
         record: Record = {
             "dismissed": finding["dismissed"],
             "pseudonymised": finding["pseudonymised"],
@@ -111,11 +105,5 @@ def _findings(document: Mapping[str, Any], models: Mapping[str, str]) -> Facts:
                 "pseudonymised": "of_them_pseudonymised",
             }
             record |= {name: pattern[key] for key, name in counts.items()}
-        found[finding["kind"], finding["category"], *ends, across] = record
+        found[identity.finding(finding)] = record
     return found
-
-
-def _end(element: Mapping[str, Any], models: Mapping[str, str]) -> str:
-    """A source or leak by name; with its robot where that is none, such as what is shared."""
-    robot = "" if element["robot"] in models or not element["robot"] else f"{element['robot']}:"
-    return f"{robot}{element['kind']} {element['name']}"

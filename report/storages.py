@@ -82,9 +82,9 @@ def retention(row: Mapping[str, Any], index: Index) -> str:
     """Return how long a storage keeps what."""
     words = index.words
     return "; ".join(
-        words("o.every", duration=fit(duration))
+        words("o.every", duration=fit(words.duration(duration)))
         if category == EVERY
-        else words("o.of", data=index.data(category), duration=fit(duration))
+        else words("o.of", data=index.data(category), duration=fit(words.duration(duration)))
         for category, duration in row.get("retention", {}).items()
     )
 
@@ -94,4 +94,4 @@ def _backups(value: Any, index: Index) -> str:
         return ""
     if isinstance(value, bool):
         return index.words("o.backups.unknown" if value else "no")
-    return fit(str(value))
+    return fit(index.words.duration(str(value)))

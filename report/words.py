@@ -6,6 +6,7 @@ In: a key and values. Out: plain text; whoever writes a format escapes it. The t
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +17,12 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
 DATE = 3  # parts of one
+_DURATION = re.compile(
+    r"P(?:(\d{1,9})Y)?(?:(\d{1,9})M)?(?:(\d{1,9})W)?(?:(\d{1,9})D)?"
+    r"(?:T(?:(\d{1,9})H)?(?:(\d{1,9})M)?(?:(\d{1,9})S)?)?",
+    re.ASCII,
+)
+UNITS = ("year", "month", "week", "day", "hour", "minute", "second")  # in the order of the groups
 TABLES = {"en": ENGLISH, "de": GERMAN}
 
 
@@ -50,6 +57,17 @@ class Words:
         """
         parts = date.split("-")
         return self("date", **dict(zip(("year", "month", "day"), parts, strict=True))) if len(parts) == DATE else date
+
+    def duration(self, text: str) -> str:
+        """Return an ISO 8601 duration in words; what is none as it is.
+
+        >>> Words("en").duration("P30D"), Words("de").duration("P1Y6M"), Words("en").duration("PT12H")
+        ('30 days', '1 Jahr, 6 Monate', '12 hours')
+        """
+        found = _DURATION.fullmatch(text)
+        numbers = zip(UNITS, found.groups(), strict=True) if found else ()
+        parts = [self.count(int(number), unit) for unit, number in numbers if number]
+        return self.row(parts) or text
 
     def count(self, number: int, thing: str) -> str:
         """Return how many of a thing there are; its key ends in ``.one`` or ``.many``.

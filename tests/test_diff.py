@@ -147,13 +147,16 @@ class TestSaved:
         [
             (
                 '{"format": "rosprivacy.analysis/1"}',
-                "old.json:1: no saved analysis (rosprivacy.analysis/1): it lacks verdict",
+                "old.json:0: verdict is missing or of another type; give what 'rosprivacy analyze --format json'",
             ),
-            ('{"format": "rosprivacy.analysis/1",', "old.json:1: not JSON; save it again"),
-            ('{"format": "rosprivacy.analysis/1", ' + SAVED % "[1]", "old.json:1: a damaged analysis: TypeError"),
+            ('{"format": "rosprivacy.analysis/1",', "old.json:1: cannot be read: "),
+            (
+                '{"format": "rosprivacy.analysis/1", ' + SAVED % "[1]",
+                "old.json:0: findings[0] is missing or of another type",
+            ),
             (
                 '{"format": "rosprivacy.analysis/2", ' + SAVED % "[]",
-                "old.json:1: not rosprivacy.analysis/1; save one with",
+                "old.json:0: is no document of the format rosprivacy.analysis/1; give what",
             ),
             ("fleet: 2", "old.json:1: fleet format '2'"),
         ],

@@ -26,12 +26,15 @@ from markdown_it import MarkdownIt
 from rosprivacy.analysis.errors import InputError
 from rosprivacy.report import article30
 from rosprivacy.report.changes import changes
-from rosprivacy.report.earlier import read_earlier
+from rosprivacy.report.difference import difference
+from rosprivacy.report.earlier import Earlier, read_earlier
 from rosprivacy.report.html import html
 from rosprivacy.report.markdown import markdown
-from rosprivacy.report.outline import Earlier, Outline, outline
+from rosprivacy.report.outline import Outline, outline
 from rosprivacy.report.redact import redacted
+from rosprivacy.report.snapshot import snapshot
 from rosprivacy.report.words import TABLES, Words
+from tests.graphs import hospital
 from tests.reports import HOSTILE, care, fleet, hostile, run, with_decisions, with_outside
 
 if TYPE_CHECKING:
@@ -296,7 +299,7 @@ def test_tables_are_cut_into_parts_that_fit_a_page() -> None:
 
 def test_storages_are_told_with_their_retention_and_what_is_missing() -> None:
     for text in texts(with_outside(care())):
-        assert "video of persons: P30D; everything: P1Y" in text
+        assert "video of persons: 30 days; everything: 1 year" in text
         assert "yes, for how long is not stated" in text
         assert "country: not stated" in text
         assert "US (adequacy decision for some recipients)" in text
@@ -598,7 +601,7 @@ def test_storages_and_recipients_fill_their_fields() -> None:
     speech = rows["voice", "speech service"]
     assert speech["role"] == "processor"
     assert speech["transfer"].startswith("US, adequacy decision for some recipients, standard contractual clauses")
-    assert rows["video of persons", "archive"]["retention"] == "archive: video of persons: P30D; everything: P1Y"
+    assert rows["video of persons", "archive"]["retention"] == "archive: video of persons: 30 days; everything: 1 year"
     assert "archive: not encrypted at rest" in rows["video of persons", "archive"]["measures"]
 
 
@@ -677,6 +680,50 @@ def test_the_page_is_dated_as_the_environment_says() -> None:
 def test_it_is_utf8_whatever_the_terminal_is() -> None:
     done = command(*SYSTEM, "--lang", "de", LC_ALL="C", PYTHONUTF8="0", PYTHONIOENCODING="ascii")
     assert "Wohin personenbezogene Daten gelangen können" in done.stdout.decode("utf-8")
+
+
+def renamed(document: dict[str, Any], old: str, new: str) -> dict[str, Any]:
+    """As after another start; ids are made from names."""
+    copied: dict[str, Any] = json.loads(json.dumps(document).replace(f'"{old}"', f'"{new}"'))
+    for finding in copied["findings"]:
+        if new in (finding["source"]["name"], finding["leak"]["name"]):
+            finding["id"] = finding["id"][::-1]
+    return copied
+
+
+def test_names_that_are_made_up_at_each_start_are_no_change() -> None:
+    for name in ("/recorder", "/uplink"):  # leaks of ways
+        old = renamed(care(), name, f"{name}_5591c2d0")
+        new = renamed(care(), name, f"{name}_55a1ff00")
+        assert changes(old, new).nothing
+        assert not changes(old, new).marks()
+        other = changes(old, renamed(care(), name, f"{name}_of_somebody_else"))
+        assert other.new
+        assert other.gone
+
+
+def test_what_is_the_same_is_the_same_for_diff() -> None:
+    """One implementation of what elements and findings are told apart by."""
+    old, new = renamed(care(), "/recorder", "/recorder_10000"), renamed(run(2), "/archive_server", "/other")
+    for before, now in ((old, care()), (care(), new), (run(1), run(2)), (run(2), run(1))):
+        report, diff = changes(before, now), difference(snapshot(before, None), snapshot(now, None))
+        assert len(report.new) == len(diff["findings"]["new"])
+        assert len(report.gone) == len(diff["findings"]["gone"])
+
+
+def test_a_fleet_has_the_same_ways_whichever_robot_is_shown() -> None:
+    now = hospital().document()
+    text = json.dumps(now).replace("carrier_01", "carrier_00")  # another robot comes first
+    before = json.loads(text)
+    for finding in before["findings"]:
+        if finding["source"]["robot"] == "carrier_00":
+            finding["id"] = finding["id"][::-1]
+    ids = dict(zip([f["id"] for f in now["findings"]], [f["id"] for f in before["findings"]], strict=True))
+    for pattern in before["fleet"]["patterns"]:
+        pattern["finding"] = ids[pattern["finding"]]
+    differ = changes(before, now)
+    assert (differ.new, differ.gone, differ.opened, differ.closed) == ((), (), (), ())
+    assert set(differ.changed.values()) == {("robots",)}
 
 
 def test_it_is_written_to_a_file_and_compares_with_an_earlier_document(tmp_path: Path) -> None:

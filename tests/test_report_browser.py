@@ -11,14 +11,15 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from rosprivacy.report.earlier import Earlier
 from rosprivacy.report.figures import Figures, figures
 from rosprivacy.report.html import html
 from rosprivacy.report.inline import Wishes, pictures_of
-from rosprivacy.report.outline import Earlier, outline
+from rosprivacy.report.outline import outline
 from tests import browser as chrome
 from tests import pictures
 from tests.browser import A4, DESKTOP, PAPER, PHONE
-from tests.graphs import care_home, factory
+from tests.graphs import care_home, factory, hospital
 from tests.reports import HOSTILE, care, fleet, hostile, run, with_decisions, with_outside
 
 if TYPE_CHECKING:
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
     from selenium.webdriver.chrome.webdriver import WebDriver
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
-PAGES = ["care-en", "care-de", "all-en", "open-de", "fleet-en", "none-en", "hostile-en", "hostile-de"]
+PAGES = ["care-en", "care-de", "all-en", "open-de", "fleet-en", "hospital-de", "none-en", "hostile-en", "hostile-de"]
 
 
 @pytest.fixture(scope="module")
@@ -51,6 +52,7 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     drawn = [*pictures_of(evil, evil.findings), *pictures_of(evil, evil.findings, Wishes(most=100))]
     harmful = Figures({finding["id"]: one for finding, one in zip(harm["findings"], drawn * 9, strict=False) if one})
     all_told = outline(everything, "en", earlier=old)
+    several = outline(hospital().document(), "de")
     open_told = outline(run(2), "de", earlier=Earlier(run(1), "old.json", "0" * 64))
     said = {
         "care-en": html(outline(care(), "en", made="2026-11-21")),
@@ -58,6 +60,7 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
         "all-en": html(all_told, figures(care_home().analysis, all_told)),
         "open-de": html(open_told, figures(factory(2).analysis, open_told)),
         "fleet-en": html(outline(fleet(care(), [f"robot{i:03}" for i in range(300)]), "en")),
+        "hospital-de": html(several, figures(hospital().analysis, several)),
         "none-en": html(outline(care() | {"findings": [], "verdict": "no-leak-found"}, "en")),
         "hostile-en": html(outline(harm, "en", title=HOSTILE[0], earlier=Earlier(harm, HOSTILE[1], "0" * 64)), harmful),
         "hostile-de": html(outline(harm, "de")),
@@ -111,7 +114,7 @@ def test_nothing_is_wider_than_the_screen(
     )
 
 
-@pytest.mark.parametrize("name", ["care-en", "all-en", "open-de", "hostile-en"])
+@pytest.mark.parametrize("name", ["care-en", "all-en", "open-de", "hospital-de", "hostile-en"])
 def test_every_link_leads_to_what_can_be_seen(browser: WebDriver, pages: dict[str, Path], name: str) -> None:
     address = pages[name].as_uri()
     chrome.open_page(browser, address)
@@ -228,7 +231,7 @@ def test_it_can_be_used_with_the_keyboard_alone(browser: WebDriver, pages: dict[
 
 
 @pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
-@pytest.mark.parametrize("name", ["care-de", "all-en", "open-de", "fleet-en", "none-en", "hostile-en"])
+@pytest.mark.parametrize("name", ["care-de", "all-en", "open-de", "fleet-en", "hospital-de", "none-en", "hostile-en"])
 def test_it_is_accessible(browser: WebDriver, pages: dict[str, Path], name: str, tmp_path: Path, *, dark: bool) -> None:
     """WCAG 2.1 A and AA and best practices, as axe checks them: contrast, headings, landmarks, names, tables."""
     chrome.open_page(browser, pages[name].as_uri(), dark=dark)

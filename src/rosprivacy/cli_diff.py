@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from enum import StrEnum
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from rosprivacy.analysis.errors import GraphError, InputErrors, shown
 from rosprivacy.cli_options import (
     Format,
     IncludeRoot,
@@ -25,8 +23,6 @@ from rosprivacy.cli_output import emit, progress_of
 if TYPE_CHECKING:
     from rosprivacy.report.snapshot import Snapshot
     from rosprivacy.settings import Settings
-
-MAX_BYTES = 2**30
 
 
 class FailOnChange(StrEnum):
@@ -93,12 +89,9 @@ def _snapshot(state: str, labels: tuple[str, ...], settings: Settings) -> Snapsh
 
     kind = _kind(state)
     if kind == "analysis":
-        saved = _saved_analysis(state)
-        try:
-            return snapshot(saved, None)
-        except (KeyError, TypeError, AttributeError, ValueError) as error:
-            what = f"a damaged analysis: {shown(f'{type(error).__name__} at {error}')}"
-            raise InputErrors([GraphError(state, 1, what, "save it again with analyze --format json")]) from None
+        from rosprivacy.report.earlier import read_earlier
+
+        return snapshot(read_earlier(state).document, None)
     if kind == "fleet":
         result = run_fleet(state, settings)
     elif kind == "graph":
@@ -122,24 +115,3 @@ def _kind(state: str) -> str:
     if b'"rosprivacy.graph/' in head:
         return "graph"
     return "policies" if head.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<") or not head else "fleet"
-
-
-def _saved_analysis(file: str) -> dict[str, object]:
-    from rosprivacy.ingest.regular import read_regular
-    from rosprivacy.report.document import FORMAT
-
-    def fail(line: int, problem: str, hint: str) -> GraphError:
-        return GraphError(file, line, problem, hint)
-
-    try:
-        document = json.loads(read_regular(file, MAX_BYTES, fail))
-    except GraphError as error:
-        raise InputErrors([error]) from None
-    except (ValueError, RecursionError) as error:
-        raise InputErrors([fail(getattr(error, "lineno", 1), "not JSON", "save it again")]) from None
-    needed = ("verdict", "findings", "open", "carries", "roles")
-    lacking = [key for key in needed if not isinstance(document, dict) or key not in document]
-    if lacking or document.get("format") != FORMAT:
-        what = f"no saved analysis ({FORMAT}): it lacks {', '.join(lacking)}" if lacking else f"not {FORMAT}"
-        raise InputErrors([fail(1, shown(what), "save one with analyze --format json")])
-    return dict(document)
