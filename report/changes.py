@@ -89,7 +89,7 @@ def changes(before: Mapping[str, Any], now: Mapping[str, Any]) -> Changes:
     return Changes(
         before=before["verdict"],
         now=now["verdict"],
-        scope=tuple(_scope(before["assumptions"], now["assumptions"])),
+        scope=tuple(scope(before["assumptions"], now["assumptions"])),
         files=tuple(_files(before["assumptions"], now["assumptions"])),
         new=tuple(finding["id"] for finding in now["findings"] if finding["id"] in appeared),
         gone=tuple(finding for finding in before["findings"] if finding["id"] in vanished),
@@ -134,9 +134,10 @@ def _open(document: Mapping[str, Any], identity: Identity) -> dict[Key, Mapping[
     return {identity.element(question["element"]): question["element"] for question in document["open"]}
 
 
-def _scope(before: Mapping[str, Any], now: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
-    for what in ASKED:
-        old, new = before.get(what), now.get(what)
+def scope(before: Mapping[str, Any], now: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
+    """Yield what was asked or assumed otherwise, before and now: what is gone may only not have been asked for."""
+    for what in (what for what in ASKED if what in before and what in now):
+        old, new = before[what], now[what]
         if _compared(old) != _compared(new):
             yield what, _shown(old), _shown(new)
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.comparison import compare
 from rosprivacy.analysis.errors import shown
+from rosprivacy.report.changes import scope
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -33,6 +34,10 @@ def difference(before: Snapshot, after: Snapshot) -> dict[str, Any]:
     for section in SECTIONS:
         ours, theirs = getattr(before, section), getattr(after, section)
         found[section] = None if ours is None or theirs is None else _section(compare(ours, theirs), NAMES[section])
+    for row in [*found["findings"]["new"], *found["findings"]["changed"]]:
+        row["allowed_at"] = after.lines.get(tuple(row.get(name, "") for name in NAMES["findings"]), "")
+    asked = scope(before.assumptions, after.assumptions)
+    found["asked_otherwise"] = [{"what": what, "before": old, "after": new} for what, old, new in asked]
     found["worse"] = worse(found)
     return found
 
@@ -48,27 +53,25 @@ def _section(changes: Changes, names: tuple[str, ...]) -> dict[str, Any]:
 def worse(document: Mapping[str, Any]) -> bool:
     """Return whether there is a finding that was not, or not as it is or not on so many robots.
 
-    A finding that is dismissed is none here: another one stands for it.
+    A finding that is dismissed is none here, since another one stands for it; nor is one that is accepted.
     """
     findings = document["findings"]
-    if any(not row["after"]["dismissed"] for row in findings["new"]):
+    if any(not (row["after"]["dismissed"] or row["after"]["accepted"]) for row in findings["new"]):
         return True
     return any(_worse(row["before"], row["after"]) for row in findings["changed"])
 
 
 def _worse(before: Mapping[str, Any], after: Mapping[str, Any]) -> bool:
-    if after["dismissed"]:
+    if after["dismissed"] or after["accepted"]:
         return False
-    if before["dismissed"] or (before["pseudonymised"] and not after["pseudonymised"]):
+    if before["dismissed"] or before["accepted"] or (before["pseudonymised"] and not after["pseudonymised"]):
         return True
     if set(after.get("robots", ())) - set(before.get("robots", ())):
         return True
-    counts: list[int] = [
-        (row.get("findings", 1) - row.get(of_them, 0))
-        for of_them in ("of_them_dismissed", "of_them_pseudonymised")
-        for row in (before, after)
-    ]
-    return counts[1] > counts[0] or counts[3] > counts[2]
+    return any(
+        after.get("findings", 1) - after.get(of_them, 0) > before.get("findings", 1) - before.get(of_them, 0)
+        for of_them in ("of_them_dismissed", "of_them_accepted", "of_them_pseudonymised")
+    )
 
 
 def differs(document: Mapping[str, Any]) -> bool:
@@ -80,6 +83,8 @@ def difference_lines(document: Mapping[str, Any]) -> Iterator[str]:
     """Return the document as lines for people."""
     before, after = document["verdict"]["before"], document["verdict"]["after"]
     yield f"verdict: {after}" if before == after else f"verdict: {before} before, {after} now"
+    for row in document["asked_otherwise"]:
+        yield shown(f"asked otherwise: {row['what']}: {row['before']} before, {row['after']} now")
     for section in SECTIONS:
         changes = document[section]
         if changes is None:

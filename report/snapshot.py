@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.report.identity import Identity
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.comparison import Key, Record
     from rosprivacy.analysis.model import Policy
@@ -40,6 +40,10 @@ class Snapshot:
     findings
         (kind, category, source, leak, whether it goes across robots) -> in which form, along which way, on which
         robots.
+    lines
+        Key of a finding -> the policy line that lets the data in, as ``file:line``; it may move, and is not compared.
+    assumptions
+        As in the document.
     """
 
     verdict: str
@@ -47,6 +51,8 @@ class Snapshot:
     grants: Facts | None
     elements: Facts
     findings: Facts
+    lines: Mapping[Key, str]
+    assumptions: Mapping[str, Any]
 
 
 def snapshot(document: Mapping[str, Any], policies: Iterable[Policy] | None) -> Snapshot:
@@ -59,6 +65,8 @@ def snapshot(document: Mapping[str, Any], policies: Iterable[Policy] | None) -> 
         None if policies is None else _grants(policies, named=bool(fleet)),
         _elements(document, identity),
         _findings(document, identity),
+        dict(_lines(document, identity)),
+        document["assumptions"],
     )
 
 
@@ -94,6 +102,7 @@ def _findings(document: Mapping[str, Any], identity: Identity) -> Facts:
         record: Record = {
             "dismissed": finding["dismissed"],
             "pseudonymised": finding["pseudonymised"],
+            "accepted": finding.get("accepted", False),
             "way": [element["name"] for element in finding["witness"]],
             "reason": finding.get("reason", ""),
         }
@@ -103,7 +112,14 @@ def _findings(document: Mapping[str, Any], identity: Identity) -> Facts:
                 "findings": "findings",
                 "dismissed": "of_them_dismissed",
                 "pseudonymised": "of_them_pseudonymised",
+                "accepted": "of_them_accepted",
             }
-            record |= {name: pattern[key] for key, name in counts.items()}
+            record |= {name: pattern.get(key, 0) for key, name in counts.items()}
         found[identity.finding(finding)] = record
     return found
+
+
+def _lines(document: Mapping[str, Any], identity: Identity) -> Iterator[tuple[Key, str]]:
+    for finding in document["findings"]:
+        for line in [line for step in finding["steps"][-1:] for line in step["policy"]][:1]:
+            yield identity.finding(finding), f"{line['file']}:{line['line']}"

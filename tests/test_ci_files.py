@@ -1,4 +1,4 @@
-"""What people use in CI and before a commit: the action, the hook, the example workflow and its comment.
+"""What people use in CI and before a commit: the action, the hook, the example workflow and the comment that it makes.
 
 The scripts of the action are run as a runner does, with its files and variables; the hook by pre-commit itself, in a
 repository made for it.
@@ -221,8 +221,9 @@ def compare(tmp_path: Path, before: dict[str, Any], after: dict[str, Any]) -> st
     files = [tmp_path / "before.json", tmp_path / "after.json"]
     for file, report in zip(files, (before, after), strict=True):
         file.write_text(json.dumps(report))
-    command = [sys.executable, str(CI / "compare.py"), *map(str, files)]
-    return subprocess.run(command, capture_output=True, text=True, check=True, encoding="utf-8").stdout
+    done = tool("rosprivacy", "diff", *map(str, files), "--format", "markdown", "--fail-on", "never")
+    assert (done.returncode, done.stderr) == (0, "")
+    return done.stdout
 
 
 def report_of(run: int) -> dict[str, Any]:
@@ -237,21 +238,23 @@ def report_of(run: int) -> dict[str, Any]:
 def test_the_comment_says_what_is_new_and_what_is_gone(tmp_path: Path) -> None:
     run1, run2, run5 = report_of(1), report_of(2), report_of(5)
     new = compare(tmp_path, run1, run2)
-    assert "**New paths to assess: 2**" in new
-    assert "- `Video`: `/safety_camera` → `/archive_server`, allowed at `before.policy.xml:14`\n" in new
+    assert "**New ways to assess: 2**" in new
+    assert "- `Video`: `node /safety_camera` → `node /archive_server`, allowed at `before.policy.xml:14`\n" in new
     assert "Verdict: `undetermined` before, `leak` now." in new
     assert "**Gone: 2**" in compare(tmp_path, run2, run5)
     same = compare(tmp_path, run2, run2)
-    assert "No path to assess is new or gone; there are 2." in same
+    assert "No way to assess is new, gone or changed." in same
     assert "this is no legal verdict" in same
 
 
 def test_what_was_not_analysed_before_is_all_new(tmp_path: Path) -> None:
     """The report that the workflow takes in its place."""
-    (text,) = re.findall(r"echo '(\{.*\})' > before\.json", (CI / "privacy.yml").read_text("utf-8"))
-    comment = compare(tmp_path, json.loads(text), report_of(2))
-    assert "**New paths to assess: 2**" in comment
+    steps = yaml.safe_load((CI / "privacy.yml").read_text("utf-8"))["jobs"]["paths-to-assess"]["steps"]
+    (nothing,) = (step["env"]["NOTHING"] for step in steps if "NOTHING" in step.get("env", {}))
+    comment = compare(tmp_path, json.loads(nothing), report_of(2))
+    assert "**New ways to assess: 2**" in comment
     assert "Verdict: `not analysed before` before, `leak` now." in comment
+    assert "Asked otherwise" not in comment
 
 
 def test_no_name_can_link_or_mention_anybody(tmp_path: Path) -> None:
@@ -269,9 +272,10 @@ def test_no_name_can_link_or_mention_anybody(tmp_path: Path) -> None:
 
 def test_long_lists_are_cut_and_say_so(tmp_path: Path) -> None:
     after = report_of(2)
-    after["findings"] = [{**after["findings"][0], "id": f"{i:016x}"} for i in range(500)]
+    one = after["findings"][0]
+    after["findings"] = [{**one, "id": f"{i:016x}", "leak": {**one["leak"], "name": f"/l{i}x"}} for i in range(500)]
     comment = compare(tmp_path, report_of(1), after)
-    assert "**New paths to assess: 500**" in comment
+    assert "**New ways to assess: 500**" in comment
     assert "- and 480 more" in comment
     assert len(comment) < 10_000
 

@@ -127,8 +127,34 @@ class TestPolicies:
         assert [row["after"]["dismissed"] for row in parsed(done)["findings"]["new"]] == [True]
         assert done.returncode == 0
 
+    def test_what_is_accepted_is_not_worse(self, cli: Cli) -> None:
+        write("d.yaml", "decisions: 1\nfindings: [{leak: /screen, decision: accept, reason: r, owner: o}]\n")
+        done = cli("diff", "old.xml", "new.xml", "-l", "l.yaml", "--decisions", "d.yaml", "-f", "json")
+        (changed,) = parsed(done)["findings"]["changed"]
+        assert (changed["after"]["pseudonymised"], changed["after"]["accepted"]) == (False, True)
+        assert done.returncode == 0
+
+    def test_what_was_accepted_and_is_no_longer_is_worse(self, cli: Cli) -> None:
+        write("d.yaml", "decisions: 1\nfindings: [{leak: /screen, decision: accept, reason: r, owner: o}]\n")
+        cli("analyze", "old.xml", "-l", "l.yaml", "--decisions", "d.yaml", "-f", "json", "-o", "old.json")
+        done = cli("diff", "old.json", "old.xml", "-l", "l.yaml", "-f", "json")
+        (changed,) = parsed(done)["findings"]["changed"]
+        assert (changed["before"]["accepted"], changed["after"]["accepted"]) == (True, False)
+        assert done.returncode == 1
+
 
 class TestSaved:
+    def test_what_was_asked_otherwise_is_told(self, cli: Cli) -> None:
+        """Else what was not asked for would look as if it were gone."""
+        cli("analyze", "new.xml", "-l", "l.yaml", "-f", "json", "-o", "all.json")
+        cli("analyze", "new.xml", "-l", "l.yaml", "-f", "json", "-c", "Voice", "--view", "enforced", "-o", "voice.json")
+        done = cli("diff", "all.json", "voice.json")
+        lines = done.stdout.splitlines()
+        assert "asked otherwise: view: declared before, enforced now" in lines
+        assert "asked otherwise: categories_asked: all before, Voice now" in lines
+        text = cli("diff", "all.json", "voice.json", "-f", "markdown").stdout
+        assert "Asked otherwise: `categories_asked` was `all`, is `Voice`." in text
+
     def test_a_saved_analysis(self, cli: Cli) -> None:
         cli("analyze", "old.xml", "-l", "l.yaml", "-f", "json", "-o", "old.json")
         done = cli("diff", "old.json", "new.xml", "-l", "l.yaml")

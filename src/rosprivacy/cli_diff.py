@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from enum import StrEnum
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from rosprivacy.cli_options import (
-    Format,
+    DecisionsFile,
     IncludeRoot,
     LabelFiles,
     MaxBytes,
@@ -23,6 +23,14 @@ from rosprivacy.cli_output import emit, progress_of
 if TYPE_CHECKING:
     from rosprivacy.report.snapshot import Snapshot
     from rosprivacy.settings import Settings
+
+
+class DiffFormat(StrEnum):
+    """Of what differs."""
+
+    text = "text"
+    json = "json"
+    markdown = "markdown"
 
 
 class FailOnChange(StrEnum):
@@ -44,8 +52,11 @@ def diff(
         list[str] | None,
         typer.Option(metavar="FILE", help="Label file for OLD, in place of --labels.", show_default=False),
     ] = None,
-    format: Annotated[Format, typer.Option("--format", "-f", help="Of the report.")] = Format.text,  # noqa: A002 - the option's name
+    format: Annotated[  # noqa: A002 - the option's name
+        DiffFormat, typer.Option("--format", "-f", help="For people, for programs, for a comment on a pull request.")
+    ] = DiffFormat.text,
     output: Output = None,
+    decisions: DecisionsFile = None,
     view: ViewChosen = View.declared,
     standard_channels: Standard = "rosprivacy:standard",
     no_standard_channels: NoStandard = False,
@@ -59,8 +70,7 @@ def diff(
 
     Nodes whose names change at every start (a process id, an address) are matched without these.
     """
-    from rosprivacy.report.difference import difference, difference_lines, differs
-    from rosprivacy.report.document import as_text
+    from rosprivacy.report.difference import difference, differs
     from rosprivacy.settings import Settings
 
     settings = Settings(
@@ -69,14 +79,26 @@ def diff(
         include_root=str(include_root) if include_root else None,
         max_bytes=max_bytes,
         progress=progress_of,
+        decisions=str(decisions) if decisions else None,
     )
     given = tuple(labels or ())
     before = _snapshot(old, tuple(old_labels) if old_labels else given, settings)
     document = difference(before, _snapshot(new, given, settings))
-    text = "".join(f"{line}\n" for line in difference_lines(document))
-    emit(as_text(document) if format is Format.json else text, output)
+    emit(_text(document, format), output)
     failed = document["worse"] if fail_on is FailOnChange.worse else differs(document)
     raise typer.Exit(1 if failed and fail_on is not FailOnChange.never else 0)
+
+
+def _text(document: dict[str, Any], form: DiffFormat) -> str:
+    from rosprivacy.report.difference import difference_lines
+    from rosprivacy.report.difference_markdown import difference_markdown
+    from rosprivacy.report.document import as_text
+
+    if form is DiffFormat.json:
+        return as_text(document)
+    if form is DiffFormat.markdown:
+        return difference_markdown(document)
+    return "".join(f"{line}\n" for line in difference_lines(document))
 
 
 def _snapshot(state: str, labels: tuple[str, ...], settings: Settings) -> Snapshot:

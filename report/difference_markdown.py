@@ -1,0 +1,86 @@
+"""What differs between two states, as Markdown: a comment on a pull request.
+
+In: a document ``rosprivacy.diff/1``. Out: text of a bounded length. Names come from anybody's files, so they are shown
+as code, and can neither link nor mention anybody.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+SHOWN = 20  # of a list; a comment has a limit
+LONGEST = 120  # characters of a name
+LISTS = (("New ways to assess", "new", "after"), ("Gone", "gone", "before"), ("Changed", "changed", "after"))
+COUNTED = ("robots", "grants", "elements")
+KINDS = {"storage-limitation": "kept too long: ", "third-country-transfer": "leaves the EEA: "}
+FORMS = (("dismissed", "only through another recipient"), ("accepted", "accepted"), ("pseudonymised", "pseudonymised"))
+
+
+def difference_markdown(document: Mapping[str, Any]) -> str:
+    """Return the text."""
+    return "\n".join([*_lines(document), ""])
+
+
+def _lines(document: Mapping[str, Any]) -> Iterator[str]:
+    yield "### Where personal data can go"
+    yield ""
+    before, after = document["verdict"]["before"], document["verdict"]["after"]
+    yield f"Verdict: {code(after)}." if before == after else f"Verdict: {code(before)} before, {code(after)} now."
+    for row in document["asked_otherwise"]:
+        yield f"\nAsked otherwise: {code(row['what'])} was {code(row['before'])}, is {code(row['after'])}."
+    findings = document["findings"]
+    for title, what, state in LISTS:
+        rows = findings[what] if what == "changed" else [row for row in findings[what] if not row[state]["dismissed"]]
+        yield from _listed(title, rows, state)
+    if not any(findings.values()):
+        yield "\nNo way to assess is new, gone or changed."
+    yield ""
+    yield " ".join(_counted(document))
+    yield ""
+    yield "Labels are a person's word; this is no legal verdict."
+
+
+def _listed(title: str, rows: Sequence[Mapping[str, Any]], state: str) -> Iterator[str]:
+    if not rows:
+        return
+    yield f"\n**{title}: {len(rows)}**\n"
+    for row in rows[:SHOWN]:
+        kind = KINDS.get(row["kind"], "")
+        across = ", from one robot to another" if row.get("across") else ""
+        at = f", allowed at {code(row['allowed_at'])}" if row.get("allowed_at") else ""
+        what = f"{kind}{code(row['category'])}: {code(row['source'])} → {code(row['leak'])}"
+        yield f"- {what}{across}{_form(row, state)}{at}"
+    if len(rows) > SHOWN:
+        yield f"- and {len(rows) - SHOWN} more"
+
+
+def _form(row: Mapping[str, Any], state: str) -> str:
+    forms = [said for key, said in FORMS if row[state][key]]
+    robots = row[state].get("robots")
+    return "".join(f", {said}" for said in [*forms, *([f"on {len(robots)} robots"] if robots else [])])
+
+
+def _counted(document: Mapping[str, Any]) -> Iterator[str]:
+    """How much else differs."""
+    for section in COUNTED:
+        rows = document[section]
+        if rows is None:
+            yield f"{section.capitalize()} are not compared: the policies of one side are not at hand."
+        elif any(rows.values()):
+            counts = ", ".join(f"{len(found)} {what}" for what, found in rows.items() if found)
+            yield f"{section.capitalize()}: {counts}."
+
+
+def code(text: str) -> str:
+    """Return text as code that cannot end early: printable, short, with no backtick in it.
+
+    >>> code("a`b")
+    "`a'b`"
+    """
+    plain = "".join(character if character.isprintable() else "?" for character in text).replace("`", "'")
+    plain = re.sub(r"\s+", " ", plain).strip() or "?"
+    return f"`{plain[:LONGEST]}{'…' if len(plain) > LONGEST else ''}`"
