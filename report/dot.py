@@ -6,6 +6,7 @@ In: a ``Picture``. Out: text. Names stand in quoted strings, or below in an HTML
 from __future__ import annotations
 
 from html import escape
+from textwrap import wrap
 from typing import TYPE_CHECKING
 
 from rosprivacy.report.looks import INK, LINE_LOOKS, PALE, SHAPES, TEXT, Entry, box_look, legend
@@ -21,6 +22,7 @@ SIZE = 11  # of letters, in points
 LONGEST_NOTE = 110
 FOLDED_NAMES = 3
 COLUMNS = 3
+WIDEST_WORDS = 34  # letters of a line on a box
 
 
 def dot(picture: Picture, *, direction: str = "LR", legend: bool = True) -> str:
@@ -80,7 +82,7 @@ def label_lines(picture: Picture, box: Box) -> list[str]:
         lines += [shortened(name, 36) for name in box.names[:FOLDED_NAMES]]
         more = len(box.names) - FOLDED_NAMES
         lines += [f"and {more} more"] if more > 0 else []
-    return [*lines, *(shortened(word, 60) for word in box.words)]
+    return [*lines, *(line for word in box.words for line in wrap(shortened(word, 60), WIDEST_WORDS))]
 
 
 def hover(picture: Picture, box: Box) -> str:
