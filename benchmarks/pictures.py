@@ -19,9 +19,9 @@ from typing import TYPE_CHECKING
 from measure import Line, print_header, print_line, run
 
 import rosprivacy
-from rosprivacy.report.inline import pictures_of
-from rosprivacy.report.layout import drawn
-from rosprivacy.report.narrow import folded
+from rosprivacy.report.page.inline import pictures_of
+from rosprivacy.report.pictures.layout import drawn
+from rosprivacy.report.pictures.narrow import folded
 from rosprivacy.report.views import PER_BOX, FindingViews, bounded, privacy_view, ros_view
 
 if TYPE_CHECKING:

@@ -20,9 +20,9 @@ from typing import TYPE_CHECKING
 from measure import REPOSITORY, Line, compared, print_header, print_line, side_by_side
 
 import rosprivacy
-from rosprivacy.report.figures import figures
-from rosprivacy.report.html import html
-from rosprivacy.report.outline import outline
+from rosprivacy.report.page.figures import figures
+from rosprivacy.report.page.html import html
+from rosprivacy.report.page.outline import outline
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

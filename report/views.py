@@ -16,17 +16,17 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.model import DISCLOSURE, Verdict
 from rosprivacy.analysis.search import Net
 from rosprivacy.analysis.ways import Ways, ways
-from rosprivacy.report.looks import ALLOWED, DATA, DENIED, MATCHES, SHORTEST, WAY
-from rosprivacy.report.picture import PRIVACY, ROS, Box, Line, Picture, order, sorted_boxes, sorted_lines
-from rosprivacy.report.privacy import Reached
-from rosprivacy.report.wording import counted, listed, shortened
+from rosprivacy.report.pictures.looks import ALLOWED, DATA, DENIED, MATCHES, SHORTEST, WAY
+from rosprivacy.report.pictures.picture import PRIVACY, ROS, Box, Line, Picture, order, sorted_boxes, sorted_lines
+from rosprivacy.report.pictures.privacy import Reached
+from rosprivacy.report.pictures.wording import counted, listed, shortened
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.model import Analysis, Finding, Flow, FlowGraph, Grant, Place
-    from rosprivacy.report.phrases import Phrases
-    from rosprivacy.report.picture import Key
+    from rosprivacy.report.pictures.phrases import Phrases
+    from rosprivacy.report.pictures.picture import Key
 
 VERDICTS = {
     Verdict.LEAK: "data can reach a leak",

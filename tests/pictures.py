@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.findings import analyse
 from rosprivacy.analysis.hierarchy import Hierarchy
 from rosprivacy.analysis.model import Bound, Category, Element, Flow, FlowGraph, Grant, Place, Profile, Statement
-from rosprivacy.report import narrow, views
-from rosprivacy.report.fleet_view import represented
+from rosprivacy.report import views
+from rosprivacy.report.pictures import narrow
+from rosprivacy.report.pictures.fleet_view import represented
 from tests.graphs import care_home, factory, hospital
 
 if TYPE_CHECKING:
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.model import Analysis
     from rosprivacy.assembly import Result
-    from rosprivacy.report.picture import Box, Picture
+    from rosprivacy.report.pictures.picture import Box, Picture
 
 HOSTILE = (
     "/<script>alert(1)</script>",

@@ -28,8 +28,8 @@ from rosprivacy.assembly import robot_of, run_stored
 from rosprivacy.formats import pia_file
 from rosprivacy.ingest.neo4j import load as load_robots
 from rosprivacy.ontology.vocabulary import load
-from rosprivacy.report import cnil_answers
-from rosprivacy.report.cnil import cnil_pia
+from rosprivacy.report.exchange import cnil_answers
+from rosprivacy.report.exchange.cnil import cnil_pia
 from rosprivacy.settings import Settings
 from tests.test_findings import HIERARCHY, PARENTS, System, analysed, systems
 from tests.test_sarif import HOSTILE, analyze, checked, log_of, physical, small_system, way

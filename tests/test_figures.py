@@ -8,20 +8,21 @@ from typing import TYPE_CHECKING, Any
 from lxml import etree
 from lxml import html as lxml_html
 
-from rosprivacy.report import dot as dot_module
-from rosprivacy.report import figures as module
-from rosprivacy.report import graphviz, inline
-from rosprivacy.report.figures import Figures, figures, page_legend
-from rosprivacy.report.html import html
-from rosprivacy.report.inline import Wishes, picture_of, pictures_of
-from rosprivacy.report.looks import ROLE_LOOKS
-from rosprivacy.report.outline import outline
-from rosprivacy.report.page_svg import DRAWS, SAYS, page_svg
-from rosprivacy.report.privacy import Reached
-from rosprivacy.report.redact import redacted
-from rosprivacy.report.renamed import aliases_of, renamed
+from rosprivacy.report.page import figures as module
+from rosprivacy.report.page import inline
+from rosprivacy.report.page.figures import Figures, figures, page_legend
+from rosprivacy.report.page.html import html
+from rosprivacy.report.page.inline import Wishes, picture_of, pictures_of
+from rosprivacy.report.page.outline import outline
+from rosprivacy.report.page.page_svg import DRAWS, SAYS, page_svg
+from rosprivacy.report.page.redact import redacted
+from rosprivacy.report.page.renamed import aliases_of, renamed
+from rosprivacy.report.page.words import Words
+from rosprivacy.report.pictures import dot as dot_module
+from rosprivacy.report.pictures import graphviz
+from rosprivacy.report.pictures.looks import ROLE_LOOKS
+from rosprivacy.report.pictures.privacy import Reached
 from rosprivacy.report.views import FindingViews, finding_view
-from rosprivacy.report.words import Words
 from tests.graphs import care_home, factory
 from tests.pictures import hostile
 from tests.reports import care

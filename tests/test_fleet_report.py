@@ -15,15 +15,15 @@ import rdflib
 
 from rosprivacy.analysis.patterns import Likeness
 from rosprivacy.formats import pia_file, sarif_log
-from rosprivacy.report.dot import dot
-from rosprivacy.report.figures import figures
-from rosprivacy.report.fleet_formats import note
-from rosprivacy.report.fleet_view import label, represented
-from rosprivacy.report.html import html
-from rosprivacy.report.markdown import markdown
-from rosprivacy.report.outline import Outline, outline
-from rosprivacy.report.picture import PRIVACY, Box, Line, Picture
-from rosprivacy.report.redact import redacted
+from rosprivacy.report.exchange.fleet_formats import note
+from rosprivacy.report.page.figures import figures
+from rosprivacy.report.page.html import html
+from rosprivacy.report.page.markdown import markdown
+from rosprivacy.report.page.outline import Outline, outline
+from rosprivacy.report.page.redact import redacted
+from rosprivacy.report.pictures.dot import dot
+from rosprivacy.report.pictures.fleet_view import label, represented
+from rosprivacy.report.pictures.picture import PRIVACY, Box, Line, Picture
 from tests.graphs import hospital
 from tests.pictures import fleet_privacy
 
@@ -257,7 +257,7 @@ def test_linked_data_names_the_robots_of_each_finding_and_fits_its_shapes() -> N
         (iri,) = graph.subjects(rp.id, rdflib.Literal(pattern.finding.id))
         assert sorted(map(str, graph.objects(iri, rp.onRobot))) == list(pattern.robots)
         assert [int(str(n)) for n in graph.objects(iri, rp.findings)] == [pattern.count]
-    shapes = rdflib.Graph().parse(ROOT / "report" / "findings.shapes.ttl")
+    shapes = rdflib.Graph().parse(ROOT / "report" / "linked" / "findings.shapes.ttl")
     conforms, _, text = pyshacl.validate(graph, shacl_graph=shapes)
     assert conforms, text
 

@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING
 import pytest
 
 from rosprivacy.analysis.errors import DrawingError
-from rosprivacy.report import graphviz as module
 from rosprivacy.report import views
-from rosprivacy.report.graphviz import Graphviz, Job, TooLongError
-from rosprivacy.report.layout import WAYS, Way, drawn
+from rosprivacy.report.pictures import graphviz as module
+from rosprivacy.report.pictures.graphviz import Graphviz, Job, TooLongError
+from rosprivacy.report.pictures.layout import WAYS, Way, drawn
 from tests.graphs import factory
 from tests.pictures import hostile
 
 if TYPE_CHECKING:
-    from rosprivacy.report.picture import Picture
+    from rosprivacy.report.pictures.picture import Picture
 
 AT_ONCE = 1e-9
 SMALL = Job("digraph { a -> b }")

@@ -23,6 +23,8 @@ def test_the_rooms_import_from_the_package_and_bring_their_data() -> None:
     assert files("rosprivacy.ontology").joinpath("law.ttl").is_file()
     assert files("rosprivacy.ingest").joinpath("standard.yaml").is_file()
     assert files("rosprivacy.queries").joinpath("leak-paths.cypher").is_file()
+    assert files("rosprivacy.report.page").joinpath("templates", "report.html.j2").is_file()
+    assert files("rosprivacy.report.linked").joinpath("findings.shapes.ttl").is_file()
 
 
 @pytest.fixture(scope="module")

@@ -19,17 +19,18 @@ from hypothesis import strategies as st
 from lxml import etree
 
 import rosprivacy
-from rosprivacy.report import looks, narrow, views
-from rosprivacy.report.dot import dot, label_lines, quoted
-from rosprivacy.report.graphml import graphml
-from rosprivacy.report.layout import drawn
-from rosprivacy.report.mermaid import label, mermaid, too_large
-from rosprivacy.report.wording import broken, printable, shortened
+from rosprivacy.report import views
+from rosprivacy.report.pictures import looks, narrow
+from rosprivacy.report.pictures.dot import dot, label_lines, quoted
+from rosprivacy.report.pictures.graphml import graphml
+from rosprivacy.report.pictures.layout import drawn
+from rosprivacy.report.pictures.mermaid import label, mermaid, too_large
+from rosprivacy.report.pictures.wording import broken, printable, shortened
 from tests.graphs import care_home, factory
 from tests.pictures import HOSTILE, hostile, pictures, ros
 
 if TYPE_CHECKING:
-    from rosprivacy.report.picture import Picture
+    from rosprivacy.report.pictures.picture import Picture
 
 ROOT = Path(__file__).resolve().parent.parent
 SVG = "{http://www.w3.org/2000/svg}"

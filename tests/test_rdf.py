@@ -23,11 +23,11 @@ import rosprivacy
 from rosprivacy.analysis.findings import analyse
 from rosprivacy.analysis.model import Bound, Category, Element, Flow, FlowGraph, Legal, Method
 from rosprivacy.ontology.vocabulary import Vocabulary
-from rosprivacy.report.facts import legal_of
-from rosprivacy.report.rdf import rdf_graph
-from rosprivacy.report.serialise import SERIALISERS, as_turtle
-from rosprivacy.report.terms import DPV, DPV_CLASSES, DPV_PROPERTIES, RISK, RISKS, RP, element_iri, named
-from rosprivacy.report.things import STATED
+from rosprivacy.report.linked.facts import legal_of
+from rosprivacy.report.linked.rdf import rdf_graph
+from rosprivacy.report.linked.serialise import SERIALISERS, as_turtle
+from rosprivacy.report.linked.terms import DPV, DPV_CLASSES, DPV_PROPERTIES, RISK, RISKS, RP, element_iri, named
+from rosprivacy.report.linked.things import STATED
 from tests.test_cases import CASES
 from tests.test_findings import PARENTS, System, analysed, statement, systems
 
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from rosprivacy.assembly import Result
 
 ROOT = Path(__file__).resolve().parent.parent
-SHAPES = Graph().parse(ROOT / "report" / "findings.shapes.ttl")
+SHAPES = Graph().parse(ROOT / "report" / "linked" / "findings.shapes.ttl")
 CARE_HOME = ("examples/care-home/care-home.policy.xml", "-l", "examples/care-home/care-home.labels.yaml")
 SYNTAX = {"turtle": pyoxigraph.RdfFormat.TURTLE, "json-ld": pyoxigraph.RdfFormat.JSON_LD}
 VOCABULARY = Vocabulary.of(Category(n, f"urn:test:{n}", n, n, f"{n}.", up) for n, up in PARENTS.items())

@@ -24,16 +24,16 @@ from lxml import html as lxml_html
 from markdown_it import MarkdownIt
 
 from rosprivacy.analysis.errors import InputError
-from rosprivacy.report import article30
-from rosprivacy.report.changes import changes
-from rosprivacy.report.difference import difference
-from rosprivacy.report.earlier import Earlier, read_earlier
-from rosprivacy.report.html import html
-from rosprivacy.report.markdown import markdown
-from rosprivacy.report.outline import Outline, outline
-from rosprivacy.report.redact import redacted
-from rosprivacy.report.snapshot import snapshot
-from rosprivacy.report.words import TABLES, Words
+from rosprivacy.report.compare.changes import changes
+from rosprivacy.report.compare.difference import difference
+from rosprivacy.report.compare.earlier import Earlier, read_earlier
+from rosprivacy.report.compare.snapshot import snapshot
+from rosprivacy.report.page import article30
+from rosprivacy.report.page.html import html
+from rosprivacy.report.page.markdown import markdown
+from rosprivacy.report.page.outline import Outline, outline
+from rosprivacy.report.page.redact import redacted
+from rosprivacy.report.page.words import TABLES, Words
 from tests.graphs import hospital
 from tests.reports import HOSTILE, care, fleet, hostile, run, with_decisions, with_outside
 
@@ -79,7 +79,7 @@ def test_every_language_has_the_same_words_with_the_same_places() -> None:
 def test_every_word_is_used_and_every_use_has_a_word() -> None:
     source = "\n".join(
         file.read_text("utf-8")
-        for file in [*(ROOT / "report").glob("*.py"), *(ROOT / "report" / "templates").glob("*.j2")]
+        for file in [*(ROOT / "report" / "page").glob("*.py"), *(ROOT / "report" / "page" / "templates").glob("*.j2")]
         if not file.name.startswith("words_")
     )
     used = set(re.findall(r"[\"']([a-z0-9-]+(?:\.[a-z0-9_-]+)+)[\"']", source))

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from rosprivacy.report.earlier import Earlier
-from rosprivacy.report.figures import Figures, figures
-from rosprivacy.report.html import html
-from rosprivacy.report.inline import Wishes, pictures_of
-from rosprivacy.report.outline import outline
+from rosprivacy.report.compare.earlier import Earlier
+from rosprivacy.report.page.figures import Figures, figures
+from rosprivacy.report.page.html import html
+from rosprivacy.report.page.inline import Wishes, pictures_of
+from rosprivacy.report.page.outline import outline
 from tests import browser as chrome
 from tests import pictures
 from tests.browser import A4, DESKTOP, PAPER, PHONE

@@ -23,9 +23,9 @@ import rosprivacy
 from rosprivacy.analysis.findings import analyse
 from rosprivacy.analysis.model import Category, Place
 from rosprivacy.formats import sarif_log
-from rosprivacy.report import sarif as sarif_module
-from rosprivacy.report import sarif_flows
-from rosprivacy.report.sarif import sarif
+from rosprivacy.report.exchange import sarif as sarif_module
+from rosprivacy.report.exchange import sarif_flows
+from rosprivacy.report.exchange.sarif import sarif
 from tests.test_cases import CASES
 from tests.test_findings import HIERARCHY, PARENTS, System, analysed, systems
 

@@ -21,9 +21,9 @@ from rosprivacy.analysis.findings import analyse
 from rosprivacy.analysis.model import Bound, Category, Diagnostic, Element, Flow, FlowGraph, Grant, Place, Severity
 from rosprivacy.clock import source_date
 from rosprivacy.ontology.vocabulary import Vocabulary
-from rosprivacy.report.rdf import rdf_graph
-from rosprivacy.report.serialise import SERIALISERS
-from rosprivacy.report.terms import RP, element_iri, named
+from rosprivacy.report.linked.rdf import rdf_graph
+from rosprivacy.report.linked.serialise import SERIALISERS
+from rosprivacy.report.linked.terms import RP, element_iri, named
 from tests.test_findings import statement
 
 if TYPE_CHECKING:

@@ -14,14 +14,15 @@ from hypothesis import given
 
 from rosprivacy.analysis.errors import DrawingError
 from rosprivacy.analysis.model import Element, Flow, FlowGraph, Grant, Place
-from rosprivacy.report import narrow, views
-from rosprivacy.report.dot import dot
+from rosprivacy.report import views
+from rosprivacy.report.pictures import narrow
+from rosprivacy.report.pictures.dot import dot
 from tests.graphs import care_home, factory
 from tests.pictures import hostile, names_of, pictures, ros
 from tests.test_findings import System, analysed, index, statement, systems
 
 if TYPE_CHECKING:
-    from rosprivacy.report.picture import Picture
+    from rosprivacy.report.pictures.picture import Picture
 
 GOLDEN = Path(__file__).resolve().parent / "cases" / "views"
 

@@ -81,13 +81,13 @@ class Result:
 
     def linked_data(self, form: str, **more: Any) -> str:
         """Return the findings as RDF, in ``turtle`` or ``json-ld``; ``more`` as for ``rdf_graph``."""
-        from rosprivacy.report.rdf import rdf_graph  # noqa: PLC0415 - rdflib, only where it is used
-        from rosprivacy.report.serialise import SERIALISERS  # noqa: PLC0415
+        from rosprivacy.report.linked.rdf import rdf_graph  # noqa: PLC0415 - rdflib, only where it is used
+        from rosprivacy.report.linked.serialise import SERIALISERS  # noqa: PLC0415
 
         analysis = self.fleet.shown(self.analysis) if self.fleet else self.analysis
         graph = rdf_graph(analysis, self.vocabulary, self.diagnostics, self.assumptions, **more)
         if self.fleet:
-            from rosprivacy.report.fleet_formats import robot_triples  # noqa: PLC0415
+            from rosprivacy.report.exchange.fleet_formats import robot_triples  # noqa: PLC0415
 
             for triple in robot_triples(self.fleet):
                 graph.add(triple)

@@ -21,7 +21,7 @@ from rosprivacy.cli_options import (
 from rosprivacy.cli_output import emit, progress_of
 
 if TYPE_CHECKING:
-    from rosprivacy.report.snapshot import Snapshot
+    from rosprivacy.report.compare.snapshot import Snapshot
     from rosprivacy.settings import Settings
 
 
@@ -70,7 +70,7 @@ def diff(
 
     Nodes whose names change at every start (a process id, an address) are matched without these.
     """
-    from rosprivacy.report.difference import difference, differs
+    from rosprivacy.report.compare.difference import difference, differs
     from rosprivacy.settings import Settings
 
     settings = Settings(
@@ -90,8 +90,8 @@ def diff(
 
 
 def _text(document: dict[str, Any], form: DiffFormat) -> str:
-    from rosprivacy.report.difference import difference_lines
-    from rosprivacy.report.difference_markdown import difference_markdown
+    from rosprivacy.report.compare.difference import difference_lines
+    from rosprivacy.report.compare.difference_markdown import difference_markdown
     from rosprivacy.report.document import as_text
 
     if form is DiffFormat.json:
@@ -107,11 +107,11 @@ def _snapshot(state: str, labels: tuple[str, ...], settings: Settings) -> Snapsh
 
     from rosprivacy.assembly import run
     from rosprivacy.fleets import run_fleet
-    from rosprivacy.report.snapshot import snapshot
+    from rosprivacy.report.compare.snapshot import snapshot
 
     kind = _kind(state)
     if kind == "analysis":
-        from rosprivacy.report.earlier import read_earlier
+        from rosprivacy.report.compare.earlier import read_earlier
 
         return snapshot(read_earlier(state).document, None)
     if kind == "fleet":

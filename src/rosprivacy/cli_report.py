@@ -153,31 +153,31 @@ def _text(result: Result, form: ReportFormat, language: str, title: str, since: 
     from dataclasses import replace
 
     from rosprivacy.clock import today
-    from rosprivacy.report.earlier import read_earlier
-    from rosprivacy.report.outline import outline
+    from rosprivacy.report.compare.earlier import read_earlier
+    from rosprivacy.report.page.outline import outline
 
     document = result.document()
     earlier = read_earlier(str(since)) if since else None
     aliases = None
     if redact:
-        from rosprivacy.report.redact import redacted
-        from rosprivacy.report.renamed import aliases_of
+        from rosprivacy.report.page.redact import redacted
+        from rosprivacy.report.page.renamed import aliases_of
 
         copies = redacted([document, *([earlier.document] if earlier else [])])
         aliases = aliases_of(document, copies[0])
         document = copies[0]
         earlier = replace(earlier, document=copies[1], file="file-0") if earlier else None
     if form is ReportFormat.article30:
-        from rosprivacy.report.article30 import record
+        from rosprivacy.report.page.article30 import record
 
         return record(document, language)
     made = today(os.environ)
     told = outline(document, language, title=title, made=made, earlier=earlier, redacted=redact)
     if form is ReportFormat.markdown:
-        from rosprivacy.report.markdown import markdown
+        from rosprivacy.report.page.markdown import markdown
 
         return markdown(told)
-    from rosprivacy.report.figures import figures
-    from rosprivacy.report.html import html
+    from rosprivacy.report.page.figures import figures
+    from rosprivacy.report.page.html import html
 
     return html(told, figures(result.analysis, told, aliases))

@@ -30,7 +30,7 @@ from rosprivacy.cli_output import emit_bytes, progress_of
 if TYPE_CHECKING:
     from rosprivacy.analysis.model import Profile
     from rosprivacy.assembly import Result
-    from rosprivacy.report.picture import Picture
+    from rosprivacy.report.pictures.picture import Picture
     from rosprivacy.settings import Settings
 
 
@@ -157,14 +157,14 @@ def graph(
     result, own = _drawn_of(policies, labels, fleet, settings)
     picture = _view(result, show, finding, most, carried_only=bool(categories), standard=draw_standard_channels)
     if result.fleet and not finding:
-        from rosprivacy.report.fleet_view import label, represented
+        from rosprivacy.report.pictures.fleet_view import label, represented
 
         picture = represented(picture, result.fleet.likeness)
         own = {label(name, result.fleet.likeness): profiles for name, profiles in own.items()}
         robot = label(robot, result.fleet.likeness) if robot else None
     picture = _narrowed(picture, robot, around, steps, most, fold=fold, loose_ends=loose_ends)
     if cluster is not Cluster.none:
-        from rosprivacy.report.narrow import grouped
+        from rosprivacy.report.pictures.narrow import grouped
 
         picture = grouped(picture, cluster.value, result.analysis.graph.profiles, own)
     _write(picture, form, output, "LR" if direction is Direction.right else "TB", seconds)
@@ -201,7 +201,8 @@ def _format(given: PictureFormat | None, output: Path | None) -> PictureFormat:
 def _view(
     result: Result, show: Shown, finding: str | None, most: int | None, *, carried_only: bool, standard: bool
 ) -> Picture:
-    from rosprivacy.report import narrow, views
+    from rosprivacy.report import views
+    from rosprivacy.report.pictures import narrow
 
     beside = result.fleet.likeness.second if result.fleet else ()
     if show is Shown.privacy:
@@ -224,7 +225,8 @@ def _narrowed(
     fold: bool,
     loose_ends: bool,
 ) -> Picture:
-    from rosprivacy.report import narrow, views
+    from rosprivacy.report import views
+    from rosprivacy.report.pictures import narrow
 
     if robot:
         picture = narrow.of_robot(picture, robot)
@@ -239,7 +241,7 @@ def _narrowed(
 
 def _write(picture: Picture, form: PictureFormat, output: Path | None, direction: str, seconds: float) -> None:
     if form in (PictureFormat.svg, PictureFormat.png):
-        from rosprivacy.report.layout import drawn
+        from rosprivacy.report.pictures.layout import drawn
 
         if output is None and sys.stdout is not None and sys.stdout.isatty():
             raise DrawingError(f"graph:0: {form.upper()} is not for a terminal; name a file with --output")
@@ -249,16 +251,16 @@ def _write(picture: Picture, form: PictureFormat, output: Path | None, direction
         emit_bytes(done.data, output)
         return
     if form is PictureFormat.graphml:
-        from rosprivacy.report.graphml import graphml
+        from rosprivacy.report.pictures.graphml import graphml
 
         emit_bytes(graphml(picture).encode(), output)
         return
     if form is PictureFormat.dot:
-        from rosprivacy.report.dot import dot
+        from rosprivacy.report.pictures.dot import dot
 
         emit_bytes(dot(picture, direction=direction).encode(), output)
         return
-    from rosprivacy.report.mermaid import mermaid, too_large
+    from rosprivacy.report.pictures.mermaid import mermaid, too_large
 
     text = mermaid(picture, direction=direction)
     if too_large(picture, text):

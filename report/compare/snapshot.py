@@ -1,0 +1,125 @@
+"""A JSON document, and the policies behind it if they are at hand -> facts by key, to be compared with others.
+
+In: a document of the contract, made now or saved before. Out: ``Snapshot``: robots, grants, elements, findings. Of a
+fleet, elements are those of a model, and findings are patterns, so that it does not matter which robot is shown.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.report.compare.identity import Identity
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from rosprivacy.analysis.comparison import Key, Record
+    from rosprivacy.analysis.model import Policy
+
+Facts = dict["Key", "Record"]
+
+
+@dataclass(frozen=True, slots=True)
+class Snapshot:
+    """The state of a system, as facts by key.
+
+    Attributes
+    ----------
+    verdict
+        As in the document.
+    robots
+        (id,) -> its model; empty for a single robot.
+    grants
+        (policy, enclave, node, role, kind, name) -> the rule; None where the policies are not at hand. The policy is
+        named in a fleet only.
+    elements
+        (robot or model, kind, name, leg) -> what gets there, what labels say, what is stated about it. Elements that
+        nothing gets to and nothing is said of are not listed.
+    findings
+        (kind, category, source, leak, whether it goes across robots) -> in which form, along which way, on which
+        robots.
+    lines
+        Key of a finding -> the policy line that lets the data in, as ``file:line``; it may move, and is not compared.
+    assumptions
+        As in the document.
+    """
+
+    verdict: str
+    robots: Facts
+    grants: Facts | None
+    elements: Facts
+    findings: Facts
+    lines: Mapping[Key, str]
+    assumptions: Mapping[str, Any]
+
+
+def snapshot(document: Mapping[str, Any], policies: Iterable[Policy] | None) -> Snapshot:
+    """Take the facts out of a document."""
+    fleet = document.get("fleet")
+    identity = Identity.of(document)
+    return Snapshot(
+        document["verdict"],
+        {(robot,): {"model": g["model"]} for g in (fleet["alike"] if fleet else ()) for robot in g["robots"]},
+        None if policies is None else _grants(policies, named=bool(fleet)),
+        _elements(document, identity),
+        _findings(document, identity),
+        dict(_lines(document, identity)),
+        document["assumptions"],
+    )
+
+
+def _grants(policies: Iterable[Policy], *, named: bool) -> Facts:
+    rules: dict[Key, set[str]] = defaultdict(set)
+    for policy in policies:
+        for g in policy.grants:
+            key = (policy.file if named else "", g.enclave, g.node, g.role, g.kind, g.name)
+            rules[key].add("ALLOW" if g.allow else "DENY")
+    return {key: {"rule": " and ".join(sorted(found))} for key, found in rules.items()}
+
+
+def _elements(document: Mapping[str, Any], identity: Identity) -> Facts:
+    found: dict[Key, dict[str, set[str]]] = defaultdict(lambda: defaultdict(set))
+    for row in document["carries"]:
+        found[identity.element(row["element"])]["carries"] |= set(row["categories"])
+        found[identity.element(row["element"])]["pseudonymised"] |= set(row["pseudonymised"])
+    for row in document["open"]:
+        found[identity.element(row["element"])]["open"] |= set(row["categories"])
+    for row in document["roles"]:
+        said = {f"{role} of {row['category']}" for role in row["roles"]}
+        found[identity.element(row["element"])]["labels"] |= said
+    for row in document.get("outside", ()):
+        facts = {key: value for key, value in row.items() if key not in ("element", "file", "line", "holds")}
+        found[identity.element(row["element"])]["stated"] |= {f"{key}: {value}" for key, value in facts.items()}
+    return {key: {what: sorted(values) for what, values in row.items() if values} for key, row in found.items()}
+
+
+def _findings(document: Mapping[str, Any], identity: Identity) -> Facts:
+    found: Facts = {}
+    for finding in document["findings"]:
+        pattern = identity.patterns.get(finding["id"])
+        record: Record = {
+            "dismissed": finding["dismissed"],
+            "pseudonymised": finding["pseudonymised"],
+            "accepted": finding.get("accepted", False),
+            "way": [element["name"] for element in finding["witness"]],
+            "reason": finding.get("reason", ""),
+        }
+        if pattern:
+            record["robots"] = pattern["robots"]
+            counts = {
+                "findings": "findings",
+                "dismissed": "of_them_dismissed",
+                "pseudonymised": "of_them_pseudonymised",
+                "accepted": "of_them_accepted",
+            }
+            record |= {name: pattern.get(key, 0) for key, name in counts.items()}
+        found[identity.finding(finding)] = record
+    return found
+
+
+def _lines(document: Mapping[str, Any], identity: Identity) -> Iterator[tuple[Key, str]]:
+    for finding in document["findings"]:
+        for line in [line for step in finding["steps"][-1:] for line in step["policy"]][:1]:
+            yield identity.finding(finding), f"{line['file']}:{line['line']}"

@@ -1,0 +1,198 @@
+"""The record of processing activities (GDPR, Article 30(1)) as far as the analysis knows it, as CSV.
+
+In: a document and a language. Out: one row per kind of data and recipient; one without a recipient where none was
+found. What only a person can know is left empty, and a column says which fields these are.
+
+Spreadsheets run what begins with ``=`` and the like; such a cell gets an apostrophe in front, which they take as
+'this is text'.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections import defaultdict
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.report.page.index import Index
+from rosprivacy.report.page.kinds import provision
+from rosprivacy.report.page.naming import fit, key, name, whole
+from rosprivacy.report.page.patterns import grouped
+from rosprivacy.report.page.storages import STORAGE, retention
+from rosprivacy.report.page.tables import OUTSIDE, can_come_from
+from rosprivacy.report.page.words import Words
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from rosprivacy.report.page.naming import Key
+
+SEPARATORS = {"en": ",", "de": ";"}  # as spreadsheets in that language expect
+FORMULA = ("=", "+", "-", "@", "\t", "\r", "＝", "＋", "－", "＠")
+BOM = "\ufeff"  # without it Excel takes UTF-8 for something else
+LETTERS = {"controller": "a", "purpose": "b", "subjects": "c", "role": "d", "transfer": "e", "retention": "f"}
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One row of the record; the fields are its columns, in order."""
+
+    controller: str
+    purpose: str
+    category: str
+    article9: str
+    provisions: str
+    subjects: str
+    recipient: str
+    role: str
+    form: str
+    transfer: str
+    retention: str
+    measures: str
+    findings: str
+    note: str
+    complete: str
+
+
+def record(document: Mapping[str, Any], language: str) -> str:
+    """Return the record as CSV, lines ending as RFC 4180 says, with a byte order mark."""
+    index = Index(document, Words(language))
+    text = io.StringIO()
+    writer = csv.writer(text, delimiter=SEPARATORS[language], quoting=csv.QUOTE_ALL, lineterminator="\r\n")
+    columns = [field.name for field in fields(Entry)]
+    writer.writerow([index.words(f"r.{column}") for column in columns])
+    for entry in entries(index):
+        writer.writerow([guarded(getattr(entry, column)) for column in columns])
+    return BOM + text.getvalue()
+
+
+def guarded(cell: str) -> str:
+    """Return a cell that no spreadsheet takes for a formula.
+
+    >>> guarded("=1+1"), guarded("  =1+1"), guarded("video")
+    ("'=1+1", "'  =1+1", 'video')
+    """
+    return f"'{cell}" if cell.startswith(FORMULA) or cell.lstrip().startswith(FORMULA) else cell
+
+
+def entries(index: Index) -> tuple[Entry, ...]:
+    """Return the rows, by kind of data and recipient."""
+    facts = _Facts(index)
+    return tuple(entry for category in index.categories for entry in _of_kind(category, facts))
+
+
+def _of_kind(category: str, facts: _Facts) -> Iterator[Entry]:
+    groups = facts.recipients(category)
+    for group in groups:
+        yield _entry(category, group, facts)
+    if not groups:
+        yield _entry(category, [], facts)
+
+
+class _Facts:
+    """What the rows are made of, looked up once."""
+
+    def __init__(self, index: Index) -> None:
+        self.index = index
+        self.findings: dict[tuple[str, Key], list[Mapping[str, Any]]] = defaultdict(list)
+        for finding in index.findings:
+            self.findings[finding["category"], key(finding["leak"])].append(finding)
+        self._reached: dict[str, dict[Key, Mapping[str, Any]]] = defaultdict(dict)
+        for (category, at), some in self.findings.items():
+            self._reached[category][at] = some[0]["leak"]
+        for at, row in index.outside.items():
+            for category in row["holds"] if row["element"]["kind"] in OUTSIDE else ():
+                self._reached[category][at] = row["element"]
+        self._origins = can_come_from(index)
+        self.enclaves = index.words.count(len(index.document["enclaves"]), "enclave")
+
+    def recipients(self, category: str) -> list[list[Mapping[str, Any]]]:
+        """Who gets the kind of data; those that differ only in the robot together."""
+        found = sorted(self._reached[category].values(), key=lambda e: (e["kind"], e["name"], e["robot"]))
+        return grouped(found, lambda element: (element["kind"], element["name"]))
+
+    def sources(self, category: str) -> list[str]:
+        """Groups of persons of the sources that the kind can come from."""
+        return sorted({group for source in self._origins[category] for group in self.index.subjects.get(source, ())})
+
+
+def _entry(category: str, group: Sequence[Mapping[str, Any]], facts: _Facts) -> Entry:
+    index, words = facts.index, facts.index.words
+    known = index.categories[category]
+    findings = [finding for element in group for finding in facts.findings.get((category, key(element)), ())]
+    stated = [index.outside[key(element)] for element in group if key(element) in index.outside]
+    law = [provision(legal, category, index) for legal in known["law"]]
+    values = {
+        "controller": "",
+        "purpose": "",
+        "category": index.data(category),
+        "article9": words(f"article9.{known['article9']}"),
+        "provisions": "; ".join(f"{p.name}: {p.condition}" if p.condition else p.name for p in law),
+        "subjects": words.row(facts.sources(category)),
+        "recipient": words.row(index.names(group)) if group else words("r.norecipient"),
+        "role": words.row(dict.fromkeys(_role(row, index) for row in stated if row.get("recipient"))),
+        "form": _form(findings, stated, index),
+        "transfer": words.row(dict.fromkeys(filter(None, (_transfer(row, index) for row in stated)))),
+        "retention": _kept(category, facts),
+        "measures": "; ".join(_measures(category, facts)),
+        "findings": words.row(finding["id"] for finding in findings),
+        "note": _note(category, index),
+    }
+    missing = [
+        letter
+        for column, letter in LETTERS.items()
+        if not values[column] and (group or column not in ("role", "transfer"))
+    ]
+    return Entry(**values, complete=words.row(f"30(1)({letter})" for letter in sorted({*missing, "g"})))
+
+
+def _role(row: Mapping[str, Any], index: Index) -> str:
+    return index.words.known(f"recipient.{row['recipient']}", row["recipient"])
+
+
+def _form(findings: Sequence[Mapping[str, Any]], stated: Sequence[Any], index: Index) -> str:
+    if not findings and not stated:
+        return ""
+    hidden = bool(findings) and all(finding["pseudonymised"] for finding in findings)
+    return index.words("r.hidden" if hidden else "r.as.is")
+
+
+def _transfer(row: Mapping[str, Any], index: Index) -> str:
+    if not row.get("country") and not row.get("transfer"):
+        return ""
+    area = index.words(f"area.{row['area']}") if row.get("area") else ""
+    basis = index.words.known(f"transfer.{row['transfer']}", row["transfer"]) if row.get("transfer") else ""
+    return ", ".join(part for part in (fit(row.get("country", "")), area, basis) if part)
+
+
+def _kept(category: str, facts: _Facts) -> str:
+    """Time limits of the storages that the kind gets to."""
+    rows = [
+        row
+        for row in facts.index.outside.values()
+        if row["element"]["kind"] == STORAGE and category in row["holds"] and row.get("retention")
+    ]
+    said = (facts.index.words("r.kept", element=name(r["element"]), duration=retention(r, facts.index)) for r in rows)
+    return "; ".join(dict.fromkeys(said))
+
+
+def _measures(category: str, facts: _Facts) -> Iterator[str]:
+    """Technical measures that are seen: access control, cleaning, encryption at rest. Others are a person's to add."""
+    index, words = facts.index, facts.index.words
+    if index.document["enclaves"]:
+        yield words("r.measure.enclaves", enclaves=facts.enclaves)
+    rows = [row for row in index.document["sanitizers"] if row["category"] == category and row["reached"]]
+    for group in grouped(rows, lambda row: (whole(row["element"])[1:], row["method"], row["stated"])):
+        method = words(f"method.{group[0]['method']}" if group[0]["stated"] else "method.unstated")
+        names = words.row(index.names([row["element"] for row in group]))
+        yield words("r.measure.cleans", element=names, method=method)
+    for row in index.outside.values():
+        if "encrypted" in row and category in row["holds"]:
+            said = "r.measure.encrypted" if row["encrypted"] else "r.measure.unencrypted"
+            yield words(said, element=name(row["element"]))
+
+
+def _note(category: str, index: Index) -> str:
+    unknown = sum(category in question["categories"] for question in index.document["open"])
+    return index.words("r.note.open", elements=index.words.count(unknown, "element")) if unknown else ""

@@ -1,0 +1,113 @@
+"""What the result rests on (rule S12), in sentences; the files that were read; what was said of them.
+
+In: an ``Index``. Out: plain texts, in a fixed order.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rosprivacy.report.page.naming import fit, name, printable
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rosprivacy.report.page.index import Index
+
+ALL = "all"
+
+
+@dataclass(frozen=True, slots=True)
+class File:
+    """A file that was read: its role in words, its name, its hash."""
+
+    role: str
+    name: str
+    sha256: str
+
+
+@dataclass(frozen=True, slots=True)
+class Remark:
+    """What was said of a file when it was read."""
+
+    place: str
+    severity: str
+    text: str
+
+
+def assumed(index: Index) -> Iterator[str]:
+    """Return the assumptions."""
+    words, said = index.words, index.document["assumptions"]
+    yield words(f"a.view.{index.document['view']}")
+    yield words("a.unlabelled")
+    yield _standard(index)
+    if said["categories_asked"] != ALL:
+        yield words("a.categories", names=words.row(map(fit, said["categories_asked"])))
+    if said.get("data_types_asked", ALL) != ALL:
+        yield words("a.types", names=words.row(_type(kind, index) for kind in said["data_types_asked"]))
+    if said.get("article9_only"):
+        yield words("a.article9")
+    if "database" in said:
+        yield words("a.database", robots=words.count(said["database"]["robots"], "robot"))
+    if not said["labels"]:
+        yield words("file.none")
+    yield from _outside(index)
+    yield from _unstated(index)
+    yield words("a.law", date=words.date(said["law_as_of"]))
+    yield words("a.labels")
+
+
+def _standard(index: Index) -> str:
+    taken = index.document["assumptions"]["standard_channels"]
+    if not taken:
+        return index.words("a.standard.none")
+    channels = index.words.count(index.document["standard_channels"], "channel")
+    return index.words("a.standard", channels=channels, file=fit(taken["file"]), sha=taken["sha256"][:12])
+
+
+def _type(kind: str, index: Index) -> str:
+    return index.words.known(f"type.{kind}", fit(kind))
+
+
+def _outside(index: Index) -> Iterator[str]:
+    words, said = index.words, index.document["assumptions"]
+    for kind, role in said.get("taken_by_kind", {}).items():
+        yield words("a.kinds", kind=words.kind({"kind": kind}), role=words(f"a.kinds.{role}"))
+    if "countries_as_of" in said:
+        yield words("a.countries", date=words.date(said["countries_as_of"]))
+    for row in index.outside.values():
+        if row.get("without_limit"):
+            yield words("a.limit", element=name(row["element"]), data=index.all_data(row["without_limit"]))
+
+
+def _unstated(index: Index) -> Iterator[str]:
+    rows = index.document["assumptions"]["sanitizers_without_method"]
+    for category in dict.fromkeys(row["category"] for row in rows):
+        elements = [row["element"] for row in rows if row["category"] == category]
+        for element in index.names(elements):
+            yield index.words("a.unstated", element=element, data=index.data(category))
+
+
+def files(index: Index) -> tuple[File, ...]:
+    """Return the files that were read, by role."""
+    said, words = index.document["assumptions"], index.words
+    rows = [
+        File(words(f"file.{kind}"), fit(entry["file"]), entry["sha256"])
+        for kind in ("fleet", "policies", "labels", "ontologies")
+        for entry in said.get(kind, ())
+    ]
+    standard = said["standard_channels"]
+    return (*rows, *([File(words("file.standard"), fit(standard["file"]), standard["sha256"])] if standard else []))
+
+
+def remarks(index: Index) -> tuple[Remark, ...]:
+    """Return what was said of the files, warnings before notices."""
+    order = {"error": 0, "warning": 1, "notice": 2}
+    rows = sorted(index.document["diagnostics"], key=lambda row: order[row["severity"]])
+    return tuple(
+        Remark(
+            f"{fit(row['file'])}:{row['line']}", index.words(f"severity.{row['severity']}"), printable(row["message"])
+        )
+        for row in rows
+    )

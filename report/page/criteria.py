@@ -1,0 +1,86 @@
+"""The nine criteria of WP 248 rev.01 for an impact assessment (GDPR, Article 35), and what is seen of each.
+
+In: an ``Index``. Out: what the document shows; never that no assessment is needed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rosprivacy.report.page.index import CAN_BE_SPECIAL
+from rosprivacy.report.page.patterns import weight
+
+if TYPE_CHECKING:
+    from rosprivacy.report.page.index import Index
+
+OBSERVES = {"image", "video", "depth", "point-cloud", "thermal", "audio", "position"}  # data types of a sensor
+NAMED = 6
+
+
+@dataclass(frozen=True, slots=True)
+class Criterion:
+    """One criterion: its name, and what the analysis shows of it, empty if only a person can say."""
+
+    name: str
+    shows: str
+
+
+def criteria(index: Index) -> tuple[Criterion, ...]:
+    """Return all nine, in their order."""
+    words = index.words
+    makes = _makes(index)
+    shows = [makes, "", _observes(index), _special(index), _scale(index), _combines(index), _subjects(index), makes, ""]
+    return tuple(Criterion(words(f"w.{number}"), said) for number, said in enumerate(shows, 1))
+
+
+def _row(texts: list[str], index: Index) -> str:
+    more = [index.words("more", n=len(texts) - NAMED)] if len(texts) > NAMED else []
+    return index.words.row([*texts[:NAMED], *more])
+
+
+def _makes(index: Index) -> str:
+    rows = [row for row in index.document["derivations"] if row["reached"]]
+    texts = [
+        index.words("w.make", element=element, data=index.data(made), of=index.data(of))
+        for of, made in dict.fromkeys((row["from"], row["to"]) for row in rows)
+        for element in index.names([r["element"] for r in rows if (r["from"], r["to"]) == (of, made)])
+    ]
+    return index.words("w.makes", names=_row(texts, index)) if texts else ""
+
+
+def _observes(index: Index) -> str:
+    sources = [
+        index.elements[element]
+        for element, categories in index.of_role.get("source", {}).items()
+        if any(OBSERVES & set(index.categories[category]["data_types"]) for category in categories)
+    ]
+    return index.words("w.observes", names=_row(list(index.names(sources)), index)) if sources else ""
+
+
+def _special(index: Index) -> str:
+    kinds = [name for name, category in index.categories.items() if category["article9"] in CAN_BE_SPECIAL]
+    if not index.categories:
+        return ""
+    return index.words("w.special", names=index.all_data(kinds)) if kinds else index.words("w.special.none")
+
+
+def _scale(index: Index) -> str:
+    return index.words("w.scale", robots=index.words.count(max(1, len(index.robots())), "robot"))
+
+
+def _combines(index: Index) -> str:
+    """Elements that get kinds of data of which none is the broader one of another."""
+    several = [row for row in index.document["carries"] if len({*row["categories"], *row["pseudonymised"]}) > 1]
+    at = [row["element"] for row in several if row["element"]["kind"] not in ("topic", "service", "action")]
+    if not at:
+        return ""
+    robots = {(element["kind"], element["name"], element["robot"]) for element in at}
+    number = weight((robot for *_, robot in robots), index.alike)
+    names = _row(list(index.names(at)), index)
+    return index.words("w.combines", elements=index.words.count(number, "element"), names=names)
+
+
+def _subjects(index: Index) -> str:
+    groups = sorted({group for said in index.subjects.values() for group in said})
+    return index.words("w.subjects", names=_row(groups, index)) if groups else ""

@@ -1,0 +1,75 @@
+"""What people decided about findings, as a report shows it.
+
+In: a document with decisions, where there are any. Out: ``Decision`` of a finding, and those that match none. What the
+law asks for and nobody wrote down is named (GDPR, Article 6(1) and 9(2)).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.report.page.index import CAN_BE_SPECIAL
+from rosprivacy.report.page.naming import printable
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from rosprivacy.report.page.index import Index
+
+FIELDS = ("reason", "owner", "legal_basis", "date", "expires", "ticket", "state")
+ACCEPT, ORPHANED = "accept", "orphaned"
+
+
+@dataclass(frozen=True, slots=True)
+class Decision:
+    """One decision, in words.
+
+    Attributes
+    ----------
+    decision
+        What was decided.
+    rows
+        (name of the field, value).
+    flags
+        What is missing.
+    """
+
+    decision: str
+    rows: tuple[tuple[str, str], ...]
+    flags: tuple[str, ...]
+
+
+def decision_of(finding: Mapping[str, Any], index: Index) -> Decision | None:
+    """Return the decision that holds for a finding, or held until it expired; None if there is none."""
+    said = finding.get("decision")
+    return _decision(said, (finding,), index) if said else None
+
+
+def orphans(index: Index) -> tuple[Decision, ...]:
+    """Return the decisions that match no finding, in the order of their file."""
+    said = index.document.get("decisions", ())
+    return tuple(_decision(entry, (), index) for entry in said if entry["state"] == ORPHANED)
+
+
+def _decision(said: Mapping[str, Any], findings: Iterable[Mapping[str, Any]], index: Index) -> Decision:
+    words, what = index.words, said["choice"]
+    rows = [(words(f"d.{key}"), _value(said[key], key, index)) for key in FIELDS if said[key]]
+    flags = tuple(_flags(said, findings, index)) if what == ACCEPT else ()
+    return Decision(words.known(f"d.{what}", what), tuple(rows), flags)
+
+
+def _value(value: Any, key: str, index: Index) -> str:
+    if key == "state":
+        return index.words.known(f"d.state.{value}", printable(str(value)))
+    return index.words.row(printable(str(part)) for part in (value if isinstance(value, list) else [value]))
+
+
+def _flags(said: Mapping[str, Any], findings: Iterable[Mapping[str, Any]], index: Index) -> Iterator[str]:
+    """What an acceptance lacks: a basis; an exception where the data can be a special category."""
+    bases = said["legal_basis"]
+    if not any(basis.startswith("6(1)") for basis in bases):
+        yield index.words("d.basis.missing")
+    special = any(finding["article9"] in CAN_BE_SPECIAL[:2] for finding in findings)
+    if special and not any(basis.startswith("9(2)") for basis in bases):
+        yield index.words("d.special.missing")

@@ -1,0 +1,91 @@
+"""The inventory of a report: elements that data gets to, with what labels say of them; the others by name.
+
+In: an ``Index``. Out: rows; elements that differ only in the robot are one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.report.page.naming import fit, key, name
+from rosprivacy.report.page.patterns import grouped, weight
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rosprivacy.report.page.index import Index
+
+
+@dataclass(frozen=True, slots=True)
+class Item:
+    """An element that data gets to.
+
+    Attributes
+    ----------
+    robots
+        How many have it.
+    said
+        What labels say of it, one text for each role.
+    reviewed
+        Whether labels cover all kinds of data that get there.
+    """
+
+    name: str
+    kind: str
+    robots: int
+    data: str
+    said: tuple[str, ...]
+    reviewed: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Enclave:
+    """An enclave of the policies, with the names of its nodes in a row."""
+
+    name: str
+    nodes: str
+
+
+def items(index: Index) -> tuple[Item, ...]:
+    """Return the elements that data gets to, in the order of the document."""
+    said: dict[Any, dict[str, list[str]]] = {}
+    for (element, category), roles in index.roles.items():
+        for role in roles:
+            said.setdefault(element, {}).setdefault(role, []).append(category)
+    open_at = {element for element, _ in index.unreviewed}
+
+    def same(row: Mapping[str, Any]) -> Any:
+        at = key(row["element"])
+        roles = tuple((role, tuple(names)) for role, names in said.get(at, {}).items())
+        return at[1:], tuple(row["categories"]), tuple(row["pseudonymised"]), roles, at in open_at
+
+    return tuple(_item(group, said, open_at, index) for group in grouped(index.document["carries"], same))
+
+
+def _item(group: list[Mapping[str, Any]], said: Mapping[Any, Any], open_at: set[Any], index: Index) -> Item:
+    row, words = group[0], index.words
+    element, at = row["element"], key(row["element"])
+    hidden = [index.data(category, pseudonymised=True) for category in row["pseudonymised"]]
+    robots = weight((row["element"]["robot"] for row in group), index.alike)
+    return Item(
+        name=name(element) if robots == 1 else fit(element["name"]),
+        kind=words.kind(element),
+        robots=robots,
+        data=words.row([*map(index.data, row["categories"]), *hidden]),
+        said=tuple(words(f"role.{role}", data=index.all_data(c)) for role, c in said.get(at, {}).items()),
+        reviewed=at not in open_at,
+    )
+
+
+def rest(index: Index) -> tuple[tuple[str, tuple[str, ...]], ...]:
+    """Return the names of the elements that no data gets to, by kind."""
+    groups = grouped(index.document["unreached"], lambda element: element["kind"])
+    return tuple((index.words.kind({"kind": some[0]["kind"]}), index.names(some)) for some in groups)
+
+
+def enclaves(index: Index) -> tuple[Enclave, ...]:
+    """Return the enclaves."""
+    return tuple(
+        Enclave(fit(row["enclave"]), index.words.row(map(fit, row["nodes"]))) for row in index.document["enclaves"]
+    )

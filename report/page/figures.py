@@ -1,0 +1,85 @@
+"""The pictures of a report: one of each way to assess, as many as a file that can be mailed holds, and their legend.
+
+In: an ``Analysis`` and the entries of the report. Out: ``Figures``, which know what is missing, and why.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+from rosprivacy.report.page.inline import Inline, Wishes, pictures_of
+from rosprivacy.report.page.renamed import renamed
+from rosprivacy.report.pictures.graphviz import available
+from rosprivacy.report.pictures.looks import INK, LINE_LOOKS, ROLE_LOOKS, SHORTEST, WAY, Look
+from rosprivacy.report.pictures.phrases import TEXTS, Phrases
+from rosprivacy.report.pictures.wording import printable
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rosprivacy.analysis.model import Analysis
+    from rosprivacy.report.page.outline import Outline
+    from rosprivacy.report.page.words import Words
+    from rosprivacy.report.pictures.picture import Key
+
+ROOM = 5 * 2**20  # bytes of all pictures together
+
+
+@dataclass(frozen=True, slots=True)
+class Figures:
+    """The pictures.
+
+    Attributes
+    ----------
+    of
+        Id of a finding -> its picture.
+    installed
+        Whether what draws them is.
+    """
+
+    of: Mapping[str, Inline] = field(default_factory=dict)
+    installed: bool = True
+
+
+def figures(
+    analysis: Analysis, report: Outline, aliases: Mapping[Key, tuple[str, str]] | None = None, *, room: int = ROOM
+) -> Figures:
+    """Draw the entries of a report, in their order, until there is no more room.
+
+    Parameters
+    ----------
+    aliases
+        Element -> the robot and name that are shown in place of its own; None to show all names. What has no alias
+        then has no name.
+    room
+        Bytes of all pictures together.
+
+    Complexity: linear in the pictures; ``room`` bounds their number.
+    """
+    if not available():
+        return Figures(installed=False)
+    findings = {finding.id: finding for finding in analysis.findings}
+    entries = [way for way in report.ways if way.id in findings]
+    words = report.words
+    titles = {kind.name: kind.title for kind in report.kinds}
+    say = Phrases({name: words.places(f"p.{name}") for name in TEXTS}, titles)
+    labels = {way.id: printable(words("f.picture", way=way.brief)) for way in entries}
+    wishes = Wishes(say=say, labels=labels)
+    if aliases is not None:
+        wishes = replace(wishes, change=lambda picture: renamed(picture, aliases))
+    found = {}
+    for way, made in zip(entries, pictures_of(analysis, (findings[way.id] for way in entries), wishes), strict=True):
+        room -= len(made.svg.encode()) if made else 0
+        if room < 0:
+            break
+        if made:
+            found[way.id] = made
+    return Figures(found)
+
+
+def page_legend(words: Words) -> list[tuple[Look, bool, str]]:
+    """Return what the pictures of a page mean: a look, whether it is that of a box or of a line, and words."""
+    boxes = [(look, True, words(f"p.look.{name}")) for name, look in ROLE_LOOKS.items()]
+    lines = [(LINE_LOOKS[name], False, words(f"p.look.{name}")) for name in (SHORTEST, WAY)]
+    return [*boxes, *lines, (Look("", INK, style="dashed"), False, words("p.look.hidden"))]

@@ -1,0 +1,80 @@
+"""The report as one HTML file that asks nobody for anything: style, script and pictures are in it.
+
+In: an ``Outline`` and its ``Figures``. Out: HTML. Every value is escaped by jinja2; a Content Security Policy allows
+the one style and the one script, each by its hash, so that no name from a policy can load or run anything. Pictures
+hold nothing but shapes and text, see ``page_svg.py``.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup, escape
+
+from rosprivacy.report.page.figures import Figures, page_legend
+from rosprivacy.report.page.outline import PARAGRAPHS, SIGNED
+from rosprivacy.report.pictures.looks import INK
+
+if TYPE_CHECKING:
+    from rosprivacy.report.page.outline import Outline
+    from rosprivacy.report.page.words import Words
+
+
+class _Escaped:
+    """The words of a language as HTML: sentences and values are escaped, what is HTML already stays so."""
+
+    def __init__(self, words: Words) -> None:
+        self._words = words
+        self.language = words.language
+        self.number, self.count, self.row = words.number, words.count, words.row
+
+    def __call__(self, key: str, **values: Any) -> Markup:
+        return escape(self._words(key, **values))
+
+
+def html(report: Outline, drawn: Figures | None = None) -> str:
+    """Return the page.
+
+    Parameters
+    ----------
+    drawn
+        The pictures; the page says which are missing, and how to get them. None for a page that is to have none.
+
+    Complexity: O(size of the outline and the pictures).
+    """
+    environment, css, js = _environment()
+    page = environment.get_template("report.html.j2").render(
+        r=report,
+        t=_Escaped(report.words),
+        policy=f"default-src 'none'; style-src '{_hash(css)}'; script-src '{_hash(js)}'; img-src data:; "
+        "base-uri 'none'; form-action 'none'",
+        css=Markup(css),  # noqa: S704 - our own file
+        js=Markup(js),  # noqa: S704 - our own file
+        drawn=drawn,
+        undrawn=sum(way.id not in drawn.of for way in report.ways) if drawn else 0,
+        ink=INK,
+        looks=page_legend(report.words) if drawn and drawn.of else [],
+        paragraphs=PARAGRAPHS,
+        signed=SIGNED,
+    )
+    return page.strip() + "\n"
+
+
+@cache
+def _environment() -> tuple[Environment, str, str]:
+    """The templates, the style, the script."""
+    loader = PackageLoader("rosprivacy.report.page")
+    environment = Environment(
+        loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    css, js = (loader.get_source(environment, name)[0] for name in ("report.css", "report.js"))
+    return environment, css, js
+
+
+def _hash(text: str) -> str:
+    """The name of a text in a Content Security Policy."""
+    return f"sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}"

@@ -1,0 +1,129 @@
+"""A JSON document, looked up: what labels say of an element, what is open, what a kind of data is called.
+
+In: a document of the contract and the words of a language. Out: an ``Index``, for the parts of a report. Keys that a
+document may lack (``outside``, ``decisions``, …) are empty here.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.report.page.naming import fit, key, text
+from rosprivacy.report.page.patterns import names_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from rosprivacy.report.page.naming import Key
+    from rosprivacy.report.page.words import Words
+
+SPECIAL = ("always", "conditional")  # what Article 9(1) says of a kind of data by itself
+CAN_BE_SPECIAL = (*SPECIAL, "may-reveal", "unknown")
+
+
+@dataclass(frozen=True)
+class Index:
+    """Look-ups in a document; each is made once, when it is first used."""
+
+    document: Mapping[str, Any]
+    words: Words = field(repr=False)
+
+    @cached_property
+    def categories(self) -> dict[str, Mapping[str, Any]]:
+        """By name."""
+        return {category["name"]: category for category in self.document["categories"]}
+
+    @cached_property
+    def roles(self) -> dict[tuple[Key, str], list[str]]:
+        """(element, category) -> what labels say of it."""
+        return {(key(said["element"]), said["category"]): said["roles"] for said in self.document["roles"]}
+
+    @cached_property
+    def of_role(self) -> dict[str, dict[Key, list[str]]]:
+        """Role -> element -> categories."""
+        found: dict[str, dict[Key, list[str]]] = {}
+        for (element, category), roles in self.roles.items():
+            for role in roles:
+                found.setdefault(role, {}).setdefault(element, []).append(category)
+        return found
+
+    @cached_property
+    def elements(self) -> dict[Key, Mapping[str, Any]]:
+        """Elements that a label, a fact or data speaks of, by key."""
+        rows = [*self.document["roles"], *self.outside.values(), *self.document["carries"], *self.document["open"]]
+        found = {key(row["element"]): row["element"] for row in rows}
+        found |= {key(element): element for finding in self.findings for element in finding["witness"]}
+        return found
+
+    @cached_property
+    def unreviewed(self) -> set[tuple[Key, str]]:
+        """(element, category) that nobody has reviewed."""
+        return {
+            (key(question["element"]), name) for question in self.document["open"] for name in question["categories"]
+        }
+
+    @cached_property
+    def outside(self) -> dict[Key, Mapping[str, Any]]:
+        """What is stated about elements outside ROS."""
+        return {key(row["element"]): row for row in self.document.get("outside", ())}
+
+    @cached_property
+    def subjects(self) -> dict[Key, list[str]]:
+        """Whom the data of a source are about."""
+        return {key(row["element"]): [fit(group) for group in row["subjects"]] for row in self.document["subjects"]}
+
+    @property
+    def findings(self) -> list[Mapping[str, Any]]:
+        """All findings."""
+        return list(self.document["findings"])
+
+    @cached_property
+    def to_assess(self) -> list[Mapping[str, Any]]:
+        """Findings that are neither dismissed nor accepted."""
+        return [finding for finding in self.findings if state(finding) == "open"]
+
+    def data(self, category: str, *, pseudonymised: bool = False) -> str:
+        """Return what a kind of data is called."""
+        known = self.categories.get(category)
+        title = (known and text(known, "title", self.words.language)) or fit(category)
+        return self.words("f.data", data=title) if pseudonymised else title
+
+    def all_data(self, categories: Iterable[str]) -> str:
+        """Return several kinds of data in a row."""
+        return self.words.row(self.data(category) for category in categories)
+
+    def robots(self) -> list[str]:
+        """Return the names of the robots that data or a finding is at; of a fleet, of all robots."""
+        if self.alike:
+            return sorted(robot for robots in self.alike.values() for robot in robots)
+        return sorted({element["robot"] for element in self.elements.values()} - {""})
+
+    @cached_property
+    def alike(self) -> dict[str, list[str]]:
+        """A robot of a fleet that is shown -> all that it stands for, itself included; empty for a single robot."""
+        fleet = self.document.get("fleet")
+        return {group["robot"]: group["robots"] for group in fleet["alike"]} if fleet else {}
+
+    @cached_property
+    def patterns(self) -> dict[str, Mapping[str, Any]]:
+        """Id of a finding of a fleet -> the pattern that it shows."""
+        fleet = self.document.get("fleet")
+        return {pattern["finding"]: pattern for pattern in fleet["patterns"]} if fleet else {}
+
+    def names(self, elements: Iterable[Mapping[str, Any]]) -> tuple[str, ...]:
+        """Return the names of elements, each once; one that several robots have, with their number."""
+        return names_of(elements, self.words, self.alike)
+
+
+def state(finding: Mapping[str, Any]) -> str:
+    """Return where a finding stands: ``accepted``, ``dismissed`` or ``open``."""
+    if finding.get("accepted"):
+        return "accepted"
+    return "dismissed" if finding["dismissed"] else "open"
+
+
+def anchor(finding_id: str) -> str:
+    """Return where a finding stands in a page."""
+    return f"way-{finding_id}"

@@ -1,0 +1,126 @@
+"""A finding -> a small picture for an HTML page: SVG with nothing external, fit for dark mode.
+
+In: an ``Analysis`` and its findings. Out: one ``<svg>`` element each. The legend is the page's, once for all pictures.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.errors import DrawingError
+from rosprivacy.report.page.page_svg import page_svg, width
+from rosprivacy.report.pictures.dot import dot
+from rosprivacy.report.pictures.graphviz import Graphviz, Job, TooLongError
+from rosprivacy.report.pictures.narrow import folded
+from rosprivacy.report.pictures.svg import alt_text
+from rosprivacy.report.views import LONGER, PER_BOX, FindingViews, bounded
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Mapping
+
+    from markupsafe import Markup
+
+    from rosprivacy.analysis.model import Analysis, Finding
+    from rosprivacy.report.pictures.phrases import Phrases
+    from rosprivacy.report.pictures.picture import Picture
+
+MOST = 16  # boxes, unless the shortest way itself is longer
+SECONDS = 5.0  # a picture; it takes a hundredth of one
+WIDEST = 680.0  # points; what is wider is drawn downwards
+
+
+def _as_it_is(picture: Picture) -> Picture:
+    return picture
+
+
+@dataclass(frozen=True, slots=True)
+class Wishes:
+    """How pictures are made for a page.
+
+    Attributes
+    ----------
+    most
+        Elements in a picture; the shortest way is there whatever its length.
+    say
+        The words on the boxes; English by default.
+    labels
+        Id of a finding -> what its picture shows, for people who do not see it; else its notes and way, in English.
+    change
+        What is done to each picture before it is drawn, such as replacing names.
+    """
+
+    most: int = MOST
+    say: Phrases | None = None
+    labels: Mapping[str, str] = field(default_factory=dict)
+    change: Callable[[Picture], Picture] = _as_it_is
+
+
+@dataclass(frozen=True, slots=True)
+class Inline:
+    """A picture for a page.
+
+    Attributes
+    ----------
+    whole
+        Whether every way of the finding is in it, not the shorter ones only.
+    """
+
+    svg: Markup
+    whole: bool
+
+
+def picture_of(analysis: Analysis, finding: Finding, wishes: Wishes | None = None) -> Inline | None:
+    """Return the picture of a finding, see ``pictures_of``."""
+    return next(pictures_of(analysis, [finding], wishes))
+
+
+def pictures_of(
+    analysis: Analysis, findings: Iterable[Finding], wishes: Wishes | None = None
+) -> Iterator[Inline | None]:
+    """Return a picture of each finding, as an ``<svg>`` element for one HTML page; None where none could be drawn.
+
+    Lines and text on the page have the colour of the page's text. What goes beyond ``most`` boxes is left out.
+
+    Raises
+    ------
+    DrawingError
+        If Graphviz is not installed.
+
+    Notes
+    -----
+    All are drawn by one process, one after the other: linear in the findings.
+    """
+    wishes = wishes or Wishes()
+    views = FindingViews(analysis, wishes.say)
+    with Graphviz() as graphviz:
+        for finding in findings:
+            ways = folded(views.of(finding, PER_BOX * wishes.most))
+            picture = bounded(ways, wishes.most)
+            yield _drawn(graphviz, picture, wishes, finding, whole=_whole(ways, picture))
+
+
+def _whole(ways: Picture, picture: Picture) -> bool:
+    cut = any(note.startswith(LONGER) for note in ways.notes)
+    return not cut and (len(ways.boxes), len(ways.lines)) == (len(picture.boxes), len(picture.lines))
+
+
+def _drawn(graphviz: Graphviz, picture: Picture, wishes: Wishes, finding: Finding, *, whole: bool) -> Inline | None:
+    for wanted in (picture, bounded(picture, 1)):
+        changed = wishes.change(wanted)
+        try:
+            data = _best(graphviz, changed)
+        except (TooLongError, DrawingError):
+            continue
+        label = wishes.labels.get(finding.id) or alt_text(changed)
+        return Inline(page_svg(data, changed, label), whole and wanted is picture)
+    return None
+
+
+def _best(graphviz: Graphviz, picture: Picture) -> bytes:
+    """To the right, as people read, or downwards where that would be too wide and downwards is less so."""
+    right = graphviz.draw(Job(dot(picture, legend=False)), SECONDS)
+    if width(right) <= WIDEST:
+        return right
+    down = graphviz.draw(Job(dot(picture, legend=False, direction="TB")), SECONDS)
+    return min(right, down, key=width)

@@ -1,0 +1,145 @@
+"""The kinds of data of a document: what each is, which provisions to look at, who brings it in, how it stands.
+
+In: an ``Index`` and the entries of the report. Out: one ``Kind`` per emitted category, in the document's order.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.report.page.naming import fit, printable, text
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from rosprivacy.report.page.index import Index
+    from rosprivacy.report.page.ways import Way
+
+NARROWER = "⊇ "  # how the ontology writes, in other languages than English: if the data are of one of these kinds
+
+
+@dataclass(frozen=True, slots=True)
+class Provision:
+    """One provision to look at: that data of the kind can be what it speaks of.
+
+    Attributes
+    ----------
+    verdict
+        ``always``, ``conditional`` or ``may-reveal``.
+    stated
+        The kind that the ontology says it of, if it is another.
+    """
+
+    name: str
+    verdict: str
+    condition: str
+    meaning: str
+    sources: str
+    stated: str
+    as_of: str
+
+
+@dataclass(frozen=True, slots=True)
+class Kind:
+    """One kind of data.
+
+    Attributes
+    ----------
+    reason
+        Why it is no special category by itself, where the ontology says so.
+    origins
+        Who brings it in, or makes it: (name, of what it makes it, empty if it brings it in).
+    places
+        Names that it can reach by a way that is to be assessed or accepted.
+    open
+        How many elements that it gets to are not reviewed.
+    """
+
+    name: str
+    title: str
+    iri: str
+    definition: str
+    types: tuple[str, ...]
+    gdpr: str
+    article9: str
+    reason: str
+    law: tuple[Provision, ...]
+    origins: tuple[tuple[str, str], ...]
+    ways: tuple[Way, ...]
+    places: tuple[str, ...]
+    open: int
+
+    @property
+    def anchor(self) -> str:
+        """Where it stands in a page; names are parts of IRIs, so anything may be in them."""
+        return f"kind-{''.join(c if c.isascii() and c.isalnum() else f'_{ord(c):x}' for c in self.name)}"
+
+    @property
+    def to_assess(self) -> int:
+        """How many entries are to be assessed."""
+        return sum(way.state in ("open", "decided") for way in self.ways)
+
+
+def kinds(index: Index, entries: Iterable[Way]) -> tuple[Kind, ...]:
+    """Return the kinds of data."""
+    by_category: dict[str, list[Way]] = {}
+    for way in entries:
+        by_category.setdefault(way.category, []).append(way)
+    return tuple(
+        _kind(category, index, tuple(by_category.get(category["name"], ())))
+        for category in index.document["categories"]
+    )
+
+
+def _kind(category: Mapping[str, Any], index: Index, entries: tuple[Way, ...]) -> Kind:
+    language, of = index.words.language, category["name"]
+    reached = [finding["leak"] for finding in index.findings if finding["category"] == of and not finding["dismissed"]]
+    return Kind(
+        name=fit(of),
+        title=index.data(of),
+        iri=fit(category["iri"]),
+        definition=text(category, "definition", language),
+        types=tuple(index.words.known(f"type.{kind}", fit(kind)) for kind in category["data_types"]),
+        gdpr=text(category, "gdpr", language),
+        article9=category["article9"],
+        reason=text(category, "reason", language),
+        law=tuple(provision(legal, of, index) for legal in category["law"]),
+        origins=tuple(_origins(of, index)),
+        ways=entries,
+        places=index.names(reached),
+        open=sum(of in question["categories"] for question in index.document["open"]),
+    )
+
+
+def provision(legal: Mapping[str, Any], of: str, index: Index) -> Provision:
+    """Return a provision in words."""
+    language = index.words.language
+    condition = text(legal, "condition", language)
+    if condition.startswith(NARROWER):
+        condition = index.words("law.narrower", kinds=condition.removeprefix(NARROWER))
+    sources = legal["translations"].get(language, {}).get("sources") if legal["sources"] else ""
+    return Provision(
+        name=text(legal, "provision", language),
+        verdict=legal["verdict"],
+        condition=condition,
+        meaning=text(legal, "meaning", language),
+        sources=printable(sources or "; ".join(legal["sources"])),
+        stated="" if legal["stated_of"] in ("", of) else _stated(legal["stated_of"], index),
+        as_of=index.words.date(legal["as_of"]),
+    )
+
+
+def _stated(names: str, index: Index) -> str:
+    return index.all_data(names.split(", "))
+
+
+def _origins(category: str, index: Index) -> Iterator[tuple[str, str]]:
+    sources = index.of_role.get("source", {}).items()
+    for name in index.names([index.elements[e] for e, categories in sources if category in categories]):
+        yield name, ""
+    made = [row for row in index.document["derivations"] if row["to"] == category and row["reached"]]
+    for of in dict.fromkeys(row["from"] for row in made):
+        said = index.words("made.by", data=index.data(of))
+        for name in index.names([row["element"] for row in made if row["from"] == of]):
+            yield name, said

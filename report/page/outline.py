@@ -1,0 +1,290 @@
+"""A JSON document -> everything that a report for people tells, in its order; HTML and Markdown write it down.
+
+In: a document of the contract, a language, and an earlier document to compare with. Out: an ``Outline`` of plain
+texts. What the documents do not say, no report says.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.report.compare.changes import ASKED, Changes, changes
+from rosprivacy.report.page import assumed, cleaned, elements, tables
+from rosprivacy.report.page.criteria import Criterion, criteria
+from rosprivacy.report.page.decision_texts import Decision, orphans
+from rosprivacy.report.page.fleet_told import Fleet, fleet_told
+from rosprivacy.report.page.index import CAN_BE_SPECIAL, Index
+from rosprivacy.report.page.kinds import Kind, kinds
+from rosprivacy.report.page.naming import fit, name
+from rosprivacy.report.page.review import Group, review
+from rosprivacy.report.page.storages import Outside, outside
+from rosprivacy.report.page.ways import Way, ways
+from rosprivacy.report.page.words import Words
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from rosprivacy.report.compare.earlier import Earlier
+
+SECTIONS = (
+    "summary", "fleet", "assumptions", "changes", "tables", "findings", "outside", "sanitizers", "questions",
+    "criteria", "inventory", "method", "sign",
+)  # fmt: skip
+PARAGRAPHS = 10  # of the method note
+SIGNED = ("purpose", "controller", "basis", "necessity", "measures", "residual", "name", "date", "signature")
+
+
+@dataclass(frozen=True, slots=True)
+class Changed:
+    """What changed, in words.
+
+    Attributes
+    ----------
+    sentences
+        Verdict, files, kinds of data.
+    scope
+        What was asked or assumed otherwise.
+    new, changed
+        Entries; of a changed one also what changed.
+    gone
+        (kind of data, way) as they were.
+    """
+
+    intro: str
+    sentences: tuple[str, ...]
+    scope: tuple[str, ...]
+    new: tuple[Way, ...]
+    changed: tuple[tuple[Way, str], ...]
+    gone: tuple[tuple[str, str, str], ...]
+    opened: tuple[str, ...]
+    closed: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Outline:
+    """The whole report.
+
+    Attributes
+    ----------
+    title
+        Of the system, as the user calls it, or the names of its policies.
+    made
+        Date; empty if none is to be told.
+    sections
+        (anchor, heading), in order.
+    verdict
+        Of the contract; ``nothing`` if no data was followed.
+    numbers
+        (number, what it counts).
+    """
+
+    words: Words
+    title: str
+    made: str
+    version: str
+    law_as_of: str
+    redacted: bool
+    sections: tuple[tuple[str, str], ...]
+    code: str
+    verdict: str
+    means: tuple[str, ...]
+    numbers: tuple[tuple[int, str], ...]
+    assumptions: tuple[str, ...]
+    files: tuple[assumed.File, ...]
+    remarks: tuple[assumed.Remark, ...]
+    fleet: Fleet | None
+    changes: Changed | None
+    subjects: tables.Table
+    silent: tuple[str, ...]
+    recipients: tables.Table
+    kinds: tuple[Kind, ...]
+    ways: tuple[Way, ...]
+    orphans: tuple[Decision, ...]
+    outside: tuple[Outside, ...]
+    cleanings: tuple[cleaned.Cleaning, ...]
+    makings: tuple[cleaned.Making, ...]
+    questions: tuple[Group, ...]
+    criteria: tuple[Criterion, ...]
+    size: str
+    denied: str
+    items: tuple[elements.Item, ...]
+    rest: tuple[tuple[str, tuple[str, ...]], ...]
+    enclaves: tuple[elements.Enclave, ...]
+
+    def number(self, section: str) -> int:
+        """Return the number of a section."""
+        return [anchor for anchor, _ in self.sections].index(section) + 1
+
+
+def outline(
+    document: Mapping[str, Any],
+    language: str,
+    *,
+    title: str = "",
+    made: str = "",
+    earlier: Earlier | None = None,
+    redacted: bool = False,
+) -> Outline:
+    """Return the outline of a report.
+
+    Parameters
+    ----------
+    language
+        ``en`` or ``de``.
+    title
+        Of the system; by default the names of its policy files.
+    made
+        The date that the report tells, ``YYYY-MM-DD``; empty for none.
+    redacted
+        Whether names were replaced in the documents; the report then says so.
+
+    Complexity: O(size of the documents), but for the cells of the tables: recipients x categories.
+    """
+    index = Index(document, Words(language))
+    words = index.words
+    differ = changes(earlier.document, document) if earlier else None
+    entries = ways(index, differ.marks() if differ else None)
+    links = tables.Links(entries)
+    subjects, silent = tables.subjects(index, links)
+    there = {"changes": bool(differ), "fleet": bool(index.alike)}
+    names = [name for name in SECTIONS if there.get(name, True)]
+    return Outline(
+        words=words,
+        title=fit(title) if title else _title(index),
+        made=words.date(made),
+        version=document["assumptions"]["rosprivacy"],
+        law_as_of=words.date(document["assumptions"]["law_as_of"]),
+        redacted=redacted,
+        sections=tuple((anchor, words(f"h.{anchor}")) for anchor in names),
+        code=document["verdict"],
+        verdict=_verdict(index),
+        means=tuple(_means(index, names.index("findings") + 1)),
+        numbers=tuple(_numbers(index)),
+        assumptions=tuple(assumed.assumed(index)),
+        files=assumed.files(index),
+        remarks=assumed.remarks(index),
+        fleet=fleet_told(index, entries),
+        changes=_changed(differ, earlier, entries, index) if differ and earlier else None,
+        subjects=subjects,
+        silent=silent,
+        recipients=tables.recipients(index, links),
+        kinds=kinds(index, entries),
+        ways=entries,
+        orphans=orphans(index),
+        outside=outside(index),
+        cleanings=cleaned.cleanings(index, entries),
+        makings=cleaned.makings(index),
+        questions=review(index),
+        criteria=criteria(index),
+        size=words(
+            "i.intro",
+            elements=_count(document["elements"], "element", words),
+            flows=_count(document["flows"], "flow", words),
+        ),
+        denied=words("i.denied", flows=words.count(document["denied_flows"], "flow"))
+        if document["denied_flows"]
+        else "",
+        items=elements.items(index),
+        rest=elements.rest(index),
+        enclaves=elements.enclaves(index),
+    )
+
+
+def _count(number: int, thing: str, words: Words) -> str:
+    return words.count(number, thing)
+
+
+def _title(index: Index) -> str:
+    robots = [] if index.alike else index.robots()
+    said = index.document["assumptions"]["fleet" if index.alike else "policies"]
+    names = robots or list(dict.fromkeys(entry["file"].rsplit("/", 1)[-1] for entry in said))
+    few = 3
+    more = [index.words("more", n=len(names) - few)] if len(names) > few else []
+    return index.words.row([*map(fit, names[:few]), *more])
+
+
+def _verdict(index: Index) -> str:
+    """The verdict; ``nothing`` where no data was followed (rule S12: nothing was asked, so nothing can be said)."""
+    verdict = str(index.document["verdict"])
+    followed = index.document["categories"] and (verdict != "undetermined" or index.document["open"])
+    return verdict if followed else "nothing"
+
+
+def _means(index: Index, section: int) -> Iterator[str]:
+    words = index.words
+    open_elements = words.count(len(index.document["open"]), "element")
+    yield words(f"verdict.{_verdict(index)}.means", open=open_elements)
+    accepted = sum(bool(finding.get("accepted")) for finding in index.findings)
+    if accepted:
+        yield words("verdict.accepted", ways=words.count(accepted, "way"), section=section)
+    yield words("not.legal")
+
+
+def _numbers(index: Index) -> Iterator[tuple[int, str]]:
+    words, to_assess = index.words, index.to_assess
+    if index.alike:
+        yield len(index.robots()), words("n.robots")
+    yield len(to_assess), words("n.ways")
+    yield sum(finding["article9"] in CAN_BE_SPECIAL for finding in to_assess), words("n.special")
+    yield len({tuple(finding["leak"].items()) for finding in to_assess}), words("n.recipients")
+    yield len(index.document["open"]), words("n.open")
+    for what in ("accepted", "dismissed"):
+        number = sum(bool(finding.get(what)) for finding in index.findings)
+        if number:
+            yield number, words(f"n.{what}")
+
+
+def _changed(differ: Changes, earlier: Earlier, entries: tuple[Way, ...], index: Index) -> Changed:
+    words = index.words
+    of_finding = {finding: way for way in entries for finding in (way.id, *way.others)}
+    old = Index(earlier.document, words)
+
+    def titles(names: tuple[str, ...], of: Index) -> str:
+        return of.all_data(names)
+
+    verdict = words(
+        "ch.verdict.same" if differ.before == differ.now else "ch.verdict", before=differ.before, now=differ.now
+    )
+    sentences = [verdict]
+    sentences += [words("ch.none")] if differ.nothing else []
+    sentences += [
+        words("ch.files", names=words.row(map(fit, differ.files))) if differ.files else words("ch.files.same")
+    ]
+    sentences += [words("ch.kinds.new", names=titles(differ.kinds_new, index))] if differ.kinds_new else []
+    sentences += [words("ch.kinds.gone", names=titles(differ.kinds_gone, old))] if differ.kinds_gone else []
+    by_way: dict[Way, list[str]] = {}
+    for finding, what in differ.changed.items():
+        by_way.setdefault(of_finding[finding], []).extend(what)
+    return Changed(
+        intro=words("ch.intro", file=fit(earlier.file), sha=earlier.sha256[:12]),
+        sentences=tuple(sentences),
+        scope=tuple(_scope(differ, words)),
+        new=tuple(dict.fromkeys(of_finding[finding] for finding in differ.new)),
+        changed=tuple(
+            (way, words.row(words(f"ch.what.{w}") for w in dict.fromkeys(what))) for way, what in by_way.items()
+        ),
+        gone=tuple(
+            (
+                old.data(f["category"], pseudonymised=f["pseudonymised"]),
+                words("f.from.to", source=name(f["source"]), leak=name(f["leak"])),
+                f["id"],
+            )
+            for f in differ.gone
+        ),
+        opened=index.names(differ.opened),
+        closed=old.names(differ.closed),
+    )
+
+
+def _scope(differ: Changes, words: Words) -> Iterator[str]:
+    plain = {
+        "true": words("yes"),
+        "false": words("no"),
+        "null": words("none"),
+        "": words("none"),
+        "all": words("f.all"),
+    }
+    for what, before, now in differ.scope:
+        assert what in ASKED
+        yield words(f"ch.scope.{what}", before=plain.get(before, before), now=plain.get(now, now))

@@ -1,0 +1,97 @@
+"""The words of a report in a language: sentences with places for names and numbers.
+
+In: a key and values. Out: plain text; whoever writes a format escapes it. The tables are ``words_en.py`` and
+``words_de.py``; a test holds that both have the same keys and places.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.report.page.words_de import WORDS as GERMAN
+from rosprivacy.report.page.words_en import WORDS as ENGLISH
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+DATE = 3  # parts of one
+_DURATION = re.compile(
+    r"P(?:(\d{1,9})Y)?(?:(\d{1,9})M)?(?:(\d{1,9})W)?(?:(\d{1,9})D)?"
+    r"(?:T(?:(\d{1,9})H)?(?:(\d{1,9})M)?(?:(\d{1,9})S)?)?",
+    re.ASCII,
+)
+UNITS = ("year", "month", "week", "day", "hour", "minute", "second")  # in the order of the groups
+TABLES = {"en": ENGLISH, "de": GERMAN}
+
+
+@dataclass(frozen=True, slots=True)
+class Words:
+    """One language."""
+
+    language: str
+
+    def __call__(self, key: str, **values: Any) -> str:
+        """Return a sentence with its values in place; numbers as the language writes them."""
+        said = {name: self.number(value) if isinstance(value, int) else value for name, value in values.items()}
+        return TABLES[self.language][key].format(**said)
+
+    def places(self, key: str) -> str:
+        """Return a sentence with its places still open."""
+        return TABLES[self.language][key]
+
+    def number(self, number: int) -> str:
+        """Return a number with its thousands apart.
+
+        >>> Words("en").number(12345), Words("de").number(12345)
+        ('12,345', '12.345')
+        """
+        return f"{number:,}".replace(",", self("thousands"))
+
+    def date(self, date: str) -> str:
+        """Return a date, ``YYYY-MM-DD``, as the language writes it; anything else as it is.
+
+        >>> Words("de").date("2026-04-30")
+        '30.04.2026'
+        """
+        parts = date.split("-")
+        return self("date", **dict(zip(("year", "month", "day"), parts, strict=True))) if len(parts) == DATE else date
+
+    def duration(self, text: str) -> str:
+        """Return an ISO 8601 duration in words; what is none as it is.
+
+        >>> Words("en").duration("P30D"), Words("de").duration("P1Y6M"), Words("en").duration("PT12H")
+        ('30 days', '1 Jahr, 6 Monate', '12 hours')
+        """
+        found = _DURATION.fullmatch(text)
+        numbers = zip(UNITS, found.groups(), strict=True) if found else ()
+        parts = [self.count(int(number), unit) for unit, number in numbers if number]
+        return self.row(parts) or text
+
+    def count(self, number: int, thing: str) -> str:
+        """Return how many of a thing there are; its key ends in ``.one`` or ``.many``.
+
+        >>> Words("en").count(1, "robot"), Words("de").count(2, "robot")
+        ('1 robot', '2 Roboter')
+        """
+        return self(f"{thing}.{'one' if number == 1 else 'many'}", n=number)
+
+    def row(self, texts: Iterable[str]) -> str:
+        """Return texts in a row."""
+        return ", ".join(texts)
+
+    def known(self, key: str, otherwise: str) -> str:
+        """Return the word for a value of the contract, or the value itself if there is none yet."""
+        return TABLES[self.language].get(key, otherwise)
+
+    def kind(self, element: Mapping[str, Any]) -> str:
+        """Return what an element is.
+
+        >>> Words("en").kind({"robot": "", "kind": "service", "name": "/add", "leg": "request"})
+        'service, request'
+        """
+        parts = [self.known(f"kind.{element['kind']}", element["kind"])]
+        parts += [self(f"leg.{element['leg']}")] if element.get("leg") else []
+        parts += [self("wildcard")] if element.get("pattern") else []
+        return self.row(parts)

@@ -1,0 +1,96 @@
+"""Pictures of a fleet: one robot is drawn for all that are alike, and it says for how many.
+
+In: a ``Picture`` of the graph in which some robots have a second one beside them. Out: a ``Picture`` without second
+robots: what goes from one robot to another like it is drawn as going from it to itself.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from rosprivacy.report.pictures.looks import DATA, DERIVATION, LEAK, OPEN, REVIEWED, SANITIZER, SHORTEST, SOURCE, WAY
+from rosprivacy.report.pictures.picture import Box, Line, Picture, sorted_boxes, sorted_lines
+from rosprivacy.report.pictures.wording import counted
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rosprivacy.analysis.patterns import Likeness
+    from rosprivacy.report.pictures.picture import Key
+
+WAYS = (DATA, WAY, SHORTEST)  # the later hides the earlier
+ROLES = (LEAK, SOURCE, DERIVATION, SANITIZER, OPEN, REVIEWED)  # what a box in several roles is coloured by
+
+
+def label(robot: str, likeness: Likeness) -> str:
+    """Return how the robot that is drawn for a robot is called; the name itself if it stands for no other.
+
+    Parameters
+    ----------
+    robot
+        Any of the fleet, or what is no robot.
+    """
+    drawn = next((first for first, robots in likeness.members.items() if robot in robots), robot)
+    drawn = likeness.second.get(drawn, drawn)
+    others = likeness.weight(drawn) - 1
+    return f"{drawn} and {others:,} alike" if others > 0 else drawn
+
+
+def represented(picture: Picture, likeness: Likeness) -> Picture:
+    """Return a picture with one robot for those that are alike.
+
+    Complexity: O(boxes + lines).
+    """
+    labels = {robot: label(robot, likeness) for robot in {box.robot for box in picture.boxes}}
+
+    def moved(key: Key) -> Key:
+        return (labels[key[0]], *key[1:])
+
+    boxes: dict[Key, Box] = {}
+    for box in picture.boxes:
+        now = replace(box, key=moved(box.key))
+        old = boxes.get(now.key)
+        boxes[now.key] = _both(old, now) if old else now
+    lines: dict[tuple[Key, Key, str], Line] = {}
+    for line in picture.lines:
+        source, target = moved(line.source), moved(line.target)
+        if source != target:
+            now_line = replace(line, source=source, target=target)
+            slot = (source, target, "" if line.look in WAYS else line.look)
+            old_line = lines.get(slot)
+            lines[slot] = _joined(old_line, now_line) if old_line else now_line
+    standing = sum(likeness.weight(robot) > 1 for robot in likeness.members)
+    all_robots = counted(sum(map(likeness.weight, likeness.members)), "robot")
+    note = f"A fleet of {all_robots}; {counted(standing, 'robot')} drawn for all that are alike"
+    made = replace(
+        picture,
+        boxes=sorted_boxes(boxes.values()),
+        lines=sorted_lines(lines.values()),
+        core=frozenset(moved(key) for key in picture.core),
+    )
+    return made.noted(note) if standing else made
+
+
+def _both(one: Box, other: Box) -> Box:
+    look = one.look if one.look == other.look else min(one.look, other.look, key=ROLES.index)
+    words = tuple(dict.fromkeys((*one.words, *other.words)))
+    return replace(one, look=look, words=words, open=one.open or other.open)
+
+
+def _joined(one: Line, other: Line) -> Line:
+    """What leads to a leak hides what leads to none."""
+    lengths = [line.length for line in (one, other) if line.length]
+    return replace(
+        one,
+        look=max(one.look, other.look, key=WAYS.index) if one.look != other.look else one.look,
+        roles=_all(one.roles, other.roles),
+        carries=_all(one.carries, other.carries),
+        pseudonymised=one.pseudonymised and other.pseudonymised,
+        places=tuple(sorted({*one.places, *other.places}, key=lambda place: (place.file, place.line))),
+        length=min(lengths, default=0),
+    )
+
+
+def _all(some: Iterable[str], more: Iterable[str]) -> tuple[str, ...]:
+    return tuple(sorted({*some, *more}))

@@ -1,0 +1,157 @@
+"""How boxes and lines look, and what a legend says of them.
+
+The colours are those of Okabe and Ito, which people tell apart whatever their colour vision. None of them stands alone:
+kinds have shapes, roles have outlines and words, lines have widths, dashes and heads.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rosprivacy.analysis.model import KINDS
+from rosprivacy.report.pictures.picture import PRIVACY, Picture
+
+INK = "#000000"  # lines, outlines, and text on the paper
+TEXT = "#111111"  # text on a filled box
+PAPER = "#ffffff"
+GRAY, PALE = "#d0d0d0", "#ffffff"
+QUIET = "#767676"
+ORANGE, SKY, GREEN, YELLOW = "#e69f00", "#56b4e9", "#009e73", "#f0e442"
+RED, PURPLE = "#d55e00", "#cc79a7"
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """Of a kind of element.
+
+    Attributes
+    ----------
+    graphviz
+        Name of the shape, and of the style if it has one.
+    mermaid
+        What opens and closes the shape.
+    words
+        For the legend, where the shape is not a simple one.
+    """
+
+    graphviz: tuple[str, str]
+    mermaid: tuple[str, str]
+    words: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """Of a box or a line.
+
+    Attributes
+    ----------
+    words
+        For the legend.
+    colour
+        Of the area of a box, or of a line.
+    width
+        Of the line or outline, in points.
+    style
+        ``solid``, ``dashed`` or ``dotted``.
+    double
+        Whether the outline is so.
+    head
+        Of a line.
+    """
+
+    words: str
+    colour: str
+    width: float = 1.0
+    style: str = "solid"
+    double: bool = False
+    head: str = "normal"
+
+
+SHAPES = {
+    "node": Shape(("ellipse", ""), ("([", "])"), "oval"),
+    "topic": Shape(("box", ""), ("[", "]")),
+    "service": Shape(("box", "rounded"), ("[[", "]]"), "round corners"),
+    "action": Shape(("component", ""), ("{{", "}}"), "with tabs"),
+    "storage": Shape(("cylinder", ""), ("[(", ")]"), "cylinder"),
+    "external-system": Shape(("house", ""), (">", "]"), "house"),
+    "shared-memory": Shape(("parallelogram", ""), ("[/", "/]"), "parallelogram"),
+    "side-channel": Shape(("hexagon", ""), ("[\\", "\\]"), "hexagon"),
+    "device": Shape(("box3d", ""), ("[/", "\\]"), "block"),
+    "display": Shape(("tab", ""), ("[\\", "/]"), "tab"),
+    "person": Shape(("octagon", ""), ("((", "))"), "octagon"),
+}
+
+KIND_LOOKS = {
+    "node": Look("node", GRAY),
+    "topic": Look("topic", SKY),
+    "service": Look("service", ORANGE),
+    "action": Look("action", GREEN),
+    "storage": Look("storage", YELLOW),
+    "external-system": Look("external system", YELLOW),
+    "shared-memory": Look("shared memory", YELLOW),
+    "side-channel": Look("side channel", YELLOW),
+    "device": Look("device", YELLOW),
+    "display": Look("display", YELLOW),
+    "person": Look("person", YELLOW),
+}
+
+SOURCE, LEAK, DERIVATION, SANITIZER = "source", "leak", "derivation", "sanitizer"
+REVIEWED, OPEN = "reviewed", "open"
+ROLE_LOOKS = {
+    SOURCE: Look("source: brings data in", SKY, width=3.0),
+    LEAK: Look("leak: lets data out", RED, width=1.5, double=True),
+    DERIVATION: Look("makes one kind of data of another", PURPLE, width=1.5),
+    SANITIZER: Look("cleans, but not all", GREEN, width=1.5),
+    REVIEWED: Look("reviewed: passes on what it gets", GRAY),
+    OPEN: Look("not reviewed yet", PALE, style="dashed"),
+}
+
+ALLOWED, MATCHES, DENIED = "allowed", "matches", "denied"
+DATA, WAY, SHORTEST = "data", "way", "shortest"
+LINE_LOOKS = {
+    ALLOWED: Look("allowed, in the direction of the data", INK),
+    MATCHES: Look("the wildcard covers it", INK, style="dotted"),
+    DENIED: Look("denied", QUIET, style="dashed", head="tee"),
+    DATA: Look("data can go here", INK),
+    WAY: Look("on a way to a leak", RED, width=2.2),
+    SHORTEST: Look("on the shortest way to a leak", RED, width=4.5),
+}
+PSEUDONYMISED = "dashed: only pseudonymised"
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One line of a legend: how it looks, what it means; a box if it has a shape, else a line."""
+
+    look: Look
+    words: str
+    shape: Shape | None = None
+
+    @property
+    def in_words(self) -> str:
+        """With the shape in words too, for legends that cannot draw it."""
+        kind = self.look in KIND_LOOKS.values() or not self.look.words
+        return f"{self.words} ({self.shape.words})" if kind and self.shape and self.shape.words else self.words
+
+
+def box_look(view: str, look: str) -> Look:
+    """Return how a box of a view looks."""
+    return (ROLE_LOOKS if view == PRIVACY else KIND_LOOKS)[look]
+
+
+def legend(picture: Picture) -> list[Entry]:
+    """Return what of a picture needs to be explained: no more than what is in it."""
+    kinds = [kind for kind in KINDS if any(box.kind == kind for box in picture.boxes)]
+    entries = []
+    if picture.view == PRIVACY:
+        used = {box.look for box in picture.boxes} | ({OPEN} if any(box.open for box in picture.boxes) else set())
+        entries += [Entry(look, look.words, SHAPES["node"]) for name, look in ROLE_LOOKS.items() if name in used]
+        blank = Look("", PALE)
+        entries += [Entry(blank, KIND_LOOKS[kind].words, SHAPES[kind]) for kind in kinds]
+    else:
+        entries += [Entry(KIND_LOOKS[kind], KIND_LOOKS[kind].words, SHAPES[kind]) for kind in kinds]
+    drawn = {line.look for line in picture.lines}
+    entries += [Entry(look, look.words) for name, look in LINE_LOOKS.items() if name in drawn]
+    if any(line.pseudonymised for line in picture.lines):
+        entries.append(Entry(Look("", INK, style="dashed"), PSEUDONYMISED))
+    return entries

@@ -1,0 +1,59 @@
+"""What stands on boxes below their names: in English for ``rosprivacy graph``, in its language in a report."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from rosprivacy.report.pictures.wording import shortened
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+LONGEST = 60
+TEXTS = {
+    "source": "source of {names}",
+    "leak": "leak of {names}",
+    "storage-limitation": "kept without an end, or too long: {names}",
+    "third-country-transfer": "outside the EEA, no basis stated: {names}",
+    "makes": "makes {to} of {names}",
+    "pseudonymises": "pseudonymises {names}",
+    "cleans": "ends {names}",
+    "unreviewed": "not reviewed: {names}",
+    "hidden": "pseudonymised {names}",
+    "more": "{names} and {n} more",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Phrases:
+    """The words of a language.
+
+    Attributes
+    ----------
+    texts
+        With the keys and places of ``TEXTS``.
+    titles
+        Category -> what it is called; its name where there is none.
+    """
+
+    texts: Mapping[str, str] = field(default_factory=lambda: TEXTS)
+    titles: Mapping[str, str] = field(default_factory=dict)
+
+    def of(self, key: str, categories: Iterable[str], most: int, **more: str) -> str:
+        """Return what is said of some categories."""
+        return self.texts[key].format(names=self.listed(categories, most), **more)
+
+    def listed(self, categories: Iterable[str], most: int) -> str:
+        """Return what some categories are called, and how many more there are.
+
+        >>> Phrases().listed(["Video", "Voice", "Location"], 2)
+        'Video, Voice and 1 more'
+        """
+        every = [self.title(category) for category in categories]
+        names = ", ".join(every[:most])
+        return self.texts["more"].format(names=names, n=len(every) - most) if len(every) > most else names
+
+    def title(self, category: str) -> str:
+        """Return what a category is called."""
+        return shortened(self.titles.get(category, category), LONGEST)

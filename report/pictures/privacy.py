@@ -1,0 +1,196 @@
+"""What some categories reach, element by element: who is drawn in the privacy view, in which role, with which words."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from functools import reduce
+from operator import or_
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.model import CHANNELS, DISCLOSURE
+from rosprivacy.report.pictures.looks import DERIVATION, LEAK, OPEN, REVIEWED, SANITIZER, SOURCE
+from rosprivacy.report.pictures.phrases import Phrases
+from rosprivacy.report.pictures.picture import Box
+from rosprivacy.report.pictures.wording import counted, listed
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterator
+
+    from rosprivacy.analysis.model import Analysis
+    from rosprivacy.report.pictures.picture import Key
+
+MOST = 4  # categories that are named on a box
+
+
+def ends_of(analysis: Analysis) -> dict[int, dict[str, int]]:
+    """Return where findings end that are no disclosures: vertex -> their kind -> bits of the data."""
+    number = {element: vertex for vertex, element in enumerate(analysis.graph.elements)}
+    ends: dict[int, dict[str, int]] = defaultdict(lambda: defaultdict(int))
+    for finding in analysis.findings:
+        if finding.kind != DISCLOSURE:
+            ends[number[finding.leak]][finding.kind] |= analysis.spread.both(finding.category)
+    return {vertex: dict(sorted(kinds.items())) for vertex, kinds in ends.items()}
+
+
+class Reached:
+    """Where the data of an analysis is, for all of its categories or for what one finding is about.
+
+    Parameters
+    ----------
+    categories
+        That arrive; what they are made of on the way is drawn too. None for all.
+    say
+        The words on the boxes.
+    """
+
+    def __init__(
+        self, analysis: Analysis, categories: Collection[str] | None = None, say: Phrases | None = None
+    ) -> None:
+        self.analysis, self.graph, self._found = analysis, analysis.graph, analysis.spread
+        self._say = say or Phrases()
+        found = self._found
+        wanted = analysis.emitted if categories is None else sorted(categories)
+        self._mask = sum(found.both(category) for category in wanted)
+        if categories is not None and any(found.categories.index(category) in found.made for category in wanted):
+            self._mask = found.all_bits
+        self._several = self._mask.bit_count() > 2  # noqa: PLR2004 - one category has two bits
+        self._of: dict[Key, list[int]] = defaultdict(list)
+        for vertex, element in enumerate(self.graph.elements):
+            self._of[element.identity].append(vertex)
+        self._ending = ends_of(analysis)
+        self._ends = {vertex: reduce(or_, kinds.values()) for vertex, kinds in self._ending.items()}
+        self._open: dict[Key, set[str]] = defaultdict(set)
+        shown = set(found.names(self._mask))
+        for question in analysis.open:
+            self._open[question.element.identity] |= shown.intersection(question.categories)
+
+    def sources(self) -> bool:
+        """Whether any data was followed."""
+        return any(self._found.begins(vertex) & self._mask for vertex in self._found.facts)
+
+    def boxes(self, keys: Collection[Key] | None = None) -> Iterator[Box]:
+        """What data gets to and does not end at without leaving or getting out; of some elements, or of all."""
+        for key in self._of if keys is None else keys:
+            vertices = self._of[key]
+            if any(self._goes_on(vertex) for vertex in vertices):
+                yield self._box(key, vertices)
+
+    def _goes_on(self, vertex: int) -> int:
+        found = self._found
+        ends = found.leaks.get(vertex, 0) | self._ends.get(vertex, 0)
+        here = found.leaves.get(vertex, 0) | (ends & found.present(vertex))
+        return here & self._mask
+
+    def along(self, index: int) -> tuple[tuple[str, ...], bool]:
+        """Return what goes along a flow and does not just end there, and whether all of it is pseudonymised."""
+        found, target = self._found, self.graph.flows[index].target
+        bits = found.along(index) & self._mask
+        if bits:
+            taken = found.keeps.get(target, found.all_bits) | found.leaks.get(target, 0) | self._ends.get(target, 0)
+            for before, _ in found.derives.get(target, ()):
+                taken |= 1 << before
+            bits &= taken
+        plain, hidden = found.planes(bits)
+        return found.names(bits), bool(hidden) and not plain
+
+    def left_out(self, beside: Collection[str] = ()) -> tuple[str, ...]:
+        """Say what is not there: what ends the data, and what it does not get to.
+
+        Parameters
+        ----------
+        beside
+            Robots that do not count, see ``views.privacy_view``.
+        """
+        ended, apart = [], 0
+        for key, vertices in self._of.items():
+            if key[0] in beside or any(self._goes_on(vertex) for vertex in vertices):
+                continue
+            if key[1] not in CHANNELS and any(self._found.arrives.get(vertex, 0) & self._mask for vertex in vertices):
+                ended.append(key[2])
+            else:
+                apart += 1
+        ended = list(dict.fromkeys(ended))  # the same on several robots
+        notes = [f"Not drawn: {listed(ended, longest=40)}, which ends what comes to it"] if len(ended) == 1 else []
+        if len(ended) > 1:
+            notes = [f"Not drawn: {listed(ended, longest=40)}, which end what comes to them"]
+        if apart:
+            notes.append(f"Not drawn: {counted(apart, 'element')} that carry none of it")
+        return tuple(notes)
+
+    def _box(self, key: Key, vertices: list[int]) -> Box:
+        bits = {"present": 0, "begins": 0, "leaks": 0, "arrives": 0, "ends": 0}
+        for vertex in vertices:
+            present = self._found.present(vertex) & self._mask
+            bits["present"] |= present
+            bits["begins"] |= self._found.begins(vertex) & self._mask
+            bits["leaks"] |= self._found.leaks.get(vertex, 0) & present
+            bits["ends"] |= self._ends.get(vertex, 0) & present
+            bits["arrives"] |= self._found.arrives.get(vertex, 0) & self._mask
+        made, cleaned = self._said(vertices, bits["present"])
+        open_for = self._open.get(key, set())
+        roles = [
+            (LEAK, bits["leaks"] | bits["ends"]),
+            (SOURCE, bits["begins"]),
+            (DERIVATION, made),
+            (SANITIZER, cleaned),
+            (OPEN, open_for),
+            (REVIEWED, True),
+        ]
+        look = next(role for role, holds in roles if holds)
+        words = self._words(key, bits, made, cleaned, vertices)
+        if open_for and set(self._found.names(bits["present"])) != open_for:
+            words.append(self._say.of("unreviewed", sorted(open_for), MOST))
+        pattern = self.graph.elements[vertices[0]].pattern
+        return Box(key, (key[2],), look, tuple(words), bool(open_for), pattern=pattern)
+
+    def _said(self, vertices: list[int], present: int) -> tuple[list[str], list[str]]:
+        """What labels say that is made of what is here, and how it is cleaned, in words."""
+        made: dict[str, None] = {}
+        cleaned: dict[str, None] = {}
+        for vertex in vertices:
+            for category in self._found.names(present):
+                fact = self._found.facts.get(vertex, {}).get(category)
+                if fact is None or self.graph.elements[vertex].is_channel:
+                    continue
+                made.update(dict.fromkeys(self._makes(category, to) for to in fact.derives if to != category))
+                if fact.pseudonymises:
+                    cleaned[self._say.of("pseudonymises", [category], MOST)] = None
+                elif not fact.passes:
+                    cleaned[self._say.of("cleans", [category], MOST)] = None
+        return list(made), list(cleaned)
+
+    def _makes(self, category: str, to: str) -> str:
+        return self._say.of("makes", [category], MOST, to=self._say.title(to))
+
+    def _words(
+        self, key: Key, bits: dict[str, int], made: list[str], cleaned: list[str], vertices: list[int]
+    ) -> list[str]:
+        found, say = self._found, self._say
+        if key[1] in CHANNELS:
+            plain, hidden = found.planes(bits["present"])
+            names = list(plain if self._several else ())
+            names += [say.of("hidden", [c], MOST) for c in hidden if c not in plain]
+            return [say.listed(names, MOST)] if names else []
+        words = []
+        own = self._own(vertices, bits["begins"])
+        if own:
+            words.append(say.of("source", own, MOST))
+        if bits["leaks"]:
+            words.append(say.of("leak", found.names(bits["leaks"]), MOST))
+        for kind, ending in self._ending_at(vertices).items():
+            words.append(say.of(kind, found.names(ending & bits["present"]), MOST))
+        return [*words, *made[:MOST], *cleaned[:MOST]]
+
+    def _ending_at(self, vertices: list[int]) -> dict[str, int]:
+        """Of one element: kind of a finding that ends there -> bits."""
+        ending: dict[str, int] = defaultdict(int)
+        for vertex in vertices:
+            for kind, bits in self._ending.get(vertex, {}).items():
+                if bits & self._mask:
+                    ending[kind] |= bits & self._mask
+        return dict(sorted(ending.items()))
+
+    def _own(self, vertices: list[int], begins: int) -> list[str]:
+        """What labels call it a source of; what it makes of its own data begins here too."""
+        said = [self._found.facts.get(vertex, {}) for vertex in vertices]
+        return [c for c in self._found.names(begins) if any(c in facts and facts[c].emits for facts in said)]
