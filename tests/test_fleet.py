@@ -500,6 +500,7 @@ class TestSchema:
         write("g.yaml", "fleet: 1\n")
         write("robots/r.xml", policy("/a>/b"))
 
+    @pytest.mark.slow
     @pytest.mark.parametrize("way", list(places(FULL)), ids=lambda way: ".".join(map(str, way)))
     def test_what_is_read_is_valid(self, way: tuple[Any, ...]) -> None:
         """And what is not valid is refused; what is refused may be valid, for a schema knows no other files."""
