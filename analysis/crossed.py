@@ -15,7 +15,7 @@ from rosprivacy.analysis.groups import Group
 from rosprivacy.analysis.patterns import Share, pattern_of
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Iterator, Mapping
+    from collections.abc import Collection, Iterable, Iterator
 
     from rosprivacy.analysis.model import Element
     from rosprivacy.analysis.patterns import Likeness
@@ -167,11 +167,3 @@ class Crossed:
             self.shares[robot].add(Share(key, False, *flags))
         for robot in end:
             self.shares[self._likeness.second.get(robot, robot)].add(Share(key, across, *flags))
-
-
-def shown(groups: Iterable[Group], category: Mapping[str, int]) -> dict[tuple[Element, Element], set[tuple[str, int]]]:
-    """(source, leak) -> (kind, number of the category) of the findings to make."""
-    wanted: dict[tuple[Element, Element], set[tuple[str, int]]] = defaultdict(set)
-    for group in groups:
-        wanted[group.source, group.leak].add((group.kind, category[group.category]))
-    return dict(wanted)

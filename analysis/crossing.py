@@ -139,7 +139,7 @@ class Crossing:
         found = {}
         for kind, at in self.ends.items():
             through = there(1, at)
-            found[kind] = _codes(there(0, at) if kind == DISCLOSURE else through, through)
+            found[kind] = codes_of(there(0, at) if kind == DISCLOSURE else through, through)
         return found
 
     def _rounds(self) -> Iterator[tuple[Indices, Indices, int]]:
@@ -174,8 +174,8 @@ def _bits(rows: Bits, first: int, n: int) -> Flags:
     return (rows[:, places // WORD] >> (places % WORD).astype(np.uint64) & np.uint64(1)).astype(bool)
 
 
-def _codes(free: tuple[Flags, Flags], through: tuple[Flags, Flags]) -> Codes:
-    """How data gets there: not through another leak before through one, as it is before pseudonymised."""
+def codes_of(free: tuple[Flags, Flags], through: tuple[Flags, Flags]) -> Codes:
+    """Return how data gets there: not through another leak before through one, as it is before pseudonymised."""
     codes = np.zeros(free[0].shape, np.uint8)
     for flags, code in ((through[1], BOTH), (through[0], DISMISSED), (free[1], HIDDEN), (free[0], FREE)):
         codes[flags] = code
