@@ -18,7 +18,8 @@ from rosprivacy.distributed import Question, analyse_in_parts
 from rosprivacy.ingest.alike import alike
 from rosprivacy.shown import shown
 from rosprivacy.workers import filled
-from tests.test_fleet_findings import HIERARCHY, Case, fleets, found_in
+from tests.test_findings import HIERARCHY
+from tests.test_fleet_findings import Case, fleets, found_in
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -151,11 +151,12 @@ class _Run:
     def found(self) -> Found:
         question, fleet = self._question, self._fleet
         fixed, units = split(question.groups)
+        alone = replace(fleet, robots=(), infrastructure=())  # what every part needs of it
         read = question.reader()
         members = [replace(read(group.robots[0]), robot=robot) for group in fixed for robot in group.placed]
         core = place_some(fleet, members, question.view, own=True)
         built = self._scatter(units).map(
-            partial(workers.built, fleet=fleet, view=question.view, likeness=self._likeness, reader=question.reader),
+            partial(workers.built, fleet=alone, view=question.view, reader=question.reader),
             keep=True,
         )
         told = _together([workers.told_of(core, members), *built.map(workers.told).collect()])
@@ -169,7 +170,7 @@ class _Run:
         middle = Core(network, np.array(gates, np.int64), np.array(piece.border, np.int64))
         ready = built.map(
             partial(
-                workers.ready, fleet=fleet, at=at, view=question.view, categories=categories,
+                workers.ready, fleet=alone, at=at, view=question.view, categories=categories,
                 hierarchy=question.hierarchy,
             ),
             keep=True,
@@ -185,9 +186,7 @@ class _Run:
         classes = _Classes(ours, piece, middle, ways, question.hierarchy)
         classes.number(kernels.map(workers.classes).collect())
         classes.carry(kernels)
-        asked = workers.Asked(
-            leaving, classes.leaving, classes.numbers, classes.counts, mask, self._likeness, question.hierarchy
-        )
+        asked = workers.Asked(leaving, classes.leaving, classes.numbers, classes.counts, mask, question.hierarchy)
         answers = ready.map(partial(workers.answered, forms=ways, asked=asked)).collect()
         return self._put_together(answers, classes, told, at, piece, ours, wanted, mask, leaving, ready)
 

@@ -19,7 +19,7 @@ from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.analysis.outside import concerns, country_unknown
 from rosprivacy.analysis.questions import open_bits
 from rosprivacy.analysis.spread import Spread, emitted, fill, meaning
-from rosprivacy.ingest.placing import Some, place_some
+from rosprivacy.ingest.placing import Some, likeness, place_some
 from rosprivacy.ingest.split import HUB, Lines, Piece, crossing_lines, named, units_piece
 
 if TYPE_CHECKING:
@@ -95,12 +95,14 @@ class Built:
 
     names: tuple[str, ...]
     units: tuple[Some, ...]
+    likeness: Likeness
     told: Told
 
 
-def built(units: Sequence[Unit], fleet: Fleet, view: str, likeness: Likeness, reader: Callable[[], Read]) -> Built:
+def built(units: Sequence[Unit], fleet: Fleet, view: str, reader: Callable[[], Read]) -> Built:
     """Read the robots of some units."""
     read = reader()
+    alike = likeness(group for unit in units for group in unit.groups)
     some: list[Some] = []
     told = Told()
     for unit in units:
@@ -112,8 +114,8 @@ def built(units: Sequence[Unit], fleet: Fleet, view: str, likeness: Likeness, re
             told = replace(told, problems=(*told.problems, *problems_of(error)))
             continue
         some.append(one)
-        told = _with(told, fleet, unit.name, one, [member for _, member in members], likeness)
-    return Built(tuple(unit.name for unit in units), tuple(some), told)
+        told = _with(told, fleet, unit.name, one, [member for _, member in members], alike)
+    return Built(tuple(unit.name for unit in units), tuple(some), alike, told)
 
 
 def _with(told: Told, fleet: Fleet, name: str, one: Some, members: Sequence[Member], likeness: Likeness) -> Told:
@@ -190,6 +192,7 @@ class Ready:
     piece: Piece
     found: Spread | None
     cut: Cut | None
+    likeness: Likeness
     problems: tuple[Problem, ...] = ()
 
 
@@ -199,8 +202,8 @@ def ready(part: Built, fleet: Fleet, at: Border, view: str, categories: Iterable
     try:
         found = meaning(piece.graph, piece.bound, hierarchy, categories)
     except InputErrors as error:
-        return Ready(part.names, piece, None, None, problems_of(error))
-    return Ready(part.names, piece, found, Cut.of(found, piece.border, piece.unit))
+        return Ready(part.names, piece, None, None, part.likeness, problems_of(error))
+    return Ready(part.names, piece, found, Cut.of(found, piece.border, piece.unit), part.likeness)
 
 
 def steps(part: Ready) -> tuple[tuple[Problem, ...], frozenset[tuple[int, int]]]:
@@ -325,7 +328,6 @@ class Asked:
     numbers: Mapping[int, Mapping[Class, int]]
     counts: Mapping[int, int]
     mask: int
-    likeness: Likeness
     hierarchy: Hierarchy
 
 
@@ -360,20 +362,20 @@ def answered(part: Ready, forms: Mapping[int, tuple[int, ...]], asked: Asked) ->
                 vertex = int(crossing.ends[kind][row])
                 unit = names[int(cut.unit[vertex])]
                 ends.append(End(kind, name, graph.elements[vertex], unit, codes[row].tobytes()))
-    on_robots, sets = _open(part.piece, found, asked)
+    on_robots, sets = _open(part, found, asked.mask)
     begins = any(found.begins(vertex) & asked.mask for vertex in found.facts)
     border = set(part.piece.border)
-    counts = counted(graph, found, asked.likeness, border, {v for v in border if graph.elements[v].robot == HUB})
+    counts = counted(graph, found, part.likeness, border, {v for v in border if graph.elements[v].robot == HUB})
     return Answer(tuple(within), tuple(sources), tuple(ends), on_robots, sets, begins, counts)
 
 
 def _open(
-    piece: Piece, found: Spread, asked: Asked
+    part: Ready, found: Spread, mask: int
 ) -> tuple[dict[str, int], tuple[frozenset[tuple[Element, tuple[str, ...]]], ...]]:
     """What is open on each robot, where many have the same."""
     by_robot: dict[str, set[tuple[Element, tuple[str, ...]]]] = {}
-    for element, names in open_elements(piece, found, asked.mask).items():
-        by_robot.setdefault(element.robot, set()).add((asked.likeness.alike(element), names))
+    for element, names in open_elements(part.piece, found, mask).items():
+        by_robot.setdefault(element.robot, set()).add((part.likeness.alike(element), names))
     numbers: dict[frozenset[tuple[Element, tuple[str, ...]]], int] = {}
     on_robots = {robot: numbers.setdefault(frozenset(some), len(numbers)) for robot, some in sorted(by_robot.items())}
     return on_robots, tuple(numbers)
