@@ -175,7 +175,8 @@ def fleet_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     write("wall.xml", policy("/receiver>/picture", "/screen</picture"))
     write(
         "wall.yaml",
-        "labels: 1\nnodes:\n  /receiver: {derives: [{from: Video, to: FaceTemplate}]}\n  /screen: {leak: [Biometric]}\n",
+        "labels: 1\nnodes:\n  /receiver: {derives: [{from: Video, to: FaceTemplate}]}\n"
+        "  /screen: {leak: [Biometric]}\n",
     )
     write("hall.xml", policy("/mirror>/map<im*"))
     write("hall.yaml", "labels: 1\nnodes: {/mirror: {leak: [Video]}}\n")
@@ -202,7 +203,9 @@ def documents(file: str, run: Callable[[str], Result]) -> None:
 def in_list(file: str, size: int = 1) -> Result:
     vocabulary = load()
     fleet = read_fleet(file, vocabulary)
-    asked = Question(fleet, alike(fleet), "declared", partial(file_reader, Settings()), vocabulary.hierarchy)
+    asked = Question(
+        fleet, alike(fleet), "declared", partial(file_reader, Settings(), str(Path.cwd())), vocabulary.hierarchy
+    )
     found = analyse_in_parts(asked, partial(scattered, size=size))
     return result(asked, found, shown(asked, found, "witness", 100), Settings(), vocabulary)
 

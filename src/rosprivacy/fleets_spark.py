@@ -5,11 +5,15 @@ In: a fleet file. Out: a ``Result`` like that of ``run_fleet``, in whose graph a
 
 from __future__ import annotations
 
+import os
+from contextlib import chdir
 from dataclasses import asdict, dataclass, replace
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.counts import Counts
+from rosprivacy.analysis.errors import FleetError, InputErrors, reason
 from rosprivacy.asked import asked_for
 from rosprivacy.assembly import Result
 from rosprivacy.assumptions import own_assumptions
@@ -26,6 +30,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from rosprivacy.distributed import Found
+    from rosprivacy.ingest.domains import Member
+    from rosprivacy.ingest.fleet import Robot
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.settings import Settings
     from rosprivacy.shown import Shown
@@ -71,7 +77,7 @@ def run_on_spark(file: str, settings: Settings, master: str | None = None) -> Re
     fleet = read_fleet(file, vocabulary)
     plain = replace(settings, progress=unchanged)
     question = Question(
-        fleet, alike(fleet), settings.view, partial(file_reader, plain), vocabulary.hierarchy,
+        fleet, alike(fleet), settings.view, partial(file_reader, plain, str(Path.cwd())), vocabulary.hierarchy,
         asked_for(vocabulary, settings),
     )  # fmt: skip
     with session(master) as spark:
@@ -100,9 +106,22 @@ def result(question: Question, found: Found, told: Shown, settings: Settings, vo
     )  # fmt: skip
 
 
-def file_reader(settings: Settings) -> Read:
-    """Return what reads robots from files, on a worker."""
-    return Reader(load(ontologies=settings.ontologies), settings).member
+def file_reader(settings: Settings, folder: str) -> Read:
+    """Return what reads robots from files, on a worker; names are relative to a folder there."""
+    reader = Reader(load(ontologies=settings.ontologies), settings)
+
+    def read(robot: Robot) -> Member:
+        if folder == os.getcwd():  # noqa: PTH109 - as it is compared
+            return reader.member(robot)
+        try:
+            with chdir(folder):
+                return reader.member(robot)
+        except OSError as error:
+            why = f"a worker cannot open the folder: {reason(error)}"
+            hint = "work in a folder that all machines of the cluster share"
+            raise InputErrors([FleetError(folder, 0, why, hint)]) from None
+
+    return read
 
 
 def unchanged(files: Sequence[str]) -> Iterable[str]:
