@@ -110,3 +110,9 @@ class DatabaseError(RosPrivacyError):
     """A database that cannot be reached or does not answer."""
 
     exit_code = 3
+
+
+class ClusterError(RosPrivacyError):
+    """A cluster that cannot be reached, or on which something fails."""
+
+    exit_code = 3

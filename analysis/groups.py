@@ -16,7 +16,7 @@ from rosprivacy.analysis.pairs import pairs
 from rosprivacy.analysis.patterns import FleetView, Pattern, Share, deviants_of, pattern_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
     from numpy.typing import NDArray
 
@@ -34,7 +34,7 @@ FIXED = -1
 
 
 @dataclass(frozen=True, slots=True)
-class _Group:
+class Group:
     """A pattern without its way."""
 
     kind: str
@@ -81,7 +81,7 @@ class Groups:
 
     def __init__(self, likeness: Likeness) -> None:
         self._likeness = likeness
-        self._groups: list[_Group] = []
+        self._groups: list[Group] = []
         self._shares: dict[str, set[Share]] = defaultdict(set)
 
     def __call__(self, found: Spread, kinds: Sequence[Concern], mask: int) -> Wanted:
@@ -116,7 +116,7 @@ class Groups:
             ids[int(keys[rows[0]])] = key = pattern_of(part.kind, category, *shown, self._likeness)
             where = np.unique(np.where(table.is_robot[a[rows]], a[rows], table.first[b[rows]]))
             robots = (self._likeness.members.get(table.names[robot], ()) for robot in where.tolist())
-            group = _Group(
+            group = Group(
                 part.kind, category, *shown, key, int(counts[rows].sum()),
                 tuple(sorted({robot for some in robots for robot in some})), bool(across[rows[0]]),
                 int(counts[rows][dismissed[rows]].sum()), int(counts[rows][hidden[rows]].sum()),
@@ -131,19 +131,24 @@ class Groups:
 
     def view(self, analysis: Analysis) -> FleetView:
         """Return patterns and deviants, when the findings are made."""
-        found = {(f.kind, f.category, f.source, f.leak): f for f in analysis.findings}
-        order = {finding.id: number for number, finding in enumerate(analysis.findings)}
-        made = [
-            Pattern(
-                group.id,
-                found[group.kind, group.category, group.source, group.leak],
-                group.count,
-                group.robots,
-                group.across,
-                group.dismissed,
-                group.pseudonymised,
-            )
-            for group in self._groups
-        ]
-        made.sort(key=lambda pattern: order[pattern.finding.id])
-        return FleetView(self._likeness, tuple(made), deviants_of(self._shares, analysis.open, self._likeness))
+        deviants = deviants_of(self._shares, analysis.open, self._likeness)
+        return FleetView(self._likeness, patterns_of(self._groups, analysis), deviants)
+
+
+def patterns_of(groups: Iterable[Group], analysis: Analysis) -> tuple[Pattern, ...]:
+    """Return the patterns, each with the finding that was made of what it shows."""
+    found = {(f.kind, f.category, f.source, f.leak): f for f in analysis.findings}
+    order = {finding.id: number for number, finding in enumerate(analysis.findings)}
+    made = [
+        Pattern(
+            group.id,
+            found[group.kind, group.category, group.source, group.leak],
+            group.count,
+            group.robots,
+            group.across,
+            group.dismissed,
+            group.pseudonymised,
+        )
+        for group in groups
+    ]
+    return tuple(sorted(made, key=lambda pattern: order[pattern.finding.id]))

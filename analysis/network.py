@@ -5,7 +5,7 @@ In: a spread before its fixpoint. Out: edges, and per vertex what it emits, keep
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -74,6 +74,14 @@ class Network:
         nodes = sum(not element.is_channel for element in graph.elements)
         edges = Edges.of(vertices, np.array(sources, np.int64), np.array(targets, np.int64), nodes)
         return cls(count, edges, tuple(special), emitted, keep, np.array(derivations, np.int64).reshape(-1, 3))
+
+    def closed(self, vertices: Indices) -> Network:
+        """Return the same where some vertices emit nothing and pass nothing on: there the graph is cut."""
+        emitted, keep = self.emitted.copy(), self.keep.copy()
+        emitted[vertices] = keep[vertices] = 0
+        return replace(
+            self, emitted=emitted, keep=keep, derivations=self.derivations[~np.isin(self.derivations[:, 0], vertices)]
+        )
 
 
 def as_bits(found: Spread, count: int, numbers: Mapping[int, int], otherwise: int) -> Bits:

@@ -17,7 +17,7 @@ from rosprivacy.analysis.model import DISCLOSURE
 from rosprivacy.analysis.network import Network, as_bits
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Collection, Iterator, Sequence
 
     from numpy.typing import NDArray
 
@@ -75,7 +75,7 @@ def pairs(found: Spread, kinds: Sequence[Concern], mask: int) -> Iterator[Pairs]
         if not mask >> i & 1 or not any(len(some) for some in leaks):
             continue
         network = network or Network.of(found)
-        yield from _Category(found, network, i).pairs(kinds, leaks)
+        yield from _pairs_of(found, network, i, kinds, leaks)
 
 
 def _has(bits: Bits, bit: int) -> Flags:
@@ -83,85 +83,111 @@ def _has(bits: Bits, bit: int) -> Flags:
     return (bits[:, bit // WORD] >> np.uint64(bit % WORD) & np.uint64(1)).astype(bool)
 
 
-class _Category:
+def forms(category: int, k: int, steps: Collection[tuple[int, int]]) -> tuple[int, ...]:
+    """Return the forms in which data can be on the way to a category: bits of the spread, sorted.
+
+    Parameters
+    ----------
+    category, k
+        Its number, and how many there are.
+    steps
+        (bit that arrives, bit that leaves for it), wherever data is made into other data.
+    """
+    back = _closure({category, category + k}, {(after, before) for before, after in steps})
+    ahead = _closure({form for form in back if form < k}, steps)  # a form that nothing turns into is none
+    return tuple(sorted(back & ahead))
+
+
+class Category:
     """One category: from whom it can come, and in which forms its data can be on the way.
 
-    A form is a bit of the spread: the category itself or one that it can be made of, as it is or pseudonymised.
+    Sources are followed by number: bit ``n * at + number`` of n sources is the form at place ``at`` of this one.
+
+    Parameters
+    ----------
+    forms
+        Of ``forms``, for all of the graph, or for all of what the graph is a part of.
+
+    Attributes
+    ----------
+    sources
+        Vertices that bring it in, in any of its forms; sorted.
     """
 
-    def __init__(self, found: Spread, network: Network, category: int) -> None:
+    def __init__(self, found: Spread, network: Network, category: int, forms: tuple[int, ...]) -> None:
         self._network = network
-        self._number = category
         k = len(found.categories)
         self._own = (category, category + k)
-        steps = {(before, after) for pairs in found.derives.values() for before, after in pairs}
-        back = _closure({category, category + k}, {(after, before) for before, after in steps})
-        ahead = _closure({form for form in back if form < k}, steps)  # a form that nothing turns into is none
-        self._forms = sorted(back & ahead)
-        both = sum(1 << form for form in self._forms)
-        self._sources = np.array(sorted(v for v in found.facts if found.begins(v) & both), np.int64)
-        self._leaks = as_bits(found, len(network.keep), found.leaks, 0)
-        self._is_leak = _has(self._leaks, category)
-        self._passes = {form: _has(network.keep, form) for form in self._forms}
-        self._derivations = network.derivations[np.isin(network.derivations[:, 1:], self._forms).all(axis=1)]
-        self._begins = {source: found.begins(source) for source in self._sources.tolist()}
-        flows: dict[int, list[int]] = {vertex: [] for vertex in self._sources.tolist()}
+        self._forms = forms
+        both = sum(1 << form for form in forms)
+        self.sources = np.array(sorted(v for v in found.facts if found.begins(v) & both), np.int64)
+        self._is_leak = _has(as_bits(found, len(network.keep), found.leaks, 0), category)
+        self._passes = {form: _has(network.keep, form) for form in forms}
+        self._derivations = network.derivations[np.isin(network.derivations[:, 1:], forms).all(axis=1)]
+        self._begins = {source: found.begins(source) for source in self.sources.tolist()}
+        flows: dict[int, list[int]] = {vertex: [] for vertex in self.sources.tolist()}
         for number, index in enumerate(network.special):
             source = found.graph.flows[index].source
             if source in flows and found.flow_emits.get(index, 0) & both:
                 flows[source].append(network.count + number)
         self._flows = flows
 
-    def pairs(self, kinds: Sequence[Concern], leaks: Sequence[Indices]) -> Iterator[Pairs]:
-        """The pairs of each kind."""
+    def at_once(self) -> int:
+        """Return how many sources one run of the kernel takes."""
         words = max(1, min(MOST_WORDS, MOST_BITS // WORD // len(self._network.keep)))
-        at_once = max(1, words * WORD // len(self._forms))
-        rows: list[list[tuple[Indices, Indices, Flags, Flags]]] = [[] for _ in kinds]
-        disclosed = next(number for number, concern in enumerate(kinds) if concern.kind == DISCLOSURE)
-        everywhere = np.unique(np.concatenate(leaks))
-        for start in range(0, len(self._sources), at_once):
-            sources = self._sources[start : start + at_once]
-            through = self._reached(sources, everywhere, stop=False)
-            free = self._reached(sources, leaks[disclosed], stop=True) if len(leaks[disclosed]) else through
-            for number, concern in enumerate(kinds):
-                if len(leaks[number]):
-                    ways = (free, through) if concern.kind == DISCLOSURE else (through, through)
-                    rows[number].append(_rows(sources, leaks[number], *ways))
-        for concern, found in zip(kinds, rows, strict=True):
-            if found:
-                columns = [np.concatenate(column) for column in zip(*found, strict=True)]
-                if len(columns[0]):
-                    yield Pairs(concern.kind, self._number, *columns)
+        return max(1, words * WORD // len(self._forms))
 
-    def _reached(self, sources: Indices, leaks: Indices, *, stop: bool) -> tuple[Flags, Flags, Indices]:
-        """(as it is, pseudonymised): shape (leaks, sources), whether data is there; and the leaks."""
-        network, n = self._network, len(sources)
-        words = -(-n * len(self._forms) // WORD)
-        emitted, keep = np.zeros((2, words, len(network.keep)), np.uint64).transpose(0, 2, 1)
-        there = np.zeros((len(leaks), words), np.uint64)  # at the beginning, what sources bring in
-        at_leak = {leak: row for row, leak in enumerate(leaks.tolist())}
+    def nothing(self, n: int) -> Bits:
+        """Return that none of n sources emits anything anywhere: shape (vertices, words)."""
+        return np.zeros((-(-n * len(self._forms) // WORD), len(self._network.keep)), np.uint64).T
+
+    def begun(self, sources: Indices, numbers: Indices, n: int) -> Bits:
+        """Return what sources emit, each under its number."""
+        emitted = self.nothing(n)
         for at, form in enumerate(self._forms):
-            keeps = self._passes[form]
-            if stop and form in self._own:
-                keeps = keeps & ~self._is_leak
-            for word, bits in _split(((1 << n) - 1) << n * at):
-                np.bitwise_or(keep[:, word], bits, out=keep[:, word], where=keeps)
-            begins = _has(network.emitted, form)
-            for number, source in enumerate(sources.tolist()):
+            begins = _has(self._network.emitted, form)
+            for source, number in zip(sources.tolist(), numbers.tolist(), strict=True):
                 word, place = divmod(n * at + number, WORD)
-                bit = np.uint64(1 << place)
                 starts = [vertex for vertex in (source, *self._flows[source]) if begins[vertex]]
-                emitted[starts, word] |= bit
-                if source in at_leak and self._begins[source] >> form & 1:
-                    there[at_leak[source], word] |= bit
-        derivations, made = self._derived(n, stop=stop)
-        arrives, leaves = fixpoint(network.edges, emitted, keep, derivations)
-        there |= arrives[leaks] | leaves[leaks]
-        vertices, before, after = made.T  # what is made at a leak ends there, but gets there
+                emitted[starts, word] |= np.uint64(1 << place)
+        return emitted
+
+    def carried(self, emitted: Bits, n: int, *, stop: bool) -> tuple[Bits, Bits]:
+        """Return what arrives at and what leaves each vertex; ``stop`` lets nothing pass a leak of the category."""
+        keep = self.nothing(n)
+        for at, form in enumerate(self._forms):
+            passes = self._passes[form]
+            if stop and form in self._own:
+                passes = passes & ~self._is_leak
+            for word, bits in _split(((1 << n) - 1) << n * at):
+                np.bitwise_or(keep[:, word], bits, out=keep[:, word], where=passes)
+        return fixpoint(self._network.edges, emitted, keep, self._derived(n, stop=stop)[0])
+
+    def there(self, arrives: Bits, leaves: Bits, at: Indices, n: int, *, stop: bool) -> tuple[Flags, Flags]:
+        """(as it is, pseudonymised): shape (len(at), n), which data gets to some vertices.
+
+        Parameters
+        ----------
+        at
+            Sorted; with ``stop`` all leaks of the category are among them.
+        """
+        there = arrives[at] | leaves[at]
+        vertices, before, after = self._derived(n, stop=stop)[1].T  # what is made at a leak ends there, but gets there
         fired = arrives[vertices, before // WORD] >> (before % WORD).astype(np.uint64) & np.uint64(1)
-        rows = np.searchsorted(leaks, vertices)
+        rows = np.searchsorted(at, vertices)
         np.bitwise_or.at(there, (rows, after // WORD), fired << (after % WORD).astype(np.uint64))
-        return self._at(there, 0, n), self._at(there, 1, n), leaks
+        return self._at(there, 0, n), self._at(there, 1, n)
+
+    def brought(
+        self, there: tuple[Flags, Flags], at: Indices, sources: Indices, numbers: Indices
+    ) -> tuple[Flags, Flags]:
+        """The same with what sources bring in themselves, also if it leaves along single flows only."""
+        rows = {vertex: row for row, vertex in enumerate(at.tolist())}
+        for source, number in zip(sources.tolist(), numbers.tolist(), strict=True):
+            if source in rows:
+                for flags, form in zip(there, self._own, strict=True):
+                    flags[rows[source], number] |= bool(self._begins[source] >> form & 1)
+        return there
 
     def _derived(self, n: int, *, stop: bool) -> tuple[Indices, Indices]:
         """Derivations for each source: those that go on, and those that stop at a leak once they are made."""
@@ -184,6 +210,38 @@ class _Category:
         return np.column_stack([_has(there, first + number) for number in range(n)])
 
 
+def _pairs_of(
+    found: Spread, network: Network, number: int, kinds: Sequence[Concern], leaks: Sequence[Indices]
+) -> Iterator[Pairs]:
+    """The pairs of each kind, of one category."""
+    steps = {(before, after) for pairs in found.derives.values() for before, after in pairs}
+    category = Category(found, network, number, forms(number, len(found.categories), steps))
+    rows: list[list[tuple[Indices, Indices, Flags, Flags]]] = [[] for _ in kinds]
+    disclosed = next(number for number, concern in enumerate(kinds) if concern.kind == DISCLOSURE)
+    everywhere = np.unique(np.concatenate(leaks))
+    for start in range(0, len(category.sources), category.at_once()):
+        sources = category.sources[start : start + category.at_once()]
+        through = _reached(category, sources, everywhere, stop=False)
+        free = _reached(category, sources, leaks[disclosed], stop=True) if len(leaks[disclosed]) else through
+        for at, concern in enumerate(kinds):
+            if len(leaks[at]):
+                ways = (free, through) if concern.kind == DISCLOSURE else (through, through)
+                rows[at].append(_rows(sources, leaks[at], *ways))
+    for concern, some in zip(kinds, rows, strict=True):
+        if some:
+            columns = [np.concatenate(column) for column in zip(*some, strict=True)]
+            if len(columns[0]):
+                yield Pairs(concern.kind, number, *columns)
+
+
+def _reached(category: Category, sources: Indices, leaks: Indices, *, stop: bool) -> tuple[Flags, Flags, Indices]:
+    """(as it is, pseudonymised): shape (leaks, sources), whether data is there; and the leaks."""
+    numbers, n = np.arange(len(sources)), len(sources)
+    arrives, leaves = category.carried(category.begun(sources, numbers, n), n, stop=stop)
+    there = category.there(arrives, leaves, leaks, n, stop=stop)
+    return *category.brought(there, leaks, sources, numbers), leaks
+
+
 def _split(bits: int) -> Iterator[tuple[int, np.uint64]]:
     """A number of any length -> (number of the word, word), where there is something in it."""
     word = 0
@@ -194,7 +252,7 @@ def _split(bits: int) -> Iterator[tuple[int, np.uint64]]:
         word += 1
 
 
-def _closure(start: set[int], steps: set[tuple[int, int]]) -> set[int]:
+def _closure(start: set[int], steps: Collection[tuple[int, int]]) -> set[int]:
     """What can be got to by some steps."""
     found: set[int] = set()
     new = start

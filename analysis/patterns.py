@@ -51,7 +51,10 @@ class Likeness:
 
     def count(self, finding: Finding) -> int:
         """Return for how many findings of the fleet one of the graph stands; 0 if another does."""
-        source, leak = finding.source.robot, finding.leak.robot
+        return self.between(finding.source.robot, finding.leak.robot)
+
+    def between(self, source: str, leak: str) -> int:
+        """Return the same for the robots of source and leak."""
         if source in self.second or self.second.get(leak, source) != source:
             return 0
         if leak in self.second:
@@ -235,7 +238,16 @@ def deviants_of(
     open_at: dict[str, set[Element]] = defaultdict(set)
     for question in questions:
         open_at[question.element.robot].add(likeness.alike(question.element))
-    results = {robot: (frozenset(shares.get(robot, ())), frozenset(open_at[robot])) for robot in likeness.members}
+    return different(shares, open_at, likeness)
+
+
+def different(
+    shares: Mapping[str, Collection[Share]], open_at: Mapping[str, Collection[Element]], likeness: Likeness
+) -> tuple[Deviant, ...]:
+    """Return the same, when it is also known what is open on each; without its robot."""
+    results = {
+        robot: (frozenset(shares.get(robot, ())), frozenset(open_at.get(robot, ()))) for robot in likeness.members
+    }
     of_model: dict[str, list[str]] = defaultdict(list)
     for robot, model in sorted(likeness.models.items()):
         if model:

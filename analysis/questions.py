@@ -37,14 +37,14 @@ def open_questions(net: Net, mask: int, unknown: Collection[int] = ()) -> tuple[
         Nodes on the frontier first, then by distance and name; O(flows) for a fixed number of categories.
     """
     found, elements = net.spread, net.spread.graph.elements
-    open_bits = _open_bits(found, unknown)
-    if not open_bits:
+    uncovered = open_bits(found, unknown)
+    if not uncovered:
         return ()
     sources = [vertex for vertex in found.facts if found.begins(vertex)]
     nearest = search(net, sources, found.all_bits, {})
-    first = search(net, sources, found.all_bits, _ends(found, open_bits))
+    first = search(net, sources, found.all_bits, _ends(found, uncovered))
     merged: dict[tuple[str, str, str, str], OpenQuestion] = {}
-    for vertex, everything in sorted(open_bits.items()):
+    for vertex, everything in sorted(uncovered.items()):
         element, bits = elements[vertex], everything & mask
         if not bits:
             continue
@@ -59,18 +59,18 @@ def open_questions(net: Net, mask: int, unknown: Collection[int] = ()) -> tuple[
     return tuple(sorted(merged.values(), key=lambda q: (not q.frontier, q.distance, q.element.sort_key())))
 
 
-def _open_bits(found: Spread, unknown: Collection[int]) -> dict[int, int]:
-    """What is at an element without a label that covers it, or where it is not known in which country it is."""
+def open_bits(found: Spread, unknown: Collection[int]) -> dict[int, int]:
+    """Return what is at elements without a label that covers it, or where it is not known in which country it is."""
     reached = {vertex: found.present(vertex) for vertex in {*found.arrives, *found.leaves}}
     covered = {vertex: bits for vertex, bits in found.covered.items() if vertex not in unknown}
     uncovered = {vertex: bits & ~covered.get(vertex, 0) for vertex, bits in reached.items()}
     return {vertex: bits for vertex, bits in uncovered.items() if bits}
 
 
-def _ends(found: Spread, open_bits: dict[int, int]) -> dict[int, int]:
+def _ends(found: Spread, uncovered: dict[int, int]) -> dict[int, int]:
     """Leaks and open nodes, beyond which nothing is on the frontier."""
     ends = dict(found.leaks)
-    for vertex, bits in open_bits.items():
+    for vertex, bits in uncovered.items():
         if not found.graph.elements[vertex].is_channel:
             ends[vertex] = ends.get(vertex, 0) | bits
     return {vertex: _both_planes(bits, found) for vertex, bits in ends.items() if bits}

@@ -16,11 +16,12 @@ from rosprivacy.analysis.network import Network, as_numbers
 from rosprivacy.analysis.roles import NOTHING_SAID, Facts, facts
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
     from typing import Any
 
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.model import Bound, FlowGraph, Statement
+    from rosprivacy.analysis.network import Bits
 
 
 @dataclass(slots=True)
@@ -130,7 +131,26 @@ def spread(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy) -> Spread:
     InputErrors
         If statements of equal rank contradict each other.
     """
-    categories = tuple(sorted(_emitted(bound)))
+    found = meaning(graph, bound, hierarchy, emitted(bound.elements.values()))
+    network = Network.of(found)
+    fill(found, *fixpoint(network.edges, network.emitted, network.keep, network.derivations))
+    return found
+
+
+def meaning(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, categories: Iterable[str]) -> Spread:
+    """Apply labels to a graph, and carry nothing yet.
+
+    Parameters
+    ----------
+    categories
+        That have bits: those that are emitted, here or in the other parts of what this is a part of.
+
+    Raises
+    ------
+    InputErrors
+        If statements of equal rank contradict each other.
+    """
+    categories = tuple(sorted(categories))
     found = Spread(graph, categories)
     problems: list[InputError] = []
     decided: dict[tuple[tuple[Statement, ...], str], Facts] = {}
@@ -157,20 +177,19 @@ def spread(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy) -> Spread:
         found.flow_keeps[index] = _bits(found, kept, lambda fact: fact.passes)
     if problems:
         raise InputErrors(problems)
-    _carry(found)
     return found
 
 
-def _emitted(bound: Bound) -> set[str]:
-    """Categories that a source names or a derivation makes: only these have bits (rule S7)."""
-    emitted: set[str] = set()
-    for said in bound.elements.values():
+def emitted(elements: Iterable[Iterable[Statement]]) -> set[str]:
+    """Return the categories that a source names or a derivation makes: only these have bits (rule S7)."""
+    names: set[str] = set()
+    for said in elements:
         for statement in said:
             if statement.role == "source":
-                emitted.update(statement.categories)
+                names.update(statement.categories)
             elif statement.role == "derivation":
-                emitted.add(statement.to)
-    return emitted
+                names.add(statement.to)
+    return names
 
 
 def _bits(found: Spread, decided: Mapping[str, Facts], test: Any) -> int:
@@ -227,12 +246,11 @@ def _closed(derives: Mapping[str, tuple[str, ...]]) -> dict[str, set[str]]:
     return {category: after - {category} for category, after in made.items()}
 
 
-def _carry(found: Spread) -> None:
-    """Run the fixpoint."""
-    network = Network.of(found)
-    arrives, leaves = fixpoint(network.edges, network.emitted, network.keep, network.derivations)
-    found.arrives = as_numbers(arrives[: network.count])
-    found.leaves = as_numbers(leaves[: network.count])
+def fill(found: Spread, arrives: Bits, leaves: Bits) -> None:
+    """Put the fixpoint in; rows are vertices of its network, of which elements are the first."""
+    count = len(found.graph.elements)
+    found.arrives = as_numbers(arrives[:count])
+    found.leaves = as_numbers(leaves[:count])
     found.sent = dict(found.leaves)
     for vertex, bits in found.flow_begins.items():  # through one channel only is still from here
         found.leaves[vertex] = found.leaves.get(vertex, 0) | bits

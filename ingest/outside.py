@@ -112,7 +112,7 @@ class Ends:
 
 def missing(name: str, known: Iterable[str], place: Place, error: type[InputError] = LabelError) -> InputError:
     """Return the error for the end of a flow that is not there, with the nearest names."""
-    alike = [other for other in known if is_outside(other) == is_outside(name)]
+    alike = [other for other in dict.fromkeys(known) if is_outside(other) == is_outside(name)]
     close = get_close_matches(name, alike, n=3, cutoff=0.5)
     hint = "define it under elements" if is_outside(name) else "see the names with rosprivacy labels --init"
     hint = f"did you mean {' or '.join(map(shown, close))}?" if close else hint

@@ -21,7 +21,7 @@ from rosprivacy.ingest.outside import FLOW, Ends, line_of, merged, missing
 from rosprivacy.ingest.parts import Part, numbered, together
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.model import Bound, FlowGraph, Place, Profile, Statement
     from rosprivacy.analysis.outside import Outside
@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.domains import Member
     from rosprivacy.ingest.elements import Limit
     from rosprivacy.ingest.fleet import Fleet
+    from rosprivacy.ingest.labels import FlowEntry
+    from rosprivacy.ingest.parts import Key
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +68,10 @@ def place(fleet: Fleet, groups: Sequence[Alike], members: Mapping[str, Member], 
     for group in groups:
         for robot in group.placed:
             placing.take(replace(members[group.robots[0].id], robot=robot))
+    return _placed(placing, groups, view)
+
+
+def _placed(placing: _Placing, groups: Sequence[Alike], view: str) -> Placed:
     part, profiles = placing.part(view)
     if placing.problems:
         raise InputErrors(placing.problems)
@@ -74,6 +80,93 @@ def place(fleet: Fleet, groups: Sequence[Alike], members: Mapping[str, Member], 
         part, sorted(everything, key=lambda p: (p.enclave, p.node, p.place.file, p.place.line)), view
     )
     return Placed(graph, bound, likeness(groups), profiles)
+
+
+@dataclass(frozen=True, slots=True)
+class Some:
+    """A part of a fleet, placed by itself.
+
+    Attributes
+    ----------
+    part
+        With the flows of the fleet file that stay within it.
+    ends
+        Per flow of the fleet file: the elements here that its two ends mean.
+    restated
+        Lines of the fleet file that state a flow within one robot of which a label file says more.
+    """
+
+    part: Part
+    profiles: Mapping[str, tuple[Profile, ...]]
+    ends: tuple[tuple[tuple[Element, ...], tuple[Element, ...]], ...]
+    restated: tuple[Place, ...]
+
+
+def place_some(fleet: Fleet, members: Iterable[Member], view: str, *, own: bool) -> Some:
+    """Place some robots; a name that is not there may be on others.
+
+    Parameters
+    ----------
+    own
+        Whether the elements of the fleet file belong to these. Limits of the other robots are not known here.
+
+    Raises
+    ------
+    InputErrors
+        If the fleet file defines an element twice.
+    """
+    placing = _Placing(fleet, whole=False, own=own)
+    for member in members:
+        placing.take(member)
+    part, profiles = placing.part(view)
+    if placing.problems:
+        raise InputErrors(placing.problems)
+    return Some(part, profiles, tuple(placing.ends()), tuple(placing.restated))
+
+
+def place_chosen(fleet: Fleet, groups: Sequence[Alike], members: Mapping[str, Member], view: str) -> Placed:
+    """Make the graph of some robots of a fleet and of what they share, as ``place`` does of all."""
+    placing = _Placing(fleet, whole=False)
+    for group in groups:
+        for robot in group.placed:
+            placing.take(replace(members[group.robots[0].id], robot=robot))
+    return _placed(placing, groups, view)
+
+
+def flow_said(flow: FlowEntry, key: Key, lines: dict[Key, list[Place]], said: dict[Key, tuple[Statement, ...]]) -> None:
+    """Note that a line states a flow, with what it says of it."""
+    lines[key].append(flow.place)
+    said[key] = tuple(dict.fromkeys((*said.get(key, ()), *flow.statements)))
+
+
+def add_lines(part: Part, lines: Mapping[Key, Sequence[Place]]) -> None:
+    """Add the lines that state flows, and drop what is empty."""
+    for key, places in lines.items():
+        known = part.flows.get(key, ())
+        new = [line_of(place) for place in sorted(set(places), key=lambda place: (place.file, place.line))]
+        part.flows[key] = tuple(dict.fromkeys((*known, *new)))
+    part.said = {key: said for key, said in part.said.items() if said}
+
+
+def nowhere(flow: FlowEntry, end: str, known: Iterable[str]) -> InputError:
+    """Return the error for the end of a flow that is on no robot; ``known`` are the names that it could mean."""
+    name = end.partition(COLON)[2] if COLON in end else end
+    if COLON not in end and name.startswith("/"):
+        what = f"a flow names {shown(name)!r} and does not say on which robots"
+        return FleetError(flow.place.file, flow.place.line, what, f"write *:{name}, or the robot's id")
+    return missing(name, known, flow.place, FleetError)
+
+
+def no_robot(fleet: Fleet, flow: FlowEntry, end: str) -> InputError | None:
+    """Return the error for the end of a flow that means no robot of the fleet."""
+    robots, colon, _ = end.partition(COLON)
+    known = known_to_flows(fleet)
+    if not colon or chosen(end, known):
+        return None
+    close = get_close_matches(robots, known, n=3, cutoff=0.5)
+    hint = f"did you mean {' or '.join(close)}?" if close else "name robots of the fleet, such as *:/camera"
+    what = f"a flow names the robot {shown(robots)!r}, which is not there"
+    return FleetError(flow.place.file, flow.place.line, what, hint)
 
 
 def likeness(groups: Iterable[Alike]) -> Likeness:
@@ -89,9 +182,12 @@ def likeness(groups: Iterable[Alike]) -> Likeness:
 class _Placing:
     """Puts the parts of robots, domains and the fleet itself together."""
 
-    def __init__(self, fleet: Fleet) -> None:
+    def __init__(self, fleet: Fleet, *, whole: bool = True, own: bool = True) -> None:
         self.problems: list[InputError] = []
+        self.restated: list[Place] = []
         self._fleet = fleet
+        self._whole = whole
+        self._owns = own
         self._members: list[Member] = []
         self._ends: dict[str, Ends] = {}
 
@@ -123,7 +219,7 @@ class _Placing:
     def _own(self) -> Part:
         """The elements that the fleet file states."""
         fleet = self._fleet
-        stated = merged(fleet.elements, self.problems, FleetError)
+        stated = merged(fleet.elements, self.problems, FleetError) if self._owns else {}
         said: dict[str, list[Statement]] = defaultdict(list)
         for entry in fleet.entries:
             said[entry.name] += entry.statements
@@ -142,43 +238,34 @@ class _Placing:
             limits |= {limit for member in self._members for file in member.files for limit in file.limits}
         return replace(facts, limits=tuple(sorted(limits, key=lambda pair: (pair[0], str(pair[1])))))
 
-    def _add_flows(self, whole: Part) -> None:
-        lines: dict[tuple[Element, Element, str], list[Place]] = defaultdict(list)
+    def ends(self) -> Iterator[tuple[tuple[Element, ...], tuple[Element, ...]]]:
+        """Return, per flow of the fleet file, the elements that its ends mean."""
         for flow in self._fleet.flows:
-            ends = [self._find(end, flow.place) for end in (flow.source, flow.target)]
-            for source in ends[0]:
-                for target in ends[1]:
+            sources, targets = (tuple(self._find(end, flow)) for end in (flow.source, flow.target))
+            yield sources, targets
+
+    def _add_flows(self, whole: Part) -> None:
+        lines: dict[Key, list[Place]] = defaultdict(list)
+        for flow, (sources, targets) in zip(self._fleet.flows, self.ends(), strict=True):
+            for source in sources:
+                for target in targets:
                     key = (source, target, FLOW)
-                    lines[key].append(flow.place)
-                    whole.said[key] = tuple(dict.fromkeys((*whole.said.get(key, ()), *flow.statements)))
-        for key, places in lines.items():
-            known = whole.flows.get(key, ())
-            new = [line_of(place) for place in sorted(set(places), key=lambda place: (place.file, place.line))]
-            whole.flows[key] = tuple(dict.fromkeys((*known, *new)))
-        whole.said = {key: said for key, said in whole.said.items() if said}
+                    if source.robot == target.robot and key not in lines and whole.said.get(key):
+                        self.restated.append(flow.place)
+                    flow_said(flow, key, lines, whole.said)
+        add_lines(whole, lines)
 
-    def _find(self, end: str, place: Place) -> list[Element]:
-        robots, colon, name = end.partition(COLON)
-        if not colon:
-            return self._named([""], end, end, place)
-        known = known_to_flows(self._fleet)
-        if not chosen(end, known):
-            close = get_close_matches(robots, known, n=3, cutoff=0.5)
-            hint = f"did you mean {' or '.join(close)}?" if close else "name robots of the fleet, such as *:/camera"
-            what = f"a flow names the robot {shown(robots)!r}, which is not there"
-            self.problems.append(FleetError(place.file, place.line, what, hint))
+    def _find(self, end: str, flow: FlowEntry) -> list[Element]:
+        if self._whole and (problem := no_robot(self._fleet, flow, end)):
+            self.problems.append(problem)
             return []
-        return self._named(chosen(end, self._ends), name, end, place)
-
-    def _named(self, owners: Iterable[str], name: str, end: str, place: Place) -> list[Element]:
-        ends = [self._ends[owner] for owner in owners]
+        robots = chosen(end, self._ends) if COLON in end else [""]
+        name = end.partition(COLON)[2] if COLON in end else end
+        ends = [self._ends[robot] for robot in robots]
         found = [element for one in ends for element in one.find(name)]
-        if not found and COLON not in end and name.startswith("/"):
-            what = f"a flow names {shown(name)!r} and does not say on which robots"
-            self.problems.append(FleetError(place.file, place.line, what, f"write *:{name}, or the robot's id"))
-        elif not found:
+        if self._whole and not found:
             known = [other for one in ends for kind in one.names.values() for other in kind]
-            self.problems.append(missing(name, known, place, FleetError))
+            self.problems.append(nowhere(flow, end, known))
         return found
 
 

@@ -73,11 +73,13 @@ class Case:
         groups = alike(fleet)
         members = {}
         for group in groups:
-            robot = group.robots[0]
-            system = self.robots[robot.id]
-            graph = system.graph()
-            members[robot.id] = Member(robot, (), Part.of(graph, system.bound()), {e: e for e in graph.elements})
+            members[group.robots[0].id] = self.member(group.robots[0])
         return place(fleet, groups, members, "declared")
+
+    def member(self, robot: Robot) -> Member:
+        system = self.robots[robot.id]
+        graph = system.graph()
+        return Member(robot, (), Part.of(graph, system.bound()), {e: e for e in graph.elements})
 
     def analyse(self) -> tuple[Analysis, Placed]:
         placed = self.placed()

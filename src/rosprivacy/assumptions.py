@@ -48,7 +48,8 @@ def what_it_rests_on(
     vocabulary: Vocabulary,
 ) -> dict[str, Any]:
     """Return the assumptions of a report (rule S12)."""
-    hashes = [(file, {"file": file.file, "sha256": file.sha256}) for file in files]
+    distinct = {(file.file, file.sha256): file for file in files}  # one of a model and of a robot is named once
+    hashes = [(file, {"file": name, "sha256": digest}) for (name, digest), file in distinct.items()]
     standard = [entry for file, entry in hashes if file.shipped and file.file == settings.standard_channels]
     return {
         **own_assumptions(graph, settings, vocabulary),

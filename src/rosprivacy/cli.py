@@ -28,11 +28,14 @@ from rosprivacy import (
 from rosprivacy.analysis.errors import InputError, RosPrivacyError
 from rosprivacy.cli_options import (
     DecisionsFile,
+    Engine,
+    EngineChosen,
     FailOn,
     FleetFile,
     Format,
     IncludeRoot,
     LabelFiles,
+    Master,
     MaxBytes,
     NoStandard,
     Ontologies,
@@ -91,6 +94,8 @@ def analyze(
     ] = False,
     neo4j: Server = None,
     fleet: FleetFile = None,
+    engine: EngineChosen = Engine.memory,
+    master: Master = None,
     add: Annotated[
         list[str] | None,
         typer.Option(metavar="GRAPH.json", help="Add to a graph saved before; may be repeated.", show_default=False),
@@ -160,6 +165,10 @@ def analyze(
     )
     if fleet and (policies or labels or add or save_graph):
         raise typer.BadParameter("--fleet takes what the fleet file names: no POLICY, --labels, --add, --save-graph")
+    if engine is Engine.spark and not fleet:
+        raise typer.BadParameter("--engine spark is for fleets: give --fleet too")
+    if master and engine is not Engine.spark:
+        raise typer.BadParameter("--master is for --engine spark")
     if from_database:
         if policies or labels or add or save_graph or fleet:
             raise typer.BadParameter(
@@ -169,6 +178,10 @@ def analyze(
 
         with cli_graph.driver_of(neo4j) as driver:
             result = run_stored(driver, settings)
+    elif fleet and engine is Engine.spark:
+        from rosprivacy.fleets_spark import run_on_spark
+
+        result = run_on_spark(fleet, settings, master)
     elif fleet:
         from rosprivacy.fleets import run_fleet
 

@@ -47,6 +47,13 @@ class FailOn(StrEnum):
     all = "all"
 
 
+class Engine(StrEnum):
+    """What carries data through a fleet."""
+
+    memory = "memory"
+    spark = "spark"
+
+
 def complete_category(incomplete: str) -> list[str]:
     """Return the categories that begin so, for shell completion."""
     from rosprivacy.ontology.vocabulary import load
@@ -81,6 +88,18 @@ SixLists = Annotated[
 FleetFile = Annotated[
     str | None,
     typer.Option("--fleet", metavar="FILE", show_default=False, help="Fleet file: many robots and what they share."),
+]
+EngineChosen = Annotated[
+    Engine, typer.Option(help="Of a fleet: in memory here, or in parts on Apache Spark (the [spark] extra).")
+]
+Master = Annotated[
+    str | None,
+    typer.Option(
+        "--master",
+        metavar="URL",
+        show_default=False,
+        help="Spark cluster, such as spark://host:7077; by default the cores of this machine.",
+    ),
 ]
 ViewChosen = Annotated[View, typer.Option(help="What nodes declare, or what DDS enforces per enclave.")]
 DecisionsFile = Annotated[

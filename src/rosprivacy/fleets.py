@@ -133,7 +133,7 @@ def read_all(file: str, vocabulary: Vocabulary, settings: Settings) -> Read:
     fleet = read_fleet(file, vocabulary)
     decisions = decisions_of(settings, vocabulary)
     groups = alike(fleet, decisions.told_apart) if decisions else alike(fleet)
-    reader = _Reader(vocabulary, settings)
+    reader = Reader(vocabulary, settings)
     members = {}
     problems: list[InputError] = []
     for group in groups:
@@ -149,7 +149,7 @@ def read_all(file: str, vocabulary: Vocabulary, settings: Settings) -> Read:
     return Read(fleet, groups, members, placed, labels, tuple(diagnostics), decisions)
 
 
-class _Reader:
+class Reader:
     """Reads policies and label files, each once, and makes the graph of one robot of them."""
 
     def __init__(self, vocabulary: Vocabulary, settings: Settings) -> None:

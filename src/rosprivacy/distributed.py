@@ -1,0 +1,469 @@
+"""A fleet in parts: what each part says is put together here, and what leaves the border is handed out again.
+
+In: a fleet, and a cluster that does the same with each of its parts. Out: the answer of ``fleets.py``. Only what is at
+the border travels between parts: sets of categories first; then, for each category, sets of classes of sources, from
+which pairs are counted. Ways are looked for in the end, among the robots that are shown.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+
+import numpy as np
+
+from rosprivacy import workers
+from rosprivacy.analysis.border import Core
+from rosprivacy.analysis.counts import Counts, counted
+from rosprivacy.analysis.crossed import CORE, Crossed, End, Source
+from rosprivacy.analysis.crossing import STOPS, codes_of
+from rosprivacy.analysis.errors import FleetError, InputError, InputErrors
+from rosprivacy.analysis.flow import WORD
+from rosprivacy.analysis.model import DISCLOSURE, Verdict
+from rosprivacy.analysis.network import Network
+from rosprivacy.analysis.pairs import Category, forms
+from rosprivacy.analysis.patterns import different
+from rosprivacy.analysis.spread import emitted, fill, meaning
+from rosprivacy.ingest.alike import COLON, chosen, known_to_flows
+from rosprivacy.ingest.domains import pseudo_robot
+from rosprivacy.ingest.placing import likeness, no_robot, nowhere, place_some
+from rosprivacy.ingest.split import GATE, HUB, border, core_piece, crossing_lines, split, with_limits
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from rosprivacy.analysis.crossing import Class
+    from rosprivacy.analysis.groups import Group
+    from rosprivacy.analysis.hierarchy import Hierarchy
+    from rosprivacy.analysis.model import Element
+    from rosprivacy.analysis.patterns import Deviant, Likeness
+    from rosprivacy.analysis.spread import Spread
+    from rosprivacy.ingest.alike import Alike
+    from rosprivacy.ingest.fleet import Fleet
+    from rosprivacy.ingest.placing import Some
+    from rosprivacy.ingest.split import Border, Piece
+    from rosprivacy.workers import Brought, Read, Run, Told
+
+    Bits = NDArray[np.uint64]
+    Indices = NDArray[np.int64]
+
+T = TypeVar("T")
+S = TypeVar("S")
+
+
+class Parts(Protocol[T]):
+    """A value for each part, wherever it is."""
+
+    def map(self, function: Callable[[Any], S], *, keep: bool = False) -> Parts[S]:
+        """Do the same with each; ``keep`` what comes of it for more than one use."""
+
+    def collect(self) -> list[T]:
+        """Bring all values here, in order."""
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """What is analysed, and what is asked.
+
+    Attributes
+    ----------
+    reader
+        Makes what reads a robot, wherever it is called.
+    asked
+        Names of categories; None for all.
+    """
+
+    fleet: Fleet
+    groups: tuple[Alike, ...]
+    view: str
+    reader: Callable[[], Read]
+    hierarchy: Hierarchy
+    asked: Collection[str] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """What was found out.
+
+    Attributes
+    ----------
+    groups
+        Patterns, without ways.
+    needed
+        Names of the units in which ways of these lie, and of one for each kind of open element.
+    told
+        What the parts rest on, put together.
+    leaving
+        What leaves each element of the border: bits of the categories.
+    parts
+        With their graphs.
+    core
+        The core with its spread at the fixpoint.
+    open
+        How many elements of the fleet are.
+    """
+
+    emitted: tuple[str, ...]
+    verdict: Verdict
+    groups: tuple[Group, ...]
+    deviants: tuple[Deviant, ...]
+    needed: frozenset[str]
+    counts: Counts
+    told: Told
+    likeness: Likeness
+    leaving: Bits
+    parts: Parts[workers.Ready]
+    core: tuple[Piece, Spread]
+    border: Border
+    open: int
+
+
+def analyse_in_parts(question: Question, scatter: Callable[[Sequence[Any]], Parts[Any]]) -> Found:
+    """Analyse a fleet.
+
+    Parameters
+    ----------
+    scatter
+        Puts units to parts.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the input, one line each.
+    """
+    return _Run(question, scatter).found()
+
+
+class _Run:
+    """One analysis, step by step."""
+
+    def __init__(self, question: Question, scatter: Callable[[Sequence[Any]], Parts[Any]]) -> None:
+        self._question = question
+        self._fleet = question.fleet
+        self._likeness = likeness(question.groups)
+        self._scatter = scatter
+        self._needed: set[str] = set()
+
+    def found(self) -> Found:
+        question, fleet = self._question, self._fleet
+        fixed, units = split(question.groups)
+        alone = replace(fleet, robots=(), infrastructure=())  # what every part needs of it
+        read = question.reader()
+        members = [replace(read(group.robots[0]), robot=robot) for group in fixed for robot in group.placed]
+        core = place_some(fleet, members, question.view, own=True)
+        built = self._scatter(units).map(
+            partial(workers.built, fleet=alone, view=question.view, reader=question.reader),
+            keep=True,
+        )
+        told = _together([workers.told_of(core, members), *built.map(workers.told).collect()])
+        self._check(told, core, built)
+        at = border(core, (lines for lines, side in told.named if side == 0))
+        categories = sorted(told.emitted | emitted(core.part.elements.values()))
+        piece, gates = core_piece(core, at, question.view)
+        piece = with_limits(piece, fleet, told.limits)
+        ours = meaning(piece.graph, piece.bound, question.hierarchy, categories)
+        network = Network.of(ours)
+        middle = Core(network, np.array(gates, np.int64), np.array(piece.border, np.int64))
+        ready = built.map(
+            partial(
+                workers.ready, fleet=alone, at=at, view=question.view, categories=categories,
+                hierarchy=question.hierarchy,
+            ),
+            keep=True,
+        )  # fmt: skip
+        steps = self._steps(ours, ready)
+        wanted = [c for c in categories if question.asked is None or c in question.asked]
+        mask = sum(ours.both(category) for category in wanted)
+        numbers = [i for i, name in enumerate(categories) if name in wanted]
+        ways = {i: forms(i, len(categories), steps) for i in numbers}
+        kernels = ready.map(partial(workers.kernel, forms=ways, hierarchy=question.hierarchy), keep=True)
+
+        leaving = self._carry(middle, kernels, ours)
+        classes = _Classes(ours, piece, middle, ways, question.hierarchy)
+        classes.number(kernels.map(workers.classes).collect())
+        classes.carry(kernels)
+        asked = workers.Asked(leaving, classes.leaving, classes.numbers, classes.counts, mask, question.hierarchy)
+        answers = ready.map(partial(workers.answered, forms=ways, asked=asked)).collect()
+        return self._put_together(answers, classes, told, at, piece, ours, wanted, mask, leaving, ready)
+
+    def _check(self, told: Told, core: Some, built: Parts[workers.Built]) -> None:
+        """Raise what is wrong with the input."""
+        workers.raised(told.problems)
+        problems: list[InputError] = []
+        for number, flow in enumerate(self._fleet.flows):
+            for side, end in enumerate((flow.source, flow.target)):
+                problem = no_robot(self._fleet, flow, end)
+                if problem is None and not (told.found[number][side] or core.ends[number][side]):
+                    problem = nowhere(flow, end, self._names(end, core, built))
+                problems += [problem] if problem else []
+        for place in told.restated if crossing_lines(self._fleet) else ():
+            what = "a flow within a robot, of which a label file says more"
+            problems.append(
+                FleetError(place.file, place.line, what, "for --engine spark, say all of it in one of both")
+            )
+        if problems:
+            raise InputErrors(problems)
+
+    def _names(self, end: str, core: Some, built: Parts[workers.Built]) -> list[str]:
+        """The names that the end of a flow could mean."""
+        if COLON not in end:
+            return sorted(element.name for element in core.part.elements if element.robot == self._fleet.name)
+        robots = frozenset(chosen(end, known_to_flows(self._fleet)))
+        there = {element.name for element in core.part.elements if element.robot in robots}
+        return sorted(there.union(*built.map(partial(workers.names_on, robots=robots)).collect()))
+
+    def _steps(self, ours: Spread, ready: Parts[workers.Ready]) -> set[tuple[int, int]]:
+        """What data is made into other data anywhere."""
+        found = {step for some in ours.derives.values() for step in some}
+        problems: list[workers.Problem] = []
+        for wrong, some in ready.map(workers.steps).collect():
+            problems += wrong
+            found |= some
+        workers.raised(problems)
+        return found
+
+    def _carry(self, middle: Core, kernels: Parts[workers.Kernel], ours: Spread) -> Bits:
+        """Iterate the sets at the border to the fixpoint; return what leaves it."""
+        arrived = np.zeros((len(middle.border), middle.network.emitted.shape[1]), np.uint64)
+        while True:
+            arrives, leaves = middle.carried(arrived)
+            leaving = leaves[middle.border]
+            answers = kernels.map(partial(workers.carried, leaving=leaving, known=arrived)).collect()
+            before = arrived.copy()
+            for bits, _ in answers:
+                arrived |= bits
+            self._needed |= set(_first(brought for _, brought in answers).values())
+            if np.array_equal(before, arrived):
+                fill(ours, arrives, leaves)
+                return leaving
+
+    def _put_together(
+        self, answers: Sequence[workers.Answer], classes: _Classes, told: Told, at: Border, piece: Piece,
+        ours: Spread, wanted: Sequence[str], mask: int, leaving: Bits, ready: Parts[workers.Ready],
+    ) -> Found:  # fmt: skip
+        sources = [*classes.own_sources(), *(source for answer in answers for source in answer.sources)]
+        crossed = Crossed(self._likeness)
+        crossed.within(pair for answer in answers for pair in answer.within)
+        crossed.between(sources, [*classes.own_ends(), *(end for answer in answers for end in answer.ends)])
+        groups = crossed.groups()
+        open_at, count, kinds = _opened(answers, self._likeness)
+        mine = {v: e for v, e in enumerate(piece.graph.elements) if e.robot in (HUB, GATE)}
+        core_open = workers.open_elements(replace(piece, border=tuple(mine)), ours, mask)
+        unit = _units(self._question.groups)
+        needed = self._needed | classes.bringers(groups, sources)
+        needed |= {unit[robot] for robot in kinds if robot in unit}
+        ends = (element.robot for group in groups for element in (group.source, group.leak))
+        needed |= {unit[robot] for robot in ends if robot in unit}
+        leak = any(group.count > group.dismissed for group in groups)
+        begins = any(ours.begins(v) & mask for v in ours.facts) or any(answer.begins for answer in answers)
+        is_open = bool(count or core_open) or not begins
+        verdict = Verdict.LEAK if leak else Verdict.UNDETERMINED if is_open else Verdict.NO_LEAK_FOUND
+        counts = sum((answer.counts for answer in answers), counted(piece.graph, ours, self._likeness, (), mine))
+        return Found(
+            emitted=tuple(wanted),
+            verdict=verdict,
+            groups=groups,
+            deviants=different(crossed.shares, open_at, self._likeness),
+            needed=frozenset(needed),
+            counts=replace(counts, flows=counts.flows + _flows_between(told)),
+            told=told,
+            likeness=self._likeness,
+            leaving=leaving,
+            parts=ready,
+            core=(piece, ours),
+            border=at,
+            open=count + len(core_open),
+        )
+
+
+class _Classes:
+    """Classes of sources, which stand for all that bring the same to the same places; and the sources of the core.
+
+    Attributes
+    ----------
+    numbers
+        Number of a category -> class -> its number.
+    counts
+        Number of a category -> how many classes and sources of the core it has.
+    leaving
+        What leaves the border, when all is carried.
+    """
+
+    def __init__(
+        self, ours: Spread, piece: Piece, middle: Core, ways: Mapping[int, tuple[int, ...]], hierarchy: Hierarchy
+    ) -> None:
+        self.numbers: dict[int, dict[Class, int]] = {number: {} for number in ways}
+        self.counts: dict[int, int] = {}
+        self.leaving: dict[Run, Bits] = {}
+        self._ours, self._piece, self._middle, self._ways = ours, piece, middle, ways
+        self._kinds = workers.kinds_of(piece, ours, hierarchy)
+        self._categories = {i: Category(ours, middle.network, i, some) for i, some in ways.items()}
+        self._at: dict[Run, tuple[Bits, Bits]] = {}
+        self._brought: dict[Run, Brought] = defaultdict(dict)
+
+    def number(self, told: Iterable[Sequence[tuple[int, str, int, Class]]]) -> None:
+        """Number the classes; sources of the core come after them, each by itself."""
+        found: dict[int, set[Class]] = defaultdict(set)
+        for some in told:
+            for number, _, _, met in some:
+                found[number].add(met)
+        for number in self._ways:
+            order = sorted(found[number], key=lambda met: (sorted(met[0]), sorted(met[1])))
+            self.numbers[number] = {met: i for i, met in enumerate(order)}
+            self.counts[number] = len(order) + len(self._categories[number].sources)
+
+    def carry(self, kernels: Parts[workers.Kernel]) -> None:
+        """Iterate the classes at the border to the fixpoint."""
+        arrived = {(number, stop): self._begin(number, stop=stop) for number in self._ways for stop in STOPS}
+        running = {run for run in arrived if self.counts[run[0]]}
+        while True:
+            for run in running:
+                self._at[run] = self._carried(run, arrived[run])
+                self.leaving[run] = self._at[run][1][self._middle.border]
+            if not running:
+                break
+            given = {run: self.leaving[run] for run in running}
+            known = {run: arrived[run] for run in running}
+            ask = partial(workers.classes_carried, leaving=given, known=known, counts=self.counts)
+            answers = kernels.map(ask).collect()
+            for run in sorted(running):
+                new = np.bitwise_or.reduce([answer[run][0] for answer in answers])
+                self._brought[run] |= _first(answer[run][1] for answer in answers)
+                if not (new & ~arrived[run]).any():
+                    running.discard(run)
+                arrived[run] = arrived[run] | new
+        for number in self._ways:
+            for stop in STOPS:
+                self.leaving.setdefault((number, stop), np.zeros((len(self._middle.border), 0), np.uint64))
+
+    def own_sources(self) -> list[Source]:
+        """Return the sources of the core."""
+        names, elements = self._ours.categories, self._piece.graph.elements
+        return [
+            Source(names[number], elements[vertex], CORE, len(self.numbers[number]) + i)
+            for number, category in self._categories.items()
+            for i, vertex in enumerate(category.sources.tolist())
+        ]
+
+    def own_ends(self) -> list[End]:
+        """Return the leaks and the like of the core, and how each class gets there."""
+        found = []
+        elements = self._piece.graph.elements
+        for number, category in self._categories.items():
+            n = self.counts[number]
+            if not n:
+                continue
+            both = self._ours.both(self._ours.categories[number])
+            ends = {c.kind: np.array(sorted(v for v, b in c.bits.items() if b & both), np.int64) for c in self._kinds}
+            own = np.arange(len(category.sources)) + len(self.numbers[number])
+
+            def there(stop: bool, at: Indices) -> Any:  # noqa: FBT001 - as in STOPS
+                carried = self._at[number, stop]  # noqa: B023 - called within the round
+                flags = category.there(*carried, at, n, stop=stop)  # noqa: B023
+                return category.brought(flags, at, category.sources, own)  # noqa: B023
+
+            for kind, at in ends.items():
+                through = there(False, at)
+                codes = codes_of(there(True, at) if kind == DISCLOSURE else through, through)
+                for row in np.flatnonzero(codes.any(axis=1)).tolist():
+                    name, element = self._ours.categories[number], elements[int(at[row])]
+                    found.append(End(kind, name, element, CORE, codes[row].tobytes()))
+        return found
+
+    def bringers(self, groups: Iterable[Group], sources: Iterable[Source]) -> set[str]:
+        """Return the units that bring the classes of what is shown to where they get."""
+        wanted: dict[tuple[str, Element], set[bool]] = defaultdict(set)
+        for group in groups:
+            wanted[group.category, group.source] |= set(STOPS)
+        found = set()
+        for source in sources:
+            number = self._ours.categories.index(source.category)
+            for stop in wanted.get((source.category, source.element), ()):
+                for (_, bit), unit in self._brought[number, stop].items():
+                    if bit % self.counts[number] == source.number:
+                        found.add(unit)
+        return found
+
+    def _begin(self, number: int, *, stop: bool) -> Bits:
+        """Where each class begins: what its sources bring to the border."""
+        n, ways = self.counts[number], self._ways[number]
+        found = np.zeros((len(self._middle.border), -(-n * len(ways) // WORD)), np.uint64)
+        for met, i in self.numbers[number].items():
+            for at, place in met[STOPS.index(stop)]:
+                word, bit = divmod(n * place + i, WORD)
+                found[at, word] |= np.uint64(1 << bit)
+        return found
+
+    def _carried(self, run: Run, arrived: Bits) -> tuple[Bits, Bits]:
+        number, stop = run
+        category, n = self._categories[number], self.counts[number]
+        own = np.arange(len(category.sources)) + len(self.numbers[number])
+        begun = category.begun(category.sources, own, n)
+        begun[self._middle.gates] = arrived
+        return category.carried(begun, n, stop=stop)
+
+
+def _together(told: Iterable[Told]) -> Told:
+    """What all parts tell."""
+    whole, *others = told
+    for part in others:
+        whole = workers.joined(whole, part)
+    return whole
+
+
+def _first(brought: Iterable[Brought]) -> Brought:
+    """For each bit the first unit, by name."""
+    found: Brought = {}
+    for some in brought:
+        for key, unit in some.items():
+            found[key] = min(unit, found.get(key, unit))
+    return found
+
+
+def _opened(
+    answers: Iterable[workers.Answer], likeness: Likeness
+) -> tuple[dict[str, frozenset[Element]], int, set[str]]:
+    """What is open on each robot; on how many elements of the fleet; and a robot for each kind of open element."""
+    open_at: dict[str, frozenset[Element]] = {}
+    count = 0
+    first: dict[tuple[Element, tuple[str, ...]], str] = {}
+    for answer in answers:
+        sets = [frozenset(element for element, _ in some) for some in answer.sets]
+        for robot, number in answer.open.items():
+            open_at[robot] = sets[number]
+            count += likeness.weight(robot) * len(sets[number])
+            for kind in answer.sets[number] if likeness.weight(robot) else ():
+                first[kind] = min(robot, first.get(kind, robot))
+    return open_at, count, set(first.values())
+
+
+def _units(groups: Iterable[Alike]) -> dict[str, str]:
+    """Robot of the graph, or domain, -> name of its unit."""
+    _, units = split(groups)
+    found: dict[str, str] = {}
+    for unit in units:
+        for group in unit.groups:
+            found |= {robot.id: unit.name for robot in group.placed}
+            if group.robots[0].domain:
+                found[pseudo_robot(group.robots[0].domain)] = unit.name
+    return found
+
+
+def _flows_between(told: Told) -> int:
+    """How many flows of the fleet file lead from one unit to another."""
+    sides: tuple[Counter[Any], Counter[Any]] = (Counter(), Counter())
+    in_unit: tuple[dict[Any, Mapping[str, int]], ...] = ({}, {})
+    for (lines, side), units in told.named.items():
+        sides[side][lines] = sum(units.values())
+        in_unit[side][lines] = units
+    count = 0
+    for source, many in sides[0].items():
+        for target, others in sides[1].items():
+            if source & target:
+                same = (w * in_unit[1][target].get(unit, 0) for unit, w in in_unit[0][source].items())
+                count += many * others - sum(same)
+    return count

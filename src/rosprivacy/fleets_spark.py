@@ -1,0 +1,129 @@
+"""The way of a fleet through Apache Spark: fleet file -> units on partitions -> the answer of ``fleets.py``.
+
+In: a fleet file. Out: a ``Result`` like that of ``run_fleet``, in whose graph are the robots that are shown.
+"""
+
+from __future__ import annotations
+
+import os
+from contextlib import chdir
+from dataclasses import asdict, dataclass, replace
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.counts import Counts
+from rosprivacy.analysis.errors import FleetError, InputErrors, reason
+from rosprivacy.asked import asked_for
+from rosprivacy.assembly import Result
+from rosprivacy.assumptions import own_assumptions
+from rosprivacy.distributed import Question, analyse_in_parts
+from rosprivacy.fleets import Reader
+from rosprivacy.ingest.alike import alike
+from rosprivacy.ingest.countries import countries
+from rosprivacy.ingest.fleet import read_fleet
+from rosprivacy.ontology.vocabulary import load
+from rosprivacy.shown import shown
+from rosprivacy.spark import scatter, session
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from rosprivacy.distributed import Found
+    from rosprivacy.ingest.domains import Member
+    from rosprivacy.ingest.fleet import Robot
+    from rosprivacy.ontology.vocabulary import Vocabulary
+    from rosprivacy.settings import Settings
+    from rosprivacy.shown import Shown
+    from rosprivacy.workers import Read
+
+
+@dataclass(frozen=True, slots=True)
+class SparkResult(Result):
+    """The answer about a fleet of which only the robots that are shown are here.
+
+    Attributes
+    ----------
+    counts
+        Of the whole fleet.
+    open
+        How many elements of the whole fleet are.
+    """
+
+    counts: Counts = Counts()  # noqa: RUF009 - frozen
+    open: int = 0
+
+    def document(self) -> dict[str, Any]:
+        """Return the JSON document of the contract."""
+        made = super(SparkResult, self).document()
+        channels = made["assumptions"]["standard_channels"]
+        if channels:
+            taken = {**channels, "taken": self.counts.standard_channels}
+            made["assumptions"] = {**made["assumptions"], "standard_channels": taken}
+        return {**made, **asdict(self.counts)}
+
+
+def run_on_spark(file: str, settings: Settings, master: str | None = None) -> Result:
+    """Read a fleet and analyse it on Spark; the workers read the policies, from where they are.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the input, one line each.
+    ClusterError
+        If there is no Spark, or something fails there.
+    """
+    vocabulary = load(ontologies=settings.ontologies)
+    fleet = read_fleet(file, vocabulary)
+    plain = replace(settings, progress=unchanged)
+    question = Question(
+        fleet, alike(fleet), settings.view, partial(file_reader, plain, str(Path.cwd())), vocabulary.hierarchy,
+        asked_for(vocabulary, settings),
+    )  # fmt: skip
+    with session(master) as spark:
+        found = analyse_in_parts(question, partial(scatter, spark))
+        return result(question, found, shown(question, found, settings.paths, settings.max_paths), settings, vocabulary)
+
+
+def result(question: Question, found: Found, told: Shown, settings: Settings, vocabulary: Vocabulary) -> SparkResult:
+    """Put together what a report says."""
+    files = sorted(found.told.labels)
+    standard = [{"file": f, "sha256": h} for f, h, shipped in files if shipped and f == settings.standard_channels]
+    assumptions = {
+        **own_assumptions(told.placed.graph, settings, vocabulary),
+        **({"countries_as_of": countries().as_of} if found.told.countries else {}),
+        "policies": [{"file": name, "sha256": digest} for name, digest in sorted(found.told.sources)],
+        "labels": [{"file": f, "sha256": h} for f, h, _ in files if {"file": f, "sha256": h} not in standard],
+        "standard_channels": {**standard[0], "taken": 0} if standard else None,
+        "fleet": [{"file": name, "sha256": digest} for name, digest in question.fleet.sources],
+        "engine": "spark",
+    }
+    policies = {policy.file: policy for member in told.members.values() for policy in member.policies}
+    labels = {file.file: file for member in told.members.values() for file in member.files}
+    return SparkResult(
+        told.analysis, told.placed.bound, vocabulary, tuple(policies.values()), found.told.diagnostics, assumptions,
+        tuple(labels.values()), fleet=told.view, counts=found.counts, open=found.open,
+    )  # fmt: skip
+
+
+def file_reader(settings: Settings, folder: str) -> Read:
+    """Return what reads robots from files, on a worker; names are relative to a folder there."""
+    reader = Reader(load(ontologies=settings.ontologies), settings)
+
+    def read(robot: Robot) -> Member:
+        if folder == os.getcwd():  # noqa: PTH109 - as it is compared
+            return reader.member(robot)
+        try:
+            with chdir(folder):
+                return reader.member(robot)
+        except OSError as error:
+            why = f"a worker cannot open the folder: {reason(error)}"
+            hint = "work in a folder that all machines of the cluster share"
+            raise InputErrors([FleetError(folder, 0, why, hint)]) from None
+
+    return read
+
+
+def unchanged(files: Sequence[str]) -> Iterable[str]:
+    """Return the files: a worker has no terminal to show progress on."""
+    return files
