@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.domains import Member
     from rosprivacy.ingest.elements import Limit
     from rosprivacy.ingest.fleet import Fleet
-    from rosprivacy.ingest.labels import FlowEntry
+    from rosprivacy.ingest.entries import FlowEntry
     from rosprivacy.ingest.parts import Key
 
 

@@ -167,6 +167,8 @@ def analyze(
         raise typer.BadParameter("--fleet takes what the fleet file names: no POLICY, --labels, --add, --save-graph")
     if engine is Engine.spark and not fleet:
         raise typer.BadParameter("--engine spark is for fleets: give --fleet too")
+    if engine is Engine.spark and decisions:
+        raise typer.BadParameter("--decisions are taken into account in memory only: leave out --engine spark")
     if master and engine is not Engine.spark:
         raise typer.BadParameter("--master is for --engine spark")
     if from_database:
