@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.alike import Alike
     from rosprivacy.ingest.domains import Member
     from rosprivacy.ingest.elements import Limit
-    from rosprivacy.ingest.fleet import Fleet
     from rosprivacy.ingest.entries import FlowEntry
+    from rosprivacy.ingest.fleet import Fleet
     from rosprivacy.ingest.parts import Key
 
 
