@@ -13,9 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rosprivacy.analysis.flow import WORD
 from rosprivacy.analysis.model import DISCLOSURE
-from rosprivacy.analysis.pairs import Category
+from rosprivacy.analysis.pairs import Category, unpacked
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -74,7 +73,7 @@ class Crossing:
             for stop, some in zip(STOPS, met, strict=True):
                 _, leaves = self.category.carried(self.category.begun(sources, numbers, n), n, stop=stop)
                 for at in range(len(self.forms)):
-                    exits, number = np.nonzero(_bits(leaves[self.cut.exits[:, 0]], n * at, n))
+                    exits, number = np.nonzero(unpacked(leaves[self.cut.exits[:, 0]], n * at, n))
                     rows = self.cut.exits[exits]
                     for source, border in zip(table[rows[:, 2], number].tolist(), rows[:, 1].tolist(), strict=True):
                         some.setdefault(source, set()).add((border, at))
@@ -166,12 +165,6 @@ def _within(units: Indices) -> Indices:
     numbers = np.empty(len(units), np.int64)
     numbers[order] = np.arange(len(units)) - np.repeat(begins, lengths)
     return numbers
-
-
-def _bits(rows: Bits, first: int, n: int) -> Flags:
-    """Bits ``first`` to ``first + n`` of each row."""
-    places = np.arange(first, first + n)
-    return (rows[:, places // WORD] >> (places % WORD).astype(np.uint64) & np.uint64(1)).astype(bool)
 
 
 def codes_of(free: tuple[Flags, Flags], through: tuple[Flags, Flags]) -> Codes:

@@ -198,13 +198,13 @@ def _sweep(rows: tuple[Rows, ...], word: _Word) -> Indices:
         return word.changed[:0]
     start, end = rows[0].start, rows[-1].end
     before = word.leaves[start:end].copy()
-    while sum(len(_pull(row, word)) for row in rows) > DENSE * (end - start):
+    while sum(_pull(row, word) for row in rows) > DENSE * (end - start):
         pass
     return np.flatnonzero(word.leaves[start:end] != before) + start
 
 
-def _pull(row: Rows, word: _Word) -> Indices:
-    """Take in what leaves the sources of some slots; return those that changed."""
+def _pull(row: Rows, word: _Word) -> int:
+    """Take in what leaves the sources of some slots; return how many changed."""
     here = slice(row.start, row.end)
     if row.cuts is None:
         bits = word.leaves.take(row.sources[0], mode="clip")
@@ -215,6 +215,6 @@ def _pull(row: Rows, word: _Word) -> Indices:
     word.arrives[here] = bits
     bits &= word.keep[here]
     bits |= word.leaves[here]
-    changed = np.flatnonzero(bits != word.leaves[here])
+    changed = np.count_nonzero(bits != word.leaves[here])
     word.leaves[here] = bits
-    return changed + row.start
+    return int(changed)

@@ -5,6 +5,7 @@ In: a spread before its fixpoint. Out: edges, and per vertex what it emits, keep
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -71,7 +72,7 @@ class Network:
             emitted[count + number] = _words(found.flow_emits.get(index, 0) & passing, emitted.shape[1])
             keep[count + number] = _words(passing, keep.shape[1])
         derivations = [(vertex, *pair) for vertex, pairs in found.derives.items() for pair in pairs]
-        nodes = sum(not element.is_channel for element in graph.elements)
+        nodes = bisect_left(graph.elements, True, key=lambda element: element.is_channel)  # these are last
         edges = Edges.of(vertices, np.array(sources, np.int64), np.array(targets, np.int64), nodes)
         return cls(count, edges, tuple(special), emitted, keep, np.array(derivations, np.int64).reshape(-1, 3))
 

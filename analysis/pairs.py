@@ -206,8 +206,15 @@ class Category:
     def _at(self, there: Bits, plane: int, n: int) -> Flags:
         if self._own[plane] not in self._forms:
             return np.zeros((len(there), n), bool)
-        first = n * self._forms.index(self._own[plane])
-        return np.column_stack([_has(there, first + number) for number in range(n)])
+        return unpacked(there, n * self._forms.index(self._own[plane]), n)
+
+
+def unpacked(rows: Bits, first: int, n: int) -> Flags:
+    """Return n bits of each row, from one on: shape (rows, n)."""
+    low = first // WORD
+    some = np.ascontiguousarray(rows[:, low : -(-(first + n) // WORD)], "<u8")  # the lowest byte of a word first
+    bits = np.unpackbits(some.view(np.uint8), axis=1, bitorder="little")
+    return bits[:, first - low * WORD : first - low * WORD + n].astype(bool)
 
 
 def _pairs_of(

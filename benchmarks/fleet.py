@@ -1,4 +1,4 @@
-"""Fleets: how the cost grows with the robots, how much memory they take, and pairs against searches, in one run.
+"""Fleets: how the cost grows with the robots, how much memory they take, pairs against searches, and Spark.
 
     python benchmarks/fleet.py [--quick]
 
@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 
 import fleet_kernel
 import fleet_robots
+import fleet_spark
 from measure import print_header, print_line
 
 if TYPE_CHECKING:
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 def lines(folder: Path, *, quick: bool) -> Iterator[Line]:
     yield from fleet_robots.compare(folder, quick=quick)
     yield from fleet_kernel.compare(quick=quick)
+    yield from fleet_spark.compare(folder, quick=quick)
 
 
 def main() -> int:
