@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.groups import Group
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.model import Element
+    from rosprivacy.analysis.outside import Outside
     from rosprivacy.analysis.patterns import Deviant, Likeness
     from rosprivacy.analysis.spread import Spread
     from rosprivacy.ingest.alike import Alike
@@ -95,6 +96,10 @@ class Found:
         Patterns, without ways.
     needed
         Names of the units in which ways of these lie, and of one for each kind of open element.
+    examples
+        Names of units: with these, data of every source gets to one leak of each name that it gets to.
+    leaking
+        Robots of the graph from which data gets to a leak or the like, or at which it does.
     told
         What the parts rest on, put together.
     leaving
@@ -112,6 +117,8 @@ class Found:
     groups: tuple[Group, ...]
     deviants: tuple[Deviant, ...]
     needed: frozenset[str]
+    examples: frozenset[str]
+    leaking: frozenset[str]
     counts: Counts
     told: Told
     likeness: Likeness
@@ -120,6 +127,12 @@ class Found:
     core: tuple[Piece, Spread]
     border: Border
     open: int
+
+    @property
+    def shared(self) -> dict[Element, Outside]:
+        """What is stated about the elements of the core, with the limits that hold there."""
+        piece = self.core[0]
+        return {piece.graph.elements[vertex]: facts for vertex, facts in piece.bound.outside.items()}
 
 
 def analyse_in_parts(question: Question, scatter: Callable[[Sequence[Any]], Parts[Any]]) -> Found:
@@ -269,6 +282,8 @@ class _Run:
             groups=groups,
             deviants=different(crossed.shares, open_at, self._likeness),
             needed=frozenset(needed),
+            examples=frozenset(needed | crossed.examples | classes.all_bringers()),
+            leaking=frozenset(r for r, some in crossed.shares.items() if not all(share.dismissed for share in some)),
             counts=replace(counts, flows=counts.flows + _flows_between(told)),
             told=told,
             likeness=self._likeness,
@@ -387,6 +402,10 @@ class _Classes:
                     if bit % self.counts[number] == source.number:
                         found.add(unit)
         return found
+
+    def all_bringers(self) -> set[str]:
+        """Return the units that bring any class to where it gets."""
+        return {unit for brought in self._brought.values() for unit in brought.values()}
 
     def _begin(self, number: int, *, stop: bool) -> Bits:
         """Where each class begins: what its sources bring to the border."""
