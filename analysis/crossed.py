@@ -84,11 +84,21 @@ class _Tally:
 
 
 class Crossed:
-    """Puts together what parts say."""
+    """Puts together what parts say.
+
+    Attributes
+    ----------
+    examples
+        Units: for each class of sources and all leaks of one name the first two, so that each source has one of them
+        beside its own.
+    shares
+        How each robot takes part in patterns.
+    """
 
     def __init__(self, likeness: Likeness) -> None:
         self._likeness = likeness
         self._tallies: dict[str, _Tally] = {}
+        self.examples: set[str] = set()
         self.shares: dict[str, set[Share]] = defaultdict(set)
 
     def within(self, pairs: Iterable[Within]) -> None:
@@ -133,6 +143,7 @@ class Crossed:
         if not count:
             return
         begin, end = list(sources.beside(leaks)), list(leaks.beside(sources))
+        self.examples |= {*list(dict.fromkeys(unit for _, unit in end))[:2]} - {CORE}
         source, unit = begin[0]
         leak = next(element for element, other in end if other != unit or unit == CORE)
         across = self._likeness.is_robot(source.robot) and self._likeness.is_robot(leak.robot)

@@ -39,17 +39,25 @@ class FleetRows:
         Of all categories, not of a choice.
     more
         Further properties of each ``Robot``, by the robot of the graph.
+    most_across
+        See ``left_out``.
 
     Attributes
     ----------
     left_out
-        How many findings from one robot to another are not written: of a pattern with more than ``MOST_ACROSS`` one
+        How many findings from one robot to another are not written: of a pattern with more than ``most_across`` one
         is written for each robot from which data comes.
     """
 
     def __init__(
-        self, placed: Placed, analysis: Analysis, vocabulary: Vocabulary, more: Mapping[str, Mapping[str, Any]]
+        self,
+        placed: Placed,
+        analysis: Analysis,
+        vocabulary: Vocabulary,
+        more: Mapping[str, Mapping[str, Any]],
+        most_across: int | None = None,
     ) -> None:
+        most_across = MOST_ACROSS if most_across is None else most_across
         self._more = more
         self._placed = placed
         self._analysis = analysis
@@ -61,7 +69,7 @@ class FleetRows:
         for finding in analysis.findings:
             if self._likeness.across(finding):
                 counts[pattern_id(finding, self._likeness)] += self._likeness.count(finding)
-        self._too_many = {pattern for pattern, count in counts.items() if count > MOST_ACROSS}
+        self._too_many = {pattern for pattern, count in counts.items() if count > most_across}
         self.left_out = sum(
             self._likeness.count(finding) - self._likeness.weight(finding.source.robot)
             for finding in analysis.findings
@@ -71,8 +79,11 @@ class FleetRows:
     def __iter__(self) -> Iterator[RobotRows]:
         """Return the rows of every robot and of what is shared."""
         for owner in sorted(self._owned):
-            if owner in self._likeness.second:
-                continue
+            yield from self.of(owner)
+
+    def of(self, owner: str) -> Iterator[RobotRows]:
+        """Return the rows of all robots for which one of the graph stands."""
+        if owner in self._owned and owner not in self._likeness.second:
             for name in self._likeness.members.get(owner, (owner,)):
                 yield self._rows(owner, name)
 

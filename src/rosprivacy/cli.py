@@ -96,6 +96,10 @@ def analyze(
     fleet: FleetFile = None,
     engine: EngineChosen = Engine.memory,
     master: Master = None,
+    results: Annotated[
+        str | None,
+        typer.Option(metavar="DIR", help="With --engine spark: write every robot there, for load.", show_default=False),
+    ] = None,
     add: Annotated[
         list[str] | None,
         typer.Option(metavar="GRAPH.json", help="Add to a graph saved before; may be repeated.", show_default=False),
@@ -169,8 +173,8 @@ def analyze(
         raise typer.BadParameter("--engine spark is for fleets: give --fleet too")
     if engine is Engine.spark and decisions:
         raise typer.BadParameter("--decisions are taken into account in memory only: leave out --engine spark")
-    if master and engine is not Engine.spark:
-        raise typer.BadParameter("--master is for --engine spark")
+    if (master or results) and engine is not Engine.spark:
+        raise typer.BadParameter("--master and --results are for --engine spark")
     if from_database:
         if policies or labels or add or save_graph or fleet:
             raise typer.BadParameter(
@@ -183,7 +187,7 @@ def analyze(
     elif fleet and engine is Engine.spark:
         from rosprivacy.fleets_spark import run_on_spark
 
-        result = run_on_spark(fleet, settings, master)
+        result = run_on_spark(fleet, settings, master, results)
     elif fleet:
         from rosprivacy.fleets import run_fleet
 

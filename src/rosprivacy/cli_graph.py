@@ -62,6 +62,10 @@ def load(
     labels: LabelFiles = None,
     robot: Annotated[str, typer.Option(metavar="NAME", help="What the robot is called in the database.")] = "robot",
     fleet: FleetFile = None,
+    results: Annotated[
+        str | None,
+        typer.Option(metavar="DIR", help="Write what analyze --results has written there.", show_default=False),
+    ] = None,
     neo4j: Server = None,
     ontology: Ontologies = None,
     category: SixLists = "PersonalData",
@@ -78,6 +82,11 @@ def load(
 
     if fleet and (policies or labels):
         raise typer.BadParameter("--fleet takes what the fleet file names: no POLICY, --labels")
+    if results:
+        if policies or labels or fleet:
+            raise typer.BadParameter("--results takes what is in the folder: no POLICY, --labels, --fleet")
+        _load_results(results, tuple(ontology or ()), neo4j)
+        return
     if not policies and not fleet:
         raise typer.BadParameter("name at least one policy: a file, a folder or a glob", param_hint="POLICY")
     settings = Settings(
@@ -122,6 +131,22 @@ def _load_fleet(file: str, settings: Settings, neo4j: str | None) -> None:
     if rows.left_out:
         message = f"{rows.left_out:,} findings from one robot to another are not written one by one: of each pattern"
         print(f"{message} with more than {MOST_ACROSS:,} only one for each robot that data comes from", file=sys.stderr)
+
+
+def _load_results(folder: str, ontologies: tuple[str, ...], neo4j: str | None) -> None:
+    from rosprivacy.ingest import neo4j as database
+    from rosprivacy.ontology.vocabulary import load
+    from rosprivacy.results import read
+
+    vocabulary = load(ontologies=ontologies)
+    document, rows = read(folder)
+    with driver_of(neo4j) as driver, _bar(None) as advance:
+        done = database.load(driver, rows, vocabulary, advance)
+    what = f"results {shown(folder)}: {document['fleet']['robots']:,} robots and what they share"
+    emit(f"{what}: {done.written:,} written, {done.unchanged:,} as they were; verdict {document['verdict']}\n", None)
+    if any(pattern["across"] for pattern in document["fleet"]["patterns"]):
+        message = "findings from one robot to another are not written one by one: of each pattern only one for each"
+        print(f"{message} robot that data comes from", file=sys.stderr)
 
 
 def unload(

@@ -7,25 +7,24 @@ which pairs are counted. Ways are looked for in the end, among the robots that a
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
+from collections import Counter
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rosprivacy import workers
 from rosprivacy.analysis.border import Core
 from rosprivacy.analysis.counts import Counts, counted
-from rosprivacy.analysis.crossed import CORE, Crossed, End, Source
-from rosprivacy.analysis.crossing import STOPS, codes_of
+from rosprivacy.analysis.crossed import Crossed
 from rosprivacy.analysis.errors import FleetError, InputError, InputErrors
-from rosprivacy.analysis.flow import WORD
-from rosprivacy.analysis.model import DISCLOSURE, Verdict
+from rosprivacy.analysis.model import Verdict
 from rosprivacy.analysis.network import Network
-from rosprivacy.analysis.pairs import Category, forms
+from rosprivacy.analysis.pairs import forms
 from rosprivacy.analysis.patterns import different
 from rosprivacy.analysis.spread import emitted, fill, meaning
+from rosprivacy.classes import Classes, first_of
 from rosprivacy.ingest.alike import COLON, chosen, known_to_flows
 from rosprivacy.ingest.domains import pseudo_robot
 from rosprivacy.ingest.placing import likeness, no_robot, nowhere, place_some
@@ -36,33 +35,20 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from rosprivacy.analysis.crossing import Class
     from rosprivacy.analysis.groups import Group
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.model import Element
+    from rosprivacy.analysis.outside import Outside
     from rosprivacy.analysis.patterns import Deviant, Likeness
     from rosprivacy.analysis.spread import Spread
     from rosprivacy.ingest.alike import Alike
     from rosprivacy.ingest.fleet import Fleet
     from rosprivacy.ingest.placing import Some
     from rosprivacy.ingest.split import Border, Piece
-    from rosprivacy.workers import Brought, Read, Run, Told
+    from rosprivacy.workers import Parts, Read, Told
 
     Bits = NDArray[np.uint64]
     Indices = NDArray[np.int64]
-
-T = TypeVar("T")
-S = TypeVar("S")
-
-
-class Parts(Protocol[T]):
-    """A value for each part, wherever it is."""
-
-    def map(self, function: Callable[[Any], S], *, keep: bool = False) -> Parts[S]:
-        """Do the same with each; ``keep`` what comes of it for more than one use."""
-
-    def collect(self) -> list[T]:
-        """Bring all values here, in order."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,6 +81,10 @@ class Found:
         Patterns, without ways.
     needed
         Names of the units in which ways of these lie, and of one for each kind of open element.
+    examples
+        Names of units: with these, data of every source gets to one leak of each name that it gets to.
+    leaking
+        Robots of the graph from which data gets to a leak or the like, or at which it does.
     told
         What the parts rest on, put together.
     leaving
@@ -112,6 +102,8 @@ class Found:
     groups: tuple[Group, ...]
     deviants: tuple[Deviant, ...]
     needed: frozenset[str]
+    examples: frozenset[str]
+    leaking: frozenset[str]
     counts: Counts
     told: Told
     likeness: Likeness
@@ -120,6 +112,12 @@ class Found:
     core: tuple[Piece, Spread]
     border: Border
     open: int
+
+    @property
+    def shared(self) -> dict[Element, Outside]:
+        """What is stated about the elements of the core, with the limits that hold there."""
+        piece = self.core[0]
+        return {piece.graph.elements[vertex]: facts for vertex, facts in piece.bound.outside.items()}
 
 
 def analyse_in_parts(question: Question, scatter: Callable[[Sequence[Any]], Parts[Any]]) -> Found:
@@ -183,7 +181,7 @@ class _Run:
         kernels = ready.map(partial(workers.kernel, forms=ways, hierarchy=question.hierarchy), keep=True)
 
         leaving = self._carry(middle, kernels, ours)
-        classes = _Classes(ours, piece, middle, ways, question.hierarchy)
+        classes = Classes(ours, piece, middle, ways, question.hierarchy)
         classes.number(kernels.map(workers.classes).collect())
         classes.carry(kernels)
         asked = workers.Asked(leaving, classes.leaving, classes.numbers, classes.counts, mask, question.hierarchy)
@@ -236,13 +234,13 @@ class _Run:
             before = arrived.copy()
             for bits, _ in answers:
                 arrived |= bits
-            self._needed |= set(_first(brought for _, brought in answers).values())
+            self._needed |= set(first_of(brought for _, brought in answers).values())
             if np.array_equal(before, arrived):
                 fill(ours, arrives, leaves)
                 return leaving
 
     def _put_together(
-        self, answers: Sequence[workers.Answer], classes: _Classes, told: Told, at: Border, piece: Piece,
+        self, answers: Sequence[workers.Answer], classes: Classes, told: Told, at: Border, piece: Piece,
         ours: Spread, wanted: Sequence[str], mask: int, leaving: Bits, ready: Parts[workers.Ready],
     ) -> Found:  # fmt: skip
         sources = [*classes.own_sources(), *(source for answer in answers for source in answer.sources)]
@@ -269,6 +267,8 @@ class _Run:
             groups=groups,
             deviants=different(crossed.shares, open_at, self._likeness),
             needed=frozenset(needed),
+            examples=frozenset(needed | crossed.examples | classes.all_bringers()),
+            leaking=frozenset(r for r, some in crossed.shares.items() if not all(share.dismissed for share in some)),
             counts=replace(counts, flows=counts.flows + _flows_between(told)),
             told=told,
             likeness=self._likeness,
@@ -280,148 +280,12 @@ class _Run:
         )
 
 
-class _Classes:
-    """Classes of sources, which stand for all that bring the same to the same places; and the sources of the core.
-
-    Attributes
-    ----------
-    numbers
-        Number of a category -> class -> its number.
-    counts
-        Number of a category -> how many classes and sources of the core it has.
-    leaving
-        What leaves the border, when all is carried.
-    """
-
-    def __init__(
-        self, ours: Spread, piece: Piece, middle: Core, ways: Mapping[int, tuple[int, ...]], hierarchy: Hierarchy
-    ) -> None:
-        self.numbers: dict[int, dict[Class, int]] = {number: {} for number in ways}
-        self.counts: dict[int, int] = {}
-        self.leaving: dict[Run, Bits] = {}
-        self._ours, self._piece, self._middle, self._ways = ours, piece, middle, ways
-        self._kinds = workers.kinds_of(piece, ours, hierarchy)
-        self._categories = {i: Category(ours, middle.network, i, some) for i, some in ways.items()}
-        self._at: dict[Run, tuple[Bits, Bits]] = {}
-        self._brought: dict[Run, Brought] = defaultdict(dict)
-
-    def number(self, told: Iterable[Sequence[tuple[int, str, int, Class]]]) -> None:
-        """Number the classes; sources of the core come after them, each by itself."""
-        found: dict[int, set[Class]] = defaultdict(set)
-        for some in told:
-            for number, _, _, met in some:
-                found[number].add(met)
-        for number in self._ways:
-            order = sorted(found[number], key=lambda met: (sorted(met[0]), sorted(met[1])))
-            self.numbers[number] = {met: i for i, met in enumerate(order)}
-            self.counts[number] = len(order) + len(self._categories[number].sources)
-
-    def carry(self, kernels: Parts[workers.Kernel]) -> None:
-        """Iterate the classes at the border to the fixpoint."""
-        arrived = {(number, stop): self._begin(number, stop=stop) for number in self._ways for stop in STOPS}
-        running = {run for run in arrived if self.counts[run[0]]}
-        while True:
-            for run in running:
-                self._at[run] = self._carried(run, arrived[run])
-                self.leaving[run] = self._at[run][1][self._middle.border]
-            if not running:
-                break
-            given = {run: self.leaving[run] for run in running}
-            known = {run: arrived[run] for run in running}
-            ask = partial(workers.classes_carried, leaving=given, known=known, counts=self.counts)
-            answers = kernels.map(ask).collect()
-            for run in sorted(running):
-                new = np.bitwise_or.reduce([answer[run][0] for answer in answers])
-                self._brought[run] |= _first(answer[run][1] for answer in answers)
-                if not (new & ~arrived[run]).any():
-                    running.discard(run)
-                arrived[run] = arrived[run] | new
-        for number in self._ways:
-            for stop in STOPS:
-                self.leaving.setdefault((number, stop), np.zeros((len(self._middle.border), 0), np.uint64))
-
-    def own_sources(self) -> list[Source]:
-        """Return the sources of the core."""
-        names, elements = self._ours.categories, self._piece.graph.elements
-        return [
-            Source(names[number], elements[vertex], CORE, len(self.numbers[number]) + i)
-            for number, category in self._categories.items()
-            for i, vertex in enumerate(category.sources.tolist())
-        ]
-
-    def own_ends(self) -> list[End]:
-        """Return the leaks and the like of the core, and how each class gets there."""
-        found = []
-        elements = self._piece.graph.elements
-        for number, category in self._categories.items():
-            n = self.counts[number]
-            if not n:
-                continue
-            both = self._ours.both(self._ours.categories[number])
-            ends = {c.kind: np.array(sorted(v for v, b in c.bits.items() if b & both), np.int64) for c in self._kinds}
-            own = np.arange(len(category.sources)) + len(self.numbers[number])
-
-            def there(stop: bool, at: Indices) -> Any:  # noqa: FBT001 - as in STOPS
-                carried = self._at[number, stop]  # noqa: B023 - called within the round
-                flags = category.there(*carried, at, n, stop=stop)  # noqa: B023
-                return category.brought(flags, at, category.sources, own)  # noqa: B023
-
-            for kind, at in ends.items():
-                through = there(False, at)
-                codes = codes_of(there(True, at) if kind == DISCLOSURE else through, through)
-                for row in np.flatnonzero(codes.any(axis=1)).tolist():
-                    name, element = self._ours.categories[number], elements[int(at[row])]
-                    found.append(End(kind, name, element, CORE, codes[row].tobytes()))
-        return found
-
-    def bringers(self, groups: Iterable[Group], sources: Iterable[Source]) -> set[str]:
-        """Return the units that bring the classes of what is shown to where they get."""
-        wanted: dict[tuple[str, Element], set[bool]] = defaultdict(set)
-        for group in groups:
-            wanted[group.category, group.source] |= set(STOPS)
-        found = set()
-        for source in sources:
-            number = self._ours.categories.index(source.category)
-            for stop in wanted.get((source.category, source.element), ()):
-                for (_, bit), unit in self._brought[number, stop].items():
-                    if bit % self.counts[number] == source.number:
-                        found.add(unit)
-        return found
-
-    def _begin(self, number: int, *, stop: bool) -> Bits:
-        """Where each class begins: what its sources bring to the border."""
-        n, ways = self.counts[number], self._ways[number]
-        found = np.zeros((len(self._middle.border), -(-n * len(ways) // WORD)), np.uint64)
-        for met, i in self.numbers[number].items():
-            for at, place in met[STOPS.index(stop)]:
-                word, bit = divmod(n * place + i, WORD)
-                found[at, word] |= np.uint64(1 << bit)
-        return found
-
-    def _carried(self, run: Run, arrived: Bits) -> tuple[Bits, Bits]:
-        number, stop = run
-        category, n = self._categories[number], self.counts[number]
-        own = np.arange(len(category.sources)) + len(self.numbers[number])
-        begun = category.begun(category.sources, own, n)
-        begun[self._middle.gates] = arrived
-        return category.carried(begun, n, stop=stop)
-
-
 def _together(told: Iterable[Told]) -> Told:
     """What all parts tell."""
     whole, *others = told
     for part in others:
         whole = workers.joined(whole, part)
     return whole
-
-
-def _first(brought: Iterable[Brought]) -> Brought:
-    """For each bit the first unit, by name."""
-    found: Brought = {}
-    for some in brought:
-        for key, unit in some.items():
-            found[key] = min(unit, found.get(key, unit))
-    return found
 
 
 def _opened(

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.counts import Counts
-from rosprivacy.analysis.errors import FleetError, InputErrors, reason
+from rosprivacy.analysis.errors import FleetError, InputError, InputErrors, reason
 from rosprivacy.asked import asked_for
 from rosprivacy.assembly import Result
 from rosprivacy.assumptions import own_assumptions
@@ -22,9 +22,12 @@ from rosprivacy.fleets import Reader
 from rosprivacy.ingest.alike import alike
 from rosprivacy.ingest.countries import countries
 from rosprivacy.ingest.fleet import read_fleet
+from rosprivacy.ingest.split import crossing_lines, split
 from rosprivacy.ontology.vocabulary import load
+from rosprivacy.results import check_new, write
 from rosprivacy.shown import shown
 from rosprivacy.spark import scatter, session
+from rosprivacy.unit_rows import Plan
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -32,6 +35,7 @@ if TYPE_CHECKING:
     from rosprivacy.distributed import Found
     from rosprivacy.ingest.domains import Member
     from rosprivacy.ingest.fleet import Robot
+    from rosprivacy.ingest.split import Unit
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.settings import Settings
     from rosprivacy.shown import Shown
@@ -63,8 +67,15 @@ class SparkResult(Result):
         return {**made, **asdict(self.counts)}
 
 
-def run_on_spark(file: str, settings: Settings, master: str | None = None) -> Result:
+def run_on_spark(file: str, settings: Settings, master: str | None = None, results: str | None = None) -> Result:
     """Read a fleet and analyse it on Spark; the workers read the policies, from where they are.
+
+    Parameters
+    ----------
+    master
+        Of a cluster; None for this machine.
+    results
+        Folder, to be made, for the answer about every robot as Parquet; for the answer about all categories only.
 
     Raises
     ------
@@ -80,9 +91,41 @@ def run_on_spark(file: str, settings: Settings, master: str | None = None) -> Re
         fleet, alike(fleet), settings.view, partial(file_reader, plain, str(Path.cwd())), vocabulary.hierarchy,
         asked_for(vocabulary, settings),
     )  # fmt: skip
+    if results:
+        check_new(results)
+        _check_whole(question)
     with session(master) as spark:
         found = analyse_in_parts(question, partial(scatter, spark))
-        return result(question, found, shown(question, found, settings.paths, settings.max_paths), settings, vocabulary)
+        told = shown(question, found, settings.paths, settings.max_paths)
+        answer = result(question, found, told, settings, vocabulary)
+        if results:
+            plan, units = plan_of(question, found, answer, plain)
+            write(spark, results, units, plan, answer.document())
+        return answer
+
+
+def plan_of(question: Question, found: Found, answer: Result, settings: Settings) -> tuple[Plan, tuple[Unit, ...]]:
+    """Return what the rows of units are made with, and the units."""
+    fixed, units = split(question.groups)
+    examples = tuple(unit for unit in units if unit.name in found.examples)
+    fleet = replace(question.fleet, robots=(), infrastructure=())
+    assumptions = answer.assumptions
+    return Plan(fleet, fixed, examples, found.shared, found.leaking, assumptions, settings, question.reader), units
+
+
+def _check_whole(question: Question) -> None:
+    """Refuse results that would not say everything, or have a flow for each pair of robots."""
+    problems: list[InputError] = []
+    if question.asked is not None:
+        what = "results are about all categories"
+        hint = "leave out --categories, --article9 and --data-type, or --results"
+        problems.append(FleetError("--results", 0, what, hint))
+    for line in sorted(crossing_lines(question.fleet)):
+        place = question.fleet.flows[line].place
+        what = "results have no flows from robots to robots, one for each pair"
+        problems.append(FleetError(place.file, place.line, what, "let them meet at an element of the fleet file"))
+    if problems:
+        raise InputErrors(problems)
 
 
 def result(question: Question, found: Found, told: Shown, settings: Settings, vocabulary: Vocabulary) -> SparkResult:

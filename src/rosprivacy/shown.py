@@ -18,10 +18,10 @@ from rosprivacy.ingest.placing import place_chosen
 from rosprivacy.ingest.split import split
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
-    from rosprivacy.analysis.model import Analysis, Bound
-    from rosprivacy.analysis.outside import Concern
+    from rosprivacy.analysis.model import Analysis, Bound, Element
+    from rosprivacy.analysis.outside import Concern, Outside
     from rosprivacy.analysis.spread import Spread
     from rosprivacy.distributed import Found, Question
     from rosprivacy.ingest.domains import Member
@@ -60,7 +60,7 @@ def shown(question: Question, found: Found, paths: str, max_paths: int) -> Shown
     read = question.reader()
     members = {group.robots[0].id: read(group.robots[0]) for group in groups}
     placed = place_chosen(question.fleet, groups, members, question.view)
-    placed = replace(placed, bound=_limited(placed, found))
+    placed = replace(placed, bound=limited(placed, found.shared))
 
     def choose(spread: Spread, kinds: Sequence[Concern], mask: int) -> Wanted:
         del kinds, mask
@@ -78,10 +78,8 @@ def shown(question: Question, found: Found, paths: str, max_paths: int) -> Shown
     return Shown(analysis, view, placed, members)
 
 
-def _limited(placed: Placed, found: Found) -> Bound:
-    """For what is shared the limits of every robot hold, also of those that are not placed."""
-    piece = found.core[0]
-    known = {piece.graph.elements[vertex]: facts for vertex, facts in piece.bound.outside.items()}
+def limited(placed: Placed, shared: Mapping[Element, Outside]) -> Bound:
+    """Return what is said, where for what is shared the limits of every robot hold, also of those not placed."""
     elements = placed.graph.elements
-    outside = {vertex: known.get(elements[vertex], facts) for vertex, facts in placed.bound.outside.items()}
+    outside = {vertex: shared.get(elements[vertex], facts) for vertex, facts in placed.bound.outside.items()}
     return replace(placed.bound, outside=outside)

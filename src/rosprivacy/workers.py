@@ -7,7 +7,7 @@ All of it is the program's own kernel on the part's graph; ``distributed.py`` pu
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 import numpy as np
 
@@ -39,8 +39,20 @@ if TYPE_CHECKING:
     Bits = NDArray[np.uint64]
     Read = Callable[[Robot], Member]  # a robot -> the same with its graph
 
+T = TypeVar("T")
+S = TypeVar("S")
 Problem = tuple[type[InputError], str, int, str, str]  # an error in a form that can be sent
 Run = tuple[int, bool]  # number of the category; whether nothing passes its leaks
+
+
+class Parts(Protocol[T]):
+    """A value for each part, wherever it is."""
+
+    def map(self, function: Callable[[Any], S], *, keep: bool = False) -> Parts[S]:
+        """Do the same with each; ``keep`` what comes of it for more than one use."""
+
+    def collect(self) -> list[T]:
+        """Bring all values here, in order."""
 
 
 def problems_of(errors: InputErrors) -> tuple[Problem, ...]:

@@ -1,0 +1,232 @@
+"""Units of a fleet -> their rows for the database, made where they are: no machine has all of them.
+
+In: units, and those in which the ways lie that data takes between units. Out: ``RobotRows`` of their robots, and of
+what is shared as far as it concerns them. What gets there is what gets there in the whole fleet, since the units that
+bring data to what is shared are placed along.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.findings import Options, analyse
+from rosprivacy.analysis.model import Verdict
+from rosprivacy.analysis.pairs import pairs
+from rosprivacy.assumptions import remembered, sources_of, what_it_rests_on
+from rosprivacy.ingest.fleetrows import FleetRows
+from rosprivacy.ingest.placing import place_chosen
+from rosprivacy.ingest.rows import rows_of
+from rosprivacy.ontology.vocabulary import load
+from rosprivacy.shown import limited
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+
+    from rosprivacy.analysis.model import Analysis, Element
+    from rosprivacy.analysis.outside import Concern, Outside
+    from rosprivacy.analysis.spread import Spread
+    from rosprivacy.ingest.alike import Alike
+    from rosprivacy.ingest.domains import Member
+    from rosprivacy.ingest.fleet import Fleet
+    from rosprivacy.ingest.placing import Placed
+    from rosprivacy.ingest.rows import RobotRows, Row
+    from rosprivacy.ingest.split import Unit
+    from rosprivacy.settings import Settings
+    from rosprivacy.workers import Read
+
+AT_ONCE = 25  # units that are placed in one graph
+Wanted = dict[int, set[tuple[str, int, int]]]
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """What is needed of the whole fleet to make the rows of some of it.
+
+    Attributes
+    ----------
+    fleet
+        Without its robots.
+    fixed
+        The infrastructure of the core.
+    examples
+        See ``Found``.
+    shared
+        What is stated about elements of the core.
+    leaking
+        See ``Found``.
+    assumptions
+        Of the answer about the whole fleet.
+    """
+
+    fleet: Fleet
+    fixed: tuple[Alike, ...]
+    examples: tuple[Unit, ...]
+    shared: Mapping[Element, Outside]
+    leaking: frozenset[str]
+    assumptions: Mapping[str, Any]
+    settings: Settings
+    reader: Callable[[], Read]
+
+
+def unit_rows(units: Sequence[Unit], plan: Plan) -> list[RobotRows]:
+    """Return the rows of the robots of some units, and of what is shared as far as it concerns them."""
+    made: list[RobotRows] = []
+    read = plan.reader()
+    for start in range(0, len(units), AT_ONCE):
+        made += _rows(units[start : start + AT_ONCE], plan, read)
+    return made
+
+
+def core_rows(plan: Plan) -> list[RobotRows]:
+    """Return the rows of what is shared, as far as it concerns no unit."""
+    placed, members = _placed((), plan, plan.reader())
+    fleet_rows = _fleet_rows(placed, members, plan, _unit_of(()))
+    core = _core(plan)
+    made = [rows for owner in core for rows in fleet_rows.of(owner)]
+    mine = {row["id"] for rows in made for row in rows.elements}
+    return [_ending_at(rows, mine, whole=True) for rows in made]
+
+
+def _rows(units: Sequence[Unit], plan: Plan, read: Read) -> Iterator[RobotRows]:
+    placed, members = _placed(units, plan, read)
+    fleet_rows = _fleet_rows(placed, members, plan, _unit_of(units))
+    core = _core(plan)
+    made = [rows for owner in sorted(_unit_of(units)) for rows in fleet_rows.of(owner)]
+    mine = {row["id"] for rows in made for row in rows.elements}
+    shared = {row["id"] for owner in core for rows in fleet_rows.of(owner) for row in rows.elements}
+    yield from (_derived_at(rows, mine | shared) for rows in made)
+    for owner in core:
+        yield from (_ending_at(rows, mine, whole=False) for rows in fleet_rows.of(owner))
+
+
+def _core(plan: Plan) -> list[str]:
+    """The names under which the core is filed."""
+    domains = {f"domain {group.robots[0].domain}" for group in plan.fixed if group.robots[0].domain}
+    return sorted({plan.fleet.name, *(robot.id for group in plan.fixed for robot in group.robots), *domains})
+
+
+def _unit_of(units: Iterable[Unit]) -> dict[str, str]:
+    """Robot of the graph, or domain, -> name of its unit."""
+    found: dict[str, str] = {}
+    for unit in units:
+        for group in unit.groups:
+            found |= {robot.id: unit.name for robot in group.placed}
+            if group.robots[0].domain:
+                found[f"domain {group.robots[0].domain}"] = unit.name
+    return found
+
+
+def _placed(units: Sequence[Unit], plan: Plan, read: Read) -> tuple[Placed, dict[str, Member]]:
+    names = {unit.name for unit in units}
+    others = [unit for unit in plan.examples if unit.name not in names]
+    groups = [*plan.fixed, *(group for unit in (*units, *others) for group in unit.groups)]
+    members = {group.robots[0].id: read(group.robots[0]) for group in groups}
+    placed = place_chosen(plan.fleet, groups, members, plan.settings.view)
+    return replace(placed, bound=limited(placed, plan.shared)), members
+
+
+def _fleet_rows(placed: Placed, members: Mapping[str, Member], plan: Plan, mine: Mapping[str, str]) -> FleetRows:
+    """Findings that begin in our units: each that stays there or ends at what is shared, and one for all others."""
+    vocabulary = load(ontologies=plan.settings.ontologies)
+    unit = {**_unit_of(plan.examples), **mine}
+
+    def choose(found: Spread, kinds: Sequence[Concern], mask: int) -> Wanted:
+        elements = found.graph.elements
+        owner = [unit.get(element.robot, "") for element in elements]
+        ours = [element.robot in mine for element in elements]
+        wanted: Wanted = {}
+        for part in pairs(found, kinds, mask):
+            beyond: dict[tuple[int, Element], tuple[bool, bool, int]] = {}
+            rows = zip(
+                *(c.tolist() for c in (part.sources, part.leaks, part.dismissed, part.pseudonymised)), strict=True
+            )
+            for source, leak, dismissed, hidden in rows:
+                if owner[source] == owner[leak] or not owner[source] or not owner[leak]:
+                    if ours[source] or ours[leak] or not (owner[source] or owner[leak]):
+                        wanted.setdefault(source, set()).add((part.kind, leak, part.category))
+                elif ours[source]:
+                    key = source, placed.likeness.alike(elements[leak])
+                    beyond[key] = min(beyond.get(key, (True, True, leak)), (dismissed, hidden, leak))
+            for (source, _), (_, _, leak) in beyond.items():
+                wanted.setdefault(source, set()).add((part.kind, leak, part.category))
+        return wanted
+
+    analysis = analyse(placed.graph, placed.bound, vocabulary.hierarchy, Options(choose=choose))
+    more = {
+        name: {**_more(member, analysis, plan, vocabulary), "verdict": _verdict(name, analysis, plan)}
+        for name, member in members.items()
+    }
+    everything = remembered({**plan.assumptions, "policies": [], "labels": []}, ())
+    more[plan.fleet.name] = {**everything, "verdict": _verdict(plan.fleet.name, analysis, plan)}
+    return FleetRows(placed, analysis, vocabulary, more, most_across=0)
+
+
+def _more(member: Member, analysis: Analysis, plan: Plan, vocabulary: Any) -> dict[str, str]:
+    sources = sources_of(member.policies)
+    said = what_it_rests_on(analysis.graph, sources, member.files, analysis, plan.settings, vocabulary)
+    if said["standard_channels"]:
+        spread = analysis.spread
+        robots = [spread.graph.elements[vertex] for vertex in spread.standard]
+        taken = {element.identity for element in robots if element.robot == member.robot.id}
+        said["standard_channels"] = {**said["standard_channels"], "taken": len(taken)}
+    return remembered(said, member.diagnostics)
+
+
+def _verdict(robot: str, analysis: Analysis, plan: Plan) -> str:
+    """Rule S12, of a robot: what comes from it or gets out at it counts."""
+    if robot in plan.leaking:
+        return str(Verdict.LEAK)
+    if any(question.element.robot == robot for question in analysis.open):
+        return str(Verdict.UNDETERMINED)
+    reached = any(carried.element.robot == robot for carried in analysis.carried)
+    return str(Verdict.NO_LEAK_FOUND if reached else Verdict.UNDETERMINED)
+
+
+def _derived_at(rows: RobotRows, known: Collection[str]) -> RobotRows:
+    """Without what is made of the data of other units."""
+    parts = _parts(rows)
+    parts["derived"] = [row for row in rows.derived if row["target"] in known]
+    return rows_of(rows.robot, _own(rows.properties), _with_foreign(parts, rows))
+
+
+def _ending_at(rows: RobotRows, ids: Collection[str], *, whole: bool) -> RobotRows:
+    """Of what is shared, the flows, findings and what is made that end at some elements; or with all else, too."""
+    parts = _parts(rows)
+    for name in ("flows", "findings", "derived"):
+        parts[name] = [row for row in parts[name] if row["target"] in ids]
+    found = {row["id"] for row in parts["findings"]}
+    parts["across"] = [row for row in rows.across if row["source"] in found]
+    if not whole:
+        parts |= {"elements": [], "enclaves": [], "memberships": [], "roles": {}}
+    return rows_of(rows.robot, _own(rows.properties), _with_foreign(parts, rows))
+
+
+def _with_foreign(parts: dict[str, Any], rows: RobotRows) -> dict[str, Any]:
+    """Only those elements of others that the rows name."""
+    named = {
+        row[end] for name in ("flows", "derived", "findings") for row in parts[name] for end in ("source", "target")
+    }
+    named |= {row["target"] for row in parts["across"]}
+    return {**parts, "foreign": [row for row in rows.foreign if row["id"] in named]}
+
+
+def put_together(some: Sequence[RobotRows]) -> RobotRows:
+    """Return the rows of what is shared, made of those that parts have of it; the first says what it is."""
+    first, *others = some
+    parts = _parts(first)
+    for rows in others:
+        for name in ("flows", "derived", "findings", "across", "foreign"):
+            parts[name] = [*parts[name], *getattr(rows, name)]
+    parts["foreign"] = sorted({row["id"]: row for row in parts["foreign"]}.values(), key=lambda row: str(row["id"]))
+    return rows_of(first.robot, _own(first.properties), parts)
+
+
+def _parts(rows: RobotRows) -> dict[str, Any]:
+    names = ("elements", "enclaves", "memberships", "flows", "roles", "derived", "findings", "across", "foreign")
+    return {name: getattr(rows, name) for name in names}
+
+
+def _own(properties: Row) -> Row:
+    """Without what ``rows_of`` adds."""
+    return {key: value for key, value in properties.items() if key not in ("digest", "elements", "flows", "roles")}
