@@ -32,6 +32,7 @@ from rosprivacy.unit_rows import Plan
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
+    from rosprivacy.building import Read
     from rosprivacy.distributed import Found
     from rosprivacy.ingest.domains import Member
     from rosprivacy.ingest.fleet import Robot
@@ -39,7 +40,6 @@ if TYPE_CHECKING:
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.settings import Settings
     from rosprivacy.shown import Shown
-    from rosprivacy.workers import Read
 
 
 @dataclass(frozen=True, slots=True)
