@@ -35,7 +35,7 @@ STOP_AT_THE_END = "import sys; sys.stdin.read(); from rosprivacy import database
 
 
 settings.register_profile("everyday", max_examples=25, deadline=None)
-settings.register_profile("thorough", max_examples=500, deadline=None, print_blob=True)
+settings.register_profile("thorough", max_examples=200, deadline=None, print_blob=True)
 
 
 def pytest_configure(config: pytest.Config) -> None:

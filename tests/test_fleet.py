@@ -448,6 +448,12 @@ class TestRefusals:
             "h.yaml:3: g.yaml includes itself, on a ring; remove one of the includes"
         ]
 
+    def test_a_robot_twice_whatever_the_file(self) -> None:
+        write("g.yaml", "fleet: 1\n\nrobots: {a: {policies: wall.xml}}\n")
+        assert refused(self.ROBOT + "include: g.yaml\n") == ["g.yaml:3: robot 'a' again, first at f.yaml:3; rename one"]
+        (line,) = refused("fleet: 1\nrobots:\n  a: {policies: eye.xml}\n  a: {policies: wall.xml}\n")
+        assert line.startswith("4: 'a' again, first in line 3;")
+
     def test_all_problems_of_all_files_at_once(self) -> None:
         write("g.yaml", "fleet: 1\nlimits: {Video: x}\n")
         lines = refused("fleet: 1\ninclude: [g.yaml, no.yaml]\nrobots: {a: {model: m}, b: {}}\nflows: [{from: a}]\n")

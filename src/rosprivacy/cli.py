@@ -1,6 +1,6 @@
 """The command line: options in, ``assembly`` called, a report out, an exit code.
 
-Exit codes: 0 no leak found, 1 leak, 2 bad input or usage, 3 database unreachable, 4 undetermined (only with
+Exit codes: 0 no leak found, 1 leak, 2 bad input or usage, 3 database or cluster unreachable, 4 undetermined (only with
 ``--fail-on undetermined``). Heavy imports stand in the commands, so that ``--version`` and completion are quick.
 """
 

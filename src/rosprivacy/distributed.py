@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rosprivacy import workers
+from rosprivacy import building, workers
 from rosprivacy.analysis.border import Core
 from rosprivacy.analysis.counts import Counts, counted
 from rosprivacy.analysis.crossed import Crossed
@@ -41,11 +41,12 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.outside import Outside
     from rosprivacy.analysis.patterns import Deviant, Likeness
     from rosprivacy.analysis.spread import Spread
+    from rosprivacy.building import Read, Told
     from rosprivacy.ingest.alike import Alike
     from rosprivacy.ingest.fleet import Fleet
     from rosprivacy.ingest.placing import Some
     from rosprivacy.ingest.split import Border, Piece
-    from rosprivacy.workers import Parts, Read, Told
+    from rosprivacy.workers import Parts
 
     Bits = NDArray[np.uint64]
     Indices = NDArray[np.int64]
@@ -154,10 +155,10 @@ class _Run:
         members = [replace(read(group.robots[0]), robot=robot) for group in fixed for robot in group.placed]
         core = place_some(fleet, members, question.view, own=True)
         built = self._scatter(units).map(
-            partial(workers.built, fleet=alone, view=question.view, reader=question.reader),
+            partial(building.built, fleet=alone, view=question.view, reader=question.reader),
             keep=True,
         )
-        told = _together([workers.told_of(core, members), *built.map(workers.told).collect()])
+        told = _together([building.told_of(core, members), *built.map(building.told).collect()])
         self._check(told, core, built)
         at = border(core, (lines for lines, side in told.named if side == 0))
         categories = sorted(told.emitted | emitted(core.part.elements.values()))
@@ -188,9 +189,9 @@ class _Run:
         answers = ready.map(partial(workers.answered, forms=ways, asked=asked)).collect()
         return self._put_together(answers, classes, told, at, piece, ours, wanted, mask, leaving, ready)
 
-    def _check(self, told: Told, core: Some, built: Parts[workers.Built]) -> None:
+    def _check(self, told: Told, core: Some, built: Parts[building.Built]) -> None:
         """Raise what is wrong with the input."""
-        workers.raised(told.problems)
+        building.raised(told.problems)
         problems: list[InputError] = []
         for number, flow in enumerate(self._fleet.flows):
             for side, end in enumerate((flow.source, flow.target)):
@@ -206,22 +207,22 @@ class _Run:
         if problems:
             raise InputErrors(problems)
 
-    def _names(self, end: str, core: Some, built: Parts[workers.Built]) -> list[str]:
+    def _names(self, end: str, core: Some, built: Parts[building.Built]) -> list[str]:
         """The names that the end of a flow could mean."""
         if COLON not in end:
             return sorted(element.name for element in core.part.elements if element.robot == self._fleet.name)
         robots = frozenset(chosen(end, known_to_flows(self._fleet)))
         there = {element.name for element in core.part.elements if element.robot in robots}
-        return sorted(there.union(*built.map(partial(workers.names_on, robots=robots)).collect()))
+        return sorted(there.union(*built.map(partial(building.names_on, robots=robots)).collect()))
 
     def _steps(self, ours: Spread, ready: Parts[workers.Ready]) -> set[tuple[int, int]]:
         """What data is made into other data anywhere."""
         found = {step for some in ours.derives.values() for step in some}
-        problems: list[workers.Problem] = []
+        problems: list[building.Problem] = []
         for wrong, some in ready.map(workers.steps).collect():
             problems += wrong
             found |= some
-        workers.raised(problems)
+        building.raised(problems)
         return found
 
     def _carry(self, middle: Core, kernels: Parts[workers.Kernel], ours: Spread) -> Bits:
@@ -284,7 +285,7 @@ def _together(told: Iterable[Told]) -> Told:
     """What all parts tell."""
     whole, *others = told
     for part in others:
-        whole = workers.joined(whole, part)
+        whole = building.joined(whole, part)
     return whole
 
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.counts import Counts
 from rosprivacy.analysis.errors import FleetError, InputError, InputErrors, reason
+from rosprivacy.analysis.model import Diagnostic, Place, Severity
 from rosprivacy.asked import asked_for
 from rosprivacy.assembly import Result
 from rosprivacy.assumptions import own_assumptions
@@ -32,6 +33,7 @@ from rosprivacy.unit_rows import Plan
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
+    from rosprivacy.building import Read
     from rosprivacy.distributed import Found
     from rosprivacy.ingest.domains import Member
     from rosprivacy.ingest.fleet import Robot
@@ -39,7 +41,6 @@ if TYPE_CHECKING:
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.settings import Settings
     from rosprivacy.shown import Shown
-    from rosprivacy.workers import Read
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,10 +142,15 @@ def result(question: Question, found: Found, told: Shown, settings: Settings, vo
         "fleet": [{"file": name, "sha256": digest} for name, digest in question.fleet.sources],
         "engine": "spark",
     }
+    bounds = (
+        f"analysed in parts, {found.open:,} open elements in the whole fleet: ways and distances are the shortest "
+        "among the robots that are shown, and open elements are listed of these"
+    )
+    said = (*found.told.diagnostics, Diagnostic(Place("--engine spark", 0), Severity.NOTICE, bounds))
     policies = {policy.file: policy for member in told.members.values() for policy in member.policies}
     labels = {file.file: file for member in told.members.values() for file in member.files}
     return SparkResult(
-        told.analysis, told.placed.bound, vocabulary, tuple(policies.values()), found.told.diagnostics, assumptions,
+        told.analysis, told.placed.bound, vocabulary, tuple(policies.values()), said, assumptions,
         tuple(labels.values()), fleet=told.view, counts=found.counts, open=found.open,
     )  # fmt: skip
 

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Analysis, Element
     from rosprivacy.analysis.outside import Concern, Outside
     from rosprivacy.analysis.spread import Spread
+    from rosprivacy.building import Read
     from rosprivacy.ingest.alike import Alike
     from rosprivacy.ingest.domains import Member
     from rosprivacy.ingest.fleet import Fleet
@@ -33,7 +34,6 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.rows import RobotRows, Row
     from rosprivacy.ingest.split import Unit
     from rosprivacy.settings import Settings
-    from rosprivacy.workers import Read
 
 AT_ONCE = 25  # units that are placed in one graph
 Wanted = dict[int, set[tuple[str, int, int]]]
