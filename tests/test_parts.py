@@ -17,15 +17,15 @@ from rosprivacy.analysis.counts import counted
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.findings import Options, analyse
 from rosprivacy.analysis.groups import Groups
-from rosprivacy.distributed import Question, analyse_in_parts
+from rosprivacy.cluster.distributed import Question, analyse_in_parts
+from rosprivacy.cluster.fleets import file_reader, result
+from rosprivacy.cluster.shown import shown
+from rosprivacy.cluster.workers import filled
 from rosprivacy.fleets import run_fleet
-from rosprivacy.fleets_spark import file_reader, result
 from rosprivacy.ingest.alike import alike
 from rosprivacy.ingest.fleet import read_fleet
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.settings import Settings
-from rosprivacy.shown import shown
-from rosprivacy.workers import filled
 from tests.graphs import ROOT
 from tests.test_findings import HIERARCHY
 from tests.test_fleet import policy, write
@@ -35,11 +35,11 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from rosprivacy.assembly import Result
-    from rosprivacy.distributed import Found
+    from rosprivacy.cluster.distributed import Found
+    from rosprivacy.cluster.shown import Shown
     from rosprivacy.ingest.domains import Member
     from rosprivacy.ingest.fleet import Robot
     from rosprivacy.ingest.split import Unit
-    from rosprivacy.shown import Shown
 
 
 @dataclass(frozen=True)

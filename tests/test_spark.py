@@ -15,11 +15,12 @@ import pytest
 from hypothesis import Phase, given, settings
 
 import rosprivacy
-from rosprivacy import database, spark
+from rosprivacy import database
 from rosprivacy.analysis.errors import ClusterError, InputError, InputErrors
 from rosprivacy.assembly import run_stored
-from rosprivacy.fleets_spark import run_on_spark
-from rosprivacy.results import check_new, read
+from rosprivacy.cluster import session as spark
+from rosprivacy.cluster.fleets import run_on_spark
+from rosprivacy.cluster.results import check_new, read
 from rosprivacy.settings import Settings
 from tests.graphs import ROOT, dump
 from tests.test_fleet import write

@@ -185,7 +185,7 @@ def analyze(
         with cli_graph.driver_of(neo4j) as driver:
             result = run_stored(driver, settings)
     elif fleet and engine is Engine.spark:
-        from rosprivacy.fleets_spark import run_on_spark
+        from rosprivacy.cluster.fleets import run_on_spark
 
         result = run_on_spark(fleet, settings, master, results)
     elif fleet:

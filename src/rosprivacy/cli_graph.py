@@ -134,9 +134,9 @@ def _load_fleet(file: str, settings: Settings, neo4j: str | None) -> None:
 
 
 def _load_results(folder: str, ontologies: tuple[str, ...], neo4j: str | None) -> None:
+    from rosprivacy.cluster.results import read
     from rosprivacy.ingest import neo4j as database
     from rosprivacy.ontology.vocabulary import load
-    from rosprivacy.results import read
 
     vocabulary = load(ontologies=ontologies)
     document, rows = read(folder)

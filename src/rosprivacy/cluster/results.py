@@ -15,9 +15,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import ClusterError, GraphError, InputErrors, reason, shown
+from rosprivacy.cluster.session import MISSING, scatter, told
+from rosprivacy.cluster.unit_rows import Plan, core_rows, put_together, unit_rows
 from rosprivacy.ingest.rows import RobotRows
-from rosprivacy.spark import MISSING, scatter, told
-from rosprivacy.unit_rows import Plan, core_rows, put_together, unit_rows
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence

@@ -19,7 +19,7 @@ from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.outside import concerns, country_unknown
 from rosprivacy.analysis.questions import open_bits
 from rosprivacy.analysis.spread import Spread, fill, meaning
-from rosprivacy.building import Problem, problems_of
+from rosprivacy.cluster.building import Problem, problems_of
 from rosprivacy.ingest.split import HUB, Piece, units_piece
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Element
     from rosprivacy.analysis.outside import Concern
     from rosprivacy.analysis.patterns import Likeness
-    from rosprivacy.building import Built
+    from rosprivacy.cluster.building import Built
     from rosprivacy.ingest.fleet import Fleet
     from rosprivacy.ingest.split import Border
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Analysis, Bound, Element
     from rosprivacy.analysis.outside import Concern, Outside
     from rosprivacy.analysis.spread import Spread
-    from rosprivacy.distributed import Found, Question
+    from rosprivacy.cluster.distributed import Found, Question
     from rosprivacy.ingest.domains import Member
     from rosprivacy.ingest.placing import Placed
 

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rosprivacy import building, workers
 from rosprivacy.analysis.border import Core
 from rosprivacy.analysis.counts import Counts, counted
 from rosprivacy.analysis.crossed import Crossed
@@ -24,7 +23,8 @@ from rosprivacy.analysis.network import Network
 from rosprivacy.analysis.pairs import forms
 from rosprivacy.analysis.patterns import different
 from rosprivacy.analysis.spread import emitted, fill, meaning
-from rosprivacy.classes import Classes, first_of
+from rosprivacy.cluster import building, workers
+from rosprivacy.cluster.classes import Classes, first_of
 from rosprivacy.ingest.alike import COLON, chosen, known_to_flows
 from rosprivacy.ingest.domains import pseudo_robot
 from rosprivacy.ingest.placing import likeness, no_robot, nowhere, place_some
@@ -41,12 +41,12 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.outside import Outside
     from rosprivacy.analysis.patterns import Deviant, Likeness
     from rosprivacy.analysis.spread import Spread
-    from rosprivacy.building import Read, Told
+    from rosprivacy.cluster.building import Read, Told
+    from rosprivacy.cluster.workers import Parts
     from rosprivacy.ingest.alike import Alike
     from rosprivacy.ingest.fleet import Fleet
     from rosprivacy.ingest.placing import Some
     from rosprivacy.ingest.split import Border, Piece
-    from rosprivacy.workers import Parts
 
     Bits = NDArray[np.uint64]
     Indices = NDArray[np.int64]

@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rosprivacy import workers
 from rosprivacy.analysis.crossed import CORE, End, Source
 from rosprivacy.analysis.crossing import STOPS, codes_of
 from rosprivacy.analysis.flow import WORD
 from rosprivacy.analysis.model import DISCLOSURE
 from rosprivacy.analysis.pairs import Category
+from rosprivacy.cluster import workers
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.model import Element
     from rosprivacy.analysis.spread import Spread
+    from rosprivacy.cluster.workers import Brought, Parts, Run
     from rosprivacy.ingest.split import Piece
-    from rosprivacy.workers import Brought, Parts, Run
 
     Bits = NDArray[np.uint64]
     Indices = NDArray[np.int64]

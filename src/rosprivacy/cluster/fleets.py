@@ -18,29 +18,29 @@ from rosprivacy.analysis.model import Diagnostic, Place, Severity
 from rosprivacy.asked import asked_for
 from rosprivacy.assembly import Result
 from rosprivacy.assumptions import own_assumptions
-from rosprivacy.distributed import Question, analyse_in_parts
+from rosprivacy.cluster.distributed import Question, analyse_in_parts
+from rosprivacy.cluster.results import check_new, write
+from rosprivacy.cluster.session import scatter, session
+from rosprivacy.cluster.shown import shown
+from rosprivacy.cluster.unit_rows import Plan
 from rosprivacy.fleets import Reader
 from rosprivacy.ingest.alike import alike
 from rosprivacy.ingest.countries import countries
 from rosprivacy.ingest.fleet import read_fleet
 from rosprivacy.ingest.split import crossing_lines, split
 from rosprivacy.ontology.vocabulary import load
-from rosprivacy.results import check_new, write
-from rosprivacy.shown import shown
-from rosprivacy.spark import scatter, session
-from rosprivacy.unit_rows import Plan
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from rosprivacy.building import Read
-    from rosprivacy.distributed import Found
+    from rosprivacy.cluster.building import Read
+    from rosprivacy.cluster.distributed import Found
+    from rosprivacy.cluster.shown import Shown
     from rosprivacy.ingest.domains import Member
     from rosprivacy.ingest.fleet import Robot
     from rosprivacy.ingest.split import Unit
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.settings import Settings
-    from rosprivacy.shown import Shown
 
 
 @dataclass(frozen=True, slots=True)

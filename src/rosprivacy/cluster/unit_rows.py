@@ -14,11 +14,11 @@ from rosprivacy.analysis.findings import Options, analyse
 from rosprivacy.analysis.model import Verdict
 from rosprivacy.analysis.pairs import pairs
 from rosprivacy.assumptions import remembered, sources_of, what_it_rests_on
+from rosprivacy.cluster.shown import limited
 from rosprivacy.ingest.fleetrows import FleetRows
 from rosprivacy.ingest.placing import place_chosen
 from rosprivacy.ingest.rows import rows_of
 from rosprivacy.ontology.vocabulary import load
-from rosprivacy.shown import limited
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Analysis, Element
     from rosprivacy.analysis.outside import Concern, Outside
     from rosprivacy.analysis.spread import Spread
-    from rosprivacy.building import Read
+    from rosprivacy.cluster.building import Read
     from rosprivacy.ingest.alike import Alike
     from rosprivacy.ingest.domains import Member
     from rosprivacy.ingest.fleet import Fleet
