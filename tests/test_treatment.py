@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def number(system: System, element: Element) -> int:
-    return int(element.name[2:]) + (system.nodes if element.is_channel else 0)
+    return int(element.name.lstrip("/nt")) + (system.nodes if element.is_channel else 0)
 
 
 @given(systems())
