@@ -7,8 +7,10 @@ counts of the whole fleet.
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.counts import counted
 from rosprivacy.report.document import element_dict
 
 if TYPE_CHECKING:
@@ -54,24 +56,7 @@ def _second(item: Any, likeness: Likeness) -> bool:
 
 def counts(analysis: Analysis, likeness: Likeness) -> dict[str, int]:
     """Return how many elements, flows and standard channels the fleet has, not its graph."""
-    elements = analysis.graph.elements
-
-    def weight(source: int, target: int) -> int:
-        a, b = elements[source].robot, elements[target].robot
-        if a == b or not likeness.is_robot(a) or not likeness.is_robot(b):
-            return likeness.weight(a) * likeness.weight(b) if a != b else likeness.weight(a)
-        if likeness.second.get(b) == a:
-            return likeness.weight(a) * (likeness.weight(a) - 1)
-        return likeness.weight(a) * likeness.weight(b)
-
-    identities = {element.identity for element in elements}
-    taken = {elements[vertex].identity for vertex in analysis.spread.standard}
-    return {
-        "flows": sum(weight(flow.source, flow.target) for flow in analysis.graph.flows),
-        "denied_flows": sum(weight(flow.source, flow.target) for flow in analysis.graph.denied),
-        "elements": sum(likeness.weight(robot) for robot, *_ in identities),
-        "standard_channels": sum(likeness.weight(robot) for robot, *_ in taken),
-    }
+    return asdict(counted(analysis.graph, analysis.spread, likeness))
 
 
 def _fleet(view: FleetView) -> dict[str, Any]:
