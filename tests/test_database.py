@@ -352,6 +352,7 @@ def test_without_the_extra_there_is_nothing_to_stop(nowhere: Path) -> None:
     assert not nowhere.exists()
 
 
+@pytest.mark.slow
 @pytest.mark.database
 def test_the_commands(private_neo4j: Connection) -> None:
     folder, page = database.state_folder(), database.status().browser

@@ -67,6 +67,7 @@ def _renamed(one: RobotRows) -> Any:
     return text.replace(one.robot, "ROBOT")
 
 
+@pytest.mark.slow
 @pytest.mark.database
 def test_the_answer_from_the_database_is_that_of_the_file(driver: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ROOT / "examples")

@@ -136,6 +136,7 @@ def test_every_query_has_a_case_and_every_case_a_query() -> None:
     assert all(cases["hits"]["rows"] for cases in CASES.values())
 
 
+@pytest.mark.slow
 @pytest.mark.database
 def test_on_an_empty_database_there_are_no_rows(driver: Driver) -> None:
     fill(driver, {})

@@ -117,6 +117,7 @@ class TestShapes:
             "<urn:example:Sock>",
         }
 
+    @pytest.mark.slow
     @pytest.mark.parametrize(
         ("predicate", "problem"),
         [
@@ -140,6 +141,7 @@ class TestShapes:
             graph.remove((subject, predicate, None))
         assert any(problem in message for message in messages(graph, strict=True))
 
+    @pytest.mark.slow
     @pytest.mark.parametrize(
         ("turtle", "problem"),
         [

@@ -40,6 +40,8 @@ if TYPE_CHECKING:
 __all__ = ["fleet_file"]  # a fixture
 pytest.importorskip("pyspark", reason="without the [spark] extra")
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def session() -> Iterator[SparkSession]:
