@@ -18,7 +18,7 @@ from rosprivacy.analysis.flow import WORD, fixpoint
 from rosprivacy.analysis.network import Network
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
@@ -76,10 +76,7 @@ class Cut:
         leaving
             Shape (border, words): what leaves each element of the border.
         """
-        network = self.network
-        emitted = network.emitted.copy()
-        emitted[self.border] = leaving
-        return fixpoint(network.edges, emitted, network.keep, network.derivations)
+        return _carried(self.network, self.border, leaving)
 
     def bringers(self, leaves: Bits, new: Bits) -> Bringer:
         """Return, for each bit that is new at the border, the first unit that brings it there.
@@ -120,12 +117,11 @@ class Core:
 
     def carried(self, arrived: Bits) -> tuple[Bits, Bits]:
         """Return what arrives at and what leaves each vertex, when this much arrived at the border: (border, words)."""
-        network = self.network
-        emitted = network.emitted.copy()
-        emitted[self.gates] = arrived
-        return fixpoint(network.edges, emitted, network.keep, network.derivations)
+        return _carried(self.network, self.gates, arrived)
 
 
-def first_of(found: Mapping[tuple[int, int], int], other: Mapping[tuple[int, int], int]) -> Bringer:
-    """Put two answers together: for each bit the lower unit."""
-    return {key: min(some[key] for some in (found, other) if key in some) for key in {**found, **other}}
+def _carried(network: Network, at: Indices, given: Bits) -> tuple[Bits, Bits]:
+    """The fixpoint, when some vertices emit what is given."""
+    emitted = network.emitted.copy()
+    emitted[at] = given
+    return fixpoint(network.edges, emitted, network.keep, network.derivations)

@@ -61,9 +61,7 @@ class Crossing:
     def of(cls, found: Spread, cut: Cut, number: int, forms: tuple[int, ...], kinds: Sequence[Concern]) -> Crossing:
         """Make ready what all rounds need."""
         category = Category(found, cut.network, number, forms)
-        both = found.both(found.categories[number])
-        ends = {c.kind: np.array(sorted(v for v, bits in c.bits.items() if bits & both), np.int64) for c in kinds}
-        return cls(cut, category, forms, _within(cut.unit[category.sources]), ends)
+        return cls(cut, category, forms, _within(cut.unit[category.sources]), ends_of(found, number, kinds))
 
     def classes(self) -> dict[int, Class]:
         """Source -> where in the border its data gets to."""
@@ -97,7 +95,8 @@ class Crossing:
         leaving
             What leaves the border on ways without another leak, and on all ways.
         """
-        return self._codes([self.carried(given, n, stop=stop) for given, stop in zip(leaving, STOPS, strict=True)], n)
+        carried = [self.carried(given, n, stop=stop) for given, stop in zip(leaving, STOPS, strict=True)]
+        return how(self.category, carried, self.ends, n)
 
     def within(self, arriving: Mapping[str, Codes], numbers: Mapping[int, int]) -> Iterator[tuple[str, int, int, int]]:
         """(kind, source, end, how): the pairs of one unit, by ways within it and ways over the border.
@@ -115,31 +114,16 @@ class Crossing:
             table = self._table(some, sources, n)
             begun = self.category.begun(sources, some, n)
             carried = [self.category.carried(begun, n, stop=stop) for stop in STOPS]
-            for kind, own in self._codes(carried, n, sources, some).items():
+            for kind, own in how(self.category, carried, self.ends, n, sources, some).items():
                 ends, codes = self.ends[kind], arriving[kind]
                 source = table[self.cut.unit[ends]]  # by end and number within the unit; -1 for none
                 klass = of_class[source]
                 padded = np.column_stack([codes, np.zeros(len(codes), np.uint8)])
                 over = np.take_along_axis(padded, np.where(klass < 0, codes.shape[1], klass), axis=1)
-                how = _better(own, over)
-                how[source < 0] = NOT_REACHED
-                for end, number in zip(*np.nonzero(how), strict=True):
-                    yield kind, int(source[end, number]), int(ends[end]), int(how[end, number])
-
-    def _codes(
-        self, carried: Sequence[tuple[Bits, Bits]], n: int, sources: Indices = NOTHING, numbers: Indices = NOTHING
-    ) -> dict[str, Codes]:
-        """How data gets to the ends of each kind; only disclosures are dismissed (rule S10)."""
-
-        def there(way: int, at: Indices) -> tuple[Flags, Flags]:
-            found = self.category.there(*carried[way], at, n, stop=STOPS[way])
-            return self.category.brought(found, at, sources, numbers)
-
-        found = {}
-        for kind, at in self.ends.items():
-            through = there(1, at)
-            found[kind] = codes_of(there(0, at) if kind == DISCLOSURE else through, through)
-        return found
+                best = _better(own, over)
+                best[source < 0] = NOT_REACHED
+                for end, number in zip(*np.nonzero(best), strict=True):
+                    yield kind, int(source[end, number]), int(ends[end]), int(best[end, number])
 
     def _rounds(self) -> Iterator[tuple[Indices, Indices, int]]:
         """(number within the unit, less those of the rounds before; source) of so many as one run takes; and n."""
@@ -167,8 +151,43 @@ def _within(units: Indices) -> Indices:
     return numbers
 
 
-def codes_of(free: tuple[Flags, Flags], through: tuple[Flags, Flags]) -> Codes:
-    """Return how data gets there: not through another leak before through one, as it is before pseudonymised."""
+def ends_of(found: Spread, number: int, kinds: Sequence[Concern]) -> dict[str, Indices]:
+    """Return, by kind of finding, the vertices where data of a category ends in one; sorted."""
+    both = found.both(found.categories[number])
+    return {c.kind: np.array(sorted(v for v, bits in c.bits.items() if bits & both), np.int64) for c in kinds}
+
+
+def how(
+    category: Category,
+    carried: Sequence[tuple[Bits, Bits]],
+    ends: Mapping[str, Indices],
+    n: int,
+    sources: Indices = NOTHING,
+    numbers: Indices = NOTHING,
+) -> dict[str, Codes]:
+    """Return how data gets to the ends of each kind; only disclosures are dismissed (rule S10).
+
+    Parameters
+    ----------
+    carried
+        What arrives at and leaves each vertex, by way: in the order of ``STOPS``.
+    sources, numbers
+        Those whose own data counts, too.
+    """
+
+    def there(way: int, at: Indices) -> tuple[Flags, Flags]:
+        found = category.there(*carried[way], at, n, stop=STOPS[way])
+        return category.brought(found, at, sources, numbers)
+
+    codes = {}
+    for kind, at in ends.items():
+        through = there(1, at)
+        codes[kind] = _codes_of(there(0, at) if kind == DISCLOSURE else through, through)
+    return codes
+
+
+def _codes_of(free: tuple[Flags, Flags], through: tuple[Flags, Flags]) -> Codes:
+    """How data gets there: not through another leak before through one, as it is before pseudonymised."""
     codes = np.zeros(free[0].shape, np.uint8)
     for flags, code in ((through[1], BOTH), (through[0], DISMISSED), (free[1], HIDDEN), (free[0], FREE)):
         codes[flags] = code

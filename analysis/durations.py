@@ -12,6 +12,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from datetime import date, timedelta
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
 
 DAYS = (date(1696, 9, 1), date(1697, 2, 1), date(1903, 3, 1), date(1903, 7, 1))
 LONGEST = 12_000  # months: a thousand years
@@ -81,3 +85,8 @@ def parse(text: str) -> Duration:
     if months > LONGEST or read.tdelta > timedelta(days=31 * LONGEST):
         raise ValueError("longer than a thousand years")
     return Duration(text, int(months), read.tdelta / _SECOND)
+
+
+def ordered(pairs: Iterable[tuple[str, Duration]]) -> tuple[tuple[str, Duration], ...]:
+    """Return (category, duration) in the one order in which facts hold them (rule S14)."""
+    return tuple(sorted(pairs, key=lambda pair: (pair[0], str(pair[1]))))

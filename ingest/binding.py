@@ -11,6 +11,7 @@ from dataclasses import replace
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.durations import ordered
 from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, shown
 from rosprivacy.analysis.model import Bound
 from rosprivacy.analysis.outside import by_kind
@@ -85,7 +86,7 @@ def _outside(graph: FlowGraph, labels: Iterable[Labels]) -> dict[int, Outside]:
     files = list(labels)
     ranked = sorted(files, key=lambda file: file.own)
     stated = {(entry.kind, entry.name): entry.outside for file in ranked for entry in file.elements}
-    limits = tuple(sorted({limit for file in files for limit in file.limits}, key=lambda pair: (pair[0], str(pair[1]))))
+    limits = ordered({limit for file in files for limit in file.limits})
     return {
         vertex: replace(stated[element.kind, element.name], limits=limits)
         for vertex, element in enumerate(graph.elements)

@@ -17,6 +17,7 @@ from rosprivacy.analysis.decisions import Choice, Decision, Decisions
 from rosprivacy.analysis.errors import DecisionError, InputError, InputErrors, shown
 from rosprivacy.analysis.model import Place
 from rosprivacy.ingest import yamlfile
+from rosprivacy.ingest.filereader import FileReader
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -96,28 +97,20 @@ def is_date(written: str) -> bool:
 
 
 @dataclass
-class _Reader:
-    """Walks the file once, from the outside in."""
+class _Reader(FileReader):
+    """One decisions file."""
 
-    file: str
     vocabulary: Vocabulary
-    problems: list[InputError] = field(default_factory=list)
+    error: type[InputError] = field(default=DecisionError, kw_only=True)
     ids: dict[tuple[str, str], int] = field(default_factory=dict)
 
     def document(self, top: Value) -> Iterator[Decision]:
         if top.kind != "map":
             self.problem(top.line, f"a decisions file is a map, not a {top.kind}", "begin with 'decisions: 1'")
             return
-        version = top.get("decisions")
-        if version is None:
-            self.problem(top.line, "no 'decisions: 1'", "say so on the first line: it is the format's version")
-        elif (version.kind, version.text) != ("number", "1"):
-            what = f"decisions format {shown(version.text or version.kind)!r}"
-            self.problem(version.line, what, "this reads 'decisions: 1'")
-        findings = {key: value for key, _, value in self._entries(top, TOP)}.get("findings")
-        if findings is not None and findings.kind not in ("list", "empty"):
-            self.problem(findings.line, f"findings takes a list, not a {findings.kind}", "write '- id: …' lines")
-        for item in findings.items if findings else ():
+        self.version(top, "decisions", "decisions")
+        findings = {key: value for key, _, value in self.entries_of(top, TOP)}.get("findings")
+        for item in self.list_of(findings, "findings", "write '- id: …' lines") if findings else ():
             if item.kind != "map":
                 self.problem(item.line, f"a decision is a map, not a {item.kind}", "write id: … and decision: …")
             else:
@@ -125,7 +118,7 @@ class _Reader:
 
     def _decision(self, item: Value) -> Decision:
         before = len(self.problems)
-        said = {key: value for key, _, value in self._entries(item, KEYS)}
+        said = {key: value for key, _, value in self.entries_of(item, KEYS)}
         texts: dict[str, Any] = {key: self._text(said[key], key) for key in (*TARGET[:-1], *TEXTS) if key in said}
         choice = self._choice(item, said.get("decision"))
         self._target(item, said, texts)
@@ -204,18 +197,6 @@ class _Reader:
             else:
                 what = f"legal basis {shown(item.text or item.kind)!r}"
                 self.problem(item.line, what, "write such as 6(1)(f), and 9(2)(h) for special categories")
-
-    def _entries(self, value: Value, known: tuple[str, ...]) -> Iterator[tuple[str, int, Value]]:
-        for key, line, child in value.entries:
-            if key in known:
-                yield key, line, child
-            else:
-                close = get_close_matches(key, known, n=1)
-                hint = f"did you mean {close[0]!r}?" if close else f"one of {', '.join(known)}"
-                self.problem(line, f"unknown key {shown(key)!r}", hint)
-
-    def problem(self, line: int, problem: str, hint: str) -> None:
-        self.problems.append(DecisionError(self.file, line, problem, hint))
 
 
 def _a(value: Value) -> str:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
-from rosprivacy.analysis.durations import Duration
+from rosprivacy.analysis.durations import Duration, ordered
 from rosprivacy.analysis.durations import parse as parse_duration
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import NON_ROS, Place
@@ -115,7 +115,7 @@ class _Facts:
         self._encrypted: bool | None = None
 
     def outside(self, place: Place) -> Outside:
-        retention = tuple(sorted(self._retention, key=lambda pair: (pair[0], str(pair[1]))))
+        retention = ordered(self._retention)
         return Outside(retention, (), self._backups, encrypted=self._encrypted, place=place, **self._texts)
 
     def take(self, key: str, line: int, value: Value) -> None:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.durations import parse
+from rosprivacy.analysis.durations import ordered, parse
 from rosprivacy.analysis.model import Place
 from rosprivacy.analysis.outside import EVERY, RECIPIENTS, TRANSFERS, Outside
 from rosprivacy.ingest.countries import countries
@@ -82,7 +82,7 @@ def _durations(said: Mapping[str, Any], key: str, categories: Collection[str]) -
             found.append((category or EVERY, parse(duration)))
         except ValueError as error:
             raise ValueError(f"{key} {duration!r} is {error}") from None
-    return tuple(sorted(found, key=lambda pair: (pair[0], str(pair[1]))))
+    return ordered(found)
 
 
 def _backups(written: Any) -> Duration | bool | None:

@@ -143,11 +143,7 @@ class _Fleet:
         self._sources[file] = hashlib.sha256(data).hexdigest()
         part = FleetReader(file, self._vocabulary, "", OWN, error=FleetError, problems=self.problems)
         self._parts.append(part)
-        version = top.get("fleet")
-        if version is None:
-            part.problem(top.line, "no 'fleet: 1'", "say so on the first line: it is the format's version")
-        elif (version.kind, version.text) != ("number", "1"):
-            part.problem(version.line, f"fleet format {shown(version.text or version.kind)!r}", "this reads 'fleet: 1'")
+        part.version(top, "fleet", "fleet")
         for key, line, value in part.entries_of(top, ("fleet", *SECTIONS)) if top.kind == "map" else ():
             self._section(part, key, line, value, (*within, path))
 

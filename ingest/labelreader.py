@@ -9,13 +9,13 @@ Source: the paper, section II-A, for the roles and the six lists.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, LabelError, shown
 from rosprivacy.analysis.model import Diagnostic, Method, Place, Severity, Statement
 from rosprivacy.ingest.elements import is_outside, read_element, read_limits
 from rosprivacy.ingest.entries import EXACT, SHIPPED, Entry, FlowEntry, specificity
+from rosprivacy.ingest.filereader import FileReader
 from rosprivacy.ingest.names import LONGEST_NAME
 
 if TYPE_CHECKING:
@@ -42,21 +42,19 @@ LONGEST_GROUP = 100  # characters of a group of persons
 
 
 @dataclass
-class LabelReader:
+class LabelReader(FileReader):
     """Walks the file once, from the outside in."""
 
-    file: str
     vocabulary: Vocabulary
     category: str
     tier: int
     above: int = 0
-    problems: list[InputError] = field(default_factory=list)
     diagnostics: list[Diagnostic] = field(default_factory=list)
     entries: list[Entry] = field(default_factory=list)
     flows: list[FlowEntry] = field(default_factory=list)
     elements: list[Stated] = field(default_factory=list)
     limits: list[Limit] = field(default_factory=list)
-    error: type[InputError] = LabelError
+    error: type[InputError] = field(default=LabelError, kw_only=True)
 
     def rank(self, specific: int) -> tuple[int, int]:
         """Return the rank of a statement."""
@@ -72,13 +70,7 @@ class LabelReader:
             self._labels(top)
 
     def _labels(self, top: Value) -> None:
-        version = top.get("labels")
-        if version is None:
-            self.problem(top.line, "no 'labels: 1'", "say so on the first line: it is the format's version")
-        elif (version.kind, version.text) != ("number", "1"):
-            self.problem(
-                version.line, f"label format {shown(version.text or version.kind)!r}", "this reads 'labels: 1'"
-            )
+        self.version(top, "labels", "label")
         for key, line, value in self.entries_of(top, ("labels", *SECTIONS, *OUTSIDE, "flows")):
             if key in ("flows", *OUTSIDE):
                 self.outside(key, line, value)
@@ -90,7 +82,7 @@ class LabelReader:
         if section == "limits":
             self.limits += read_limits(self, line, value)
         elif section == "flows":
-            for item in self._list(value, "flows"):
+            for item in self.list_of(value, "flows"):
                 self._flow(item)
         elif value.kind not in ("map", "empty"):
             self.problem(line, f"elements is a map, not a {value.kind}", "write 'name: {kind: storage}'")
@@ -156,7 +148,9 @@ class LabelReader:
         self._not_empty(value, "source")
         for written, line, channels in value.entries:
             name = self.kind_of_data(written, line)
-            through = tuple(sorted({self._name(item) for item in self._list(channels, f"source of {shown(written)}")}))
+            through = tuple(
+                sorted({self._name(item) for item in self.list_of(channels, f"source of {shown(written)}")})
+            )
             if not through:
                 self.problem(line, f"source of {shown(written)} names no channel", "name them: [/topic]")
             yield Statement("source", (name,), rank, place, through=through)
@@ -180,7 +174,7 @@ class LabelReader:
     def _derives(self, value: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
         if value.kind == "empty":
             self.problem(value.line, "derives takes a list, not nothing", "write [{from: Video, to: FaceTemplate}]")
-        for item in self._list(value, "derives"):
+        for item in self.list_of(value, "derives"):
             if item.kind != "map":
                 self.problem(
                     item.line, f"a derivation is a map, not a {item.kind}", "write {from: Video, to: FaceTemplate}"
@@ -253,7 +247,7 @@ class LabelReader:
         name = self.kind_of_data(self.category, 0)
         for role, line, value in self.entries_of(top, SIX_LISTS):
             kinds = SECTIONS["channels" if role in ("sensitive", "mundane") else "nodes"]
-            for item in self._list(value, role):
+            for item in self.list_of(value, role):
                 element = self._name(item)
                 place, rank = Place(self.file, item.line), self.rank(specificity(element))
                 method = Method.ANONYMISE if role == "sanitizer" else None
@@ -264,22 +258,12 @@ class LabelReader:
                 self.diagnostics.append(Diagnostic(Place(self.file, line), Severity.NOTICE, message))
 
     def entries_of(self, value: Value, known: tuple[str, ...]) -> Iterable[tuple[str, int, Value]]:
-        """Return the entries of a map, those with unknown keys reported."""
-        for key, line, child in value.entries:
-            if key == "note" and key in known:
-                if child.kind != "text":
-                    self.problem(line, f"note takes text, not a {child.kind}", "write it, or remove it")
-            elif key in known:
+        """Return the entries of a map but for notes, those with unknown keys reported."""
+        for key, line, child in super().entries_of(value, known):
+            if key != "note":
                 yield key, line, child
-            else:
-                close = get_close_matches(key, known, n=1)
-                hint = f"did you mean {close[0]!r}?" if close else f"one of {', '.join(known)}"
-                self.problem(line, f"unknown key {shown(key)!r}", hint)
-
-    def _list(self, value: Value, what: str) -> tuple[Value, ...]:
-        if value.kind not in ("list", "empty"):
-            self.problem(value.line, f"{what} takes a list, not a {value.kind}", "write […]")
-        return value.items
+            elif child.kind != "text":
+                self.problem(line, f"note takes text, not a {child.kind}", "write it, or remove it")
 
     def _not_empty(self, value: Value, what: str) -> None:
         if not value.entries:
@@ -288,7 +272,7 @@ class LabelReader:
     def _categories(self, value: Value, what: str) -> Iterable[str]:
         if value.kind == "empty" or (value.kind == "list" and not value.items):
             self.problem(value.line, f"{what} names no category", "name one, such as [Video], or remove it")
-        for item in self._list(value, what):
+        for item in self.list_of(value, what):
             name = self._category_of(item)
             if name:
                 yield name
@@ -324,7 +308,3 @@ class LabelReader:
             self.problem(value.line, what, f"no more than {LONGEST_NAME} are read")
             return ""
         return value.text
-
-    def problem(self, line: int, problem: str, hint: str) -> None:
-        """Take a problem."""
-        self.problems.append(self.error(self.file, line, problem, hint))

@@ -14,10 +14,11 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.changes import CHANGES, LARGEST_COST, Limits, Rule, Weights
 from rosprivacy.analysis.errors import InputError, InputErrors, LimitsError, shown
 from rosprivacy.ingest import yamlfile
+from rosprivacy.ingest.filereader import FileReader
 from rosprivacy.ingest.names import covers, is_pattern, matcher
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from rosprivacy.analysis.model import FlowGraph
     from rosprivacy.ingest.yamlfile import Value
@@ -51,12 +52,11 @@ def read_limits(file: str, graph: FlowGraph) -> Limits:
 
 
 @dataclass
-class _Reader:
-    """Walks the file once, from the outside in."""
+class _Reader(FileReader):
+    """One limits file."""
 
-    file: str
     graph: FlowGraph
-    problems: list[InputError] = field(default_factory=list)
+    error: type[InputError] = field(default=LimitsError, kw_only=True)
     by_name: dict[str, list[int]] = field(default_factory=lambda: defaultdict(list))
 
     def __post_init__(self) -> None:
@@ -67,16 +67,10 @@ class _Reader:
         if top.kind != "map":
             self.problem(top.line, f"a limits file is a map, not a {top.kind}", "begin with 'limits: 1'")
             return Limits()
-        version = top.get("limits")
-        if version is None:
-            self.problem(top.line, "no 'limits: 1'", "say so on the first line: it is the format's version")
-        elif (version.kind, version.text) != ("number", "1"):
-            self.problem(
-                version.line, f"limits format {shown(version.text or version.kind)!r}", "this reads 'limits: 1'"
-            )
-        said = {key: value for key, _, value in self._entries(top, TOP)}
-        critical = [v for item in self._list(said.get("time_critical"), "time_critical") for v in self._nodes(item)]
-        rules = [rule for item in self._list(said.get("places"), "places") for rule in self._place(item)]
+        self.version(top, "limits", "limits")
+        said = {key: value for key, _, value in self.entries_of(top, TOP)}
+        critical = [v for item in self._items(said, "time_critical") for v in self._nodes(item)]
+        rules = [rule for item in self._items(said, "places") for rule in self._place(item)]
         return Limits(self._weights(said.get("weights")), critical=frozenset(critical), rules=tuple(rules))
 
     def _nodes(self, item: Value) -> list[int]:
@@ -94,13 +88,13 @@ class _Reader:
         if value.kind != "map":
             self.problem(value.line, f"weights is a map, not a {value.kind}", "write {filter: 10}")
             return Weights()
-        return Weights(**{key: self._number(item, key) for key, _, item in self._entries(value, tuple(names))})
+        return Weights(**{key: self._number(item, key) for key, _, item in self.entries_of(value, tuple(names))})
 
     def _place(self, item: Value) -> Iterator[Rule]:
         if item.kind != "map":
             self.problem(item.line, f"a place is a map, not a {item.kind}", "write {at: /a, never: all}")
             return
-        said = {key: value for key, _, value in self._entries(item, PLACE)}
+        said = {key: value for key, _, value in self.entries_of(item, PLACE)}
         if "at" in said and not {"from", "to"} & set(said):
             vertices = frozenset(self._vertices(said["at"]))
             flows = [f for f, flow in enumerate(self.graph.flows) if {flow.source, flow.target} & vertices]
@@ -160,19 +154,5 @@ class _Reader:
             self.problem(item.line, f"{shown(name)!r} matches no element of the system", hint)
         return found
 
-    def _list(self, value: Value | None, what: str) -> tuple[Value, ...]:
-        if value is not None and value.kind not in ("list", "empty"):
-            self.problem(value.line, f"{what} takes a list, not a {value.kind}", "write […]")
-        return value.items if value else ()
-
-    def _entries(self, value: Value, known: tuple[str, ...]) -> Iterator[tuple[str, int, Value]]:
-        for key, line, child in value.entries:
-            if key in known:
-                yield key, line, child
-            else:
-                close = get_close_matches(key, known, n=1)
-                hint = f"did you mean {close[0]!r}?" if close else f"one of {', '.join(known)}"
-                self.problem(line, f"unknown key {shown(key)!r}", hint)
-
-    def problem(self, line: int, problem: str, hint: str) -> None:
-        self.problems.append(LimitsError(self.file, line, problem, hint))
+    def _items(self, said: Mapping[str, Value], key: str) -> tuple[Value, ...]:
+        return self.list_of(said[key], key) if key in said else ()

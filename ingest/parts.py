@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, TypeVar
 from rosprivacy.analysis.model import Bound, Element, Flow, FlowGraph
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Mapping
 
     from rosprivacy.analysis.model import Grant, Profile, Statement
     from rosprivacy.analysis.outside import Outside
@@ -93,8 +93,16 @@ def together(parts: Iterable[Part]) -> Part:
     )
 
 
-def numbered(part: Part, profiles: Iterable[Profile], view: str) -> tuple[FlowGraph, Bound]:
-    """Number the elements and sort everything (rule S14); a flow that one part allows is not denied."""
+def numbered(part: Part, profiles: Mapping[str, tuple[Profile, ...]], view: str) -> tuple[FlowGraph, Bound]:
+    """Number the elements and sort everything (rule S14); a flow that one part allows is not denied.
+
+    Parameters
+    ----------
+    profiles
+        By robot; what several have is there once.
+    """
+    everything = {profile for some in profiles.values() for profile in some}
+    sorted_profiles = sorted(everything, key=lambda p: (p.enclave, p.node, p.place.file, p.place.line))
     elements = tuple(sorted(part.elements, key=Element.sort_key))
     number = {element: i for i, element in enumerate(elements)}
     rows = sorted(((number[a], number[b], role, (a, b, role)) for a, b, role in part.flows), key=itemgetter(0, 1, 2))
@@ -102,7 +110,9 @@ def numbered(part: Part, profiles: Iterable[Profile], view: str) -> tuple[FlowGr
     flows = tuple(Flow(a, b, role, part.flows[key]) for a, b, role, key in rows)
     refused = [(number[a], number[b], r, both) for (a, b, r), both in part.denied.items() if (a, b, r) not in index]
     denied = sorted(refused, key=itemgetter(0, 1, 2))
-    graph = FlowGraph(elements, flows, tuple(Flow(a, b, r, *both) for a, b, r, both in denied), tuple(profiles), view)
+    graph = FlowGraph(
+        elements, flows, tuple(Flow(a, b, r, *both) for a, b, r, both in denied), tuple(sorted_profiles), view
+    )
     bound = Bound(
         {number[element]: said for element, said in part.elements.items() if said},
         {index[key]: said for key, said in part.said.items() if said},

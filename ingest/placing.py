@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.durations import ordered
 from rosprivacy.analysis.errors import FleetError, InputError, InputErrors, shown
 from rosprivacy.analysis.model import Element
 from rosprivacy.analysis.outside import by_kind
@@ -64,21 +65,17 @@ def place(fleet: Fleet, groups: Sequence[Alike], members: Mapping[str, Member], 
     InputErrors
         With every robot and element that a flow names and that is not there.
     """
-    placing = _Placing(fleet)
+    return _placed(_Placing(fleet), groups, members, view)
+
+
+def _placed(placing: _Placing, groups: Sequence[Alike], members: Mapping[str, Member], view: str) -> Placed:
     for group in groups:
         for robot in group.placed:
             placing.take(replace(members[group.robots[0].id], robot=robot))
-    return _placed(placing, groups, view)
-
-
-def _placed(placing: _Placing, groups: Sequence[Alike], view: str) -> Placed:
     part, profiles = placing.part(view)
     if placing.problems:
         raise InputErrors(placing.problems)
-    everything = {profile for some in profiles.values() for profile in some}
-    graph, bound = numbered(
-        part, sorted(everything, key=lambda p: (p.enclave, p.node, p.place.file, p.place.line)), view
-    )
+    graph, bound = numbered(part, profiles, view)
     return Placed(graph, bound, likeness(groups), profiles)
 
 
@@ -126,11 +123,7 @@ def place_some(fleet: Fleet, members: Iterable[Member], view: str, *, own: bool)
 
 def place_chosen(fleet: Fleet, groups: Sequence[Alike], members: Mapping[str, Member], view: str) -> Placed:
     """Make the graph of some robots of a fleet and of what they share, as ``place`` does of all."""
-    placing = _Placing(fleet, whole=False)
-    for group in groups:
-        for robot in group.placed:
-            placing.take(replace(members[group.robots[0].id], robot=robot))
-    return _placed(placing, groups, view)
+    return _placed(_Placing(fleet, whole=False), groups, members, view)
 
 
 def flow_said(flow: FlowEntry, key: Key, lines: dict[Key, list[Place]], said: dict[Key, tuple[Statement, ...]]) -> None:
@@ -236,7 +229,7 @@ class _Placing:
         limits: set[Limit] = {*facts.limits, *self._fleet.limits}
         if element.robot == self._fleet.name:
             limits |= {limit for member in self._members for file in member.files for limit in file.limits}
-        return replace(facts, limits=tuple(sorted(limits, key=lambda pair: (pair[0], str(pair[1])))))
+        return replace(facts, limits=ordered(limits))
 
     def ends(self) -> Iterator[tuple[tuple[Element, ...], tuple[Element, ...]]]:
         """Return, per flow of the fleet file, the elements that its ends mean."""

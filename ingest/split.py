@@ -14,8 +14,10 @@ from collections import defaultdict
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.durations import ordered
 from rosprivacy.analysis.model import Element
 from rosprivacy.ingest.alike import COLON
+from rosprivacy.ingest.domains import pseudo_robot
 from rosprivacy.ingest.outside import FLOW
 from rosprivacy.ingest.parts import Part, numbered, together
 from rosprivacy.ingest.placing import Some, add_lines, flow_said
@@ -94,6 +96,17 @@ def split(groups: Iterable[Alike]) -> tuple[tuple[Alike, ...], tuple[Unit, ...]]
     return core, tuple(sorted(units, key=lambda unit: unit.name))
 
 
+def unit_of(units: Iterable[Unit]) -> dict[str, str]:
+    """Return robot of the graph, or domain -> name of its unit."""
+    found: dict[str, str] = {}
+    for unit in units:
+        for group in unit.groups:
+            found |= {robot.id: unit.name for robot in group.placed}
+            if group.robots[0].domain:
+                found[pseudo_robot(group.robots[0].domain)] = unit.name
+    return found
+
+
 def crossing_lines(fleet: Fleet) -> Lines:
     """Return the flows of the fleet file that can lead from robot to robot."""
     return frozenset(i for i, flow in enumerate(fleet.flows) if COLON in flow.source and COLON in flow.target)
@@ -157,7 +170,7 @@ def with_limits(piece: Piece, fleet: Fleet, limits: Iterable[Limit]) -> Piece:
     for vertex, facts in outside.items():
         if piece.graph.elements[vertex].robot == fleet.name:
             known = {*facts.limits, *limits}
-            outside[vertex] = replace(facts, limits=tuple(sorted(known, key=lambda pair: (pair[0], str(pair[1])))))
+            outside[vertex] = replace(facts, limits=ordered(known))
     return replace(piece, bound=replace(piece.bound, outside=outside))
 
 
@@ -168,9 +181,7 @@ def _numbered(
     profiles: Mapping[str, tuple[Profile, ...]],
     view: str,
 ) -> Piece:
-    everything = {profile for some in profiles.values() for profile in some}
-    rows = sorted(everything, key=lambda p: (p.enclave, p.node, p.place.file, p.place.line))
-    graph, bound = numbered(whole, rows, view)
+    graph, bound = numbered(whole, profiles, view)
     vertex = {element: i for i, element in enumerate(graph.elements)}
     units = tuple(unit.get(element, -1) for element in graph.elements)
     return Piece(graph, bound, tuple(vertex[element] for element in at), units, profiles)

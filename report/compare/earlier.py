@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 HINT = "give what 'rosprivacy analyze --format json' printed"
 LARGEST = 512 * 2**20  # bytes
-TEXT, TRUTH, NUMBER, OBJECT, LIST = str, bool, int, dict, list
+TEXT, TRUTH, NUMBER = str, bool, int
 ELEMENT = {"robot": TEXT, "kind": TEXT, "name": TEXT}
 FINDING = {
     "id": TEXT, "kind": TEXT, "category": TEXT, "pseudonymised": TRUTH, "dismissed": TRUTH, "disjoint_paths": NUMBER,

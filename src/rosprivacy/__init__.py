@@ -32,7 +32,7 @@ def analyze(policies: Iterable[str], labels: Iterable[str] = (), **options: Any)
     labels
         Label files, YAML or JSON, or the paper's JSON with six lists.
     **options
-        Fields of ``rosprivacy.assembly.Settings``.
+        Fields of ``rosprivacy.settings.Settings``.
 
     Returns
     -------
@@ -58,7 +58,7 @@ def analyze_fleet(file: str, **options: Any) -> Result:
     file
         Fleet file, YAML or JSON.
     **options
-        Fields of ``rosprivacy.assembly.Settings``.
+        Fields of ``rosprivacy.settings.Settings``.
 
     Returns
     -------

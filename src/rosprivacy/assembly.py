@@ -64,12 +64,16 @@ class Result:
     decided: Decided | None = None
     fleet: FleetView | None = None
 
+    @property
+    def shown(self) -> Analysis:
+        """The analysis as readers get it: of a fleet one finding of each pattern, one robot of those that are alike."""
+        return self.fleet.shown(self.analysis) if self.fleet else self.analysis
+
     def document(self) -> dict[str, Any]:
         """Return the JSON document of the contract."""
         vocabulary = self.vocabulary
-        analysis = self.fleet.shown(self.analysis) if self.fleet else self.analysis
         made = document(
-            analysis,
+            self.shown,
             vocabulary.categories,
             vocabulary.hierarchy,
             self.diagnostics,
@@ -84,8 +88,7 @@ class Result:
         from rosprivacy.report.linked.rdf import rdf_graph  # noqa: PLC0415 - rdflib, only where it is used
         from rosprivacy.report.linked.serialise import SERIALISERS  # noqa: PLC0415
 
-        analysis = self.fleet.shown(self.analysis) if self.fleet else self.analysis
-        graph = rdf_graph(analysis, self.vocabulary, self.diagnostics, self.assumptions, **more)
+        graph = rdf_graph(self.shown, self.vocabulary, self.diagnostics, self.assumptions, **more)
         if self.fleet:
             from rosprivacy.report.exchange.fleet_formats import robot_triples  # noqa: PLC0415
 

@@ -48,15 +48,35 @@ def what_it_rests_on(
     vocabulary: Vocabulary,
 ) -> dict[str, Any]:
     """Return the assumptions of a report (rule S12)."""
-    distinct = {(file.file, file.sha256): file for file in files}  # one of a model and of a robot is named once
-    hashes = [(file, {"file": name, "sha256": digest}) for (name, digest), file in distinct.items()]
-    standard = [entry for file, entry in hashes if file.shipped and file.file == settings.standard_channels]
+    labels = ((file.file, file.sha256, file.shipped) for file in files)
     return {
         **own_assumptions(graph, settings, vocabulary),
         **_adequacy(analysis),
+        **files_read(sources, labels, settings, analysis.standard_channels),
+    }
+
+
+def files_read(
+    sources: Iterable[tuple[str, str]], labels: Iterable[tuple[str, str, bool]], settings: Settings, taken: int
+) -> dict[str, Any]:
+    """Return which files were read.
+
+    Parameters
+    ----------
+    sources
+        (file, SHA-256) of policies.
+    labels
+        (file, SHA-256, whether it comes with the program) of label files.
+    taken
+        Channels that the file of standard channels takes as mundane.
+    """
+    distinct = {(file, digest): shipped for file, digest, shipped in labels}  # one of several robots is named once
+    hashes = [(shipped, {"file": file, "sha256": digest}) for (file, digest), shipped in distinct.items()]
+    standard = [entry for shipped, entry in hashes if shipped and entry["file"] == settings.standard_channels]
+    return {
         "policies": [{"file": name, "sha256": digest} for name, digest in sources],
         "labels": [entry for _, entry in hashes if entry not in standard],
-        "standard_channels": {**standard[0], "taken": analysis.standard_channels} if standard else None,
+        "standard_channels": {**standard[0], "taken": taken} if standard else None,
     }
 
 

@@ -37,7 +37,7 @@ def sarif_log(result: Result, accepted: Mapping[str, str] | None = None) -> dict
     named = [entry["file"] for kind in ("policies", "labels") for entry in assumptions.get(kind) or ()]
     vocabulary = result.vocabulary
     log = sarif(
-        result.fleet.shown(result.analysis) if result.fleet else result.analysis,
+        result.shown,
         result.bound,
         vocabulary.categories,
         vocabulary.hierarchy,

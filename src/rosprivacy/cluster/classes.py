@@ -9,14 +9,13 @@ from __future__ import annotations
 
 from collections import defaultdict
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rosprivacy.analysis.crossed import CORE, End, Source
-from rosprivacy.analysis.crossing import STOPS, codes_of
+from rosprivacy.analysis.crossing import STOPS, ends_of, how
 from rosprivacy.analysis.flow import WORD
-from rosprivacy.analysis.model import DISCLOSURE
 from rosprivacy.analysis.pairs import Category
 from rosprivacy.cluster import workers
 
@@ -115,20 +114,12 @@ class Classes:
             n = self.counts[number]
             if not n:
                 continue
-            both = self._ours.both(self._ours.categories[number])
-            ends = {c.kind: np.array(sorted(v for v, b in c.bits.items() if b & both), np.int64) for c in self._kinds}
+            ends = ends_of(self._ours, number, self._kinds)
             own = np.arange(len(category.sources)) + len(self.numbers[number])
-
-            def there(stop: bool, at: Indices) -> Any:  # noqa: FBT001 - as in STOPS
-                carried = self._at[number, stop]  # noqa: B023 - called within the round
-                flags = category.there(*carried, at, n, stop=stop)  # noqa: B023
-                return category.brought(flags, at, category.sources, own)  # noqa: B023
-
-            for kind, at in ends.items():
-                through = there(False, at)
-                codes = codes_of(there(True, at) if kind == DISCLOSURE else through, through)
+            carried = [self._at[number, stop] for stop in STOPS]
+            for kind, codes in how(category, carried, ends, n, category.sources, own).items():
                 for row in np.flatnonzero(codes.any(axis=1)).tolist():
-                    name, element = self._ours.categories[number], elements[int(at[row])]
+                    name, element = self._ours.categories[number], elements[int(ends[kind][row])]
                     found.append(End(kind, name, element, CORE, codes[row].tobytes()))
         return found
 

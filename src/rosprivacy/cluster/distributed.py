@@ -26,9 +26,8 @@ from rosprivacy.analysis.spread import emitted, fill, meaning
 from rosprivacy.cluster import building, workers
 from rosprivacy.cluster.classes import Classes, first_of
 from rosprivacy.ingest.alike import COLON, chosen, known_to_flows
-from rosprivacy.ingest.domains import pseudo_robot
 from rosprivacy.ingest.placing import likeness, no_robot, nowhere, place_some
-from rosprivacy.ingest.split import GATE, HUB, border, core_piece, crossing_lines, split, with_limits
+from rosprivacy.ingest.split import GATE, HUB, border, core_piece, crossing_lines, split, unit_of, with_limits
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
@@ -252,7 +251,7 @@ class _Run:
         open_at, count, kinds = _opened(answers, self._likeness)
         mine = {v: e for v, e in enumerate(piece.graph.elements) if e.robot in (HUB, GATE)}
         core_open = workers.open_elements(replace(piece, border=tuple(mine)), ours, mask)
-        unit = _units(self._question.groups)
+        unit = unit_of(split(self._question.groups)[1])
         needed = self._needed | classes.bringers(groups, sources)
         needed |= {unit[robot] for robot in kinds if robot in unit}
         ends = (element.robot for group in groups for element in (group.source, group.leak))
@@ -304,18 +303,6 @@ def _opened(
             for kind in answer.sets[number] if likeness.weight(robot) else ():
                 first[kind] = min(robot, first.get(kind, robot))
     return open_at, count, set(first.values())
-
-
-def _units(groups: Iterable[Alike]) -> dict[str, str]:
-    """Robot of the graph, or domain, -> name of its unit."""
-    _, units = split(groups)
-    found: dict[str, str] = {}
-    for unit in units:
-        for group in unit.groups:
-            found |= {robot.id: unit.name for robot in group.placed}
-            if group.robots[0].domain:
-                found[pseudo_robot(group.robots[0].domain)] = unit.name
-    return found
 
 
 def _flows_between(told: Told) -> int:

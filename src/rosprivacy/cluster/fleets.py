@@ -17,7 +17,7 @@ from rosprivacy.analysis.errors import FleetError, InputError, InputErrors, reas
 from rosprivacy.analysis.model import Diagnostic, Place, Severity
 from rosprivacy.asked import asked_for
 from rosprivacy.assembly import Result
-from rosprivacy.assumptions import own_assumptions
+from rosprivacy.assumptions import files_read, own_assumptions
 from rosprivacy.cluster.distributed import Question, analyse_in_parts
 from rosprivacy.cluster.results import check_new, write
 from rosprivacy.cluster.session import scatter, session
@@ -131,14 +131,10 @@ def _check_whole(question: Question) -> None:
 
 def result(question: Question, found: Found, told: Shown, settings: Settings, vocabulary: Vocabulary) -> SparkResult:
     """Put together what a report says."""
-    files = sorted(found.told.labels)
-    standard = [{"file": f, "sha256": h} for f, h, shipped in files if shipped and f == settings.standard_channels]
     assumptions = {
         **own_assumptions(told.placed.graph, settings, vocabulary),
         **({"countries_as_of": countries().as_of} if found.told.countries else {}),
-        "policies": [{"file": name, "sha256": digest} for name, digest in sorted(found.told.sources)],
-        "labels": [{"file": f, "sha256": h} for f, h, _ in files if {"file": f, "sha256": h} not in standard],
-        "standard_channels": {**standard[0], "taken": 0} if standard else None,
+        **files_read(sorted(found.told.sources), sorted(found.told.labels), settings, 0),
         "fleet": [{"file": name, "sha256": digest} for name, digest in question.fleet.sources],
         "engine": "spark",
     }

@@ -63,8 +63,9 @@ def write(spark: SparkSession, folder: str, units: Sequence[Unit], plan: Plan, d
 
     place = str(Path(folder).absolute()) if "://" not in folder else folder
     context = spark.sparkContext
-    core = context.parallelize([_row(rows, 0, shared=True) for rows in core_rows(plan)], 1)
-    names = frozenset(row.robot for row in core_rows(plan))
+    shared = core_rows(plan)
+    core = context.parallelize([_row(rows, 0, shared=True) for rows in shared], 1)
+    names = frozenset(rows.robot for rows in shared)
     parts = scatter(spark, units).rdd.zipWithIndex().flatMap(partial(_rows, plan=plan, core=names))
     robots = core.union(parts).persist(StorageLevel.MEMORY_AND_DISK)
     with told():

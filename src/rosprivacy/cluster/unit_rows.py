@@ -15,13 +15,15 @@ from rosprivacy.analysis.model import Verdict
 from rosprivacy.analysis.pairs import pairs
 from rosprivacy.assumptions import remembered, sources_of, what_it_rests_on
 from rosprivacy.cluster.shown import limited
-from rosprivacy.ingest.fleetrows import FleetRows
+from rosprivacy.ingest.domains import pseudo_robot
+from rosprivacy.ingest.fleetrows import FleetRows, verdicts
 from rosprivacy.ingest.placing import place_chosen
 from rosprivacy.ingest.rows import rows_of
+from rosprivacy.ingest.split import unit_of
 from rosprivacy.ontology.vocabulary import load
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.model import Analysis, Element
     from rosprivacy.analysis.outside import Concern, Outside
@@ -81,7 +83,7 @@ def unit_rows(units: Sequence[Unit], plan: Plan) -> list[RobotRows]:
 def core_rows(plan: Plan) -> list[RobotRows]:
     """Return the rows of what is shared, as far as it concerns no unit."""
     placed, members = _placed((), plan, plan.reader())
-    fleet_rows = _fleet_rows(placed, members, plan, _unit_of(()))
+    fleet_rows = _fleet_rows(placed, members, plan, unit_of(()))
     core = _core(plan)
     made = [rows for owner in core for rows in fleet_rows.of(owner)]
     mine = {row["id"] for rows in made for row in rows.elements}
@@ -90,9 +92,9 @@ def core_rows(plan: Plan) -> list[RobotRows]:
 
 def _rows(units: Sequence[Unit], plan: Plan, read: Read) -> Iterator[RobotRows]:
     placed, members = _placed(units, plan, read)
-    fleet_rows = _fleet_rows(placed, members, plan, _unit_of(units))
+    fleet_rows = _fleet_rows(placed, members, plan, unit_of(units))
     core = _core(plan)
-    made = [rows for owner in sorted(_unit_of(units)) for rows in fleet_rows.of(owner)]
+    made = [rows for owner in sorted(unit_of(units)) for rows in fleet_rows.of(owner)]
     mine = {row["id"] for rows in made for row in rows.elements}
     shared = {row["id"] for owner in core for rows in fleet_rows.of(owner) for row in rows.elements}
     yield from (_derived_at(rows, mine | shared) for rows in made)
@@ -102,19 +104,8 @@ def _rows(units: Sequence[Unit], plan: Plan, read: Read) -> Iterator[RobotRows]:
 
 def _core(plan: Plan) -> list[str]:
     """The names under which the core is filed."""
-    domains = {f"domain {group.robots[0].domain}" for group in plan.fixed if group.robots[0].domain}
+    domains = {pseudo_robot(group.robots[0].domain) for group in plan.fixed if group.robots[0].domain}
     return sorted({plan.fleet.name, *(robot.id for group in plan.fixed for robot in group.robots), *domains})
-
-
-def _unit_of(units: Iterable[Unit]) -> dict[str, str]:
-    """Robot of the graph, or domain, -> name of its unit."""
-    found: dict[str, str] = {}
-    for unit in units:
-        for group in unit.groups:
-            found |= {robot.id: unit.name for robot in group.placed}
-            if group.robots[0].domain:
-                found[f"domain {group.robots[0].domain}"] = unit.name
-    return found
 
 
 def _placed(units: Sequence[Unit], plan: Plan, read: Read) -> tuple[Placed, dict[str, Member]]:
@@ -129,7 +120,7 @@ def _placed(units: Sequence[Unit], plan: Plan, read: Read) -> tuple[Placed, dict
 def _fleet_rows(placed: Placed, members: Mapping[str, Member], plan: Plan, mine: Mapping[str, str]) -> FleetRows:
     """Findings that begin in our units: each that stays there or ends at what is shared, and one for all others."""
     vocabulary = load(ontologies=plan.settings.ontologies)
-    unit = {**_unit_of(plan.examples), **mine}
+    unit = {**unit_of(plan.examples), **mine}
 
     def choose(found: Spread, kinds: Sequence[Concern], mask: int) -> Wanted:
         elements = found.graph.elements
@@ -153,12 +144,10 @@ def _fleet_rows(placed: Placed, members: Mapping[str, Member], plan: Plan, mine:
         return wanted
 
     analysis = analyse(placed.graph, placed.bound, vocabulary.hierarchy, Options(choose=choose))
-    more = {
-        name: {**_more(member, analysis, plan, vocabulary), "verdict": _verdict(name, analysis, plan)}
-        for name, member in members.items()
-    }
-    everything = remembered({**plan.assumptions, "policies": [], "labels": []}, ())
-    more[plan.fleet.name] = {**everything, "verdict": _verdict(plan.fleet.name, analysis, plan)}
+    said = {name: _more(member, analysis, plan, vocabulary) for name, member in members.items()}
+    said[plan.fleet.name] = remembered({**plan.assumptions, "policies": [], "labels": []}, ())
+    known = _verdicts(analysis, plan)
+    more = {name: {**some, "verdict": known.get(name, str(Verdict.UNDETERMINED))} for name, some in said.items()}
     return FleetRows(placed, analysis, vocabulary, more, most_across=0)
 
 
@@ -173,14 +162,12 @@ def _more(member: Member, analysis: Analysis, plan: Plan, vocabulary: Any) -> di
     return remembered(said, member.diagnostics)
 
 
-def _verdict(robot: str, analysis: Analysis, plan: Plan) -> str:
-    """Rule S12, of a robot: what comes from it or gets out at it counts."""
-    if robot in plan.leaking:
-        return str(Verdict.LEAK)
-    if any(question.element.robot == robot for question in analysis.open):
-        return str(Verdict.UNDETERMINED)
-    reached = any(carried.element.robot == robot for carried in analysis.carried)
-    return str(Verdict.NO_LEAK_FOUND if reached else Verdict.UNDETERMINED)
+def _verdicts(analysis: Analysis, plan: Plan) -> dict[str, str]:
+    """The verdict on each robot; which of them leak is known of the whole fleet."""
+    open_at = (question.element for question in analysis.open)
+    reached = (carried.element for carried in analysis.carried)
+    found = verdicts((), open_at, reached, lambda element: element.robot)
+    return found | dict.fromkeys(plan.leaking, str(Verdict.LEAK))
 
 
 def _derived_at(rows: RobotRows, known: Collection[str]) -> RobotRows:
