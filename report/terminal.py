@@ -13,6 +13,7 @@ from rich.text import Text
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import CHANNELS
 from rosprivacy.report.decided import decision_lines
+from rosprivacy.report.document import files_not_read
 from rosprivacy.report.terminal_fleet import fleet_lines, robots_of
 
 if TYPE_CHECKING:
@@ -40,7 +41,8 @@ KINDS = {
     "third-country-transfer": "leaves the EEA without a stated basis: ",
 }
 TAKEN = {"conduit": "passes on all that gets there", "leak": "lets out all that gets there"}
-SHOWN = 12  # open elements of a kind, without --verbose
+UNREAD = "no leak reached, but policy files with grants were not read"
+SHOWN = 12  # open elements of a kind, or denied flows, without --verbose
 Line = tuple[str, str]  # text, style
 
 
@@ -61,7 +63,7 @@ def print_report(console: Console, report: Mapping[str, Any], *, verbose: bool =
 def _lines(report: Mapping[str, Any], *, verbose: bool, quiet: bool) -> Iterator[Line]:
     style, meaning = VERDICTS[report["verdict"]]
     if not any(report["categories"]) or (report["verdict"] == "undetermined" and not report["open"]):
-        meaning = "no data was followed"
+        meaning = UNREAD if files_not_read(report) and any(report["categories"]) else "no data was followed"
     accepted = sum(finding["accepted"] for finding in report["findings"])
     if accepted and report["verdict"] != "leak":
         style, meaning = "bold yellow", ACCEPTED[report["verdict"]]
@@ -73,6 +75,7 @@ def _lines(report: Mapping[str, Any], *, verbose: bool, quiet: bool) -> Iterator
     yield from fleet_lines(report)
     yield from _findings(report)
     yield from _review(report, verbose=verbose)
+    yield from _denied(report, verbose=verbose)
     yield from _assumed(report)
     yield from _diagnostics(report, verbose=verbose)
 
@@ -186,6 +189,27 @@ def _review(report: Mapping[str, Any], *, verbose: bool) -> Iterator[Line]:
             yield f"   {what} {_count(question['distance'], 'step')} from a source)", ""
         if len(questions) > len(chosen):
             yield f"   … and {len(questions) - len(chosen)} more (-v shows all)", "dim"
+
+
+def _denied(report: Mapping[str, Any], *, verbose: bool) -> Iterator[Line]:
+    """What one line allows and another denies, with both (rule S5)."""
+    flows = report["denied"]
+    if not flows:
+        return
+    yield "", ""
+    yield f"Allowed by one line and denied by another: {len(flows)}", "bold"
+    chosen = flows if verbose else flows[:SHOWN]
+    for flow in chosen:
+        ends = f"{_name(flow['source'])} -> {_name(flow['target'])}"
+        allowed, denied = _lines_of(flow["allowed_by"]), _lines_of(flow["denied_by"])
+        yield f"   {ends}  ({flow['role']}; ALLOW at {allowed}, DENY at {denied})", ""
+    if len(flows) > len(chosen):
+        yield f"   … and {len(flows) - len(chosen)} more (-v shows all)", "dim"
+
+
+def _lines_of(grants: Iterable[Mapping[str, Any]]) -> str:
+    places = list(dict.fromkeys(f"{shown(grant['file'])}:{grant['line']}" for grant in grants))
+    return f"{places[0]} and {len(places) - 1} more" if len(places) > 1 else places[0]
 
 
 def _assumed(report: Mapping[str, Any]) -> Iterator[Line]:

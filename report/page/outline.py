@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.report.compare.changes import ASKED, Changes, changes
+from rosprivacy.report.document import files_not_read
 from rosprivacy.report.page import assumed, cleaned, elements, tables
 from rosprivacy.report.page.criteria import Criterion, criteria
 from rosprivacy.report.page.decision_texts import Decision, orphans
@@ -207,7 +208,8 @@ def _title(index: Index) -> str:
 def _verdict(index: Index) -> str:
     """The verdict; ``nothing`` where no data was followed (rule S12: nothing was asked, so nothing can be said)."""
     verdict = str(index.document["verdict"])
-    followed = index.document["categories"] and (verdict != "undetermined" or index.document["open"])
+    asked = verdict != "undetermined" or index.document["open"] or files_not_read(index.document)
+    followed = index.document["categories"] and asked
     return verdict if followed else "nothing"
 
 

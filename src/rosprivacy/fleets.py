@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.analysis.findings import Options, analyse
 from rosprivacy.analysis.groups import Groups
+from rosprivacy.analysis.model import unread
 from rosprivacy.analysis.patterns import FleetView
 from rosprivacy.asked import asked_for
 from rosprivacy.assembly import Result
@@ -23,6 +24,7 @@ from rosprivacy.ingest.files import read_policies
 from rosprivacy.ingest.fleet import Fleet, Robot, read_fleet
 from rosprivacy.ingest.fleetrows import FleetRows
 from rosprivacy.ingest.graph import build
+from rosprivacy.ingest.joint import joint_warnings
 from rosprivacy.ingest.labels import Labels, read_labels
 from rosprivacy.ingest.outside import extend
 from rosprivacy.ingest.parts import Part
@@ -84,7 +86,8 @@ def analysed(read: Read, vocabulary: Vocabulary, settings: Settings, *, every: b
     placed = read.placed
     decisions = read.decisions
     groups = None if every or decisions else Groups(placed.likeness)
-    options = Options(asked, settings.paths, settings.max_paths, accepts(decisions, placed.likeness), groups)
+    accepted, not_read = accepts(decisions, placed.likeness), unread(read.diagnostics)
+    options = Options(asked, settings.paths, settings.max_paths, accepted, groups, not_read)
     analysis = analyse(placed.graph, placed.bound, vocabulary.hierarchy, options)
     policies = [policy for member in read.members.values() for policy in member.policies]
     assumptions = what_it_rests_on(placed.graph, sources_of(policies), read.labels, analysis, settings, vocabulary)
@@ -119,7 +122,8 @@ def rows_of_fleet(read: Read, result: Result, settings: Settings) -> FleetRows:
         more[group.robots[0].id] = remembered(said, member.diagnostics)
     everything = {**result.assumptions, "policies": [], "labels": []}
     more[read.fleet.name] = remembered(everything, ())
-    return FleetRows(read.placed, result.analysis, result.vocabulary, more)
+    not_read = [name for name, member in read.members.items() if unread(member.diagnostics)]
+    return FleetRows(read.placed, result.analysis, result.vocabulary, more, not_read=not_read)
 
 
 def read_all(file: str, vocabulary: Vocabulary, settings: Settings) -> Read:
@@ -174,7 +178,7 @@ class Reader:
             max_bytes=settings.max_bytes,
             progress=settings.progress,
         )
-        told = [*(d for policy in policies for d in policy.diagnostics), *said]
+        told = [*(d for policy in policies for d in policy.diagnostics), *said, *joint_warnings(policies)]
         told += [d for labels in files for d in labels.diagnostics]
         graph, full = stripped(build(policies, settings.view), robot.strip)
         extended = extend(graph, files)
