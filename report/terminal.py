@@ -14,6 +14,8 @@ from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import CHANNELS
 from rosprivacy.report.decided import decision_lines
 from rosprivacy.report.document import files_not_read
+from rosprivacy.report.terminal_denied import denied_lines
+from rosprivacy.report.terminal_ends import end_lines, ends_at_verdict
 from rosprivacy.report.terminal_fleet import fleet_lines, robots_of
 
 if TYPE_CHECKING:
@@ -68,6 +70,7 @@ def _lines(report: Mapping[str, Any], *, verbose: bool, quiet: bool) -> Iterator
     if accepted and report["verdict"] != "leak":
         style, meaning = "bold yellow", ACCEPTED[report["verdict"]]
     meaning += f"; {_count(accepted, 'finding')} accepted" if accepted else ""
+    meaning += "".join(f"; {end}" for end in ends_at_verdict(report))
     yield f"{report['verdict']}: {meaning}", style
     if quiet:
         return
@@ -75,7 +78,8 @@ def _lines(report: Mapping[str, Any], *, verbose: bool, quiet: bool) -> Iterator
     yield from fleet_lines(report)
     yield from _findings(report)
     yield from _review(report, verbose=verbose)
-    yield from _denied(report, verbose=verbose)
+    yield from end_lines(report, most=None if verbose else SHOWN)
+    yield from denied_lines(report, most=None if verbose else SHOWN)
     yield from _assumed(report)
     yield from _diagnostics(report, verbose=verbose)
 
@@ -189,27 +193,6 @@ def _review(report: Mapping[str, Any], *, verbose: bool) -> Iterator[Line]:
             yield f"   {what} {_count(question['distance'], 'step')} from a source)", ""
         if len(questions) > len(chosen):
             yield f"   … and {len(questions) - len(chosen)} more (-v shows all)", "dim"
-
-
-def _denied(report: Mapping[str, Any], *, verbose: bool) -> Iterator[Line]:
-    """What one line allows and another denies, with both (rule S5)."""
-    flows = report["denied"]
-    if not flows:
-        return
-    yield "", ""
-    yield f"Allowed by one line and denied by another: {len(flows)}", "bold"
-    chosen = flows if verbose else flows[:SHOWN]
-    for flow in chosen:
-        ends = f"{_name(flow['source'])} -> {_name(flow['target'])}"
-        allowed, denied = _lines_of(flow["allowed_by"]), _lines_of(flow["denied_by"])
-        yield f"   {ends}  ({flow['role']}; ALLOW at {allowed}, DENY at {denied})", ""
-    if len(flows) > len(chosen):
-        yield f"   … and {len(flows) - len(chosen)} more (-v shows all)", "dim"
-
-
-def _lines_of(grants: Iterable[Mapping[str, Any]]) -> str:
-    places = list(dict.fromkeys(f"{shown(grant['file'])}:{grant['line']}" for grant in grants))
-    return f"{places[0]} and {len(places) - 1} more" if len(places) > 1 else places[0]
 
 
 def _assumed(report: Mapping[str, Any]) -> Iterator[Line]:
