@@ -241,9 +241,9 @@ def test_a_fragment_with_grants_that_nothing_includes_leaves_it_undetermined(her
     assert (
         "warning: d/q.xml:1: not read: the root element is <enclave>, not <policy>, and no policy read" in done.stdout
     )
-    for form, text in (("html", "no source was named"), ("sarif", "No data was followed")):
-        made = cli("analyze", "d", "-l", "rev.yaml", *STRICT, "-f", form)
-        assert (made.returncode, text in made.stdout) == (4, False)
+    log = json.loads(cli("analyze", "d", "-l", "rev.yaml", "-f", "sarif").stdout)
+    assert [result["ruleId"] for result in log["runs"][0]["results"]] == ["files-not-read"]
+    assert "so no data was followed" not in cli("report", "d", "-l", "rev.yaml").stdout
     write(here, "d/p.xml", policy(CAMERA, MONITOR, '<xi:include href="q.xml"/>'))
     assert cli("analyze", "d", "-l", "l.yaml").returncode == 1
 
@@ -325,7 +325,8 @@ def test_a_pattern_of_which_denys_leave_no_common_name_carries_nothing(here: Pat
         done = cli("analyze", "p.xml", "-l", "l.yaml", *STRICT)
         return done.returncode, done.stdout.splitlines()[0]
 
-    assert answer(*denied) == (0, "no-leak-found: no way to a leak, everything on the way is reviewed")
+    code, verdict = answer(*denied)
+    assert (code, verdict.partition(":")[0]) == (0, "no-leak-found")
     assert answer(*denied[1:], "/z") == (1, LEAK)
 
 
