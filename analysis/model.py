@@ -113,6 +113,8 @@ class Grant:
         Of the channel as written: ``topic``, ``service`` or ``action``.
     name
         Fully qualified.
+    absolute
+        Whether the policy writes the name so: then it stays as it is under a namespace that is pushed (rule S1).
     """
 
     allow: bool
@@ -122,6 +124,7 @@ class Grant:
     enclave: str
     node: str
     place: Place
+    absolute: bool = False
 
 
 class Severity(StrEnum):
