@@ -137,11 +137,18 @@ class Severity(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """Something that the reader of a report has to know about an input."""
+    """Something that the reader of a report has to know about an input.
+
+    Attributes
+    ----------
+    code
+        What it is, for programs; empty where nobody has to tell it from others.
+    """
 
     place: Place
     severity: Severity
     message: str
+    code: str = ""
 
 
 @dataclass(frozen=True, slots=True)

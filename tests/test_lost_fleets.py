@@ -20,6 +20,7 @@ from rosprivacy.ingest.labels import read_labels
 from rosprivacy.ingest.names import covers
 from rosprivacy.ontology.vocabulary import load
 from tests.test_fleet import policy, write
+from tests.test_parts import in_list
 
 if TYPE_CHECKING:
     from tests.command import Cli, Done
@@ -416,3 +417,77 @@ def test_a_pushed_namespace_is_as_if_each_profile_had_it(
                 tuple(f[end]["name"].rpartition("/")[2] for end in ("source", "leak")) for f in one["findings"]
             }
     assert got == expected
+
+
+class TestWhatJoinsNothing:
+    """Case 10 (c), rule S11: a domain or an infrastructure that joins nothing is told by name, and counted."""
+
+    ROBOT = "robots: {a: {policies: [cam.xml], labels: [cam.yaml]%s}}\n"
+    BASE_ALONE = (
+        "infrastructure base joins nothing: it names no domain, so it has one of its own, and no flow of the fleet "
+        "file leads to it or from it"
+    )
+    OWN = "a DDS domain of its own, and no flow of the fleet file names it together with anything else"
+    BASE = "infrastructure: {base: {policies: [up.xml], labels: [up.yaml]%s}}\n"
+
+    @pytest.mark.parametrize(
+        ("fleet", "notices"),
+        [
+            (
+                ROBOT % ", domain: lab" + BASE % "",
+                [
+                    "domain lab joins nothing: a is alone in it",
+                    f"{BASE_ALONE}; domains here: lab",
+                ],
+            ),
+            (
+                ROBOT % ", domain: lab" + BASE % ", domain: Lab",
+                [
+                    "domain Lab joins nothing: base is alone in it; did you mean lab?",
+                    "domain lab joins nothing: a is alone in it; did you mean Lab?",
+                ],
+            ),
+            (
+                "robots: {a: {policies: cam.xml, labels: cam.yaml}, b: {policies: up.xml, labels: up.yaml}}\n",
+                [f"2 robots join nothing: each has {OWN}: a, b"],
+            ),
+            (
+                "models: {m: {policies: cam.xml, labels: cam.yaml}}\ngroups: [{robots: 12, model: m, id: r*}]\n",
+                [
+                    f"12 robots join nothing: each has {OWN}: "
+                    + ", ".join(f"r{n:02}" for n in range(1, 11))
+                    + " and 2 more"
+                ],
+            ),
+            (
+                ROBOT % "" + BASE % "" + "flows: [{from: 'a:/camera', to: 'a:/camera'}]\n",  # within one robot
+                [
+                    BASE_ALONE,
+                    f"1 robot joins nothing: it has {OWN}: a",
+                ],
+            ),
+            (
+                ROBOT % "" + BASE % "" + "elements: {s: {kind: storage}}\nflows: [{from: '*:/camera', to: s}]\n",
+                [  # the glob means base too, which has no such node
+                    BASE_ALONE
+                ],
+            ),
+            (ROBOT % ", domain: lab" + BASE % ", domain: lab", []),
+            (ROBOT % "" + BASE % "" + "flows: [{from: 'a:/camera', to: 'base:/uplink'}]\n", []),
+            (ROBOT % "", []),  # a fleet of one
+        ],
+    )
+    def test_each_is_a_notice_in_memory_and_in_parts(self, cli: Cli, fleet: str, notices: list[str]) -> None:
+        done = analysed(cli, fleet, "-f", "json")
+        document = json.loads(done.stdout)
+        ours = [d for d in document["diagnostics"] if "join" in d["message"]]
+        assert [d["message"] for d in ours] == notices
+        assert {(d["severity"], d["file"]) for d in ours} <= {("notice", "fleet.yaml")}
+        in_parts = in_list("fleet.yaml").document()
+        assert [d for d in in_parts["diagnostics"] if "join" in d["message"]] == ours
+        assert in_parts["verdict"] == document["verdict"]
+        text = analysed(cli, fleet, "-v").stdout
+        assert all(notice in text for notice in notices)
+        count = len(notices)
+        told = f"{count} notice{'s' * (count > 1)} (-v shows them)"
+        assert (told in analysed(cli, fleet).stdout) is bool(count)

@@ -23,6 +23,7 @@ from rosprivacy.ingest.files import read_policies
 from rosprivacy.ingest.fleet import Fleet, Robot, read_fleet
 from rosprivacy.ingest.fleetrows import FleetRows
 from rosprivacy.ingest.graph import build
+from rosprivacy.ingest.joins import joins_nothing
 from rosprivacy.ingest.labels import Labels, read_labels
 from rosprivacy.ingest.namespaces import as_written, pushed, told
 from rosprivacy.ingest.outside import extend
@@ -45,6 +46,8 @@ class Read:
     ----------
     members
         By id of the first robot of each group.
+    joins
+        Those of the diagnostics that say what joins nothing.
     """
 
     fleet: Fleet
@@ -53,6 +56,7 @@ class Read:
     placed: Placed
     labels: tuple[Labels, ...]
     diagnostics: tuple[Diagnostic, ...]
+    joins: tuple[Diagnostic, ...] = ()
     decisions: Decisions | None = None
 
 
@@ -119,7 +123,7 @@ def rows_of_fleet(read: Read, result: Result, settings: Settings) -> FleetRows:
         )
         more[group.robots[0].id] = remembered(said, member.diagnostics)
     everything = {**result.assumptions, "policies": [], "labels": []}
-    more[read.fleet.name] = remembered(everything, ())
+    more[read.fleet.name] = remembered(everything, read.joins)
     return FleetRows(read.placed, result.analysis, result.vocabulary, more)
 
 
@@ -146,8 +150,9 @@ def read_all(file: str, vocabulary: Vocabulary, settings: Settings) -> Read:
         raise InputErrors(problems)
     placed = place(fleet, groups, members, settings.view)
     labels = tuple(sorted(reader.labels.values(), key=lambda labels: (labels.file, labels.own)))
-    diagnostics = dict.fromkeys(d for member in members.values() for d in member.diagnostics)
-    return Read(fleet, groups, members, placed, labels, tuple(diagnostics), decisions)
+    joins = joins_nothing(fleet, groups, placed.met)
+    diagnostics = dict.fromkeys((*(d for member in members.values() for d in member.diagnostics), *joins))
+    return Read(fleet, groups, members, placed, labels, tuple(diagnostics), joins, decisions)
 
 
 class Reader:
