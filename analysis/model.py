@@ -118,6 +118,8 @@ class Grant:
     dead
         Whether the line stands after the first ``<profiles>`` of the first ``<enclave>`` of its path: sros2 does not
         read it there. An ALLOW is taken all the same, a DENY takes nothing away (rule S5).
+    absolute
+        Whether the policy writes the name so: then it stays as it is under a namespace that is pushed (rule S1).
     """
 
     allow: bool
@@ -129,6 +131,7 @@ class Grant:
     place: Place
     policy: str = ""
     dead: bool = False
+    absolute: bool = False
 
 
 UNREAD_FILE = "unread-file"  # grants that no policy brings in: what they allow is not known (rule S11)

@@ -200,9 +200,10 @@ class _Reader:
         enclave, owned = owner.enclave, owner.node
         for item in names:
             name, place = self._name(item, namespace, node), Place(item.file, item.element.sourceline or 0)
+            absolute = (item.element.text or "").startswith("/")
             for role, allow in granted:
                 dead = self.first is not None
-                self.grants.append(Grant(allow, role, kind, name, enclave, owned, place, self.file, dead))
+                self.grants.append(Grant(allow, role, kind, name, enclave, owned, place, self.file, dead, absolute))
                 if dead and not allow:
                     message = f"dead DENY: {role} {name} is not taken away, since sros2 uses the first <profiles> of"
                     message += f" enclave {enclave} only ({self.first}); move it there"

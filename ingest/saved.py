@@ -23,6 +23,10 @@ FORMAT = "rosprivacy.graph/1"
 MAX_BYTES = 2**30
 AGAIN = "save it again with --save-graph"
 _AGAIN = re.compile(r"enclave (.+) again \(first at |several <profiles> in enclave (.+): DDS uses", re.DOTALL)
+UNKNOWN = (
+    "saved by an earlier version, which did not keep which names a policy writes absolute: all are taken so, as they "
+    "stand here; save it again from the policies"
+)
 _ROLES = {role: kind for kind, roles in ROLES.values() for role in roles}
 
 
@@ -63,6 +67,10 @@ def _read(file: str, fail: Callable[[int, str, str], GraphError]) -> tuple[Polic
     policies = tuple(_read_policy(policy) for policy in data["policies"])
     if not policies:
         raise fail(1, "a saved graph without policies", AGAIN)
+    if any("absolute" not in grant for policy in data["policies"] for grant in policy["grants"]):
+        first = policies[0]
+        told = (*first.diagnostics, Diagnostic(Place(file, 1), Severity.WARNING, UNKNOWN))
+        return (replace(first, diagnostics=told), *policies[1:])
     return policies
 
 
@@ -78,6 +86,7 @@ def _policy(policy: Policy) -> dict[str, Any]:
                 "rule": "ALLOW" if grant.allow else "DENY",
                 "role": grant.role,
                 "name": grant.name,
+                "absolute": grant.absolute,
                 "enclave": grant.enclave,
                 "node": grant.node,
                 "file": grant.place.file,
@@ -112,6 +121,7 @@ def _read_policy(saved: dict[str, Any]) -> Policy:
             _place(g),
             _text(saved["file"]),
             _flag(g.get("dead", False)),
+            _flag(g.get("absolute", True)),
         )
         for g in saved["grants"]
     ]
@@ -149,17 +159,17 @@ def _of_earlier_version(grants: list[Grant], said: Iterable[Diagnostic]) -> tupl
     return read, list(told)
 
 
-def _flag(value: Any) -> bool:
-    if not isinstance(value, bool):
-        raise TypeError(repr(value))
-    return value
-
-
 def _place(saved: dict[str, Any]) -> Place:
     line = saved["line"]
     if not isinstance(line, int):
         raise TypeError(f"line {line!r}")
     return Place(_text(saved["file"]), line)
+
+
+def _flag(value: Any) -> bool:
+    if not isinstance(value, bool):
+        raise TypeError(repr(value))
+    return value
 
 
 def _text(value: Any) -> str:
