@@ -91,7 +91,7 @@ def _refused_names(policies: Iterable[Policy]) -> Iterator[Diagnostic]:
     for number, ((kind, name), why) in enumerate(sorted(refused.items())):
         near = _nearest(name, good[kind], compare=number < COMPARED)
         hint = f"did you mean {shown(near)}?" if near else "correct it"
-        message = f"no ROS node can use the {kind} {shown(repr(name))}: {why}, so it meets no other name; {hint}"
+        message = f"no ROS node can use the {kind} {shown(repr(name))}: {why}; {hint}"
         yield Diagnostic(first[kind, name].place, Severity.WARNING, message, REFUSED_NAME)
 
 
