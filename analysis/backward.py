@@ -1,7 +1,8 @@
 """From where data would get to some places: the fixpoint of rule S8, run against the flows.
 
 In: a ``Spread`` and, per vertex, the bits that count there. Out: ``Backward``: per vertex the bits that, if they arrived
-there or left from there, would get to such a place. One run of the kernel, whatever the number of places.
+there or left from there, would get to such a place. One run of the kernel, whatever the number of places. ``nearest``
+then follows what leads there.
 
 A part of what labels close can be opened for one run: then it says what that part keeps shut.
 """
@@ -9,6 +10,7 @@ A part of what labels close can be opened for one run: then it says what that pa
 from __future__ import annotations
 
 from bisect import bisect_left
+from collections import defaultdict
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -19,7 +21,7 @@ from rosprivacy.analysis.flow import fixpoint
 from rosprivacy.analysis.network import as_bits, as_numbers
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping
+    from collections.abc import Collection, Iterable, Mapping
 
     from rosprivacy.analysis.spread import Spread
 
@@ -39,6 +41,25 @@ class Opened:
     elements: Mapping[int, int] = field(default_factory=dict)
     flows: Mapping[int, int] = field(default_factory=dict)
     more: Collection[tuple[int, int]] = ()
+
+    @classmethod
+    def of(cls, parts: Iterable[Opened]) -> Opened:
+        """Return all that some open, together."""
+        elements: dict[int, int] = defaultdict(int)
+        flows: dict[int, int] = defaultdict(int)
+        more: set[tuple[int, int]] = set()
+        for part in parts:
+            for opened, bits in part.elements.items():
+                elements[opened] |= bits
+            for opened, bits in part.flows.items():
+                flows[opened] |= bits
+            more.update(part.more)
+        return cls(elements, flows, tuple(sorted(more)))
+
+    @property
+    def size(self) -> int:
+        """How many elements and flows it is about."""
+        return len(self.elements) + len(self.flows) + len(self.more)
 
 
 NOTHING_OPENED = Opened()
@@ -105,3 +126,59 @@ def backward(found: Spread, places: Mapping[int, int], opened: Opened = NOTHING_
 def _taken_up(found: Spread, vertex: int, keeps: Mapping[int, int]) -> int:
     """A node is reached by all that arrives; a channel takes up only what it carries."""
     return keeps.get(vertex, found.all_bits) if found.graph.elements[vertex].is_channel else found.all_bits
+
+
+def outgoing(found: Spread) -> dict[int, list[tuple[int, int]]]:
+    """Return (index, target) of the flows out of each vertex."""
+    flows: dict[int, list[tuple[int, int]]] = defaultdict(list)
+    for index, flow in enumerate(found.graph.flows):
+        flows[flow.source].append((index, flow.target))
+    return flows
+
+
+def nearest(
+    found: Spread, flows: Mapping[int, list[tuple[int, int]]], leaving: Mapping[int, int], arriving: Mapping[int, int],
+    places: Mapping[int, int], by: Backward, opened: Opened = NOTHING_OPENED,
+) -> int:  # fmt: skip
+    """Return the nearest of the places that some bits get to, by number of flows, then by number of the vertex.
+
+    Parameters
+    ----------
+    flows
+        As ``outgoing`` returns them.
+    leaving, arriving
+        Vertex -> bits that begin to leave there, or that arrive there.
+    places, by, opened
+        As for ``backward``, and what it returned.
+
+    Returns
+    -------
+    int
+        A vertex; -1 if the bits get to none.
+    """
+    more: dict[int, list[tuple[int, int]]] = defaultdict(list)
+    for source, target in opened.more:
+        more[source].append((-1, target))
+    left: dict[int, int] = defaultdict(int)
+    seen: dict[int, int] = defaultdict(int)
+    leaving, arriving = dict(leaving), dict(arriving)
+    while leaving or arriving:
+        for vertex in sorted(leaving):
+            bits = leaving[vertex] & ~left[vertex]
+            left[vertex] |= bits
+            for index, target in (*flows.get(vertex, ()), *more.get(vertex, ())):
+                passing = found.flow_keeps.get(index, found.all_bits) | opened.flows.get(index, 0)
+                arriving[target] = arriving.get(target, 0) | bits & passing
+        leaving = {}
+        for vertex in sorted(arriving):
+            bits = arriving[vertex] & by.entering.get(vertex, 0) & ~seen[vertex]
+            seen[vertex] |= bits
+            keeps = found.keeps.get(vertex, found.all_bits) | opened.elements.get(vertex, 0)
+            made = sum({1 << after for before, after in found.derives.get(vertex, ()) if bits >> before & 1})
+            here = bits & keeps if found.graph.elements[vertex].is_channel else bits | made
+            if here & places.get(vertex, 0):
+                return vertex
+            if bits:
+                leaving[vertex] = bits & keeps | made
+        arriving = {}
+    return -1

@@ -356,6 +356,8 @@ class Statement:
         Of a source: name expressions of the channels that carry it; empty means all.
     shipped
         Whether it comes from the standard channels' file (rule S13).
+    glob
+        Whether a glob names what it is about.
     """
 
     role: str
@@ -367,6 +369,7 @@ class Statement:
     to: str = ""
     through: tuple[str, ...] = ()
     shipped: bool = False
+    glob: bool = False
 
 
 @dataclass(frozen=True, slots=True)
