@@ -1,8 +1,8 @@
 """From where data would get to some places: the fixpoint of rule S8, run against the flows.
 
-In: a ``Spread`` and, per vertex, the bits that count there. Out: ``Backward``: per vertex the bits that, if they arrived
-there or left from there, would get to such a place. One run of the kernel, whatever the number of places. ``nearest``
-then follows what leads there.
+In: a ``Spread`` and, per vertex, the bits that count there. Out: ``Backward``: per vertex the bits that, if they
+arrived there or left from there, would get to such a place. One run of the kernel, whatever the number of places.
+``nearest`` then follows what leads there.
 
 A part of what labels close can be opened for one run: then it says what that part keeps shut.
 """

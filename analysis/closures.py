@@ -1,7 +1,7 @@
 """Where data ends on a label's or a DENY's word, and what lies behind.
 
-In: a ``Spread``. Out: ``Closure`` facts, and for each the nearest of some places that data would get to if what closes it
-were not there. Used by the ledger.
+In: a ``Spread``. Out: ``Closure`` facts, and for each the nearest of some places that data would get to if what closes
+it were not there. Used by the ledger.
 """
 
 from __future__ import annotations
@@ -78,9 +78,9 @@ def _denied(found: Spread) -> Iterator[Closure]:
     """Flows that a DENY takes back, with data at their start (rule S5)."""
     for flow in found.graph.denied:
         bits = found.leaves.get(flow.source, 0)
-        lines = {denial.place for denial in flow.denials}
         if bits:
-            yield Closure(DENY, flow.source, flow.target, bits, tuple(sorted(lines, key=lambda p: (p.file, p.line))))
+            lines = {denial.place: None for denial in sorted(flow.denials, key=lambda denial: _key(denial.place))}
+            yield Closure(DENY, flow.source, flow.target, bits, tuple(lines))
 
 
 def _by_lines(found: Spread, decided: Mapping[str, Facts], stopped: int) -> dict[tuple[Line, ...], list[str]]:

@@ -97,12 +97,12 @@ def ledger(
     leaks = _leaks(found, bound, hierarchy)
     rows = [
         *_closed(found, {v: bits & asked for v, bits in leaks.items()}, _unlabelled(found, bound, asked)),
-        *_outdone(found, bound),
+        *_outdone(found),
         *_reviewed(found, asked),
         *_decided(analysis),
         *_restricted(found, leaks, asked),
         *_unread(diagnostics),
-        *(_unknown(analysis) if hasattr(analysis, "unknown_ends") else ()),
+        *_unknown(analysis),
     ]
     return tuple(sorted(rows, key=_order))
 
@@ -155,7 +155,7 @@ def _line(place: Place) -> tuple[str, int]:
     return (place.file, place.line)
 
 
-def _outdone(found: Spread, bound: Bound) -> Iterator[TakenAway]:
+def _outdone(found: Spread) -> Iterator[TakenAway]:
     """Sources, and leaks where data is, that a statement of higher rank took away (rule S7)."""
     elements = found.graph.elements
     rows: dict[tuple[int, Place, Place], tuple[set[str], str, bool]] = {}

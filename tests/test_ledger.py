@@ -1,7 +1,7 @@
 """The ledger (rules S5, S7, S8, S11): nothing that is taken away changes an answer in silence.
 
-The property: whatever single line is removed that takes data's way, or a question, away, either the answer by brute force
-gains nothing, or the line stood in the ledger before.
+The property: whatever single line is removed that takes data's way, or a question, away, either the answer by brute
+force gains nothing, or the line stood in the ledger before.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from tests.brute import Brute
 
 ADDS = {"source", "leak"}
+NEVER = 1000  # the line of what is said of the first flow
 
 
 @dataclass
@@ -57,7 +58,10 @@ class Stated:
         whole = self.system.bound()
         numbers = {edge: number for number, edge in enumerate(self.edges)}
         never = {i: self.system.edges[i] for i in whole.flows}
-        flows = {numbers[edge]: whole.flows[i] for i, edge in never.items() if edge in numbers}
+        lines = {
+            i: tuple(replace(s, place=Place("labels.yaml", NEVER + i)) for s in said) for i, said in whole.flows.items()
+        }
+        flows = {numbers[edge]: lines[i] for i, edge in never.items() if edge in numbers}
         return replace(whole, flows=flows)
 
     def ledger(self) -> tuple[TakenAway, ...]:
@@ -71,12 +75,13 @@ class Stated:
     def lines(self) -> set[int]:
         """The lines that take something away."""
         said = {s.place.line for said in self.system.said.values() for s in said if s.role not in ADDS}
-        return said.union(*self.denied.values())
+        return said.union(*self.denied.values(), {NEVER + i for i in self.system.never})
 
     def without(self, line: int) -> Stated:
         said = {v: [s for s in said if s.place.line != line] for v, said in self.system.said.items()}
         denied = {edge: lines - {line} for edge, lines in self.denied.items()}
-        return Stated(replace(self.system, said=said), denied)
+        never = {i: names for i, names in self.system.never.items() if NEVER + i != line}
+        return Stated(replace(self.system, said=said, never=never), denied)
 
 
 def deny(line: int) -> Grant:
@@ -110,19 +115,21 @@ def stated(draw: st.DrawFn) -> Stated:
 GLOBS = [statement("mundane"), statement("never", "Any"), statement("only", "Loc"), statement("never", "Face")]
 
 
-def answer(brute: Brute) -> tuple[dict[object, tuple[bool, bool]], set[tuple[int, str]]]:
+def answer(brute: Brute) -> tuple[dict[tuple[str, str, int, int], tuple[bool, bool]], set[tuple[int, str]]]:
     """Finding -> (not dismissed, plain); (vertex, category) that is open."""
     findings = {key: (not dismissed, not hidden) for key, (hidden, dismissed, _) in brute.findings().items()}
     return findings, {(v, c) for v, (categories, *_) in brute.open().items() for c in categories}
 
 
 def gains(system: Stated, line: int) -> tuple[bool, bool]:
-    """Whether findings, and whether questions, come about when a line is taken out."""
-    before, after = answer(system.brute()), answer(system.without(line).brute())
-    more = any(after[0][key] > before[0].get(key, (False, False)) for key in after[0])
-    return more or any(
-        a and not b for k in after[0] for a, b in zip(after[0][k], before[0].get(k, (False, False)), strict=True)
-    ), bool(after[1] - before[1])
+    """Whether findings (or worse ones), and whether questions, come about when a line is taken out."""
+    findings, questions = answer(system.brute())
+    after, asked = answer(system.without(line).brute())
+    worse = any(
+        key not in findings or any(now and not before for now, before in zip(state, findings[key], strict=True))
+        for key, state in after.items()
+    )
+    return worse, bool(asked - questions)
 
 
 def rows_of(rows: tuple[TakenAway, ...], line: int) -> Iterator[TakenAway]:
