@@ -2,7 +2,7 @@
 
 In: a ``Spread`` and, per vertex, the bits that count there. Out: ``Backward``: per vertex the bits that, if they
 arrived there or left from there, would get to such a place. One run of the kernel, whatever the number of places.
-``nearest`` then follows what leads there.
+Which place is the nearest is told by ``nearest.py``.
 
 A part of what labels close can be opened for one run: then it says what that part keeps shut.
 """
@@ -126,59 +126,3 @@ def backward(found: Spread, places: Mapping[int, int], opened: Opened = NOTHING_
 def _taken_up(found: Spread, vertex: int, keeps: Mapping[int, int]) -> int:
     """A node is reached by all that arrives; a channel takes up only what it carries."""
     return keeps.get(vertex, found.all_bits) if found.graph.elements[vertex].is_channel else found.all_bits
-
-
-def outgoing(found: Spread) -> dict[int, list[tuple[int, int]]]:
-    """Return (index, target) of the flows out of each vertex."""
-    flows: dict[int, list[tuple[int, int]]] = defaultdict(list)
-    for index, flow in enumerate(found.graph.flows):
-        flows[flow.source].append((index, flow.target))
-    return flows
-
-
-def nearest(
-    found: Spread, flows: Mapping[int, list[tuple[int, int]]], leaving: Mapping[int, int], arriving: Mapping[int, int],
-    places: Mapping[int, int], by: Backward, opened: Opened = NOTHING_OPENED,
-) -> int:  # fmt: skip
-    """Return the nearest of the places that some bits get to, by number of flows, then by number of the vertex.
-
-    Parameters
-    ----------
-    flows
-        As ``outgoing`` returns them.
-    leaving, arriving
-        Vertex -> bits that begin to leave there, or that arrive there.
-    places, by, opened
-        As for ``backward``, and what it returned.
-
-    Returns
-    -------
-    int
-        A vertex; -1 if the bits get to none.
-    """
-    more: dict[int, list[tuple[int, int]]] = defaultdict(list)
-    for source, target in opened.more:
-        more[source].append((-1, target))
-    left: dict[int, int] = defaultdict(int)
-    seen: dict[int, int] = defaultdict(int)
-    leaving, arriving = dict(leaving), dict(arriving)
-    while leaving or arriving:
-        for vertex in sorted(leaving):
-            bits = leaving[vertex] & ~left[vertex]
-            left[vertex] |= bits
-            for index, target in (*flows.get(vertex, ()), *more.get(vertex, ())):
-                passing = found.flow_keeps.get(index, found.all_bits) | opened.flows.get(index, 0)
-                arriving[target] = arriving.get(target, 0) | bits & passing
-        leaving = {}
-        for vertex in sorted(arriving):
-            bits = arriving[vertex] & by.entering.get(vertex, 0) & ~seen[vertex]
-            seen[vertex] |= bits
-            keeps = found.keeps.get(vertex, found.all_bits) | opened.elements.get(vertex, 0)
-            made = sum({1 << after for before, after in found.derives.get(vertex, ()) if bits >> before & 1})
-            here = bits & keeps if found.graph.elements[vertex].is_channel else bits | made
-            if here & places.get(vertex, 0):
-                return vertex
-            if bits:
-                leaving[vertex] = bits & keeps | made
-        arriving = {}
-    return -1

@@ -10,8 +10,9 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.backward import NOTHING_OPENED, Opened, backward, nearest, outgoing
+from rosprivacy.analysis.backward import NOTHING_OPENED, Opened, backward
 from rosprivacy.analysis.model import Place, Statement
+from rosprivacy.analysis.nearest import Nearest
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -116,37 +117,40 @@ def behind(found: Spread, closed: Sequence[Closure], places: Mapping[int, int]) 
     """
     if not closed or not any(places.values()):
         return {}
-    flows = outgoing(found)
-    result: dict[int, int] = {}
-
-    def led(closure: Closure, by: Backward) -> int:
-        """The bits that get to a place from here: from the element on, or by the end of the flow."""
-        ways = by.leaving.get(closure.vertex, 0) if closure.to < 0 else by.entering.get(closure.to, 0)
-        return closure.bits & ways
-
-    def look(number: int, by: Backward, opened: Opened) -> None:
-        closure, bits = closed[number], led(closed[number], by)
-        begins = ({closure.vertex: bits}, {}) if closure.to < 0 else ({}, {closure.to: bits})
-        if bits:
-            result[number] = nearest(found, flows, *begins, places, by, opened)
-
     plain = backward(found, places)
-    for number in range(len(closed)):
-        look(number, plain, NOTHING_OPENED)
-    left = [number for number in range(len(closed)) if number not in result]
-    extents = _extents(found, {line for number in left for line in closed[number].lines})
+    behind = {number: closure for number, closure in enumerate(closed) if _led(closure, plain)}
+    result = _nearest(found, behind, places, plain, NOTHING_OPENED)
+    left = {number: closure for number, closure in enumerate(closed) if number not in behind}
+    extents = _extents(found, {line for closure in left.values() for line in closure.lines})
     if not extents:
         return result
     together = backward(found, places, Opened.of(extents.values()))
-    left = [number for number in left if led(closed[number], together)]
-    lines = [line for line in extents if any(line in closed[number].lines for number in left)]
+    left = {number: closure for number, closure in left.items() if _led(closure, together)}
+    lines = [line for line in extents if any(line in closure.lines for closure in left.values())]
     for line in lines[:ROUNDS]:
         by = backward(found, places, extents[line])
-        for number in left:
-            if line in closed[number].lines and number not in result:
-                look(number, by, extents[line])
+        behind = {n: c for n, c in left.items() if line in c.lines and n not in result and _led(c, by)}
+        result |= _nearest(found, behind, places, by, extents[line])
     untold = set(lines[ROUNDS:])
-    return {number: PERHAPS for number in left if untold.intersection(closed[number].lines)} | result
+    return {number: PERHAPS for number, closure in left.items() if untold.intersection(closure.lines)} | result
+
+
+def _led(closure: Closure, by: Backward) -> int:
+    """The bits that would get to a place from here: from the element on, or by the end of the flow."""
+    ways = by.leaving.get(closure.vertex, 0) if closure.to < 0 else by.entering.get(closure.to, 0)
+    return closure.bits & ways
+
+
+def _nearest(
+    found: Spread, behind: Mapping[int, Closure], places: Mapping[int, int], by: Backward, opened: Opened
+) -> dict[int, int]:
+    if not behind:
+        return {}
+    near = Nearest.of(found, places, opened)
+    return {
+        number: near.after(c.vertex, _led(c, by)) if c.to < 0 else near.at(c.to, _led(c, by))
+        for number, c in behind.items()
+    }
 
 
 def _extents(found: Spread, lines: set[Line]) -> dict[Line, Opened]:
