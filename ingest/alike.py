@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.ingest.domains import pseudo_robot
 from rosprivacy.ingest.names import is_pattern, matcher
+from rosprivacy.ingest.regular import contents
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -70,13 +71,15 @@ def alike(fleet: Fleet, told_apart: Callable[[str], object] = lambda _: None) ->
     domains: dict[str, int] = defaultdict(int)
     for robot in (*fleet.robots, *fleet.infrastructure):
         domains[robot.domain] += 1
+    content = cache(_content)  # as long as this call: a file may change between two
     groups: dict[object, list[Robot]] = defaultdict(list)
     joined: dict[object, bool] = {}
     for robot in fleet.robots:
         means = tuple(i for i, test in enumerate(tests) if test(robot.id))
         several = bool(robot.domain) and domains[robot.domain] > 1
         alone = robot.id if several and (robot.strip or robot.add) else ""
-        key = (robot.model, _contents(robot), robot.domain, robot.strip, alone, means, told_apart(robot.id))
+        runs = tuple(tuple(map(content, files)) for files in (robot.policies, robot.labels, robot.own))
+        key = (robot.model, runs, robot.domain, robot.strip, alone, means, told_apart(robot.id))
         groups[key].append(robot)
         joined[key] = bool(means) or several
     found = [Alike(tuple(robots), joined[key]) for key, robots in groups.items()]
@@ -100,15 +103,10 @@ def known_to_flows(fleet: Fleet) -> list[str]:
     return [*(robot.id for robot in everyone), *sorted({pseudo_robot(r.domain) for r in everyone if r.domain})]
 
 
-def _contents(robot: Robot) -> tuple[tuple[str, ...], ...]:
-    return tuple(tuple(map(_content, files)) for files in (robot.policies, robot.labels, robot.own))
-
-
-@cache
 def _content(file: str) -> str:
     """What stands for a file: its content, or its path where others may be read with it."""
     path = Path(file)
     if not path.is_file():
         return file
-    data = path.read_bytes()
+    data = contents(path)
     return file if b"include" in data else hashlib.sha256(data).hexdigest()
