@@ -122,10 +122,12 @@ def _on_one_file(outputs: list[_Output]) -> Iterator[InputError]:
     for at in outputs:
         if at.stream:
             continue
-        other = first.setdefault(_key(at), at.named)
-        if other is not at.named:
-            what = f"is the file of another output too, {shown(str(other))}"
+        key = _key(at)
+        if key in first:
+            also = "" if first[key] == at.named else f", also as {shown(str(first[key]))}"
+            what = f"is named for two outputs{also}"
             yield InputError(str(at.named), 0, what, "name a file for each; upper and lower case alone do not differ")
+        first.setdefault(key, at.named)
 
 
 def _key(at: _Output) -> object:
