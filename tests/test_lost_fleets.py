@@ -187,3 +187,74 @@ class TestARobotsOwnGlob:
                 continue
             best = candidates[max(candidates)]
             assert {s.role for s in statements if s.rank == max(t.rank for t in statements)} == best
+
+
+class TestDecisionsBetweenRobots:
+    """Case 13 (a): ``robot`` is that of the leak; what goes from one robot to another needs ``from_robot`` too."""
+
+    ROBOTS = (
+        "robots:\n  a: {policies: [cam.xml], labels: [cam.yaml], domain: lab}\n"
+        "  b: {policies: [up.xml], labels: [up.yaml], domain: lab}\n"
+    )
+    WARNING = "the decision to accept a pattern names no from_robot: 1 finding from one robot to another, "
+
+    def decided(self, cli: Cli, entry: str, fleet: str = ROBOTS) -> Done:
+        said = "decision: accept, reason: agreed, owner: me, legal_basis: [6(1)(a)]"
+        write("d.yaml", f"decisions: 1\nfindings:\n  - {{{entry}, {said}}}\n")
+        return analysed(cli, fleet, "--decisions", "d.yaml")
+
+    @pytest.mark.parametrize("robot", ["a", "b", "'*'"])
+    def test_one_robot_is_not_enough(self, cli: Cli, robot: str) -> None:
+        done = self.decided(cli, f"leak: /uplink, robot: {robot}")
+        assert (done.returncode, "Video: a:/camera -> b:/uplink" in done.stdout) == (1, True)
+        (line,) = [line for line in done.stdout.splitlines() if self.WARNING in line]
+        assert "d.yaml:3" in line
+        assert line.endswith("accepted before, no longer; add it")
+        assert "orphaned" not in done.stdout + done.stderr
+
+    @pytest.mark.parametrize(
+        ("entry", "code"),
+        [
+            ("leak: /uplink, robot: b, from_robot: a", 0),
+            ("leak: /uplink, from_robot: a", 0),
+            ("leak: /uplink", 0),
+            ("leak: /uplink, robot: '*', from_robot: '*'", 0),
+            ("leak: /uplink, robot: a, from_robot: b", 1),
+            ("leak: /uplink, robot: b, from_robot: b", 1),
+            ("leak: /uplink, from_robot: b", 1),
+        ],
+    )
+    def test_both_are(self, cli: Cli, entry: str, code: int) -> None:
+        done = self.decided(cli, entry)
+        assert done.returncode == code
+        assert "names no from_robot" not in done.stdout + done.stderr
+
+    def test_of_robots_that_are_alike_only_those_that_it_names(self, cli: Cli) -> None:
+        """Three cameras, three uplinks, one domain: nine findings, of which one is accepted."""
+        fleet = "groups: [{robots: 3, model: m, id: r*}]\nmodels: {m: {policies: p.xml, labels: l.yaml, domain: lab}}\n"
+        for entry, accepted in (("robot: r2, from_robot: r1", 1), ("robot: r2", 1), ("from_robot: r1", 3)):
+            self.decided(cli, f"leak: /uplink, {entry}", fleet)
+            done = cli("analyze", "--fleet", "fleet.yaml", "--decisions", "d.yaml", "-f", "json")
+            patterns = json.loads(done.stdout)["fleet"]["patterns"]
+            assert (done.returncode, sum(p["findings"] for p in patterns)) == (1, 9)
+            assert sum(p["accepted"] for p in patterns) == accepted, entry
+
+    def test_a_leak_that_is_on_no_robot_is_named_by_the_robot_of_the_source(self, cli: Cli) -> None:
+        shared = (
+            self.ROBOTS
+            + "elements: {cloud: {kind: external-system, country: DE, leak: [Video]}}\n"
+            + "flows: [{from: 'a:/camera', to: cloud}]\n"
+        )
+        for robot, code in (("a", 0), ("b", 1)):
+            fleet = shared.replace("up.yaml", "none.yaml")
+            write("none.yaml", "labels: 1\nnodes: {/uplink: conduit}\n")
+            assert self.decided(cli, f"leak: cloud, robot: {robot}", fleet).returncode == code
+
+    def test_decide_writes_it(self, cli: Cli) -> None:
+        self.decided(cli, "leak: /nothing")
+        said = ("--reason", "agreed", "--owner", "me", "--legal-basis", "6(1)(a)", "--decisions", "d.yaml")
+        done = cli("decide", "accept", "--leak", "/uplink", "--robot", "b", "--from-robot", "a", *said)
+        assert done.returncode == 0, done.stderr
+        assert "accept leak /uplink, robot b, from_robot a" in done.stdout
+        assert "from_robot: a\n" in Path("d.yaml").read_text("utf-8")
+        assert cli("analyze", "--fleet", "fleet.yaml", "--decisions", "d.yaml").returncode == 0
