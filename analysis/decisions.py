@@ -51,6 +51,8 @@ class Case:
         Of the finding; empty where it stands for more than itself.
     pattern
         On a fleet, the id of the pattern that it belongs to.
+    beside
+        As of ``Finding``.
     """
 
     id: str
@@ -60,12 +62,13 @@ class Case:
     leak: Element
     pseudonymised: bool
     pattern: str = ""
+    beside: bool = False
 
     @classmethod
     def of(cls, finding: Finding) -> Case:
         """Return the case that a finding is."""
         ends = finding.source, finding.leak
-        return cls(finding.id, finding.kind, finding.category, *ends, finding.pseudonymised)
+        return cls(finding.id, finding.kind, finding.category, *ends, finding.pseudonymised, beside=finding.beside)
 
 
 @dataclass(frozen=True, slots=True)

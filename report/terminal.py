@@ -109,7 +109,8 @@ def _findings(report: Mapping[str, Any]) -> Iterator[Line]:
             yield f"   {shown(finding['reason'])}", ""
         if finding["dismissed"]:
             through = ", ".join(_name(element) for element in finding["through"])
-            yield f"   only through {through}, which has a finding of its own", "dim"
+            past = "; past it, data gets there pseudonymised only" if finding.get("beside_pseudonymised") else ""
+            yield f"   only through {through}, which has a finding of its own{past}", "dim"
         yield from decision_lines(finding)
         yield from _way(finding, roles, unreviewed)
         yield from _paths(finding)

@@ -289,10 +289,11 @@ WORDS = {
     "f.third-country-transfer": "{data} from {source} can get to {leak}, outside the EEA, without a stated basis.",
     "f.single": "{data} is brought in and let out at {source} itself.",
     "f.pseudonymised": (
-        "The data arrives pseudonymised only. That is still personal data for whoever can tell the persons "
+        "On these ways the data arrives pseudonymised only. That is still personal data for whoever can tell the persons "
         "(recital 26 GDPR). To be answered: can this recipient do so, alone or with what others hold?"
     ),
     "f.dismissed": "Every way to it goes through {names}, which has an entry of its own. Assess that one first.",
+    "f.beside": "Past it, the data gets there pseudonymised only: that is an entry of its own.",
     "f.special": "{element} makes data of this kind, which can be a special category, of data that are none.",
     "f.ways": "{n} ways share no step; closing one leaves the others.",
     "f.paths": "Further ways",

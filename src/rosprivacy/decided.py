@@ -61,5 +61,6 @@ def accepts(decisions: Decisions | None, likeness: Likeness = NO_ROBOTS) -> Call
 
 def in_fleet(case: Case, likeness: Likeness) -> Case:
     """Return a case with its pattern; where it stands for more than itself it has no id of its own."""
-    pattern = pattern_of(case.kind, case.category, case.source, case.leak, likeness)
+    ends = case.source, case.leak
+    pattern = pattern_of(case.kind, case.category, *ends, likeness, beside=case.beside)
     return replace(case, id=case.id if likeness.alone(case.source, case.leak) else "", pattern=pattern)
