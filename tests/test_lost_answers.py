@@ -161,6 +161,54 @@ class TestFrontier:
         assert len(finding["steps"]) == 2
 
 
+class TestRestrictions:
+    """Rules S7 and S11: what was emitted as a broader kind may be of the kind asked for (case 11)."""
+
+    def system(self) -> None:
+        policy(
+            profile("camera", ("publish", "topic", "/video")),
+            profile("id", ("publish", "topic", "/ids")),
+            profile("uplink", ("subscribe", "topic", "/video")),
+            profile("store", ("subscribe", "topic", "/ids")),
+        )
+        labels(
+            "nodes: {/camera: {source: [PersonalData]}, /uplink: {leak: [Biometric]}, /id: {source: [FaceTemplate]}, "
+            "/store: conduit}\nchannels: {/video: sensitive, /ids: sensitive}\n"
+        )
+
+    def test_a_broader_kind_is_followed_and_marked(self, cli: Cli) -> None:
+        self.system()
+        done = cli("analyze", "p.xml", "-l", "l.yaml", "-c", "Biometric")
+        assert done.returncode == 1
+        first, *lines = done.stdout.splitlines()
+        assert first == "leak: data can reach a leak; only Biometric was asked for"
+        assert any(line.startswith("1. PersonalData (may be Biometric): /camera -> /uplink   [") for line in lines)
+        assert "   and PersonalData, since it is broader (may be Biometric)" in lines
+        assert analysis(cli, "-c", "Biometric")["assumptions"]["may_be_asked"] == {"PersonalData": ["Biometric"]}
+
+    @pytest.mark.parametrize(
+        ("filters", "named"),
+        [
+            (("-c", "Location", "-c", "Voice"), "Location, Voice"),
+            (("--data-type", "image"), "data that is image"),
+            (("--article9",), "what can fall under Article 9(1) GDPR"),
+            (("-c", "Voice", "--article9"), "Voice and what can fall under Article 9(1) GDPR"),
+        ],
+    )
+    def test_the_verdict_names_the_restriction_also_when_it_is_all(
+        self, cli: Cli, filters: tuple[str, ...], named: str
+    ) -> None:
+        self.system()
+        (line,) = cli("analyze", "p.xml", "-l", "l.yaml", "-q", *filters).stdout.splitlines()
+        assert line.endswith(f"; only {named} was asked for")
+
+    def test_a_kind_that_is_neither_narrower_nor_broader_is_left_out(self, cli: Cli) -> None:
+        self.system()
+        found = analysis(cli, "-c", "Location")
+        assert {finding["category"] for finding in found["findings"]} <= {"PersonalData"}
+        assert [category["name"] for category in found["categories"]] == ["PersonalData"]
+
+
 class TestUnknownEnds:
     """Rule S11: what is not known is said (case 10)."""
 
