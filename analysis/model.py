@@ -366,6 +366,8 @@ class Statement:
         Of a source: name expressions of the channels that carry it; empty means all.
     shipped
         Whether it comes from the standard channels' file (rule S13).
+    glob
+        Whether a glob names what it is about.
     """
 
     role: str
@@ -377,6 +379,7 @@ class Statement:
     to: str = ""
     through: tuple[str, ...] = ()
     shipped: bool = False
+    glob: bool = False
 
 
 @dataclass(frozen=True, slots=True)
