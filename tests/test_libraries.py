@@ -187,7 +187,7 @@ def test_one_changed_jar_among_all_is_enough(private_neo4j: Connection, cache: P
     """A start with all the real files, of which one has a class more."""
     known = libraries._remembered(Path(private_neo4j.origin).parent / "jars.json")
     for jar, real in zip(libraries.pinned(), known, strict=True):
-        (cache / jar.path).parent.mkdir(parents=True)
+        (cache / jar.path).parent.mkdir(parents=True, exist_ok=True)
         (cache / jar.path).symlink_to(real)
     changed = cache / libraries.pinned()[100].path
     real = changed.resolve()
