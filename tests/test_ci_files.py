@@ -41,8 +41,8 @@ def runner(tmp_path: Path) -> dict[str, str]:
     """What a runner gives to a step; rosprivacy is there already, as after the first step."""
     bin_folder = tmp_path / "temp" / "rosprivacy" / "bin"
     bin_folder.mkdir(parents=True)
-    for name in ("python", "rosprivacy"):
-        (bin_folder / name).write_text(f'#!/bin/sh\nexec "{sys.executable}" "$@"\n')
+    for name, words in (("python", ""), ("rosprivacy", "-P -m rosprivacy")):
+        (bin_folder / name).write_text(f'#!/bin/sh\nexec "{sys.executable}" {words} "$@"\n')
         (bin_folder / name).chmod(0o755)
     return {
         "RUNNER_TEMP": str(tmp_path / "temp"),
@@ -457,11 +457,11 @@ def test_a_pull_request_is_not_its_own_baseline(outcome: str, runner: dict[str, 
     planted(Path(runner["RUNNER_TEMP"], "after.json"), new)
     planted(Path(runner["RUNNER_TEMP"], "before.json"), new if outcome == "failure" else old)
     comment = say_what_changes(runner, tmp_path / "checkout", outcome)
-    assert not trace.exists()
     assert "**New ways to assess: 2**" in comment
     assert ("**There is no baseline**: " in comment) == (outcome == "failure")
     before = "not analysed before" if outcome == "failure" else "undetermined"
     assert f"Verdict: `{before}` before, `leak` now." in comment
+    assert not trace.exists(), trace.read_text("utf-8")
 
 
 def test_who_reads_a_pull_request_can_write_nothing() -> None:
