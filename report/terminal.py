@@ -15,6 +15,7 @@ from rosprivacy.analysis.model import CHANNELS
 from rosprivacy.report.decided import decision_lines
 from rosprivacy.report.terminal_ends import end_lines, ends_at_verdict
 from rosprivacy.report.terminal_fleet import fleet_lines, robots_of
+from rosprivacy.report.terminal_ledger import counted, listed
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -76,6 +77,8 @@ def _lines(report: Mapping[str, Any], *, verbose: bool, quiet: bool) -> Iterator
     yield from _findings(report)
     yield from _review(report, verbose=verbose)
     yield from end_lines(report, most=None if verbose else SHOWN)
+    if verbose:
+        yield from listed(report)
     yield from _assumed(report)
     yield from _diagnostics(report, verbose=verbose)
 
@@ -202,6 +205,7 @@ def _assumed(report: Mapping[str, Any]) -> Iterator[Line]:
         yield f"   {channels} taken as mundane (rosprivacy labels --standard)", ""
     else:
         yield "   no standard channels taken as mundane", ""
+    yield from counted(report)
     if "database" in assumptions:
         robots = _count(assumptions["database"]["robots"], "robot")
         yield f"   {robots} in the database, as loaded from these files and changed there since", ""

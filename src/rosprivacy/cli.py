@@ -24,6 +24,7 @@ from rosprivacy import (
     cli_mitigate,
     cli_report,
     cli_views,
+    cli_why_not,
 )
 from rosprivacy.analysis.errors import InputError, RosPrivacyError
 from rosprivacy.cli_options import (
@@ -73,6 +74,7 @@ app.command()(cli_categories.categories)
 app.command()(cli_mitigate.mitigate)
 app.command()(cli_decide.decide)
 app.command()(cli_report.report)
+app.command("why-not")(cli_why_not.why_not)
 
 
 @app.callback(invoke_without_command=True)
