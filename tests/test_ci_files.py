@@ -237,11 +237,16 @@ def test_nothing_of_a_hostile_checkout_runs_while_the_action_installs(tmp_path: 
     assert [step.returncode for step in done] == [0, 1], done[-1].stderr
     assert outputs(runner) == {"verdict": "leak", "findings": "2"}
     pip = [str(tmp_path / "temp" / "rosprivacy" / "bin" / "python"), "-I", "-m", "pip", "freeze", "--all"]
-    there = subprocess.run(pip, capture_output=True, text=True, check=True).stdout.lower().replace(".", "-")
-    locked = (ROOT / "requirements.lock").read_text("utf-8").replace(".", "-")
-    known = {line for line in there.splitlines() if not line.startswith(("rosprivacy ", "pip=="))}
-    assert known <= {line.split(" ")[0] for line in locked.splitlines()}
+    there = subprocess.run(pip, capture_output=True, text=True, check=True).stdout
+    lock = (ROOT / "requirements.lock").read_text("utf-8")
+    locked, known = ({alike(line.split(" ")[0]) for line in text.splitlines()} for text in (lock, there))
+    assert {line for line in known - locked if not line.startswith("pip==")} == {"rosprivacy"}
     assert any(line.startswith("setuptools==") for line in known)
+
+
+def alike(pin: str) -> str:
+    """A pin with its name written as all tools take for the same."""
+    return re.sub("[-_.]+", "-", pin.lower())
 
 
 @pytest.mark.slow
@@ -436,11 +441,11 @@ def workflow() -> Any:
     return yaml.safe_load((CI / "privacy.yml").read_text("utf-8"))
 
 
-def say_what_changes(runner: dict[str, str], checkout: Path, outcome: str) -> str:
+def say_what_changes(runner: dict[str, str], checkout: Path, outcome: str, **more: str) -> str:
     """Run that step of the workflow, after an analysis of the pull request; return its comment."""
     (step,) = (step for step in workflow()["jobs"]["paths-to-assess"]["steps"] if "NOTHING" in step.get("env", {}))
     variables = {name: value for name, value in step["env"].items() if "${{" not in value} | {"BEFORE": outcome}
-    environment = {**os.environ, **runner, **FROM_HERE, **variables, "FORK": "true"}
+    environment = {**os.environ, **runner, **variables, **more, "FORK": "true"}
     command = ["bash", "--noprofile", "--norc", "-eo", "pipefail", "-c", step["run"]]
     done = subprocess.run(command, cwd=checkout, env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
@@ -451,9 +456,8 @@ def say_what_changes(runner: dict[str, str], checkout: Path, outcome: str) -> st
 def test_a_pull_request_is_not_its_own_baseline(outcome: str, runner: dict[str, str], tmp_path: Path) -> None:
     """It brings a before.json that says that nothing is new; and an analysis that failed leaves one half done."""
     new, old = json.dumps(report_of(2)), json.dumps(report_of(1))
-    trace = hostile(tmp_path / "checkout")
-    for file in (tmp_path / "checkout" / "before.json", tmp_path / "checkout" / "after.json"):
-        planted(file, new)
+    for name in ("before.json", "after.json"):
+        planted(tmp_path / "checkout" / name, new)
     planted(Path(runner["RUNNER_TEMP"], "after.json"), new)
     planted(Path(runner["RUNNER_TEMP"], "before.json"), new if outcome == "failure" else old)
     comment = say_what_changes(runner, tmp_path / "checkout", outcome)
@@ -461,7 +465,15 @@ def test_a_pull_request_is_not_its_own_baseline(outcome: str, runner: dict[str, 
     assert ("**There is no baseline**: " in comment) == (outcome == "failure")
     before = "not analysed before" if outcome == "failure" else "undetermined"
     assert f"Verdict: `{before}` before, `leak` now." in comment
+
+
+def test_nothing_of_a_hostile_checkout_runs_while_it_is_compared(runner: dict[str, str], tmp_path: Path) -> None:
+    trace = hostile(tmp_path / "checkout")
+    for name in ("before.json", "after.json"):
+        planted(Path(runner["RUNNER_TEMP"], name), json.dumps(report_of(2)))
+    comment = say_what_changes(runner, tmp_path / "checkout", "success", **FROM_HERE)
     assert not trace.exists(), trace.read_text("utf-8")
+    assert "No way to assess is new, gone or changed." in comment
 
 
 def test_who_reads_a_pull_request_can_write_nothing() -> None:
