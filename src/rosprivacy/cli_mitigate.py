@@ -59,7 +59,7 @@ def mitigate(
             metavar="NAME",
             autocompletion=complete_category,
             show_default=False,
-            help="Remove the findings of this category and narrower ones only; may be repeated.",
+            help="Remove the findings of this category, narrower and broader ones only; may be repeated.",
         ),
     ] = None,
     category: SixLists = "PersonalData",

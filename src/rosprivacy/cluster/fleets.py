@@ -135,7 +135,7 @@ def _check_whole(question: Question) -> None:
 def result(question: Question, found: Found, told: Shown, settings: Settings, vocabulary: Vocabulary) -> SparkResult:
     """Put together what a report says."""
     assumptions = {
-        **own_assumptions(told.placed.graph, settings, vocabulary),
+        **own_assumptions(told.placed.graph, settings, vocabulary, told.analysis.emitted),
         **({"countries_as_of": countries().as_of} if found.told.countries else {}),
         **files_read(sorted(found.told.sources), sorted(found.told.labels), settings, 0),
         "fleet": [{"file": name, "sha256": digest} for name, digest in question.fleet.sources],
