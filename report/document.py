@@ -101,7 +101,7 @@ def document(
         "diagnostics": [_diagnostic(d) for d in (*diagnostics, *analysis.diagnostics)],
         "assumptions": {
             **assumptions,
-            "taken_away": taken_away.counts(taken),
+            "taken_away_by": taken_away.counts(taken),
             "taken_by_kind": taken_by_kind(analysis),
             "sanitizers_without_method": [
                 {"element": element_dict(element), "category": category, "taken_as": "pseudonymise"}

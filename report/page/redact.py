@@ -26,7 +26,7 @@ KEPT = {
     "unknown", "unlabelled_node",
     "verdict", "view", "without_limit",
 }  # fmt: skip
-MAPS = ("retention", "taken_away", "taken_by_kind")  # of kinds of data and kinds of elements, values as they are
+MAPS = ("retention", "taken_away_by", "taken_by_kind")  # of kinds of data and kinds of elements, values as they are
 NAMED = {
     "robot": "robot", "robots": "robot", "model": "model", "file": "file", "enclave": "enclave",
     "operator": "operator", "profile": "node", "nodes": "node",
