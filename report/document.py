@@ -250,6 +250,7 @@ def _finding(finding: Finding, categories: Mapping[str, Category]) -> dict[str, 
         **law_of(finding, categories),
         **({"reason": finding.reason} if finding.reason else {}),
         "accepted": finding.accepted,
+        **({"beside_pseudonymised": True} if finding.beside else {}),
     }
     if finding.paths:
         shown["paths"] = [[element_dict(element) for element in path] for path in finding.paths]

@@ -159,7 +159,9 @@ def run_stored(driver: Driver, settings: Settings) -> Result:
     joined = joined_to(decisions, analysis, vocabulary, asked, stored.likeness)
     said, loaded = put_together(stored.robots.values(), analysis)
     said += joined.diagnostics if joined else ()
-    assumptions = own_assumptions(stored.graph, settings, vocabulary) | loaded | assumed_decisions(decisions)
+    assumptions = (
+        own_assumptions(stored.graph, settings, vocabulary, analysis.emitted) | loaded | assumed_decisions(decisions)
+    )
     view = FleetView.of(analysis, stored.likeness) if len(stored.robots) > 1 else None
     result = Result(analysis, stored.bound, vocabulary, (), said, assumptions, options=chosen, decided=joined)
     return replace(result, fleet=view)
