@@ -117,7 +117,7 @@ def stated(draw: st.DrawFn) -> Stated:
 GLOBS = [statement("mundane"), statement("never", "Any"), statement("only", "Loc"), statement("never", "Face")]
 
 
-def answer(brute: Brute) -> tuple[dict[tuple[str, str, int, int], tuple[bool, bool]], set[tuple[int, str]]]:
+def answer(brute: Brute) -> tuple[dict[tuple[str, str, int, int, bool], tuple[bool, bool]], set[tuple[int, str]]]:
     """Finding -> (not dismissed, plain); (vertex, category) that is open."""
     findings = {key: (not dismissed, not hidden) for key, (hidden, dismissed, _) in brute.findings().items()}
     return findings, {(v, c) for v, (categories, *_) in brute.open().items() for c in categories}
