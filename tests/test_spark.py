@@ -302,6 +302,47 @@ def test_bad_usage_is_told(cli: Cli, options: list[str], problem: str) -> None:
     assert problem in " ".join(done.stderr.split())
 
 
+@pytest.fixture
+def checkout(tmp_path: Path) -> Path:
+    """A stranger's checkout: each of its files would leave a trace if it was run or imported."""
+    names = ["_compat_pickle.py", "resource.py", "json.py", "pyspark/__init__.py", "rosprivacy/__main__.py"]
+    for name in [*names, "sub/socket.py"]:
+        plant(tmp_path / "checkout" / name, f"open({str(tmp_path / 'ran')!r}, 'a').write(__file__)\n")
+    (tmp_path / "checkout" / "jars").mkdir()
+    for name in ("bin/spark-submit", "bin/java", "sub/python3", "sub/java", "sub/ps"):
+        file = plant(tmp_path / "checkout" / name, f"#!/bin/sh\necho {name} >> {tmp_path / 'ran'}\n")
+        file.chmod(0o755)
+    return tmp_path / "checkout"
+
+
+def plant(file: Path, text: str) -> Path:
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(text, "utf-8")
+    return file
+
+
+@pytest.mark.parametrize("folder", [".", "sub"])  # pyspark looks for a Spark in the parent of the current folder, too
+def test_nothing_of_a_checkout_is_run(checkout: Path, folder: str) -> None:
+    """And the workers are the Python that runs us, also where another one stands first in PATH."""
+    fleet = str(ROOT / "examples" / "fleet" / "fleet.yaml")
+    variables = {
+        name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "SPARK", "PYSPARK"))
+    }
+    command = [sys.executable, "-P", "-m", "rosprivacy", "analyze", "--fleet", fleet, "--engine", "spark"]
+    done = subprocess.run(
+        command,
+        cwd=checkout / folder,
+        env={**variables, "PATH": os.defpath},
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+    assert not (checkout.parent / "ran").exists(), (checkout.parent / "ran").read_text("utf-8")
+    assert done.returncode == 1, done.stderr
+    assert "ModuleNotFoundError" not in done.stderr
+
+
 def test_without_the_extra_it_says_how_to_get_it(tmp_path: Path) -> None:
     """Nothing else needs pyspark."""
     (tmp_path / "pyspark.py").write_text("raise ImportError\n", "utf-8")
