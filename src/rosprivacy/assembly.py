@@ -5,6 +5,7 @@ In: what a user names. Out: a ``Result``.
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -22,6 +23,7 @@ from rosprivacy.assumptions import (
     sources_of,
     what_it_rests_on,
 )
+from rosprivacy.clock import judged_on
 from rosprivacy.decided import accepts, decisions_of, joined_to
 from rosprivacy.ingest.binding import bind
 from rosprivacy.ingest.files import read_policies
@@ -126,7 +128,8 @@ def run(policies: tuple[str, ...], labels: tuple[str, ...], settings: Settings) 
     bound = bind(graph, files)
     decisions = decisions_of(settings, vocabulary)
     not_read = unread((*diagnostics, *(d for policy in system for d in policy.diagnostics)))
-    options = Options(asked, settings.paths, settings.max_paths, accepts(decisions), unread=not_read)
+    day = settings.today or judged_on(os.environ)
+    options = Options(asked, settings.paths, settings.max_paths, accepts(decisions), today=day, unread=not_read)
     analysis = analyse(graph, bound, vocabulary.hierarchy, options)
     joined = joined_to(decisions, analysis, vocabulary, asked)
     said = tuple(d for policy in system for d in policy.diagnostics) + diagnostics
@@ -154,12 +157,12 @@ def run_stored(driver: Driver, settings: Settings) -> Result:
     asked = asked_for(vocabulary, settings)
     stored = read_stored(driver, vocabulary)
     not_read = unread(said for robot in stored.robots.values() for said in diagnostics_of(robot))
-    everything = Options(None, settings.paths, settings.max_paths, unread=not_read)
+    day = settings.today or judged_on(os.environ)
+    everything = Options(None, settings.paths, settings.max_paths, today=day, unread=not_read)
     analysis = analyse(stored.graph, stored.bound, vocabulary.hierarchy, everything)
     write_back(driver, stored, analysis, vocabulary)
     decisions = decisions_of(settings, vocabulary)
-    accepted = accepts(decisions, stored.likeness)
-    chosen = Options(asked, settings.paths, settings.max_paths, accepted, unread=not_read)
+    chosen = replace(everything, categories=asked, accepts=accepts(decisions, stored.likeness))
     if chosen != everything:
         analysis = analyse(stored.graph, stored.bound, vocabulary.hierarchy, chosen)
     joined = joined_to(decisions, analysis, vocabulary, asked, stored.likeness)
