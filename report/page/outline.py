@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.report.compare.changes import ASKED, Changes, changes
 from rosprivacy.report.page import assumed, cleaned, elements, tables
+from rosprivacy.report.page.closed import Closed, closed
 from rosprivacy.report.page.criteria import Criterion, criteria
 from rosprivacy.report.page.decision_texts import Decision, orphans
 from rosprivacy.report.page.fleet_told import Fleet, fleet_told
@@ -93,6 +94,7 @@ class Outline:
     assumptions: tuple[str, ...]
     files: tuple[assumed.File, ...]
     remarks: tuple[assumed.Remark, ...]
+    closed: tuple[Closed, ...]
     fleet: Fleet | None
     changes: Changed | None
     subjects: tables.Table
@@ -165,6 +167,7 @@ def outline(
         assumptions=tuple(assumed.assumed(index)),
         files=assumed.files(index),
         remarks=assumed.remarks(index),
+        closed=closed(index),
         fleet=fleet_told(index, entries),
         changes=_changed(differ, earlier, entries, index) if differ and earlier else None,
         subjects=subjects,
