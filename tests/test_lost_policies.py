@@ -160,9 +160,11 @@ def test_a_deny_of_one_robot_of_a_domain_counts_in_its_own_policy(here: Path, cl
     assert "enclave /up is stated in u.xml too" in done.stdout
 
 
-def test_mitigate_puts_a_deny_where_it_counts(here: Path, cli: Cli) -> None:
-    second = enclave("/up", profile("other", topics('subscribe="ALLOW"', "/audio")), profile("uplink", SUBSCRIBE))
-    write(here, "p.xml", policy(CAMERA, second))
+@pytest.mark.parametrize("first", ["uplink", "other"])
+def test_mitigate_puts_a_deny_where_it_counts(here: Path, cli: Cli, first: str) -> None:
+    """In the first ``<profiles>`` if it allows the flow too; if not, the line of the second one allows no more."""
+    beside = profile(first, topics('subscribe="ALLOW"', "/video" if first == "uplink" else "/audio"))
+    write(here, "p.xml", policy(CAMERA, enclave("/up", beside, profile("uplink", SUBSCRIBE))))
     done = cli("mitigate", "p.xml", "-l", "l.yaml", "--by", "deny", "--patch", "m.patch")
     assert "warning" not in done.stderr
     patch = (here / "m.patch").read_text()
