@@ -331,6 +331,11 @@ class Method(StrEnum):
         return self is not Method.PSEUDONYMISE
 
 
+NAME, SEGMENT, GLOB = "name", "segment", "glob"  # how a label names an element
+STANDARD = 0  # the tier of the file of standard channels (rule S13); users' files are above it
+STATED = "flow"  # the role of a flow that a person states (rule S9)
+
+
 @dataclass(frozen=True, slots=True)
 class Statement:
     """One thing that a label says of an element or a flow.
@@ -338,8 +343,9 @@ class Statement:
     Attributes
     ----------
     role
-        Of a node: ``source``, ``leak``, ``sanitizer``, ``conduit``, ``derivation``. Of a channel: ``mundane``,
-        ``sensitive``, ``only``, ``never``. Of a flow: ``only``, ``never``.
+        Of a node: ``source``, ``leak``, ``sanitizer``, ``conduit``, ``derivation``, and ``no-source`` and ``no-leak``,
+        which take back what is said by lower ranks. Of a channel: ``mundane``, ``sensitive``, ``only``, ``never``. Of a
+        flow: ``only``, ``never``.
     categories
         Names; empty means every category. One name for the roles of a node.
     rank
@@ -355,7 +361,10 @@ class Statement:
     through
         Of a source: name expressions of the channels that carry it; empty means all.
     shipped
-        Whether it comes from the standard channels' file (rule S13).
+        Whether it comes from a file of mundane channels that is not the user's (rule S13).
+    naming
+        How the label names the element: by a full ``NAME``, by a glob with its last ``SEGMENT`` written out, or by
+        another ``GLOB``.
     """
 
     role: str
@@ -367,6 +376,12 @@ class Statement:
     to: str = ""
     through: tuple[str, ...] = ()
     shipped: bool = False
+    naming: str = NAME
+
+    @property
+    def by_name(self) -> bool:
+        """Whether a user says it of a full name."""
+        return self.naming == NAME and self.rank[0] > STANDARD
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.analysis.flow import fixpoint
+from rosprivacy.analysis.named import keep_named, stated_flows
 from rosprivacy.analysis.network import Network, as_numbers
 from rosprivacy.analysis.roles import NOTHING_SAID, Facts, facts
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Collection, Iterable, Iterator, Mapping
     from typing import Any
 
     from rosprivacy.analysis.hierarchy import Hierarchy
@@ -173,11 +174,15 @@ def meaning(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, categories: It
 
     for vertex, said in bound.elements.items():
         found.facts[vertex] = decide(said, graph.elements[vertex].name)
-        _set_vertex(found, vertex, bound)
     for index, said in bound.flows.items():
         ends = graph.elements[graph.flows[index].source], graph.elements[graph.flows[index].target]
-        kept = decide(said, f"the flow {ends[0].name} -> {ends[1].name}")
-        found.flow_facts[index] = kept
+        found.flow_facts[index] = decide(said, f"the flow {ends[0].name} -> {ends[1].name}")
+    problems += keep_named(found.facts, found.flow_facts, graph, bound, hierarchy)
+    restricted = any(statement.through for said in bound.elements.values() for statement in said)
+    stated = stated_flows(graph) if restricted else {}
+    for vertex in bound.elements:
+        _set_vertex(found, vertex, bound, stated)
+    for index, kept in found.flow_facts.items():
         found.flow_keeps[index] = _bits(found, kept, lambda fact: fact.passes)
     if problems:
         raise InputErrors(problems)
@@ -205,7 +210,7 @@ def _bits(found: Spread, decided: Mapping[str, Facts], test: Any) -> int:
     return bits
 
 
-def _set_vertex(found: Spread, vertex: int, bound: Bound) -> None:
+def _set_vertex(found: Spread, vertex: int, bound: Bound, stated: Mapping[int, Collection[int]]) -> None:
     decided = found.facts[vertex]
     if any(fact.standard for fact in decided.values()):
         found.standard.add(vertex)
@@ -230,7 +235,7 @@ def _set_vertex(found: Spread, vertex: int, bound: Bound) -> None:
         if fact.emits:
             emits |= after  # what a node makes of its own data leaves it like what it makes of others'
             emits |= 0 if fact.through else 1 << i
-        for flow in bound.through.get((vertex, fact.through), ()) if fact.emits else ():
+        for flow in {*bound.through.get((vertex, fact.through), ()), *stated.get(vertex, ())} if fact.through else ():
             found.flow_emits[flow] = found.flow_emits.get(flow, 0) | 1 << i
             found.flow_begins[vertex] = found.flow_begins.get(vertex, 0) | 1 << i
     found.derives[vertex] = tuple(sorted(pairs))

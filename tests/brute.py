@@ -1,6 +1,6 @@
-"""Rules S7, S8, S10 and S11 word for word, on sets, with no thought of speed: what the fast version is held against.
+"""Rules S7 to S11 and S13 word for word, on sets, with no thought of speed: what the fast version is held against.
 
-A state is (vertex, category, pseudonymised). Statements here all have one name rank, so only nearness decides.
+A state is (vertex, category, pseudonymised).
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ PAIRS = [
     {"source", "conduit"},
     {"leak", "conduit"},
     {"sanitizer", "conduit"},
-    {"mundane", "sensitive"},
-    {"mundane", "only"},
-    {"sensitive", "only"},
-    {"sensitive", "never"},
+    {"source", "no-source"},
+    {"leak", "no-leak"},
 ]
+OF_CHANNELS = {"mundane", "sensitive", "only", "never"}  # S7: statements of one kind
+OF_EVERY_KIND = {"mundane", "sensitive", "only"}
 ENDS = {"anonymise", "aggregate", "drop"}
 CONDUIT = Statement("conduit", (), (-1, 0), Place("", 0))
 LEAK = Statement("leak", (), (-1, 0), Place("", 0))
@@ -63,6 +63,20 @@ def _end(start: date, durations: str) -> int:
     return date(months // 12, months % 12 + 1, 1).toordinal() + sum(n for n, unit in parts if unit == "D")
 
 
+def standard(s: Statement) -> bool:
+    """Whether a statement is one of the standard channels' file."""
+    return s.shipped and s.rank[0] == 0
+
+
+def open_ended(s: Statement) -> bool:
+    """Whether a user says it by a glob whose last name segment is not written out."""
+    return s.rank[0] > 0 and s.naming == "glob"
+
+
+def by_a_users_name(s: Statement) -> bool:
+    return s.rank[0] > 0 and s.naming == "name"
+
+
 @dataclass
 class Brute:
     """A small system."""
@@ -73,11 +87,13 @@ class Brute:
     hierarchy: Hierarchy
     never: dict[tuple[int, int], set[str]] = field(default_factory=dict)  # of flows
     outside: dict[int, tuple[str, Outside]] = field(default_factory=dict)  # kind, facts
+    names: dict[int, str] = field(default_factory=dict)  # of channels
+    stated: set[tuple[int, int]] = field(default_factory=set)  # flows that a person states
     along: set[tuple[int, int, Data]] = field(default_factory=set)  # what the last spread sent along flows
 
     def nearness(self, statement: Statement, category: str) -> int | None:
         """S7: steps up to what is named; negative if it is narrower and the role is one of *may*."""
-        if not statement.categories or statement.role == "only":
+        if not statement.categories or (statement.role == "only" and self.closes(statement, category)):
             return 1_000_000
         if statement.role == "source":
             return 0 if category in statement.categories else None
@@ -87,37 +103,103 @@ class Brute:
         down = [d for named in statement.categories if (d := self.hierarchy.distance(named, category)) is not None]
         return -min(down) if down and statement.role in MAY else None
 
-    def holding(self, vertex: int, category: str) -> list[Statement]:
-        """S7: the statements that apply, but for those that a nearer one contradicts."""
+    def named(self, vertex: int, category: str) -> list[Statement]:
+        """S7: the statements of sources that name a channel for a category, and hold."""
+        return [
+            s
+            for a, b in self.edges
+            if b == vertex and a in self.nodes and self.names.get(vertex)
+            for s in self.holding(a, category)
+            if s.role == "source" and self.names[vertex] in s.through
+        ]
+
+    def closes(self, s: Statement, category: str) -> bool:
+        """Whether a statement about a channel says that it does not carry a category."""
+        if s.role == "only":
+            up, down = self.hierarchy.ancestors[category], self.hierarchy.ancestors
+            return not any(k in up or category in down[k] for k in s.categories)
+        return s.role in ("mundane", "never")
+
+    def said_of(self, vertex: int, category: str) -> list[Statement]:
+        """What is said of it; what a source names a channel for, only a user's full name can take away."""
         said = [*self.said.get(vertex, []), *BY_KIND.get(self.outside.get(vertex, ("",))[0], [])]
-        applying = [s for s in said if self.nearness(s, category) is not None]
+        said = [s for s in said if self.nearness(s, category) is not None]
+        if vertex not in self.nodes and self.named(vertex, category):
+            return [s for s in said if by_a_users_name(s) or not self.closes(s, category)]
+        return said
 
-        def weight(s: Statement) -> tuple[int, int]:
-            near = self.nearness(s, category)
-            assert near is not None
-            return (s.rank[0], -near)
+    def opposed(self, s: Statement, t: Statement, category: str) -> bool:
+        """Whether two statements cannot both hold for a category."""
+        if s.role in OF_CHANNELS:
+            whole = {s.role, t.role} <= OF_EVERY_KIND and s.rank == t.rank
+            differ = s.role != t.role or set(s.categories) != set(t.categories)
+            return self.closes(s, category) != self.closes(t, category) or (whole and differ)
+        if s.role == t.role:
+            return (s.role == "sanitizer" and s.method != t.method) or (s.role == "source" and s.through != t.through)
+        return {s.role, t.role} in PAIRS
 
-        def outdone(s: Statement) -> bool:
-            return any(
-                ({s.role, t.role} in PAIRS or (s.role == t.role == "sanitizer" and s.method != t.method))
-                and weight(t) > weight(s)
-                for t in applying
-            )
+    def beats(self, t: Statement, s: Statement, category: str) -> bool:
+        """S7: the higher rank, then the nearer; S13: a user's glob with an open end does not beat the standard file."""
+        if s.role == "leak" and self.about_a_broader_one(s, t):
+            return False  # never outdone by a statement about a broader kind, whatever the ranks
+        if standard(s) and open_ended(t):
+            return False
+        if standard(t) and open_ended(s):
+            return True
+        near, other = self.nearness(t, category), self.nearness(s, category)
+        assert near is not None
+        assert other is not None
+        return (*t.rank, -near) > (*s.rank, -other)
 
-        return [s for s in applying if not outdone(s)]
+    def about_a_broader_one(self, s: Statement, t: Statement) -> bool:
+        return any(k != c and k in self.hierarchy.ancestors[c] for c in s.categories for k in t.categories)
+
+    def holding(self, vertex: int, category: str) -> list[Statement]:
+        """S7: the statements that apply, but for those that a higher or a nearer one contradicts."""
+        applying = self.said_of(vertex, category)
+        return [
+            s
+            for s in applying
+            if not any(self.opposed(s, t, category) and self.beats(t, s, category) for t in applying)
+        ]
+
+    def refused(self) -> bool:
+        """S7: whether statements contradict at one rank, a source's own channel is closed, or a name takes all back."""
+        kinds = {c for said in self.said.values() for s in said for c in (*s.categories, s.to) if c}
+        emitted = {c for said in self.said.values() for s in said for c in s.categories if s.role == "source"}
+        emitted |= {s.to for said in self.said.values() for s in said if s.role == "derivation"}
+        for vertex, said in self.said.items():
+            mentioned = {c for s in said for c in s.categories}
+            for category in (mentioned | emitted) & kinds:
+                applying = self.said_of(vertex, category)
+                for s in applying:
+                    for t in applying:
+                        same = not self.beats(s, t, category) and not self.beats(t, s, category)
+                        broad = {s.role, t.role} == {"leak", "conduit"} and self.about_a_broader_one(s, t)
+                        whole = {s.role, t.role} <= OF_EVERY_KIND and s.rank == t.rank
+                        if self.opposed(s, t, category) and ((same and not broad) or whole):
+                            return True
+                ends = [s for s in self.holding(vertex, category) if s.role == "sanitizer" and str(s.method) in ENDS]
+                if ends and any(s.role == "derivation" and s.to == category for s in self.holding(vertex, category)):
+                    return True
+                if vertex not in self.nodes and category in emitted and self.named(vertex, category):
+                    if any(self.closes(s, category) for s in self.holding(vertex, category)):
+                        return True
+                    into = [(a, b) for a, b in self.edges if b == vertex]
+                    if any(
+                        name in self.hierarchy.ancestors[category]
+                        for a, b in into
+                        if any(s.role == "source" and self.names[b] in s.through for s in self.holding(a, category))
+                        for name in self.never.get((a, b), ())
+                    ):
+                        return True
+        return False
 
     def has(self, vertex: int, role: str, category: str) -> bool:
         return any(s.role == role for s in self.holding(vertex, category))
 
     def kills(self, vertex: int, category: str) -> bool:
-        for s in self.holding(vertex, category):
-            if s.role in ("sanitizer", "mundane", "never"):
-                return True
-            if s.role == "only" and not any(
-                category in self.hierarchy.ancestors[k] or k in self.hierarchy.ancestors[category] for k in s.categories
-            ):
-                return True
-        return False
+        return any(s.role == "sanitizer" or self.closes(s, category) for s in self.holding(vertex, category))
 
     def only_hides(self, vertex: int, category: str) -> bool:
         """Whether all that cleans it pseudonymises: what is pseudonymised already goes on so."""
@@ -137,35 +219,43 @@ class Brute:
             result.add((category, True))
         return result
 
-    def emitted(self, vertex: int) -> set[Data]:
-        """What a source names, and what it makes of its own data."""
-        own = {c for s in self.said.get(vertex, []) for c in s.categories if s.role == "source"}
-        data = {(c, False) for c in own if self.has(vertex, "source", c)}
-        return data | {made for d in data for made in self.made(vertex, d) if not made[1]}
+    def emitted(self, vertex: int) -> dict[Data, set[int] | None]:
+        """What a source names, and what it makes of its own data; None along all flows, else to these (S8)."""
+        data: dict[Data, set[int] | None] = {}
+        for category in {c for s in self.said.get(vertex, []) for c in s.categories if s.role == "source"}:
+            for s in self.holding(vertex, category):
+                if s.role == "source":
+                    data[category, False] = self.ends(vertex, s) if s.through else None
+        own = list(data)
+        return data | {made: None for d in own for made in self.made(vertex, d) if not made[1]}
+
+    def ends(self, vertex: int, s: Statement) -> set[int]:
+        """S8: through restricts channels of ROS; along a flow that a person states it sends all."""
+        return {b for a, b in self.edges if a == vertex and ((a, b) in self.stated or self.names[b] in s.through)}
 
     def spread(
         self, sources: Collection[int], stop: Callable[[int, Data], bool] = lambda _v, _d: False
     ) -> dict[tuple[int, Data], int]:
         """What is where (arrives, starts or is made there) -> least number of flows from a source."""
         present: dict[tuple[int, Data], int] = {}
-        leaving: deque[tuple[int, Data, int]] = deque()
+        leaving: deque[tuple[int, Data, int, set[int] | None]] = deque()
         left = set()
 
-        def leave(vertex: int, data: Data, level: int) -> None:
+        def leave(vertex: int, data: Data, level: int, ends: set[int] | None = None) -> None:
             if (vertex, data) not in left:
-                left.add((vertex, data))
-                leaving.append((vertex, data, level))
+                left.update({(vertex, data)} if ends is None else ())
+                leaving.append((vertex, data, level, ends))
 
         for source in sorted(sources):
-            for data in self.emitted(source):
+            for data, ends in self.emitted(source).items():
                 present[source, data] = 0
-                leave(source, data, 0)
+                leave(source, data, 0, ends)
         arrived = set()
         self.along = set()
         while leaving:
-            vertex, data, level = leaving.popleft()
+            vertex, data, level, ends = leaving.popleft()
             for a, b in self.edges:
-                if a != vertex:
+                if a != vertex or (ends is not None and b not in ends):
                     continue
                 if b not in self.nodes and self.kills(b, data[0]):
                     continue
