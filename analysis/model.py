@@ -554,6 +554,10 @@ class Analysis:
         Per vertex and emitted category the roles of nodes that hold, sorted; what labels decided.
     standard_channels
         Channels taken as mundane by the shipped file (rule S13).
+    standard_reached
+        Of these, (channel, emitted categories that get to it and stop there).
+    standard_unchanged
+        Of these, those of which a glob of the user's says otherwise that does not count.
     spread
         The fixpoint itself: what is at every vertex and along every flow.
     unstated
@@ -574,6 +578,8 @@ class Analysis:
     standard_channels: int
     spread: Spread
     unstated: tuple[tuple[Element, str], ...] = ()
+    standard_reached: tuple[tuple[Element, tuple[str, ...]], ...] = ()
+    standard_unchanged: tuple[Element, ...] = ()
     diagnostics: tuple[Diagnostic, ...] = ()
     outside: Mapping[Element, Outside] = field(default_factory=dict)
     unknown_ends: tuple[UnknownEnd, ...] = ()

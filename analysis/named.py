@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import LabelError, shown
 from rosprivacy.analysis.model import STATED
-from rosprivacy.analysis.ranks import closes, said
+from rosprivacy.analysis.ranks import closes, in_words
 from rosprivacy.analysis.roles import facts
 
 if TYPE_CHECKING:
@@ -86,5 +86,5 @@ def _with_matches(indices: Iterable[int], graph: FlowGraph, matches: Mapping[int
 
 
 def _contradiction(name: str, category: str, closer: Statement, source: Statement) -> LabelError:
-    what = f"{shown(name)} is {said(closer)} here, and the source at {source.place} names it for {category}"
+    what = f"{shown(name)} is {in_words(closer)} here, and the source at {source.place} names it for {category}"
     return LabelError(closer.place.file, closer.place.line, what, "keep one of them")

@@ -95,7 +95,7 @@ def by_line(statement: Statement) -> tuple[str, int, str]:
     return (statement.place.file, statement.place.line, statement.role)
 
 
-def said(statement: Statement) -> str:
+def in_words(statement: Statement) -> str:
     """Return what a statement says, in the words of label files."""
     if statement.role in NONE_OF.values():
         return f"{statement.role.removeprefix('no-')}: none"
@@ -183,5 +183,5 @@ def _contradiction(name: str, category: str, a: Statement, b: Statement) -> Labe
     every = not first.categories and not second.categories
     every = every or {first.role, second.role} <= OF_EVERY_KIND
     about = "every category" if every else category
-    what = f"{shown(name)} is {said(second)} for {about} here and {said(first)} at {first.place}"
+    what = f"{shown(name)} is {in_words(second)} for {about} here and {in_words(first)} at {first.place}"
     return LabelError(second.place.file, second.place.line, what, "keep one of them, or make one more specific")

@@ -14,6 +14,7 @@ from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.analysis.flow import fixpoint
 from rosprivacy.analysis.named import keep_named, stated_flows
 from rosprivacy.analysis.network import Network, as_numbers
+from rosprivacy.analysis.overruled import Overruled, overruled
 from rosprivacy.analysis.roles import NOTHING_SAID, Facts, facts
 
 if TYPE_CHECKING:
@@ -49,6 +50,8 @@ class Spread:
         Vertex -> bits that it emits along single flows only.
     standard
         Channels taken as mundane on a shipped file's word alone (rule S13).
+    overruled
+        Sources and leaks that a statement says and another takes away.
     made
         Numbers of the categories that others are made into.
     arrives, leaves
@@ -70,6 +73,7 @@ class Spread:
     flow_keeps: dict[int, int] = field(default_factory=dict)
     flow_begins: dict[int, int] = field(default_factory=dict)
     standard: set[int] = field(default_factory=set)
+    overruled: tuple[Overruled, ...] = ()
     made: set[int] = field(default_factory=set)
     arrives: dict[int, int] = field(default_factory=dict)
     leaves: dict[int, int] = field(default_factory=dict)
@@ -94,11 +98,14 @@ class Spread:
         arrives, leaves = self.arrives.get(vertex, 0), self.leaves.get(vertex, 0)
         return leaves if self.graph.elements[vertex].is_channel else arrives | leaves
 
+    def sends(self, index: int) -> int:
+        """What is sent along a flow, whether its end takes it up or not."""
+        bits = self.sent.get(self.graph.flows[index].source, 0) | self.flow_emits.get(index, 0)
+        return bits & self.flow_keeps.get(index, self.all_bits)
+
     def along(self, index: int) -> int:
         """What goes along a flow and is taken up at its end."""
-        flow = self.graph.flows[index]
-        bits = self.sent.get(flow.source, 0) & self.flow_keeps.get(index, self.all_bits)
-        bits |= self.flow_emits.get(index, 0) & self.flow_keeps.get(index, self.all_bits)
+        flow, bits = self.graph.flows[index], self.sends(index)
         if self.graph.elements[flow.target].is_channel:
             bits &= self.keeps.get(flow.target, self.all_bits)
         return bits
@@ -177,6 +184,8 @@ def meaning(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, categories: It
     for index, said in bound.flows.items():
         ends = graph.elements[graph.flows[index].source], graph.elements[graph.flows[index].target]
         found.flow_facts[index] = decide(said, f"the flow {ends[0].name} -> {ends[1].name}")
+    found.overruled = overruled(found.facts, graph.elements)
+    problems += [error for one in found.overruled if (error := one.error())]
     problems += keep_named(found.facts, found.flow_facts, graph, bound, hierarchy)
     restricted = any(statement.through for said in bound.elements.values() for statement in said)
     stated = stated_flows(graph) if restricted else {}

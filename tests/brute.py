@@ -239,7 +239,7 @@ class Brute:
         """What is where (arrives, starts or is made there) -> least number of flows from a source."""
         present: dict[tuple[int, Data], int] = {}
         leaving: deque[tuple[int, Data, int, set[int] | None]] = deque()
-        left = set()
+        left: set[tuple[int, Data]] = set()
 
         def leave(vertex: int, data: Data, level: int, ends: set[int] | None = None) -> None:
             if (vertex, data) not in left:

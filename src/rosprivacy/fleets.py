@@ -17,7 +17,7 @@ from rosprivacy.assembly import Result
 from rosprivacy.assumptions import assumed_decisions, remembered, sources_of, what_it_rests_on
 from rosprivacy.decided import accepts, decisions_of, joined_to
 from rosprivacy.ingest.alike import Alike, alike
-from rosprivacy.ingest.binding import bind
+from rosprivacy.ingest.binding import bind, unused
 from rosprivacy.ingest.domains import Member, stripped
 from rosprivacy.ingest.files import read_policies
 from rosprivacy.ingest.fleet import Fleet, Robot, read_fleet
@@ -178,6 +178,7 @@ class Reader:
         told += [d for labels in files for d in labels.diagnostics]
         graph, full = stripped(build(policies, settings.view), robot.strip)
         extended = extend(graph, files)
+        told += unused(extended, files)
         part = Part.of(extended, bind(extended, files))
         return Member(robot, policies, part, full, graph.profiles, tuple(files), tuple(dict.fromkeys(told)))
 
