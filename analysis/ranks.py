@@ -75,8 +75,7 @@ def decided(name: str, said: Sequence[Statement], category: str, hierarchy: Hier
         if not winners:
             accepted.append(statement)
         elif statement.role in NONE_OF:
-            by_name = [s for s in winners if s.role == NONE_OF[statement.role]]
-            outdone.append((statement, (by_name or winners)[0]))
+            outdone.append((statement, _decisive(statement, winners)))
     _check_derivations(name, category, accepted)
     return Decided(tuple(accepted), tuple(sorted(outdone, key=lambda pair: by_line(pair[0]))))
 
@@ -159,6 +158,15 @@ def _too_broad(one: Statement, leak: Statement, hierarchy: Hierarchy) -> bool:
     """Whether a statement is about a broader category than a leak: then it never outdoes it, whatever the ranks."""
     narrower = (name for name in leak.categories if leak.role == "leak")
     return any(name != a and hierarchy.distance(name, a) is not None for name in narrower for a in one.categories)
+
+
+def _decisive(lost: Statement, winners: Sequence[Statement]) -> Statement:
+    """Of those that outdo a statement, the one to name: what says so by name, then the highest not beside it."""
+
+    def beside(winner: Statement) -> bool:
+        return winner.rank == lost.rank and winner.place.file == lost.place.file
+
+    return min(winners, key=lambda winner: (winner.role != NONE_OF[lost.role], beside(winner)))
 
 
 def _standard(statement: Statement) -> bool:

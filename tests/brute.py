@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.model import Place, Statement
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection
+    from collections.abc import Callable, Collection, Iterator
 
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.outside import Outside
@@ -163,36 +163,72 @@ class Brute:
             if not any(self.opposed(s, t, category) and self.beats(t, s, category) for t in applying)
         ]
 
-    def refused(self) -> bool:
-        """S7: whether statements contradict at one rank, a source's own channel is closed, or a name takes all back."""
-        kinds = {c for said in self.said.values() for s in said for c in (*s.categories, s.to) if c}
-        emitted = {c for said in self.said.values() for s in said for c in s.categories if s.role == "source"}
-        emitted |= {s.to for said in self.said.values() for s in said if s.role == "derivation"}
+    def kinds_emitted(self) -> set[str]:
+        """S7: what some source names or some derivation makes."""
+        named = {c for said in self.said.values() for s in said for c in s.categories if s.role == "source"}
+        return named | {s.to for said in self.said.values() for s in said if s.role == "derivation"}
+
+    def judged(self) -> Iterator[tuple[int, str]]:
+        """Every element with every category that is emitted, or that a label of it names."""
         for vertex, said in self.said.items():
-            mentioned = {c for s in said for c in s.categories}
-            for category in (mentioned | emitted) & kinds:
-                applying = self.said_of(vertex, category)
-                for s in applying:
-                    for t in applying:
-                        same = not self.beats(s, t, category) and not self.beats(t, s, category)
-                        broad = {s.role, t.role} == {"leak", "conduit"} and self.about_a_broader_one(s, t)
-                        whole = {s.role, t.role} <= OF_EVERY_KIND and s.rank == t.rank
-                        if self.opposed(s, t, category) and ((same and not broad) or whole):
-                            return True
-                ends = [s for s in self.holding(vertex, category) if s.role == "sanitizer" and str(s.method) in ENDS]
-                if ends and any(s.role == "derivation" and s.to == category for s in self.holding(vertex, category)):
+            kinds = self.kinds_emitted() | {c for s in said for c in s.categories}
+            yield from ((vertex, category) for category in sorted(kinds or self.hierarchy.ancestors))
+
+    def outdone(self) -> Iterator[tuple[int, str, Statement, Statement]]:
+        """S7: (element, category, source or leak that does not hold, what takes it away), where a user says it."""
+        for vertex, category in self.judged():
+            applying, holding = self.said_of(vertex, category), self.holding(vertex, category)
+            for s in applying:
+                if s.role not in ("source", "leak") or s in holding or s.rank[0] <= 0:
+                    continue
+                still = [t for t in holding if t.role == s.role]
+                if still and (s.role == "leak" or not still[0].through or self.within(s, still[0])):
+                    continue
+                against = [t for t in applying if self.opposed(s, t, category) and self.beats(t, s, category)]
+                away = [t for t in against if t.rank != s.rank or t.place.file != s.place.file]
+                if away:
+                    by_name = [t for t in away if t.role == f"no-{s.role}"]
+                    near = {t: self.nearness(t, category) or 0 for t in away}
+                    yield vertex, category, s, max(by_name or away, key=lambda t: (*t.rank, -near[t], str(t.place)))
+
+    def within(self, s: Statement, t: Statement) -> bool:
+        """Whether a source names no more channels than another."""
+        return bool(s.through) and set(s.through) <= set(t.through)
+
+    def taken_away(self) -> set[tuple[int, str, str]]:
+        """S7: what has to be told."""
+        return {(vertex, s.role, category) for vertex, category, s, _ in self.outdone()}
+
+    def refused(self) -> bool:
+        """S7: whether labels contradict each other, or one file takes away what another says without a word of it."""
+        for _, _, s, t in self.outdone():
+            files = s.place.file != t.place.file and s.rank != t.rank and s.rank[0] == t.rank[0] == 1
+            if files and t.role not in (s.role, f"no-{s.role}"):
+                return True
+        emitted = self.kinds_emitted()
+        for vertex, category in self.judged():
+            applying = self.said_of(vertex, category)
+            for s in applying:
+                for t in applying:
+                    same = not self.beats(s, t, category) and not self.beats(t, s, category)
+                    broad = {s.role, t.role} == {"leak", "conduit"} and self.about_a_broader_one(s, t)
+                    whole = {s.role, t.role} <= OF_EVERY_KIND and s.rank == t.rank
+                    if self.opposed(s, t, category) and ((same and not broad) or whole):
+                        return True
+            ends = [s for s in self.holding(vertex, category) if s.role == "sanitizer" and str(s.method) in ENDS]
+            if ends and any(s.role == "derivation" and s.to == category for s in self.holding(vertex, category)):
+                return True
+            if vertex not in self.nodes and category in emitted and self.named(vertex, category):
+                if any(self.closes(s, category) for s in self.holding(vertex, category)):
                     return True
-                if vertex not in self.nodes and category in emitted and self.named(vertex, category):
-                    if any(self.closes(s, category) for s in self.holding(vertex, category)):
-                        return True
-                    into = [(a, b) for a, b in self.edges if b == vertex]
-                    if any(
-                        name in self.hierarchy.ancestors[category]
-                        for a, b in into
-                        if any(s.role == "source" and self.names[b] in s.through for s in self.holding(a, category))
-                        for name in self.never.get((a, b), ())
-                    ):
-                        return True
+                into = [(a, b) for a, b in self.edges if b == vertex]
+                if any(
+                    name in self.hierarchy.ancestors[category]
+                    for a, b in into
+                    if any(s.role == "source" and self.names[b] in s.through for s in self.holding(a, category))
+                    for name in self.never.get((a, b), ())
+                ):
+                    return True
         return False
 
     def has(self, vertex: int, role: str, category: str) -> bool:
@@ -348,7 +384,8 @@ class Brute:
         kind, facts = self.outside.get(vertex, ("", None))
         if kind in ("storage", "external-system") and facts is not None and not facts.country and not facts.transfer:
             return False
-        return bool(self.holding(vertex, category)) or any(
+        said = [s for s in self.holding(vertex, category) if not s.role.startswith("no-")]
+        return bool(said) or any(
             s.role == "derivation" and s.to == category
             for c in self.hierarchy.ancestors
             for s in self.holding(vertex, c)

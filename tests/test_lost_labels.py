@@ -266,9 +266,9 @@ class TestAFileThatReplacesTheStandardOne:
         hint = "; write channels: {/name: mundane} only; other labels go into a file for --labels"
         assert lines == [
             f"s.yaml:2: nodes in a file of standard channels{hint}",
+            f"s.yaml:6: '/video' is sensitive in a file of standard channels{hint}",
             f"s.yaml:7: flows in a file of standard channels{hint}",
             f"s.yaml:8: limits in a file of standard channels{hint}",
-            f"s.yaml:6: '/video' is sensitive in a file of standard channels{hint}",
         ]
 
     def test_it_is_named_with_its_hash_and_names_that_match_nothing_are_told(self, cli: Cli) -> None:
@@ -335,7 +335,7 @@ class TestEndsOfStatedFlows:
         Path("f.yaml").write_text(fleet % "'*:/map'", "utf-8")
         (line,) = refused(cli("analyze", "--fleet", "f.yaml"))
         assert line == (
-            "f.yaml:5: a flow names '/map', which is a node and a topic; write {node: '*:/map'} or {topic: '*:/map'}"
+            "f.yaml:5: a flow names '*:/map', which is a node and a topic; write {node: '*:/map'} or {topic: '*:/map'}"
         )
         Path("f.yaml").write_text(fleet % "{topic: '*:/map'}", "utf-8")
         assert cli("analyze", "--fleet", "f.yaml").returncode == 1
