@@ -113,6 +113,8 @@ class Grant:
         Of the channel as written: ``topic``, ``service`` or ``action``.
     name
         Fully qualified.
+    absolute
+        Whether the policy writes the name so: then it stays as it is under a namespace that is pushed (rule S1).
     """
 
     allow: bool
@@ -122,6 +124,7 @@ class Grant:
     enclave: str
     node: str
     place: Place
+    absolute: bool = False
 
 
 class Severity(StrEnum):
@@ -134,11 +137,18 @@ class Severity(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """Something that the reader of a report has to know about an input."""
+    """Something that the reader of a report has to know about an input.
+
+    Attributes
+    ----------
+    code
+        What it is, for programs; empty where nobody has to tell it from others.
+    """
 
     place: Place
     severity: Severity
     message: str
+    code: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -27,6 +27,7 @@ from rosprivacy.fleets import Reader
 from rosprivacy.ingest.alike import alike
 from rosprivacy.ingest.countries import countries
 from rosprivacy.ingest.fleet import read_fleet
+from rosprivacy.ingest.joins import joins_nothing
 from rosprivacy.ingest.split import crossing_lines, split
 from rosprivacy.ontology.vocabulary import load
 
@@ -111,7 +112,9 @@ def plan_of(question: Question, found: Found, answer: Result, settings: Settings
     examples = tuple(unit for unit in units if unit.name in found.examples)
     fleet = replace(question.fleet, robots=(), infrastructure=())
     assumptions = answer.assumptions
-    return Plan(fleet, fixed, examples, found.shared, found.leaking, assumptions, settings, question.reader), units
+    joins = joins_nothing(question.fleet, question.groups, found.told.met)
+    plan = Plan(fleet, fixed, examples, found.shared, found.leaking, assumptions, settings, question.reader, joins)
+    return plan, units
 
 
 def _check_whole(question: Question) -> None:
@@ -142,7 +145,8 @@ def result(question: Question, found: Found, told: Shown, settings: Settings, vo
         f"analysed in parts, {found.open:,} open elements in the whole fleet: ways and distances are the shortest "
         "among the robots that are shown, and open elements and unknown ends are listed of these"
     )
-    said = (*found.told.diagnostics, Diagnostic(Place("--engine spark", 0), Severity.NOTICE, bounds))
+    joins = joins_nothing(question.fleet, question.groups, found.told.met)
+    said = (*found.told.diagnostics, *joins, Diagnostic(Place("--engine spark", 0), Severity.NOTICE, bounds))
     policies = {policy.file: policy for member in told.members.values() for policy in member.policies}
     labels = {file.file: file for member in told.members.values() for file in member.files}
     return SparkResult(

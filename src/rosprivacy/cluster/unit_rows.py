@@ -25,7 +25,7 @@ from rosprivacy.ontology.vocabulary import load
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
-    from rosprivacy.analysis.model import Analysis, Element
+    from rosprivacy.analysis.model import Analysis, Diagnostic, Element
     from rosprivacy.analysis.outside import Concern, Outside
     from rosprivacy.analysis.spread import Spread
     from rosprivacy.cluster.building import Read
@@ -59,6 +59,8 @@ class Plan:
         See ``Found``.
     assumptions
         Of the answer about the whole fleet.
+    joins
+        What a reader has to know of the fleet: what joins nothing.
     """
 
     fleet: Fleet
@@ -69,6 +71,7 @@ class Plan:
     assumptions: Mapping[str, Any]
     settings: Settings
     reader: Callable[[], Read]
+    joins: tuple[Diagnostic, ...] = ()
 
 
 def unit_rows(units: Sequence[Unit], plan: Plan) -> list[RobotRows]:
@@ -145,7 +148,7 @@ def _fleet_rows(placed: Placed, members: Mapping[str, Member], plan: Plan, mine:
 
     analysis = analyse(placed.graph, placed.bound, vocabulary.hierarchy, Options(choose=choose))
     said = {name: _more(member, analysis, plan, vocabulary) for name, member in members.items()}
-    said[plan.fleet.name] = remembered({**plan.assumptions, "policies": [], "labels": []}, ())
+    said[plan.fleet.name] = remembered({**plan.assumptions, "policies": [], "labels": []}, plan.joins)
     known = _verdicts(analysis, plan)
     more = {name: {**some, "verdict": known.get(name, str(Verdict.UNDETERMINED))} for name, some in said.items()}
     return FleetRows(placed, analysis, vocabulary, more, most_across=0)
