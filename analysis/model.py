@@ -343,6 +343,7 @@ class Method(StrEnum):
 
 NAME, SEGMENT, GLOB = "name", "segment", "glob"  # how a label names an element
 STANDARD = 0  # the tier of the file of standard channels (rule S13); users' files are above it
+CHANGED = 3  # the tier of what a proposal changes: above all that is said now, in files and in a database
 STATED = "flow"  # the role of a flow that a person states (rule S9)
 
 

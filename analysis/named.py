@@ -10,7 +10,7 @@ from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import LabelError, shown
-from rosprivacy.analysis.model import STATED
+from rosprivacy.analysis.model import CHANGED, STATED
 from rosprivacy.analysis.ranks import closes, in_words
 from rosprivacy.analysis.roles import facts
 
@@ -45,7 +45,7 @@ def keep_named(
         What statements mean for each.
     """
     told: set[tuple[Place, Place]] = set()
-    for category, source, vertex, index in _named(elements, graph, bound):
+    for category, source, vertex, index in named(elements, graph, bound):
         for meaning, of, at in ((elements, bound.elements, vertex), (flows, bound.flows, index)):
             decided = meaning.get(at, {}).get(category)
             if decided is None or decided.passes:
@@ -54,13 +54,15 @@ def keep_named(
             name = graph.elements[vertex].name
             meaning[at][category] = now = facts(name, kept, category, hierarchy)
             for closer in now.closers:
-                if (closer.place, source.place) not in told:
+                if closer.rank[0] < CHANGED and (closer.place, source.place) not in told:
                     told.add((closer.place, source.place))
                     yield _contradiction(name, category, closer, source)
 
 
-def _named(elements: Meaning, graph: FlowGraph, bound: Bound) -> list[tuple[str, Statement, int, int]]:
-    """(category, statement of a source, channel that it names, flow to it), with channels that a wildcard matches."""
+def named(
+    elements: Mapping[int, Mapping[str, Facts]], graph: FlowGraph, bound: Bound
+) -> list[tuple[str, Statement, int, int]]:
+    """Return (category, statement of a source, channel that it names, flow to it), with what wildcards match there."""
     found: list[tuple[str, Statement, int, int]] = []
     matches: dict[int, list[int]] = defaultdict(list)
     for index, flow in enumerate(graph.flows if bound.through else ()):

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.analysis.flow import fixpoint
-from rosprivacy.analysis.named import keep_named, stated_flows
+from rosprivacy.analysis.named import keep_named, named, stated_flows
 from rosprivacy.analysis.network import Network, as_numbers
 from rosprivacy.analysis.overruled import Overruled, overruled
 from rosprivacy.analysis.roles import NOTHING_SAID, Facts, facts
@@ -48,6 +48,8 @@ class Spread:
         The same for single flows.
     flow_begins
         Vertex -> bits that it emits along single flows only.
+    named
+        Channel -> bits that a source names it for.
     standard
         Channels taken as mundane on a shipped file's word alone (rule S13).
     overruled
@@ -72,6 +74,7 @@ class Spread:
     flow_emits: dict[int, int] = field(default_factory=dict)
     flow_keeps: dict[int, int] = field(default_factory=dict)
     flow_begins: dict[int, int] = field(default_factory=dict)
+    named: dict[int, int] = field(default_factory=dict)
     standard: set[int] = field(default_factory=set)
     overruled: tuple[Overruled, ...] = ()
     made: set[int] = field(default_factory=set)
@@ -189,6 +192,9 @@ def meaning(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, categories: It
     problems += keep_named(found.facts, found.flow_facts, graph, bound, hierarchy)
     restricted = any(statement.through for said in bound.elements.values() for statement in said)
     stated = stated_flows(graph) if restricted else {}
+    for category, _, vertex, _ in named(found.facts, graph, bound):
+        if category in categories:
+            found.named[vertex] = found.named.get(vertex, 0) | found.both(category)
     for vertex in bound.elements:
         _set_vertex(found, vertex, bound, stated)
     for index, kept in found.flow_facts.items():

@@ -209,6 +209,17 @@ class TestWhatASourceNamesAChannelFor:
             "1.yaml:6: /video is never [Video] here, and the source at 1.yaml:3 names it for Video; "
         )
 
+    def test_no_proposal_contradicts_it(self, cli: Cli) -> None:
+        """A review of the channel would; a filter behind the source does not."""
+        video()
+        options = labels("nodes: {/camera: {source: {Video: [/video]}}, /uplink: {leak: [Video]}}")
+        done = cli("mitigate", "p.xml", *options, "--by", "review")
+        assert "Traceback" not in done.stderr
+        assert "review /video" not in done.stdout
+        done = cli("mitigate", "p.xml", *options, "--by", "filter")
+        assert "filter" in done.stdout
+        assert "no-leak-found" in done.stdout or "undetermined" in done.stdout
+
     def test_a_wildcard_that_it_writes_and_the_channel_that_is_read(self, cli: Cli) -> None:
         policy(camera=">v*", uplink="<video")
         text = "nodes: {/camera: {source: {Video: ['/v*']}}, /uplink: {leak: [Video]}}\nchannels: {'/v*': mundane}"

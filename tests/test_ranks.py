@@ -42,10 +42,10 @@ def ranked(draw: st.DrawFn) -> System:
         extra = st.one_of(more, plain) if vertex in channels else words
         some = [*said, *draw(st.lists(extra, max_size=2))]
         system.said[vertex] = [placed(one, named=vertex not in system.facts) for one in dict.fromkeys(some)]
-        if vertex in channels and draw(st.integers(0, 1)):
+        if draw(st.booleans()) and vertex in channels:
             system.said[vertex].append(SHIPPED)
         written = [f"/t{b - system.nodes}" for a, b in system.edges if a == vertex and b in channels]
-        if written and draw(st.integers(0, 1)):
+        if draw(st.booleans()) and written:
             through = tuple(sorted(draw(st.sets(st.sampled_from(written), min_size=1))))
             system.said[vertex] = [
                 replace(s, through=through) if s.role == "source" else s for s in system.said[vertex]
