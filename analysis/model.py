@@ -394,6 +394,11 @@ class Statement:
         """Whether a user says it of a full name."""
         return self.naming == NAME and self.rank[0] > STANDARD
 
+    @property
+    def glob(self) -> bool:
+        """Whether a glob names what it is about."""
+        return self.naming != NAME
+
 
 @dataclass(frozen=True, slots=True)
 class Bound:
@@ -439,15 +444,16 @@ class Finding:
     Attributes
     ----------
     id
-        16 hexadecimal digits made from category, source and leak, and of other kinds than disclosure from the kind;
-        stable as long as these are.
+        16 hexadecimal digits made from category, source and leak, of other kinds than disclosure from the kind, and
+        from ``beside`` where it holds; stable as long as these are.
     kind
         ``DISCLOSURE``: it reaches a leak. ``STORAGE_LIMITATION``: a storage that keeps it without a stated end or
         longer than allowed. ``THIRD_COUNTRY``: an element outside the EEA without a stated basis.
     leak
         The leak, the storage or the element abroad.
     pseudonymised
-        Whether the data arrives in pseudonymised form only.
+        Whether the data arrives in pseudonymised form only; data that arrives as it is through another leak only is
+        then a finding of its own, ``beside`` this one.
     witness
         One shortest path, source first.
     steps
@@ -460,6 +466,8 @@ class Finding:
         Whether every path goes through another leak of the category, which has a finding of its own, not accepted.
     accepted
         Whether a person has decided that this may be; it then hides nothing behind it.
+    beside
+        Whether a finding of the same ends stands beside it that is pseudonymised; this one is then dismissed.
     paths
         Further paths if asked for, each source first.
     bounded
@@ -483,6 +491,7 @@ class Finding:
     bounded: bool = False
     reason: str = ""
     accepted: bool = False
+    beside: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.ranks import Decided
 
 TAKE_BACK = ("no-source", "no-leak")  # they hold, but review nothing
+ADDS = frozenset({"source", "leak", *TAKE_BACK})  # what they say takes no data's way away
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +52,8 @@ class Facts:
         Those of them that keep the category from going on as it is, in the order of files and lines.
     outdone
         (A source or leak statement, the one that outdid it): what was said and does not hold.
+    reviewers
+        The other statements that answer for the category here: without them it is open, if nothing else covers it.
     unstated
         Whether it is a sanitizer whose method is taken, not stated.
     standard
@@ -73,6 +76,7 @@ class Facts:
     accepted: tuple[Statement, ...] = ()
     closers: tuple[Statement, ...] = ()
     outdone: tuple[tuple[Statement, Statement], ...] = ()
+    reviewers: tuple[Statement, ...] = ()
 
     def by_role(self, role: str) -> tuple[Statement, ...]:
         """Return the statements of a role that hold, the highest rank first."""
@@ -123,4 +127,5 @@ def _sum_up(found: Decided, category: str, hierarchy: Hierarchy) -> Facts:
         accepted=accepted,
         closers=tuple(sorted(closers, key=by_line)),
         outdone=found.outdone,
+        reviewers=tuple(sorted((s for s in accepted if s not in closers and s.role not in ADDS), key=by_line)),
     )

@@ -20,6 +20,7 @@ from rosprivacy.ingest.files import read_policies
 from rosprivacy.ingest.labels import OURS
 from rosprivacy.ingest.names import is_pattern, matcher
 from rosprivacy.ingest.namespaces import depends
+from rosprivacy.ingest.regular import contents
 from rosprivacy.ingest.xinclude import stands_alone
 
 if TYPE_CHECKING:
@@ -78,12 +79,12 @@ def alike(fleet: Fleet, told_apart: Callable[[str], object] = lambda _: None) ->
         domains[robot.domain] += 1
     groups: dict[object, list[Robot]] = defaultdict(list)
     joined: dict[object, bool] = {}
-    contents = _Contents()
+    runs = _Contents()
     for robot in fleet.robots:
         means = tuple(i for i, test in enumerate(tests) if test(robot.id))
         several = bool(robot.domain) and domains[robot.domain] > 1
-        alone = robot.id if several and (robot.strip or robot.add) else contents.namespace(robot)
-        key = (robot.model, contents.of(robot), robot.domain, robot.strip, alone, means, told_apart(robot.id))
+        alone = robot.id if several and (robot.strip or robot.add) else runs.namespace(robot)
+        key = (robot.model, runs.of(robot), robot.domain, robot.strip, alone, means, told_apart(robot.id))
         groups[key].append(robot)
         joined[key] = bool(means) or several
     found = [Alike(tuple(robots), joined[key]) for key, robots in groups.items()]
@@ -161,6 +162,6 @@ def _bytes(file: str) -> bytes | None:
     """What is in a file; None where there is none to be read, which its reader will tell."""
     path = Path(file)
     try:
-        return path.read_bytes() if path.is_file() else None
+        return contents(path) if path.is_file() else None
     except OSError:
         return None

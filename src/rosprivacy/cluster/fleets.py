@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.counts import Counts
 from rosprivacy.analysis.errors import FleetError, InputError, InputErrors, reason
+from rosprivacy.analysis.files_read import note
 from rosprivacy.analysis.model import Diagnostic, Place, Severity
 from rosprivacy.asked import asked_for
 from rosprivacy.assembly import Result
@@ -98,12 +99,20 @@ def run_on_spark(file: str, settings: Settings, master: str | None = None, resul
         _check_whole(question)
     with session(master) as spark:
         found = analyse_in_parts(question, partial(scatter, spark))
+        _note_what_workers_read(found)
         told = shown(question, found, settings.paths, settings.max_paths)
         answer = result(question, found, told, settings, vocabulary)
         if results:
             plan, units = plan_of(question, found, answer, plain)
             write(spark, results, units, plan, answer.document())
         return answer
+
+
+def _note_what_workers_read(found: Found) -> None:
+    """Workers are processes of their own, whose notes nobody sees here: what they have read is no output either."""
+    for name in (*(file for file, _ in found.told.sources), *(file for file, *_ in found.told.labels)):
+        if Path(name).is_file():
+            note(name, Path(name).stat())
 
 
 def plan_of(question: Question, found: Found, answer: Result, settings: Settings) -> tuple[Plan, tuple[Unit, ...]]:
@@ -135,7 +144,7 @@ def _check_whole(question: Question) -> None:
 def result(question: Question, found: Found, told: Shown, settings: Settings, vocabulary: Vocabulary) -> SparkResult:
     """Put together what a report says."""
     assumptions = {
-        **own_assumptions(told.placed.graph, settings, vocabulary),
+        **own_assumptions(told.placed.graph, settings, vocabulary, told.analysis.emitted),
         **({"countries_as_of": countries().as_of} if found.told.countries else {}),
         **files_read(sorted(found.told.sources), sorted(found.told.labels), settings, 0),
         "fleet": [{"file": name, "sha256": digest} for name, digest in question.fleet.sources],
