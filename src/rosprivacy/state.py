@@ -94,5 +94,12 @@ def write_private(path: Path, text: str) -> None:
         raise
 
 
+def keep_private(folder: Path) -> None:
+    """Let only the owner into a folder and all that is in it; what a link leads to is left as it is."""
+    for path in (folder, *folder.rglob("*")):
+        if not path.is_symlink():
+            path.chmod(0o700 if path.is_dir() else 0o600)
+
+
 def _place(error: OSError, folder: str) -> str:
     return shown(error.filename) if isinstance(error.filename, str) else folder
