@@ -202,6 +202,7 @@ def launch(folder: Path, progress: Progress = bar) -> Server:
     kibibytes = int(size[1]) * 1024 ** "kmg".index(size[2].lower())
     transaction = max(1024, int(kibibytes * SHARE))
     write_private(folder / "conf" / "neo4j.conf", CONFIGURATION.format(**asdict(server), transaction=transaction))
+    log_file(folder).touch(mode=0o600)
     keep_private(folder)
     _set_password(folder, str(JAVA), classpath)
     command = [

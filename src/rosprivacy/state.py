@@ -68,7 +68,7 @@ def locked() -> Iterator[Path]:
         import filelock  # noqa: PLC0415
     folder = state_folder()
     place = shown(str(folder))
-    lock = filelock.FileLock(folder / "lock", timeout=LOCK_LIMIT)
+    lock = filelock.FileLock(folder / "lock", timeout=LOCK_LIMIT, mode=0o600)
     try:
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         folder.chmod(0o700)
