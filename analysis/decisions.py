@@ -51,6 +51,8 @@ class Case:
         Of the finding; empty where it stands for more than itself.
     pattern
         On a fleet, the id of the pattern that it belongs to.
+    robots
+        On a fleet, the robots that data begins on and gets to; an end that is on no robot is empty.
     """
 
     id: str
@@ -60,6 +62,13 @@ class Case:
     leak: Element
     pseudonymised: bool
     pattern: str = ""
+    robots: tuple[str, str] = ("", "")
+
+    @property
+    def across(self) -> bool:
+        """Whether data gets from one robot to another."""
+        source, leak = self.robots
+        return bool(source and leak) and source != leak
 
     @classmethod
     def of(cls, finding: Finding) -> Case:
@@ -78,8 +87,12 @@ class Decision:
         Of a finding, or of a pattern of findings on a fleet; empty where names and globs say what it is about.
     category
         A name; it stands for the narrower ones too.
-    source, leak, robot
+    source, leak
         Names or globs.
+    robot
+        Name or glob: of the robot of the leak, or of the source where the leak is on none.
+    from_robot
+        Name or glob: of the robot of the source.
     kind
         Of findings.
     pseudonymised
@@ -97,6 +110,7 @@ class Decision:
     source: str = ""
     leak: str = ""
     robot: str = ""
+    from_robot: str = ""
     kind: str = ""
     pseudonymised: bool | None = None
     reason: str = ""
@@ -107,21 +121,37 @@ class Decision:
     ticket: str = ""
 
     def about(self, case: Case, hierarchy: Hierarchy) -> bool:
-        """Whether it is about a case."""
-        robots = (case.source.robot, case.leak.robot)
+        """Whether it is about a case.
+
+        One that names a robot says nothing of what comes from another robot, unless it names that too.
+        """
+        alone = not case.robots[1] and _covers(self.robot, case.source.robot)
+        return (
+            self._names(case, hierarchy)
+            and (alone or _covers(self.robot, case.leak.robot))
+            and _covers(self.from_robot, case.source.robot)
+            and not (self.robot and case.across and not self.from_robot)
+        )
+
+    def was_about(self, case: Case, hierarchy: Hierarchy) -> bool:
+        """Whether it was about a case when one of two robots was enough, and is no longer."""
+        either = any(_covers(self.robot, element.robot) for element in (case.source, case.leak))
+        return self._names(case, hierarchy) and either and not self.from_robot and not self.about(case, hierarchy)
+
+    def _names(self, case: Case, hierarchy: Hierarchy) -> bool:
+        """Whether all that it names but robots is as in a case."""
         return (
             self.id in ("", case.id, case.pattern)
             and self.kind in ("", case.kind)
             and (not self.category or hierarchy.distance(case.category, self.category) is not None)
             and _covers(self.source, case.source.name)
             and _covers(self.leak, case.leak.name)
-            and any(_covers(self.robot, robot) for robot in robots)
             and self.pseudonymised in (None, case.pseudonymised)
         )
 
     def rank(self, case: Case, hierarchy: Hierarchy) -> tuple[int, ...]:
         """How closely it speaks of a case; the higher counts."""
-        names = [name for name in (self.source, self.leak, self.robot) if name]
+        names = [name for name in (self.source, self.leak, self.robot, self.from_robot) if name]
         exact = sum(not _pattern(name) for name in names)
         spelt = sum(sum(char not in "*?[]" for char in name) for name in names if _pattern(name))
         distance = hierarchy.distance(case.category, self.category) if self.category else FARTHEST
@@ -170,7 +200,8 @@ class Decisions:
 
     def told_apart(self, robot: str) -> tuple[bool, ...]:
         """Return which entries that name robots mean this one: robots are alike only if all do so alike."""
-        return tuple(_covers(entry.robot, robot) for entry in self.entries if entry.robot)
+        names = (name for entry in self.entries for name in (entry.robot, entry.from_robot) if name)
+        return tuple(_covers(name, robot) for name in names)
 
     def accepts(self, case: Case) -> bool:
         """Whether a valid decision accepts a case (rule S10)."""
@@ -247,15 +278,31 @@ def decided(
         for entry, ids in zip(decisions.entries, about, strict=True)
     )
     result = Decided(decisions, on, about, states, ())
-    said = tuple(_diagnostics(result, {finding.id: finding for finding, _ in cases}, special))
+    said = tuple(
+        _diagnostics(result, {finding.id: finding for finding, _ in cases}, special, list(_former(result, cases)))
+    )
     return Decided(decisions, on, about, states, said)
 
 
-def _diagnostics(joined: Decided, findings: Mapping[str, Finding], special: Mapping[str, str]) -> Iterator[Diagnostic]:
-    """What a reader has to know: expired and orphaned decisions, missing legal bases."""
-    for entry, ids, state in zip(joined.decisions.entries, joined.about, joined.states, strict=True):
+def _former(joined: Decided, cases: Iterable[tuple[Finding, Case]]) -> Iterator[int]:
+    """Yield per entry how many findings it decided when one of two robots was enough."""
+    open_cases = [case for finding, case in cases if finding.id not in joined.on]
+    for entry in joined.decisions.entries:
+        yield sum(entry.was_about(case, joined.decisions.hierarchy) for case in open_cases)
+
+
+def _diagnostics(
+    joined: Decided, findings: Mapping[str, Finding], special: Mapping[str, str], former: Iterable[int]
+) -> Iterator[Diagnostic]:
+    """What a reader has to know: expired and orphaned decisions, what one no longer decides, missing legal bases."""
+    for entry, ids, state, lost in zip(joined.decisions.entries, joined.about, joined.states, former, strict=True):
         what = f"the decision to {entry.choice} {entry.id or 'a pattern'}"
-        if state is State.ORPHANED:
+        if lost:
+            count = "1 finding" if lost == 1 else f"{lost} findings"
+            did = "accepted before" if entry.choice is Choice.ACCEPT else "decided before"
+            message = f"{what} names no from_robot: {count} from one robot to another, {did}, no longer; add it"
+            yield Diagnostic(entry.place, Severity.WARNING, message)
+        elif state is State.ORPHANED:
             yield Diagnostic(entry.place, Severity.WARNING, f"{what} is about no finding: it is orphaned; remove it")
         if joined.decisions.state(entry) is State.EXPIRED:
             message = f"{what} expired on {entry.expires} and no longer counts; decide anew"

@@ -32,6 +32,7 @@ from rosprivacy.analysis.paths import WITNESS, Between, further
 from rosprivacy.analysis.questions import open_questions
 from rosprivacy.analysis.search import START, Net, Search, path_to, present, search
 from rosprivacy.analysis.spread import Spread, bits_of, spread
+from rosprivacy.analysis.unknown_ends import unknown_ends
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
@@ -109,6 +110,7 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
         unstated=tuple(_unstated(found)),
         diagnostics=() if sources else (_no_source(options),),
         outside={graph.elements[vertex]: facts for vertex, facts in sorted(bound.outside.items())},
+        unknown_ends=unknown_ends(found, mask),
     )
 
 

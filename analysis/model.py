@@ -483,6 +483,26 @@ class OpenQuestion:
 
 
 @dataclass(frozen=True, slots=True)
+class UnknownEnd:
+    """An element at which data's way ends without anybody known, rule S11.
+
+    Attributes
+    ----------
+    element
+        A channel, or a leg of one, with data; or an element outside ROS.
+    what
+        What is not known: the ``reader`` of a channel, of a service's leg its server or client; the ``flow`` that
+        leads to an element outside ROS.
+    categories
+        What is on the channel, sorted.
+    """
+
+    element: Element
+    what: str
+    categories: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
 class Carried:
     """What an element carries: emitted categories, sorted; ``pseudonymised`` is a plane of its own (rule S8)."""
 
@@ -525,6 +545,8 @@ class Analysis:
         (element, category) of sanitizers whose method no label states.
     outside
         What is stated about non-ROS elements (rule S9).
+    unknown_ends
+        Channels with data that nobody known reads, elements outside ROS that no flow reaches; sorted (rule S11).
     """
 
     graph: FlowGraph
@@ -539,3 +561,4 @@ class Analysis:
     unstated: tuple[tuple[Element, str], ...] = ()
     diagnostics: tuple[Diagnostic, ...] = ()
     outside: Mapping[Element, Outside] = field(default_factory=dict)
+    unknown_ends: tuple[UnknownEnd, ...] = ()

@@ -179,6 +179,7 @@ class FleetView:
             roles={element: said for element, said in analysis.roles.items() if element.robot not in second},
             unstated=tuple((element, name) for element, name in analysis.unstated if element.robot not in second),
             outside={element: facts for element, facts in analysis.outside.items() if element.robot not in second},
+            unknown_ends=tuple(end for end in analysis.unknown_ends if end.element.robot not in second),
         )
 
 

@@ -63,6 +63,10 @@ class Facts:
         Whether a label covers the category here (rule S11).
     method
         Of a sanitizer, as in ``Method``; empty for others.
+    closers
+        The statements that keep the category from going on as it is, in the order of files and lines.
+    outdone
+        (A source or leak statement, the one that outdid it): what was said and does not hold.
     unstated
         Whether it is a sanitizer whose method is taken, not stated.
     standard
@@ -82,6 +86,8 @@ class Facts:
     standard: bool = False
     roles: tuple[str, ...] = ()
     method: str = ""
+    closers: tuple[Statement, ...] = ()
+    outdone: tuple[tuple[Statement, Statement], ...] = ()
 
 
 NOTHING_SAID = Facts()
@@ -102,7 +108,7 @@ def facts(name: str, said: Sequence[Statement], category: str, hierarchy: Hierar
     LabelError
         If two statements of equal rank contradict each other; the message names both lines.
     """
-    return _sum_up(_accepted(name, said, category, hierarchy), category, hierarchy)
+    return _sum_up(*_accepted(name, said, category, hierarchy), category, hierarchy)
 
 
 def _distance(statement: Statement, category: str, hierarchy: Hierarchy) -> int | None:
@@ -120,14 +126,17 @@ def _distance(statement: Statement, category: str, hierarchy: Hierarchy) -> int 
     return -min(narrower) if narrower and statement.role in MAY else None
 
 
-def _accepted(name: str, said: Sequence[Statement], category: str, hierarchy: Hierarchy) -> list[Statement]:
-    """The statements that apply and are not outdone."""
+def _accepted(
+    name: str, said: Sequence[Statement], category: str, hierarchy: Hierarchy
+) -> tuple[list[Statement], list[tuple[Statement, Statement]]]:
+    """The statements that apply and are not outdone, and those of sources and leaks that are, with what outdid them."""
     applying: list[tuple[Rank, Statement]] = []
     for statement in said:
         distance = FARTHEST if statement.role == "only" else _distance(statement, category, hierarchy)
         if distance is not None:
             applying.append(((*statement.rank, -distance), statement))
-    accepted = []
+    accepted: list[Statement] = []
+    outdone: list[tuple[Statement, Statement]] = []
     for rank, statement in sorted(applying, key=lambda pair: (pair[0], str(pair[1].place)), reverse=True):
         against = [(r, other) for r, other in applying if r >= rank and _contradict(other, statement)]
         for other_rank, other in against:
@@ -135,7 +144,13 @@ def _accepted(name: str, said: Sequence[Statement], category: str, hierarchy: Hi
                 raise _contradiction(name, category, other, statement)
         if not against:
             accepted.append(statement)
-    return accepted
+        elif statement.role in ("source", "leak"):
+            outdone.append((statement, max(against, key=lambda pair: pair[0])[1]))
+    return accepted, outdone
+
+
+def _by_line(statement: Statement) -> tuple[str, int, str]:
+    return (statement.place.file, statement.place.line, statement.role)
 
 
 def _contradict(a: Statement, b: Statement) -> bool:
@@ -165,18 +180,20 @@ def _said(statement: Statement) -> str:
     return f"{statement.role} through {', '.join(statement.through)}" if statement.through else statement.role
 
 
-def _sum_up(accepted: list[Statement], category: str, hierarchy: Hierarchy) -> Facts:
+def _sum_up(
+    accepted: list[Statement], outdone: list[tuple[Statement, Statement]], category: str, hierarchy: Hierarchy
+) -> Facts:
     by_role = {role: [s for s in accepted if s.role == role] for role in {s.role for s in accepted}}
     sanitizers = by_role.get("sanitizer", [])
-    mundane, only = by_role.get("mundane", []), by_role.get("only", [])
-    blocked = bool(sanitizers or mundane or "never" in by_role)
-    blocked = blocked or any(_distance(statement, category, hierarchy) is None for statement in only)
+    mundane = by_role.get("mundane", [])
+    closers = [*sanitizers, *mundane, *by_role.get("never", [])]
+    closers += [only for only in by_role.get("only", []) if _distance(only, category, hierarchy) is None]
     sources = by_role.get("source", [])
     return Facts(
         emits=bool(sources),
         through=sources[0].through if sources else (),
         leaks="leak" in by_role,
-        passes=not blocked,
+        passes=not closers,
         pseudonymises=any(s.method is Method.PSEUDONYMISE for s in sanitizers),
         derives=tuple(sorted({s.to for s in by_role.get("derivation", [])})),
         covered=bool(accepted),
@@ -184,4 +201,6 @@ def _sum_up(accepted: list[Statement], category: str, hierarchy: Hierarchy) -> F
         standard=bool(mundane) and all(s.shipped for s in mundane),
         roles=tuple(sorted(by_role)),
         method=str(sanitizers[0].method) if sanitizers else "",
+        closers=tuple(sorted(closers, key=_by_line)),
+        outdone=tuple(sorted(outdone, key=lambda pair: _by_line(pair[0]))),
     )

@@ -34,6 +34,8 @@ class Spread:
         Emitted ones, sorted; they give the bits their numbers.
     facts
         Vertex -> category -> what it does with it; labelled vertices only.
+    flow_facts
+        The same of single flows, by index; labelled flows only.
     emits, leaks, covered
         Vertex -> bits; 0 where absent. A leak and a cover hold in both planes.
     keeps
@@ -57,6 +59,7 @@ class Spread:
     graph: FlowGraph
     categories: tuple[str, ...]
     facts: dict[int, dict[str, Facts]] = field(default_factory=dict)
+    flow_facts: dict[int, dict[str, Facts]] = field(default_factory=dict)
     emits: dict[int, int] = field(default_factory=dict)
     leaks: dict[int, int] = field(default_factory=dict)
     covered: dict[int, int] = field(default_factory=dict)
@@ -174,6 +177,7 @@ def meaning(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, categories: It
     for index, said in bound.flows.items():
         ends = graph.elements[graph.flows[index].source], graph.elements[graph.flows[index].target]
         kept = decide(said, f"the flow {ends[0].name} -> {ends[1].name}")
+        found.flow_facts[index] = kept
         found.flow_keeps[index] = _bits(found, kept, lambda fact: fact.passes)
     if problems:
         raise InputErrors(problems)

@@ -1,8 +1,9 @@
 """Robots -> groups of robots that are alike, so that each is read and analysed once (rule S10).
 
 In: a fleet. Out: its robots by what they run and how they take part. Two robots are alike if they can change places and
-nothing changes but their names: equal policies and label files, no namespace of their own in a shared domain, and
-every line about flows means both or neither.
+nothing changes but their names: policies and label files that are read alike, no namespace of their own in a shared
+domain, and every line about flows means both or neither. Whether a policy is read alike elsewhere is seen by what the
+parser finds in it: one that includes nothing is its content, any other is the file that it is.
 """
 
 from __future__ import annotations
@@ -10,12 +11,13 @@ from __future__ import annotations
 import hashlib
 from collections import defaultdict
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosprivacy.ingest.domains import pseudo_robot
+from rosprivacy.ingest.labels import OURS
 from rosprivacy.ingest.names import is_pattern, matcher
+from rosprivacy.ingest.xinclude import stands_alone
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -72,11 +74,12 @@ def alike(fleet: Fleet, told_apart: Callable[[str], object] = lambda _: None) ->
         domains[robot.domain] += 1
     groups: dict[object, list[Robot]] = defaultdict(list)
     joined: dict[object, bool] = {}
+    contents = _Contents()
     for robot in fleet.robots:
         means = tuple(i for i, test in enumerate(tests) if test(robot.id))
         several = bool(robot.domain) and domains[robot.domain] > 1
         alone = robot.id if several and (robot.strip or robot.add) else ""
-        key = (robot.model, _contents(robot), robot.domain, robot.strip, alone, means, told_apart(robot.id))
+        key = (robot.model, contents.of(robot), robot.domain, robot.strip, alone, means, told_apart(robot.id))
         groups[key].append(robot)
         joined[key] = bool(means) or several
     found = [Alike(tuple(robots), joined[key]) for key, robots in groups.items()]
@@ -100,15 +103,46 @@ def known_to_flows(fleet: Fleet) -> list[str]:
     return [*(robot.id for robot in everyone), *sorted({pseudo_robot(r.domain) for r in everyone if r.domain})]
 
 
-def _contents(robot: Robot) -> tuple[tuple[str, ...], ...]:
-    return tuple(tuple(map(_content, files)) for files in (robot.policies, robot.labels, robot.own))
+class _Contents:
+    """What stands for files when robots are compared; each file is read once, each distinct policy parsed once."""
+
+    def __init__(self) -> None:
+        self._policies: dict[str, str] = {}
+        self._labels: dict[str, str] = {}
+        self._alone: dict[str, bool] = {}
+
+    def of(self, robot: Robot) -> tuple[tuple[str, ...], ...]:
+        """Return what stands for all that is read for a robot."""
+        labels = (tuple(map(self._label_file, files)) for files in (robot.labels, robot.own))
+        return (tuple(map(self._policy, robot.policies)), *labels)
+
+    def _policy(self, file: str) -> str:
+        """The content, or the path of a folder or glob, and of a policy with which others may be read (rule S10)."""
+        if file not in self._policies:
+            self._policies[file] = self._read(file)
+        return self._policies[file]
+
+    def _read(self, file: str) -> str:
+        data = _bytes(file)
+        if data is None:
+            return file
+        content = hashlib.sha256(data).hexdigest()
+        if content not in self._alone:
+            self._alone[content] = stands_alone(data)
+        return content if self._alone[content] else file
+
+    def _label_file(self, file: str) -> str:
+        """The content; the name of one that comes with the program."""
+        if file not in self._labels:
+            data = None if file.startswith(OURS) else _bytes(file)
+            self._labels[file] = file if data is None else hashlib.sha256(data).hexdigest()
+        return self._labels[file]
 
 
-@cache
-def _content(file: str) -> str:
-    """What stands for a file: its content, or its path where others may be read with it."""
+def _bytes(file: str) -> bytes | None:
+    """What is in a file; None where there is none to be read, which its reader will tell."""
     path = Path(file)
-    if not path.is_file():
-        return file
-    data = path.read_bytes()
-    return file if b"include" in data else hashlib.sha256(data).hexdigest()
+    try:
+        return path.read_bytes() if path.is_file() else None
+    except OSError:
+        return None

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 TOP = ("decisions", "findings", "note")
-TARGET = ("id", "category", "source", "leak", "robot", "kind", "pseudonymised")
+TARGET = ("id", "category", "source", "leak", "robot", "from_robot", "kind", "pseudonymised")
 TEXTS = ("reason", "owner", "ticket")
 KEYS = (*TARGET, "decision", *TEXTS, "legal_basis", "date", "expires", "note")
 LONGEST = 10_000  # characters of a text

@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 
 EXACT = 1_000_000  # a name outranks every glob
 SHIPPED, OWN = 0, 1  # tiers: a person's own word outranks what comes with the program
-ROBOT = 2 * EXACT  # added to what is said of one robot of a fleet, which outranks what is said of its model
+ROBOT = EXACT // 2  # added for a robot of a fleet, which outranks its model between names or between globs (rule S7)
+FORMER_ROBOT = 2 * EXACT  # what databases of earlier versions have added: there a robot's glob outranked a model's name
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,3 +56,12 @@ def specificity(name: str) -> int:
     True
     """
     return literals(name) if is_pattern(name) else EXACT
+
+
+def as_ranked_now(stored: int) -> int:
+    """Return the rank of a name as a database has it, which an earlier version may have written.
+
+    >>> as_ranked_now(FORMER_ROBOT + 4) == ROBOT + 4, as_ranked_now(EXACT)
+    (True, 1000000)
+    """
+    return stored - FORMER_ROBOT + ROBOT if stored >= FORMER_ROBOT else stored

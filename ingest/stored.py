@@ -16,7 +16,7 @@ from rosprivacy.analysis.errors import GraphError, InputError, InputErrors, show
 from rosprivacy.analysis.model import NON_ROS, Bound, Element, Flow, FlowGraph, Grant, Method, Place, Profile, Statement
 from rosprivacy.analysis.outside import by_kind
 from rosprivacy.analysis.patterns import NO_ROBOTS, Likeness
-from rosprivacy.ingest.entries import EXACT
+from rosprivacy.ingest.entries import EXACT, as_ranked_now
 from rosprivacy.ingest.facts import facts_of
 from rosprivacy.ingest.names import covers
 from rosprivacy.ingest.schema import KIND_LABELS, ROLES
@@ -344,7 +344,16 @@ def _facts(role: str, category: str, said: Mapping[str, Any]) -> tuple[Any, ...]
     if role == "derivation" and not made_of:
         raise ValueError(f"it does not say of what it makes {category}: SET r.of = 'Video'")
     through = tuple(str(name) for name in said.get("through") or ())
-    return role, (int(tier), int(specificity)), place, method, stated, made_of, through, bool(said.get("every"))
+    return (
+        role,
+        (int(tier), as_ranked_now(int(specificity))),
+        place,
+        method,
+        stated,
+        made_of,
+        through,
+        bool(said.get("every")),
+    )
 
 
 def _through(

@@ -218,6 +218,15 @@ class Documents:
         return root
 
 
+def stands_alone(data: bytes) -> bool:
+    """Whether an XML text is read from these bytes only: it is XML that we take, and nothing in it is an include."""
+    try:
+        root = _parse(data, "")
+    except PolicyError:
+        return False
+    return next(root.iter(*(f"{{{namespace}}}*" for namespace in NAMESPACES)), None) is None
+
+
 def has_text(parent: Item) -> bool:
     """Whether there is text beside the child elements."""
     element = parent.element

@@ -52,7 +52,7 @@ def _decision(entry: Decision, state: State) -> dict[str, Any]:
 
 def _target(entry: Decision) -> dict[str, Any]:
     """What an entry says that it is about."""
-    keys = ("id", "category", "source", "leak", "robot", "kind")
+    keys = ("id", "category", "source", "leak", "robot", "from_robot", "kind")
     said: dict[str, Any] = {key: getattr(entry, key) for key in keys if getattr(entry, key)}
     if entry.pseudonymised is not None:
         said["pseudonymised"] = entry.pseudonymised

@@ -59,6 +59,14 @@ def document(
             }
             for question in analysis.open
         ],
+        "unknown_ends": [
+            {
+                "element": element_dict(end.element),
+                "unknown": end.what,
+                "categories": list(end.categories),
+            }
+            for end in analysis.unknown_ends
+        ],
         "carries": [
             {
                 "element": element_dict(carried.element),

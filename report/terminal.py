@@ -13,6 +13,7 @@ from rich.text import Text
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import CHANNELS
 from rosprivacy.report.decided import decision_lines
+from rosprivacy.report.terminal_ends import end_lines, ends_at_verdict
 from rosprivacy.report.terminal_fleet import fleet_lines, robots_of
 
 if TYPE_CHECKING:
@@ -66,6 +67,7 @@ def _lines(report: Mapping[str, Any], *, verbose: bool, quiet: bool) -> Iterator
     if accepted and report["verdict"] != "leak":
         style, meaning = "bold yellow", ACCEPTED[report["verdict"]]
     meaning += f"; {_count(accepted, 'finding')} accepted" if accepted else ""
+    meaning += "".join(f"; {end}" for end in ends_at_verdict(report))
     yield f"{report['verdict']}: {meaning}", style
     if quiet:
         return
@@ -73,6 +75,7 @@ def _lines(report: Mapping[str, Any], *, verbose: bool, quiet: bool) -> Iterator
     yield from fleet_lines(report)
     yield from _findings(report)
     yield from _review(report, verbose=verbose)
+    yield from end_lines(report, most=None if verbose else SHOWN)
     yield from _assumed(report)
     yield from _diagnostics(report, verbose=verbose)
 

@@ -281,3 +281,21 @@ class Brute:
             frontier = vertex in self.nodes and any((vertex, c) in first for c in categories)
             result[vertex] = (categories, distance, frontier)
         return result
+
+    def unknown_ends(self) -> dict[int, set[str]]:
+        """S11: channels with data that no edge leaves -> categories; elements outside ROS that no edge enters -> none.
+
+        An element outside ROS is no such end where data begins and goes on from.
+        """
+        at: dict[int, set[str]] = {}
+        for vertex, (category, _) in self.spread(self.sources()):
+            at.setdefault(vertex, set()).add(category)
+        known = {a for a, _ in self.edges}
+        ends = {v: at[v] for v in at if v not in self.nodes and v not in known}
+        entered = {b for _, b in self.edges}
+        for vertex in self.outside:
+            names = self.hierarchy.ancestors
+            begins = vertex in known and any(self.has(vertex, "source", name) for name in names)
+            if vertex not in entered and not begins:
+                ends[vertex] = set()
+        return ends

@@ -117,7 +117,8 @@ def systems(
         before, behind = draw(ends) - {element}, draw(ends) - {element}  # nothing flows from an element to itself
         edges |= {(a, element) for a in before} | {(element, b) for b in behind}
     for channel in range(nodes, nodes + channels):
-        edges |= {(node, channel) for node in draw(ends)} | {(channel, node) for node in draw(ends)}
+        read = draw(st.one_of(ends, ends, ends, st.just(set[int]())))  # some channels end at no known reader
+        edges |= {(node, channel) for node in draw(ends)} | {(channel, node) for node in read}
     category = st.sampled_from(names)
     cleans = st.builds(
         lambda c, m: statement("sanitizer", c, method=m), category, st.sampled_from((*METHODS, Method.PSEUDONYMISE))
@@ -254,6 +255,17 @@ def test_open_questions_are_those_of_brute_force(system: System) -> None:
     got = {number[q.element]: (set(q.categories), q.distance, q.frontier) for q in found.open}
     assert got == system.brute().open()
     assert list(found.open) == sorted(found.open, key=lambda q: (not q.frontier, q.distance))
+
+
+@given(systems())
+def test_unknown_ends_are_those_of_brute_force(system: System) -> None:
+    """Rule S11: what is not known is said, and changes no verdict."""
+    found = analysed(system)
+    if found is None:
+        return
+    number = index(system)
+    assert {number[end.element]: set(end.categories) for end in found.unknown_ends} == system.brute().unknown_ends()
+    assert all((end.what == "reader") == end.element.is_channel for end in found.unknown_ends)
 
 
 @given(systems())

@@ -334,3 +334,40 @@ def test_contradictions_are_errors_that_name_both_lines(tmp_path: Path, labels: 
         system(tmp_path, labels)
     assert "l.yaml:" in str(caught.value)
     assert str(caught.value).count("l.yaml:") >= 2
+
+
+class TestWhatDecided:
+    """Rule S7: the facts keep the statements that close the way, and those of sources and leaks that do not hold."""
+
+    @staticmethod
+    def told(result: Result, name: str, category: str = "FaceTemplate") -> tuple[list[str], list[tuple[str, str]]]:
+        elements = result.analysis.graph.elements
+        (vertex,) = [v for v, element in enumerate(elements) if element.name == f"/{name}"]
+        fact = result.analysis.spread.facts[vertex][category]
+        return [s.role for s in fact.closers], [(lost.role, by.role) for lost, by in fact.outdone]
+
+    @pytest.mark.parametrize(
+        ("name", "label", "closers"),
+        [
+            ("a", "{sanitizer: {Biometric: drop}}", ["sanitizer"]),
+            ("a", "{sanitizer: {Biometric: pseudonymise}}", ["sanitizer"]),  # it ends the plain form
+            ("a", "{sanitizer: {Voice: drop}}", []),
+            ("mid", "mundane", ["mundane"]),
+            ("mid", "{only: [Voice], never: [Biometric]}", ["never", "only"]),
+            ("mid", "{only: [FaceTemplate]}", []),
+            ("mid", "sensitive", []),
+        ],
+    )
+    def test_of_elements(self, tmp_path: Path, name: str, label: str, closers: list[str]) -> None:
+        section = "" if name == "a" else "channels:\n"
+        result = system(tmp_path, f"{SOURCE}{section}  /{name}: {label}\n")
+        assert self.told(result, name) == (closers, [])
+
+    def test_of_flows(self, tmp_path: Path) -> None:
+        result = system(tmp_path, SOURCE + "flows:\n  - {from: /mid, to: /b, never: [Biometric]}\n")
+        ((fact, *_),) = [[f[c] for c in ["FaceTemplate"]] for f in result.analysis.spread.flow_facts.values()]
+        assert [(s.role, s.categories) for s in fact.closers] == [("never", ("Biometric",))]
+
+    def test_what_is_outdone_is_kept_with_what_outdid_it(self, tmp_path: Path) -> None:
+        result = system(tmp_path, SOURCE + "  /c*: {leak: [Biometric]}\n  /c: conduit\n")
+        assert self.told(result, "c") == ([], [("leak", "conduit")])

@@ -17,7 +17,7 @@ from rosprivacy.report.page.fleet_told import Fleet, fleet_told
 from rosprivacy.report.page.index import CAN_BE_SPECIAL, Index
 from rosprivacy.report.page.kinds import Kind, kinds
 from rosprivacy.report.page.naming import fit, name
-from rosprivacy.report.page.review import Group, review
+from rosprivacy.report.page.review import Group, review, unknown_ends
 from rosprivacy.report.page.storages import Outside, outside
 from rosprivacy.report.page.ways import Way, ways
 from rosprivacy.report.page.words import Words
@@ -105,6 +105,7 @@ class Outline:
     cleanings: tuple[cleaned.Cleaning, ...]
     makings: tuple[cleaned.Making, ...]
     questions: tuple[Group, ...]
+    ends: tuple[Group, ...]
     criteria: tuple[Criterion, ...]
     size: str
     denied: str
@@ -159,7 +160,7 @@ def outline(
         sections=tuple((anchor, words(f"h.{anchor}")) for anchor in names),
         code=document["verdict"],
         verdict=_verdict(index),
-        means=tuple(_means(index, names.index("findings") + 1)),
+        means=tuple(_means(index, names)),
         numbers=tuple(_numbers(index)),
         assumptions=tuple(assumed.assumed(index)),
         files=assumed.files(index),
@@ -176,6 +177,7 @@ def outline(
         cleanings=cleaned.cleanings(index, entries),
         makings=cleaned.makings(index),
         questions=review(index),
+        ends=unknown_ends(index),
         criteria=criteria(index),
         size=words(
             "i.intro",
@@ -211,13 +213,16 @@ def _verdict(index: Index) -> str:
     return verdict if followed else "nothing"
 
 
-def _means(index: Index, section: int) -> Iterator[str]:
+def _means(index: Index, sections: list[str]) -> Iterator[str]:
     words = index.words
     open_elements = words.count(len(index.document["open"]), "element")
     yield words(f"verdict.{_verdict(index)}.means", open=open_elements)
     accepted = sum(bool(finding.get("accepted")) for finding in index.findings)
     if accepted:
-        yield words("verdict.accepted", ways=words.count(accepted, "way"), section=section)
+        yield words("verdict.accepted", ways=words.count(accepted, "way"), section=sections.index("findings") + 1)
+    ends = index.document["unknown_ends"]
+    if ends:
+        yield words("verdict.ends", ends=words.count(len(ends), "element"), section=sections.index("questions") + 1)
     yield words("not.legal")
 
 

@@ -23,7 +23,7 @@ KEPT = {
     "holds", "id", "kind", "law_as_of", "leaves", "leaves_pseudonymised", "legal_basis", "method", "missing", "paths",
     "pattern", "provision", "pseudonymised", "recipient", "retention", "role", "roles", "rosprivacy", "severity",
     "sha256", "special_basis", "state", "taken_as", "taken_by_kind", "to", "transfer", "unlabelled_channel",
-    "unlabelled_node",
+    "unknown", "unlabelled_node",
     "verdict", "view", "without_limit",
 }  # fmt: skip
 MAPS = ("retention", "taken_by_kind")  # of kinds of data and kinds of elements, values as they are

@@ -1,4 +1,4 @@
-"""Open elements, in the order of review (rule S11): nodes on the frontier, channels, nodes behind.
+"""Open elements, in the order of review, and ends of which nothing is known (rule S11).
 
 In: an ``Index``. Out: groups of rows; elements that differ only in the robot are one.
 """
@@ -45,6 +45,14 @@ def review(index: Index) -> tuple[Group, ...]:
     return tuple(Group(heading, tuple(_questions(some, index))) for heading, some in rows.items() if some)
 
 
+def unknown_ends(index: Index) -> tuple[Group, ...]:
+    """Return the ends of data's way of which nothing is known, by what is not; the groups that are not empty."""
+    rows: dict[str, list[Mapping[str, Any]]] = {"q.reader": [], "q.flow": []}
+    for row in index.document["unknown_ends"]:
+        rows[f"q.{row['unknown']}"].append({**row, "distance": None})
+    return tuple(Group(heading, tuple(_questions(some, index))) for heading, some in rows.items() if some)
+
+
 def _questions(rows: list[Mapping[str, Any]], index: Index) -> list[Question]:
     words = index.words
 
@@ -58,7 +66,7 @@ def _questions(rows: list[Mapping[str, Any]], index: Index) -> list[Question]:
             name=words.row(index.names([row["element"] for row in group])),
             kind=words.kind(group[0]["element"]),
             data=index.all_data(group[0]["categories"]),
-            distance=words.count(group[0]["distance"], "step"),
+            distance=words.count(group[0]["distance"], "step") if group[0]["distance"] is not None else "–",
             missing=words.row(words(f"missing.{what}") for what in group[0].get("missing", ())),
         )
         for group in grouped(rows, same)

@@ -107,6 +107,7 @@ WORDS = {
         "No way to a recipient was found, but data can get to {open} that no label speaks of. Until these are reviewed, "
         "nothing can be concluded: one of them may let data out."
     ),
+    "verdict.ends": "Unknown ends ({ends}): it is not known who reads or what flows in; see section {section}.",
     "verdict.no-leak-found.means": (
         "Under the labels given, no way leads from a source to a recipient, and everything on the way was reviewed. "
         "This holds only as far as the labels and policies are true. It says nothing about what lies outside them."
@@ -456,6 +457,8 @@ WORDS = {
     "q.first": "Review next: nodes that data reaches before any other open node",
     "q.channels": "Channels",
     "q.behind": "Nodes that lie behind those",
+    "q.reader": "Channels with data that nobody known reads: a reader may stand in a policy that was not given",
+    "q.flow": "Elements outside ROS that no flow reaches: what flows into them may have been forgotten",
     "c.data": "Kinds of data",
     "c.distance": "From a source",
     "missing.country": "country",

@@ -70,7 +70,16 @@ def decide(
         str | None, typer.Option(metavar="NAME", help="Of a pattern: name or glob.", show_default=False)
     ] = None,
     robot: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Of a pattern: name or glob.", show_default=False)
+        str | None,
+        typer.Option(metavar="NAME", help="Of a pattern: robot of the leak, name or glob.", show_default=False),
+    ] = None,
+    from_robot: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="Of a pattern: robot of the source; what goes from one robot to another needs it beside --robot.",
+            show_default=False,
+        ),
     ] = None,
 ) -> None:
     """Decide about findings, or about a pattern of them, in a file that analyze and mitigate take into account."""
@@ -80,12 +89,12 @@ def decide(
     from rosprivacy.ontology.vocabulary import load
     from rosprivacy.report.atomic import write_texts
 
-    pattern = {"category": category, "source": source, "leak": leak, "robot": robot}
+    pattern = {"category": category, "source": source, "leak": leak, "robot": robot, "from_robot": from_robot}
     targets = [{key: value for key, value in pattern.items() if value}] if not ids else [{"id": one} for one in ids]
     if ids and any(pattern.values()):
         raise typer.BadParameter("name findings by their ids, or a pattern of them, not both")
     if not ids and not any(pattern.values()):
-        raise typer.BadParameter("name a finding's id, or a pattern: --category, --source, --leak, --robot")
+        raise typer.BadParameter("name a finding's id, or a pattern: --category, --source, --leak")
     if expires is not None and not is_date(expires):
         raise typer.BadParameter(f"{expires!r} is no date: write YYYY-MM-DD", param_hint="--expires")
     found = _findings(report) if report else None

@@ -140,7 +140,7 @@ def result(question: Question, found: Found, told: Shown, settings: Settings, vo
     }
     bounds = (
         f"analysed in parts, {found.open:,} open elements in the whole fleet: ways and distances are the shortest "
-        "among the robots that are shown, and open elements are listed of these"
+        "among the robots that are shown, and open elements and unknown ends are listed of these"
     )
     said = (*found.told.diagnostics, Diagnostic(Place("--engine spark", 0), Severity.NOTICE, bounds))
     policies = {policy.file: policy for member in told.members.values() for policy in member.policies}
