@@ -68,7 +68,7 @@ ACTS = (
     ("CALL db.labels() YIELD label CALL dbms.killConnection(label) YIELD message RETURN message", "calls dbms.kill"),
     (HIDDEN.format("COLLECT { CALL db.clearQueryCaches() YIELD value RETURN value }"), "calls a procedure inside"),
     (
-        HIDDEN.format("COLLECT { CALL (*) { CALL db.stats.stop('QUERIES') YIELD data RETURN data AS y } RETURN y }"),
+        HIDDEN.format("COLLECT { CALL (*) { CALL db.clearQueryCaches() YIELD value RETURN value AS y } RETURN y }"),
         "calls a",
     ),
     ("TERMINATE TRANSACTION 'neo4j-transaction-1'", "has the step TerminateTransactions"),
