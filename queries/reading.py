@@ -80,7 +80,7 @@ def refuse_unless_reading(transaction: Transaction, text: str, values: Mapping[s
             raise QueryError(f"the query {what}; {INSTEAD}")
     added = [record[0] for record in transaction.run(_ADDED)]
     for name in added:
-        if any(name.lower() in _details(step).lower() for step in steps):
+        if any(name.lower() in _details(step).lower().replace("`", "") for step in steps):
             what = f"calls {shown(name)}, which was added to Neo4j and is not known to only read"
             raise QueryError(f"the query {what}; {INSTEAD}")
 

@@ -34,7 +34,7 @@ KILL_LIMIT = 10.0
 HEAP = "ROSPRIVACY_NEO4J_HEAP"
 ANSWERS = "256m"  # memory for what goes over the wire: a value that needs more is refused within seconds
 SHARE = 0.6  # of the heap, for one transaction; the server gives 0.7 to all
-OWNER_ONLY = 0o077  # umask
+UMASK = 0o077  # what the server writes is its owner's only
 FOLDERS = ("conf", "logs", "import")
 
 # Every setting that the server does not know ends its start, so this list fits VERSION.
@@ -219,13 +219,7 @@ def launch(folder: Path, progress: Progress = bar) -> Server:
     ]
     with log_file(folder).open("ab") as log:
         child = subprocess.Popen(  # noqa: S603 - our own command
-            command,
-            stdin=subprocess.DEVNULL,
-            stdout=log,
-            stderr=log,
-            cwd=folder,
-            start_new_session=True,
-            umask=OWNER_ONLY,
+            command, stdin=subprocess.DEVNULL, stdout=log, stderr=log, cwd=folder, start_new_session=True, umask=UMASK
         )
     server = replace(server, pid=child.pid)
     _remember(folder, server)
@@ -287,7 +281,7 @@ def _set_password(folder: Path, java: str, classpath: str) -> None:
     command = [java, classpath, "org.neo4j.cli.AdminTool", "dbms", "set-initial-password", f"@{password}"]
     places = {"NEO4J_HOME": str(folder), "NEO4J_CONF": str(folder / "conf")}
     done = subprocess.run(  # noqa: S603 - our own command
-        command, env=os.environ | places, capture_output=True, text=True, check=False, umask=OWNER_ONLY
+        command, env=os.environ | places, capture_output=True, text=True, check=False, umask=UMASK
     )
     if done.returncode or not known.exists():
         what = shown((done.stderr or done.stdout).strip().partition("\n")[0])
