@@ -47,6 +47,7 @@ _PROCEDURES = """
 """
 STEPS, PROCEDURES = frozenset(_STEPS.split()), frozenset(_PROCEDURES.split())
 CALL = "ProcedureCall"
+SCHEMA = ("CreateIndex", "DropIndex", "CreateConstraint", "DropConstraint", "DoNothingIf")
 LOAD = "LoadCSV"
 _STEP = re.compile(r"(?:Partitioned)?(?:Directed|Undirected)?([^(@]+).*", re.DOTALL)
 # A subquery inside an expression is no step of its own: the server writes it out in the details of the step, in its
@@ -70,11 +71,11 @@ def refuse_unless_reading(transaction: Transaction, text: str, values: Mapping[s
         If the query writes, reads files or addresses, calls what is not known to only read, or acts on the server.
     """
     summary = transaction.run(f"EXPLAIN {text}", dict(values)).consume()
-    if summary.query_type in ("w", "rw"):
-        raise QueryError("the query would write; queries only read: write with cypher-shell or the driver")
     if not summary.plan:
         raise QueryError(f"the server gives no plan of the query, so what it does is not known; {INSTEAD}")
     steps = list(_steps(summary.plan))
+    if summary.query_type in ("w", "rw") or steps[0]["operatorType"].startswith(SCHEMA):
+        raise QueryError("the query would write; queries only read: write with cypher-shell or the driver")
     for step in steps:
         for what in _faults(step):
             raise QueryError(f"the query {what}; {INSTEAD}")

@@ -81,7 +81,9 @@ ACTS = (
     ("PROFILE CALL db.clearQueryCaches()", "the server refuses the query"),
     ("CREATE (n:ShouldNotBe)", "would write"),
     ("MATCH (n) CALL (n) { CREATE (:ShouldNotBe) } IN TRANSACTIONS", "would write"),
-    ("CREATE INDEX i FOR (n:X) ON (n.y)", "has the step CreateIndex"),
+    ("CREATE INDEX i FOR (n:X) ON (n.y)", "would write"),
+    ("DROP INDEX i IF EXISTS", "would write"),
+    ("CREATE CONSTRAINT c IF NOT EXISTS FOR (n:X) REQUIRE n.y IS UNIQUE", "would write"),
 )
 
 
