@@ -10,7 +10,7 @@ from collections import Counter, defaultdict
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.crossing import BOTH, DISMISSED, HIDDEN
+from rosprivacy.analysis.crossing import forms_of
 from rosprivacy.analysis.groups import Group
 from rosprivacy.analysis.patterns import Share, pattern_of
 
@@ -20,12 +20,13 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Element
     from rosprivacy.analysis.patterns import Likeness
 
+Form = tuple[bool, bool, bool]  # dismissed, pseudonymised, beside
 CORE = ""  # in place of the name of a unit
 
 
 @dataclass(frozen=True, slots=True)
 class Within:
-    """A pair of one unit; ``how`` is a code of ``crossing``."""
+    """A pair of one unit; ``how`` is a code of ``crossing``, of one finding or of two that stand beside each other."""
 
     kind: str
     category: str
@@ -77,6 +78,7 @@ class _Tally:
     best: tuple[bool, bool, tuple[object, ...], tuple[object, ...]]
     shown: tuple[str, str, Element, Element]
     across: bool
+    beside: bool
     count: int = 0
     dismissed: int = 0
     hidden: int = 0
@@ -108,8 +110,9 @@ class Crossed:
             a, b = pair.source.robot, pair.leak.robot
             if count := likeness.between(a, b):
                 across = a != b and likeness.is_robot(a) and likeness.is_robot(b)
-                key = self._add(pair.kind, pair.category, pair.source, pair.leak, pair.how, count, across=across)
-                self._share(key, (a,), (b,), pair.how, across=across)
+                for form in forms_of(pair.how):
+                    key = self._add(pair.kind, pair.category, pair.source, pair.leak, form, count, across=across)
+                    self._share(key, (a,), (b,), form, across=across)
 
     def between(self, sources: Iterable[Source], ends: Iterable[End]) -> None:
         """Take all sources and ends, and count the pairs of different units, and those of the core."""
@@ -126,18 +129,26 @@ class Crossed:
         for (kind, category, _, ways), leaks in by_way.items():
             for number, how in enumerate(ways):
                 for some in by_class.get((category, number), {}).values() if how else ():
-                    self._between(kind, category, how, some, leaks)
+                    for form in forms_of(how):
+                        self._between(kind, category, form, some, leaks)
 
     def groups(self) -> tuple[Group, ...]:
         """Return the patterns without their ways."""
         return tuple(
             Group(
-                *tally.shown, key, tally.count, tuple(sorted(tally.robots)), tally.across, tally.dismissed, tally.hidden
+                *tally.shown,
+                key,
+                tally.count,
+                tuple(sorted(tally.robots)),
+                tally.across,
+                tally.dismissed,
+                tally.hidden,
+                tally.beside,
             )
             for key, tally in self._tallies.items()
         )
 
-    def _between(self, kind: str, category: str, how: int, sources: _Many, leaks: _Many) -> None:
+    def _between(self, kind: str, category: str, form: Form, sources: _Many, leaks: _Many) -> None:
         both = sum(weight * leaks.weights[unit] for unit, weight in sources.weights.items() if unit != CORE)
         count = sources.weights.total() * leaks.weights.total() - both
         if not count:
@@ -147,19 +158,19 @@ class Crossed:
         source, unit = begin[0]
         leak = next(element for element, other in end if other != unit or unit == CORE)
         across = self._likeness.is_robot(source.robot) and self._likeness.is_robot(leak.robot)
-        key = self._add(kind, category, source, leak, how, count, across=across)
+        key = self._add(kind, category, source, leak, form, count, across=across)
         where = begin if self._likeness.is_robot(source.robot) else end
         self._tallies[key].robots |= self._members(element.robot for element, _ in where)
-        self._share(key, {e.robot for e, _ in begin}, {e.robot for e, _ in end}, how, across=across)
+        self._share(key, {e.robot for e, _ in begin}, {e.robot for e, _ in end}, form, across=across)
 
     def _add(
-        self, kind: str, category: str, source: Element, leak: Element, how: int, count: int, *, across: bool
+        self, kind: str, category: str, source: Element, leak: Element, form: Form, count: int, *, across: bool
     ) -> str:
         likeness = self._likeness
-        key = pattern_of(kind, category, source, leak, likeness)
-        dismissed, hidden = how in (DISMISSED, BOTH), how in (HIDDEN, BOTH)
+        dismissed, hidden, beside = form
+        key = pattern_of(kind, category, source, leak, likeness, beside=beside)
         order = (dismissed, hidden, source.sort_key(), leak.sort_key())
-        tally = self._tallies.setdefault(key, _Tally(order, (kind, category, source, leak), across))
+        tally = self._tallies.setdefault(key, _Tally(order, (kind, category, source, leak), across, beside))
         if order < tally.best:
             tally.best, tally.shown = order, (kind, category, source, leak)
         tally.count += count
@@ -172,8 +183,8 @@ class Crossed:
         likeness = self._likeness
         return {name for r in robots for name in likeness.members.get(likeness.second.get(r, r), ())}
 
-    def _share(self, key: str, begin: Collection[str], end: Collection[str], how: int, *, across: bool) -> None:
-        flags = how in (DISMISSED, BOTH), how in (HIDDEN, BOTH)
+    def _share(self, key: str, begin: Collection[str], end: Collection[str], form: Form, *, across: bool) -> None:
+        flags = form[:2]
         for robot in begin:
             self.shares[robot].add(Share(key, False, *flags))
         for robot in end:

@@ -34,7 +34,7 @@ Met = frozenset[tuple[int, int]]  # number in the border, place of the form: whe
 Class = tuple[Met, Met]  # on ways without another leak of the category, on all ways
 STOPS = (True, False)
 NOTHING = np.empty(0, np.int64)
-NOT_REACHED, FREE, HIDDEN, DISMISSED, BOTH = range(5)  # how data gets somewhere, best first
+NOT_REACHED, FREE, HIDDEN, DISMISSED, BOTH = 0, 1, 2, 4, 8  # how data gets somewhere; flags, best first
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,7 +120,7 @@ class Crossing:
                 klass = of_class[source]
                 padded = np.column_stack([codes, np.zeros(len(codes), np.uint8)])
                 over = np.take_along_axis(padded, np.where(klass < 0, codes.shape[1], klass), axis=1)
-                best = _better(own, over)
+                best = own | over
                 best[source < 0] = NOT_REACHED
                 for end, number in zip(*np.nonzero(best), strict=True):
                     yield kind, int(source[end, number]), int(ends[end]), int(best[end, number])
@@ -187,15 +187,25 @@ def how(
 
 
 def _codes_of(free: tuple[Flags, Flags], through: tuple[Flags, Flags]) -> Codes:
-    """How data gets there: not through another leak before through one, as it is before pseudonymised."""
+    """How data gets there, without what changes nothing about it."""
     codes = np.zeros(free[0].shape, np.uint8)
-    for flags, code in ((through[1], BOTH), (through[0], DISMISSED), (free[1], HIDDEN), (free[0], FREE)):
+    beside = free[1] & through[0]
+    ranked = ((through[1], BOTH), (through[0], DISMISSED), (free[1], HIDDEN), (beside, HIDDEN | DISMISSED))
+    for flags, code in (*ranked, (free[0], FREE)):
         codes[flags] = code
     return codes
 
 
-def _better(one: Codes, other: Codes) -> Codes:
-    """The lower code, where both get there."""
-    highest = np.uint8(255)
-    found = np.minimum(np.where(one, one, highest), np.where(other, other, highest))
-    return np.where(found == highest, np.uint8(NOT_REACHED), found)
+def forms_of(how: int) -> tuple[tuple[bool, bool, bool], ...]:
+    """Return (dismissed, pseudonymised, beside) of the findings that a code means (rule S10).
+
+    Not through another leak comes before through one, as it is before pseudonymised.
+
+    >>> forms_of(HIDDEN | DISMISSED)
+    ((False, True, False), (True, False, True))
+    """
+    if how & FREE:
+        return ((False, False, False),)
+    if how & HIDDEN:
+        return ((False, True, False), *([(True, False, True)] if how & DISMISSED else []))
+    return ((True, not how & DISMISSED, False),) if how else ()

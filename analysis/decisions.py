@@ -51,6 +51,8 @@ class Case:
         Of the finding; empty where it stands for more than itself.
     pattern
         On a fleet, the id of the pattern that it belongs to.
+    beside
+        As of ``Finding``.
     robots
         On a fleet, the robots that data begins on and gets to; an end that is on no robot is empty.
     """
@@ -62,6 +64,7 @@ class Case:
     leak: Element
     pseudonymised: bool
     pattern: str = ""
+    beside: bool = False
     robots: tuple[str, str] = ("", "")
 
     @property
@@ -74,7 +77,7 @@ class Case:
     def of(cls, finding: Finding) -> Case:
         """Return the case that a finding is."""
         ends = finding.source, finding.leak
-        return cls(finding.id, finding.kind, finding.category, *ends, finding.pseudonymised)
+        return cls(finding.id, finding.kind, finding.category, *ends, finding.pseudonymised, beside=finding.beside)
 
 
 @dataclass(frozen=True, slots=True)

@@ -36,6 +36,7 @@ from rosprivacy.analysis.unknown_ends import unknown_ends
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Set as AbstractSet
     from typing import Any
 
     from rosprivacy.analysis.hierarchy import Hierarchy
@@ -43,7 +44,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.outside import Concern
 
 MAX_PATHS = 100
-Chosen = tuple[str, int, int]  # kind, leak, number of the category
+Chosen = tuple[str, int, int, bool]  # kind, leak, number of the category, whether beside a pseudonymised one
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,15 +63,15 @@ class Options:
         Whether a person has accepted that a category of a source reaches a leak, in one form; such a leak hides
         nothing that lies behind it (rule S10).
     choose
-        Of a spread, the kinds of findings and the bits of the categories: source -> (kind, leak, number of the
-        category) of the findings to make; None for all.
+        Of a spread, the kinds of findings and the bits of the categories: source -> ``Chosen`` of the findings to
+        make; None for all.
     """
 
     categories: Collection[str] | None = None
     paths: str = WITNESS
     max_paths: int = MAX_PATHS
     accepts: Callable[[Case], bool] | None = None
-    choose: Callable[[Spread, Sequence[Concern], int], Mapping[int, Collection[Chosen]]] | None = None
+    choose: Callable[[Spread, Sequence[Concern], int], Mapping[int, AbstractSet[Chosen]]] | None = None
 
 
 def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Options | None = None) -> Analysis:
@@ -132,7 +133,7 @@ def _findings(net: Net, mask: int, kinds: Sequence[Concern], options: Options) -
     found = net.spread
     ends = [(c, {v: b & mask for v, b in c.bits.items() if b & mask & found.present(v)}) for c in kinds]
     reached = [(concern, leaks) for concern, leaks in ends if leaks]
-    results: list[tuple[int, int, int, str, Finding]] = []
+    results: list[tuple[int, int, int, str, bool, Finding]] = []
     memory: dict[Any, Any] = {}
     chosen = options.choose(found, kinds, mask) if options.choose and reached else None
     sources = [v for v in found.facts if found.begins(v)] if chosen is None else chosen
@@ -141,13 +142,13 @@ def _findings(net: Net, mask: int, kinds: Sequence[Concern], options: Options) -
         whole = search(net, [source], found.all_bits, {})
         for concern, leaks in reached:
             for leak, category, finding in _findings_of(net, source, whole, concern, leaks, options, memory, only):
-                results.append((category, source, leak, finding.kind, finding))
-    yield from (finding for *_, finding in sorted(results, key=lambda row: row[:4]))
+                results.append((category, source, leak, finding.kind, finding.beside, finding))
+    yield from (finding for *_, finding in sorted(results, key=lambda row: row[:5]))
 
 
 def _findings_of(
     net: Net, source: int, whole: Search, concern: Concern, leaks: dict[int, int], options: Options,
-    memory: dict[Any, Any], only: Collection[Chosen] | None,
+    memory: dict[Any, Any], only: AbstractSet[Chosen] | None,
 ) -> Iterator[tuple[int, int, Finding]]:  # fmt: skip
     """(leak, number of the category, finding) of one source and kind.
 
@@ -160,24 +161,26 @@ def _findings_of(
     free: dict[int, Search] = {}  # number of the category -> search that stops at other leaks of it
     for leak, bits in reached.items():
         for i in sorted({bit % k for bit in bits_of(bits)}):
-            if only is not None and (concern.kind, leak, i) not in only:
+            if only is not None and not {(concern.kind, leak, i, False), (concern.kind, leak, i, True)} & only:
                 continue
             if concern.kind != DISCLOSURE:
                 free[i] = whole
             elif i not in free:
                 _search_free(net, source, i, accepted, free)
-            chosen, bit = _best(free[i], whole, leak, i, k)
-            anyway = chosen is whole
-            dismissed = anyway and concern.kind == DISCLOSURE
-            finding = _finding(net, chosen, source, leak, bit, concern, accepted, dismissed=dismissed)
-            if len(finding.witness) == 1:
+            for beside, (chosen, bit) in enumerate(_shown_forms(free[i], whole, leak, i, k)):
+                if only is not None and (concern.kind, leak, i, bool(beside)) not in only:
+                    continue
+                anyway = chosen is whole
+                dismissed = anyway and concern.kind == DISCLOSURE
+                finding = _finding(net, chosen, source, leak, bit, concern, accepted, dismissed=dismissed)
+                finding = _beside(finding, options) if beside else finding
+                if len(finding.witness) > 1:
+                    if (i, anyway) not in between:
+                        stop = {} if anyway else _leaks_of(found, i, accepted)
+                        between[i, anyway] = Between(net, chosen, source, i, _relevant(found, i), stop)
+                    more = further(between[i, anyway], leak, memory, options.paths, options.max_paths)
+                    finding = replace(finding, disjoint_paths=more.disjoint, paths=more.paths, bounded=more.bounded)
                 yield leak, i, finding
-                continue
-            if (i, anyway) not in between:
-                stop = {} if anyway else _leaks_of(found, i, accepted)
-                between[i, anyway] = Between(net, chosen, source, i, _relevant(found, i), stop)
-            more = further(between[i, anyway], leak, memory, options.paths, options.max_paths)
-            yield leak, i, replace(finding, disjoint_paths=more.disjoint, paths=more.paths, bounded=more.bounded)
 
 
 def _accepted(found: Spread, source: int, kind: str, reached: Mapping[int, int], options: Options) -> dict[int, int]:
@@ -216,13 +219,25 @@ def _leaks_of(found: Spread, i: int, accepted: Mapping[int, int]) -> dict[int, i
     return {v: bits & both & ~accepted.get(v, 0) for v, bits in found.leaks.items() if bits & both}
 
 
-def _best(free: Search, whole: Search, leak: int, i: int, k: int) -> tuple[Search, int]:
-    """The way to show: not through another leak before through one, as it is before pseudonymised."""
-    for chosen in (free, whole):
-        for bit in (i, i + k):
-            if present(chosen, leak) >> bit & 1:
-                return chosen, bit
-    raise AssertionError("a reached leak has a way")
+def _shown_forms(free: Search, whole: Search, leak: int, i: int, k: int) -> list[tuple[Search, int]]:
+    """The ways to show: not through another leak before through one, as it is before pseudonymised (rule S10).
+
+    Where only pseudonymised data gets there past no other leak, data as it is that gets there through one is shown too.
+    """
+    ways = [(way, bit) for way in (free, whole) for bit in (i, i + k) if present(way, leak) >> bit & 1]
+    first, *others = ways
+    hidden = first[0] is free and first[0] is not whole and first[1] == i + k
+    return [first, *(way for way in others if hidden and way[1] == i)]
+
+
+def _beside(finding: Finding, options: Options) -> Finding:
+    """Return a finding as one that stands beside a pseudonymised one; it is decided about by itself.
+
+    What is accepted here hides nothing in any case: all that lies behind it lies behind the other leak, too.
+    """
+    own = finding_id(finding.category, finding.source, finding.leak, finding.kind, beside=True)
+    told = replace(finding, id=own, beside=True)
+    return replace(told, accepted=bool(options.accepts and options.accepts(Case.of(told))))
 
 
 def _finding(
@@ -262,13 +277,16 @@ def _other_leaks(found: Spread, path: list[tuple[int, int, int]], i: int, accept
     return [v for v, bits in inside if any(b % k == i and leaks[v] >> b & 1 for b in bits)]
 
 
-def finding_id(category: str, source: Element, leak: Element, kind: str = DISCLOSURE) -> str:
+def finding_id(category: str, source: Element, leak: Element, kind: str = DISCLOSURE, *, beside: bool = False) -> str:
     """Return the stable id of a finding, made from category, source and leak, and the kind if several can be (S10).
+
+    Data as it is ``beside`` a pseudonymised finding has an id of its own, made with the word 'plain'.
 
     >>> finding_id("Video", Element("node", "/camera"), Element("node", "/uplink"))
     '72abf86b6fa9e2ae'
     """
-    parts = [*([] if kind == DISCLOSURE else [kind]), category, *source.identity, *leak.identity]
+    more = [*(["plain"] if beside else []), *([] if kind == DISCLOSURE else [kind])]
+    parts = [*more, category, *source.identity, *leak.identity]
     return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:16]
 
 

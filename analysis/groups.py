@@ -7,7 +7,7 @@ report, patterns and robots that differ. The same as ``patterns.py`` makes of al
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     Indices = NDArray[np.int64]
     Flags = NDArray[np.bool_]
 
-Wanted = dict[int, set[tuple[str, int, int]]]  # source -> kind, leak, number of the category
+Wanted = dict[int, set[tuple[str, int, int, bool]]]  # source -> as ``Chosen`` of the findings
 FIXED = -1
 
 
@@ -47,6 +47,7 @@ class Group:
     across: bool
     dismissed: int
     pseudonymised: int
+    beside: bool = False
 
 
 class _Table:
@@ -89,11 +90,12 @@ class Groups:
         table = _Table(found.graph.elements, self._likeness)
         wanted: Wanted = defaultdict(set)
         for part in pairs(found, kinds, mask):
-            for source, leak in self._take(found, part, table):
-                wanted[source].add((part.kind, leak, part.category))
+            for some, beside in ((part, False), (_plain_beside(part), True)):
+                for source, leak in self._take(found, some, table, beside=beside):
+                    wanted[source].add((part.kind, leak, part.category, beside))
         return dict(wanted)
 
-    def _take(self, found: Spread, part: Pairs, table: _Table) -> Iterator[tuple[int, int]]:
+    def _take(self, found: Spread, part: Pairs, table: _Table, *, beside: bool) -> Iterator[tuple[int, int]]:
         """Group the pairs of one kind and category; return one of each."""
         counts = table.counts(table.robot[part.sources], table.robot[part.leaks])
         chosen = np.flatnonzero(counts)
@@ -113,13 +115,13 @@ class Groups:
             rows = order[start:end]
             source, leak = int(sources[rows[0]]), int(leaks[rows[0]])
             shown = elements[source], elements[leak]
-            ids[int(keys[rows[0]])] = key = pattern_of(part.kind, category, *shown, self._likeness)
+            ids[int(keys[rows[0]])] = key = pattern_of(part.kind, category, *shown, self._likeness, beside=beside)
             where = np.unique(np.where(table.is_robot[a[rows]], a[rows], table.first[b[rows]]))
             robots = (self._likeness.members.get(table.names[robot], ()) for robot in where.tolist())
             group = Group(
                 part.kind, category, *shown, key, int(counts[rows].sum()),
                 tuple(sorted({robot for some in robots for robot in some})), bool(across[rows[0]]),
-                int(counts[rows][dismissed[rows]].sum()), int(counts[rows][hidden[rows]].sum()),
+                int(counts[rows][dismissed[rows]].sum()), int(counts[rows][hidden[rows]].sum()), beside,
             )  # fmt: skip
             self._groups.append(group)
             yield source, leak
@@ -135,14 +137,23 @@ class Groups:
         return FleetView(self._likeness, patterns_of(self._groups, analysis), deviants)
 
 
+def _plain_beside(part: Pairs) -> Pairs:
+    """The findings of data as it is that stand beside pseudonymised ones: pairs of their own, dismissed (rule S10)."""
+    at = np.flatnonzero(part.beside)
+    no = np.zeros(len(at), bool)
+    return replace(
+        part, sources=part.sources[at], leaks=part.leaks[at], pseudonymised=no, dismissed=~no, beside=no
+    )  # fmt: skip
+
+
 def patterns_of(groups: Iterable[Group], analysis: Analysis) -> tuple[Pattern, ...]:
     """Return the patterns, each with the finding that was made of what it shows."""
-    found = {(f.kind, f.category, f.source, f.leak): f for f in analysis.findings}
+    found = {(f.kind, f.category, f.source, f.leak, f.beside): f for f in analysis.findings}
     order = {finding.id: number for number, finding in enumerate(analysis.findings)}
     made = [
         Pattern(
             group.id,
-            found[group.kind, group.category, group.source, group.leak],
+            found[group.kind, group.category, group.source, group.leak, group.beside],
             group.count,
             group.robots,
             group.across,

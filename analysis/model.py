@@ -113,6 +113,8 @@ class Grant:
         Of the channel as written: ``topic``, ``service`` or ``action``.
     name
         Fully qualified.
+    absolute
+        Whether the policy writes the name so: then it stays as it is under a namespace that is pushed (rule S1).
     """
 
     allow: bool
@@ -122,6 +124,7 @@ class Grant:
     enclave: str
     node: str
     place: Place
+    absolute: bool = False
 
 
 class Severity(StrEnum):
@@ -134,11 +137,18 @@ class Severity(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """Something that the reader of a report has to know about an input."""
+    """Something that the reader of a report has to know about an input.
+
+    Attributes
+    ----------
+    code
+        What it is, for programs; empty where nobody has to tell it from others.
+    """
 
     place: Place
     severity: Severity
     message: str
+    code: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -356,6 +366,8 @@ class Statement:
         Of a source: name expressions of the channels that carry it; empty means all.
     shipped
         Whether it comes from the standard channels' file (rule S13).
+    glob
+        Whether a glob names what it is about.
     """
 
     role: str
@@ -367,6 +379,7 @@ class Statement:
     to: str = ""
     through: tuple[str, ...] = ()
     shipped: bool = False
+    glob: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -413,15 +426,16 @@ class Finding:
     Attributes
     ----------
     id
-        16 hexadecimal digits made from category, source and leak, and of other kinds than disclosure from the kind;
-        stable as long as these are.
+        16 hexadecimal digits made from category, source and leak, of other kinds than disclosure from the kind, and
+        from ``beside`` where it holds; stable as long as these are.
     kind
         ``DISCLOSURE``: it reaches a leak. ``STORAGE_LIMITATION``: a storage that keeps it without a stated end or
         longer than allowed. ``THIRD_COUNTRY``: an element outside the EEA without a stated basis.
     leak
         The leak, the storage or the element abroad.
     pseudonymised
-        Whether the data arrives in pseudonymised form only.
+        Whether the data arrives in pseudonymised form only; data that arrives as it is through another leak only is
+        then a finding of its own, ``beside`` this one.
     witness
         One shortest path, source first.
     steps
@@ -434,6 +448,8 @@ class Finding:
         Whether every path goes through another leak of the category, which has a finding of its own, not accepted.
     accepted
         Whether a person has decided that this may be; it then hides nothing behind it.
+    beside
+        Whether a finding of the same ends stands beside it that is pseudonymised; this one is then dismissed.
     paths
         Further paths if asked for, each source first.
     bounded
@@ -457,6 +473,7 @@ class Finding:
     bounded: bool = False
     reason: str = ""
     accepted: bool = False
+    beside: bool = False
 
 
 @dataclass(frozen=True, slots=True)

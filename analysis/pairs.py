@@ -44,6 +44,8 @@ class Pairs:
         Vertices, shape (n,), sorted by source and leak.
     pseudonymised, dismissed
         Shape (n,).
+    beside
+        Whether data as it is arrives there, too, through another leak only: a finding of its own, dismissed.
     """
 
     kind: str
@@ -52,6 +54,7 @@ class Pairs:
     leaks: Indices
     pseudonymised: Flags
     dismissed: Flags
+    beside: Flags
 
 
 def pairs(found: Spread, kinds: Sequence[Concern], mask: int) -> Iterator[Pairs]:
@@ -223,7 +226,7 @@ def _pairs_of(
     """The pairs of each kind, of one category."""
     steps = {(before, after) for pairs in found.derives.values() for before, after in pairs}
     category = Category(found, network, number, forms(number, len(found.categories), steps))
-    rows: list[list[tuple[Indices, Indices, Flags, Flags]]] = [[] for _ in kinds]
+    rows: list[list[tuple[Indices, Indices, Flags, Flags, Flags]]] = [[] for _ in kinds]
     disclosed = next(number for number, concern in enumerate(kinds) if concern.kind == DISCLOSURE)
     everywhere = np.unique(np.concatenate(leaks))
     for start in range(0, len(category.sources), category.at_once()):
@@ -274,14 +277,15 @@ def _rows(
     leaks: Indices,
     free: tuple[Flags, Flags, Indices],
     through: tuple[Flags, Flags, Indices],
-) -> tuple[Indices, Indices, Flags, Flags]:
+) -> tuple[Indices, Indices, Flags, Flags, Flags]:
     """The pairs, as a finding would be shown: not through another leak before through one, as it is before hidden."""
     clear, hidden = (_of(free, plane, leaks) for plane in (0, 1))
-    anyway = _of(through, 0, leaks) | _of(through, 1, leaks)
-    source, leak = np.nonzero(anyway.T)
+    plain = _of(through, 0, leaks)
+    source, leak = np.nonzero((plain | _of(through, 1, leaks)).T)
     dismissed = ~(clear | hidden)
-    shown_clear = clear | (dismissed & _of(through, 0, leaks))
-    return sources[source], leaks[leak], ~shown_clear[leak, source], dismissed[leak, source]
+    shown_clear = clear | (dismissed & plain)
+    at, beside = (leak, source), hidden & ~clear & plain
+    return sources[source], leaks[leak], ~shown_clear[at], dismissed[at], beside[at]
 
 
 def _of(reached: tuple[Flags, Flags, Indices], plane: int, leaks: Indices) -> Flags:

@@ -86,8 +86,8 @@ class Pattern:
     Attributes
     ----------
     id
-        16 hexadecimal digits made from kind, category, source and leak without their robots, and whether it goes
-        across robots.
+        16 hexadecimal digits made from kind, category, source and leak without their robots, whether it goes across
+        robots, and whether it stands beside pseudonymised findings.
     finding
         The one that is shown: if there is such a one not dismissed, accepted or pseudonymised; of the first robot.
     count
@@ -185,14 +185,16 @@ class FleetView:
 
 def pattern_id(finding: Finding, likeness: Likeness) -> str:
     """Return the id of the pattern of a finding; without robots it is that of the finding."""
-    return pattern_of(finding.kind, finding.category, finding.source, finding.leak, likeness)
+    return pattern_of(finding.kind, finding.category, finding.source, finding.leak, likeness, beside=finding.beside)
 
 
-def pattern_of(kind: str, category: str, source: Element, leak: Element, likeness: Likeness) -> str:
+def pattern_of(
+    kind: str, category: str, source: Element, leak: Element, likeness: Likeness, *, beside: bool = False
+) -> str:
     """Return the id of the pattern of what would be a finding."""
     across = source.robot != leak.robot and likeness.is_robot(source.robot) and likeness.is_robot(leak.robot)
     kind = f"across {kind}" if across else kind
-    return finding_id(category, likeness.alike(source), likeness.alike(leak), kind)
+    return finding_id(category, likeness.alike(source), likeness.alike(leak), kind, beside=beside)
 
 
 def patterns(findings: Iterable[Finding], likeness: Likeness) -> tuple[Pattern, ...]:

@@ -1,7 +1,7 @@
 """What needs a person's judgement: elements that a category reaches and that no label covers (rule S11).
 
 In: a spread. Out: open questions in the order of review. The frontier is found by the same search as paths are, with
-open nodes and leaks as ends.
+open nodes and leaks of the category as ends.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from rosprivacy.analysis.model import OpenQuestion
 from rosprivacy.analysis.search import present, search
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Collection, Iterable, Mapping
 
     from rosprivacy.analysis.search import Net
     from rosprivacy.analysis.spread import Spread
@@ -34,7 +34,8 @@ def open_questions(net: Net, mask: int, unknown: Collection[int] = ()) -> tuple[
     Returns
     -------
     tuple of OpenQuestion
-        Nodes on the frontier first, then by distance and name; O(flows) for a fixed number of categories.
+        Nodes on the frontier first, then by distance and name; O(flows) for each category that others are made into,
+        and once for all the rest.
     """
     found, elements = net.spread, net.spread.graph.elements
     uncovered = open_bits(found, unknown)
@@ -42,13 +43,13 @@ def open_questions(net: Net, mask: int, unknown: Collection[int] = ()) -> tuple[
         return ()
     sources = [vertex for vertex in found.facts if found.begins(vertex)]
     nearest = search(net, sources, found.all_bits, {})
-    first = search(net, sources, found.all_bits, _ends(found, uncovered))
+    first = _first(net, sources, uncovered)
     merged: dict[tuple[str, str, str, str], OpenQuestion] = {}
     for vertex, everything in sorted(uncovered.items()):
         element, bits = elements[vertex], everything & mask
         if not bits:
             continue
-        frontier = not element.is_channel and bool(present(first, vertex) & bits)
+        frontier = not element.is_channel and bool(first.get(vertex, 0) & bits)
         missing = ("country",) if vertex in unknown else ()
         question = OpenQuestion(element, found.names(bits), nearest.level(vertex, bits) or 0, frontier, missing)
         known = merged.get(element.shown_as)  # the other side of a wildcard
@@ -67,17 +68,30 @@ def open_bits(found: Spread, unknown: Collection[int]) -> dict[int, int]:
     return {vertex: bits for vertex, bits in uncovered.items() if bits}
 
 
-def _ends(found: Spread, uncovered: dict[int, int]) -> dict[int, int]:
-    """Leaks and open nodes, beyond which nothing is on the frontier."""
-    ends = dict(found.leaks)
-    for vertex, bits in uncovered.items():
-        if not found.graph.elements[vertex].is_channel:
-            ends[vertex] = ends.get(vertex, 0) | bits
-    return {vertex: _both_planes(bits, found) for vertex, bits in ends.items() if bits}
+def _first(net: Net, sources: Iterable[int], uncovered: Mapping[int, int]) -> dict[int, int]:
+    """Open node -> bits that get there past no other open node, and past no leak of their category.
+
+    One search does for all categories that nothing is made into; each of the others takes one, since what it is made
+    of passes its leaks.
+    """
+    found = net.spread
+    nodes = {v: _both_planes(b, found) for v, b in uncovered.items() if not found.graph.elements[v].is_channel}
+    asked = 0
+    for bits in nodes.values():
+        asked |= bits
+    made = sum(found.both(found.categories[i]) for i in found.made)
+    first: dict[int, int] = dict.fromkeys(nodes, 0)
+    for own in [asked & ~made, *(found.both(found.categories[i]) & asked for i in sorted(found.made))]:
+        if own:
+            ends = {v: nodes.get(v, 0) | found.leaks.get(v, 0) & own for v in {*nodes, *found.leaks}}
+            reached = search(net, sources, found.all_bits if own & made else own, ends)
+            for vertex in nodes:
+                first[vertex] |= present(reached, vertex) & own
+    return first
 
 
 def _both_planes(bits: int, found: Spread) -> int:
-    """A category that is open or a leak in one plane is so in the other."""
+    """A category that is open in one plane is so in the other."""
     k = len(found.categories)
     either = (bits | bits >> k) & ((1 << k) - 1)
     return either | either << k

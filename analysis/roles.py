@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Statement
 
 MAY = frozenset({"leak", "derivation", "only"})
+ADDS = frozenset({"source", "leak"})  # what they say takes nothing away
 FARTHEST = 1_000_000  # the distance of a statement about every category, and so of every ``only``
 
 CONTRADICTIONS = frozenset(
@@ -67,6 +68,8 @@ class Facts:
         The statements that keep the category from going on as it is, in the order of files and lines.
     outdone
         (A source or leak statement, the one that outdid it): what was said and does not hold.
+    reviewers
+        The other statements that answer for the category here: without them it is open, if nothing else covers it.
     unstated
         Whether it is a sanitizer whose method is taken, not stated.
     standard
@@ -88,6 +91,7 @@ class Facts:
     method: str = ""
     closers: tuple[Statement, ...] = ()
     outdone: tuple[tuple[Statement, Statement], ...] = ()
+    reviewers: tuple[Statement, ...] = ()
 
 
 NOTHING_SAID = Facts()
@@ -203,4 +207,5 @@ def _sum_up(
         method=str(sanitizers[0].method) if sanitizers else "",
         closers=tuple(sorted(closers, key=_by_line)),
         outdone=tuple(sorted(outdone, key=lambda pair: _by_line(pair[0]))),
+        reviewers=tuple(sorted((s for s in accepted if s not in closers and s.role not in ADDS), key=_by_line)),
     )

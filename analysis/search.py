@@ -21,23 +21,36 @@ START = -1
 
 @dataclass(frozen=True, slots=True)
 class Net:
-    """The flows of a spread, by the vertex that they leave: (index, target, bits that pass it)."""
+    """The flows of a spread, by the vertex that they leave: (index, target, bits that pass it).
+
+    Attributes
+    ----------
+    flows
+        All.
+    inner
+        Those from what is written to a wildcard to what is read from it: one element to the reader, and so no step.
+    """
 
     spread: Spread
     flows: Mapping[int, list[tuple[int, int, int]]]
+    inner: Mapping[int, list[tuple[int, int, int]]]
 
     @classmethod
     def of(cls, spread: Spread) -> Net:
         """Index the flows that anything leaves along."""
         graph, everything = spread.graph, spread.all_bits
         flows: dict[int, list[tuple[int, int, int]]] = defaultdict(list)
+        inner: dict[int, list[tuple[int, int, int]]] = defaultdict(list)
         for index, flow in enumerate(graph.flows):
             if spread.leaves.get(flow.source):
                 passing = spread.flow_keeps.get(index, everything)
                 if graph.elements[flow.target].is_channel:  # a channel takes up only what it carries
                     passing &= spread.keeps.get(flow.target, everything)
                 flows[flow.source].append((index, flow.target, passing))
-        return cls(spread, flows)
+                written, read = graph.elements[flow.source], graph.elements[flow.target]
+                if written.pattern and written.shown_as == read.shown_as:
+                    inner[flow.source].append((index, flow.target, passing))
+        return cls(spread, flows, inner)
 
 
 @dataclass(slots=True)
@@ -47,7 +60,8 @@ class Search:
     Attributes
     ----------
     arrived
-        Vertex -> (level, bits new at that level, flow that brought them), in order.
+        Vertex -> (level, bits new at that level, flow that brought them), in order. The two sides of a wildcard are
+        at one level.
     left
         Vertex -> (bits, the bit that they were made from, or None if they just passed, or ``START``), in order.
     seen, gone
@@ -120,7 +134,20 @@ def search(net: Net, starts: Iterable[int], allowed: int, stop: Mapping[int, int
         leaving = defaultdict(int)
         for vertex in sorted(arriving):
             _pass_on(spread, found, vertex, arriving[vertex], allowed, stop.get(vertex, 0), leaving)
+        read = _across_sides(net, found, level, leaving)
+        for vertex in sorted(read):
+            _pass_on(spread, found, vertex, read[vertex], allowed, stop.get(vertex, 0), leaving)
     return found
+
+
+def _across_sides(net: Net, found: Search, level: int, leaving: Mapping[int, int]) -> dict[int, int]:
+    """What gets from one side of a wildcard to the other within a level."""
+    read: dict[int, int] = defaultdict(int)
+    for vertex in sorted(leaving.keys() & net.inner.keys()):
+        for index, target, passing in net.inner[vertex]:
+            if leaving[vertex] & passing:
+                _arrive(found, target, leaving[vertex] & passing, level, index, read)
+    return read
 
 
 def _through_flows(net: Net, first: Mapping[int, int], allowed: int) -> list[tuple[int, int, int]]:

@@ -2,8 +2,8 @@
 
 In: a fleet. Out: its robots by what they run and how they take part. Two robots are alike if they can change places and
 nothing changes but their names: policies and label files that are read alike, no namespace of their own in a shared
-domain, and every line about flows means both or neither. Whether a policy is read alike elsewhere is seen by what the
-parser finds in it: one that includes nothing is its content, any other is the file that it is.
+domain or in their own absolute names, and every line about flows means both or neither. Whether a policy is read alike
+elsewhere is seen by what the parser finds in it: one that includes nothing is its content, any other the file itself.
 """
 
 from __future__ import annotations
@@ -14,14 +14,19 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.ingest.domains import pseudo_robot
+from rosprivacy.ingest.files import read_policies
 from rosprivacy.ingest.labels import OURS
 from rosprivacy.ingest.names import is_pattern, matcher
+from rosprivacy.ingest.namespaces import depends
+from rosprivacy.ingest.regular import contents
 from rosprivacy.ingest.xinclude import stands_alone
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
+    from rosprivacy.analysis.model import Policy
     from rosprivacy.ingest.fleet import Fleet, Robot
 
 COLON = ":"  # between robots and name, at the end of a flow
@@ -74,12 +79,12 @@ def alike(fleet: Fleet, told_apart: Callable[[str], object] = lambda _: None) ->
         domains[robot.domain] += 1
     groups: dict[object, list[Robot]] = defaultdict(list)
     joined: dict[object, bool] = {}
-    contents = _Contents()
+    runs = _Contents()
     for robot in fleet.robots:
         means = tuple(i for i, test in enumerate(tests) if test(robot.id))
         several = bool(robot.domain) and domains[robot.domain] > 1
-        alone = robot.id if several and (robot.strip or robot.add) else ""
-        key = (robot.model, contents.of(robot), robot.domain, robot.strip, alone, means, told_apart(robot.id))
+        alone = robot.id if several and (robot.strip or robot.add) else runs.namespace(robot)
+        key = (robot.model, runs.of(robot), robot.domain, robot.strip, alone, means, told_apart(robot.id))
         groups[key].append(robot)
         joined[key] = bool(means) or several
     found = [Alike(tuple(robots), joined[key]) for key, robots in groups.items()]
@@ -110,11 +115,25 @@ class _Contents:
         self._policies: dict[str, str] = {}
         self._labels: dict[str, str] = {}
         self._alone: dict[str, bool] = {}
+        self._parsed: dict[tuple[str, ...], tuple[Policy, ...] | None] = {}
 
     def of(self, robot: Robot) -> tuple[tuple[str, ...], ...]:
         """Return what stands for all that is read for a robot."""
         labels = (tuple(map(self._label_file, files)) for files in (robot.labels, robot.own))
         return (tuple(map(self._policy, robot.policies)), *labels)
+
+    def namespace(self, robot: Robot) -> str:
+        """Return the namespace that is pushed on a robot, where it matters which it is (rule S1)."""
+        if not robot.add:
+            return ""
+        key = tuple(map(self._policy, robot.policies))
+        if key not in self._parsed:
+            try:
+                self._parsed[key] = read_policies(robot.policies)[0]
+            except InputErrors:  # whoever reads them with the options of the user says what is wrong
+                self._parsed[key] = None
+        policies = self._parsed[key]
+        return robot.add if policies is None or depends(policies, robot.add) else ""
 
     def _policy(self, file: str) -> str:
         """The content, or the path of a folder or glob, and of a policy with which others may be read (rule S10)."""
@@ -143,6 +162,6 @@ def _bytes(file: str) -> bytes | None:
     """What is in a file; None where there is none to be read, which its reader will tell."""
     path = Path(file)
     try:
-        return path.read_bytes() if path.is_file() else None
+        return contents(path) if path.is_file() else None
     except OSError:
         return None

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import Bound, Element, FlowGraph
 from rosprivacy.ingest.graph import build
+from rosprivacy.ingest.namespaces import as_written, pushed
 from rosprivacy.ingest.parts import Part, together
 
 if TYPE_CHECKING:
@@ -83,6 +84,13 @@ def stripped(graph: FlowGraph, namespace: str) -> tuple[FlowGraph, dict[Element,
     return changed, {new: element for element, new in shown.items()}
 
 
+def with_grants(part: Part, change: Callable[[Grant], Grant]) -> Part:
+    """A part with other grants."""
+    flows = {key: tuple(map(change, grants)) for key, grants in part.flows.items()}
+    denied = {key: (tuple(map(change, a)), tuple(map(change, b))) for key, (a, b) in part.denied.items()}
+    return replace(part, flows=flows, denied=denied)
+
+
 def _without(name: str, namespace: str) -> str:
     return name[len(namespace) :] if name.startswith(f"{namespace}/") else name
 
@@ -101,11 +109,13 @@ def shared(domain: str, members: Sequence[Member], view: str) -> Part:
     """The part of robots that share a domain."""
     names = _Names(domain, members)
     graph = build([_marked(policy, member.robot) for member in members for policy in member.policies], view)
-    whole = Part.of(graph, Bound({})).renamed(names.of_marked)
-    for key, grants in whole.flows.items():
-        whole.flows[key] = tuple(map(_unmarked, grants))
-    for key, (grants, denials) in whole.denied.items():
-        whole.denied[key] = (tuple(map(_unmarked, grants)), tuple(map(_unmarked, denials)))
+    added = {member.robot.id: member.robot.add for member in members}
+
+    def unmarked(grant: Grant) -> Grant:
+        robot, node = grant.node.split(MARK)
+        return as_written(replace(grant, enclave=grant.enclave.split(MARK)[1], node=node), added[robot])
+
+    whole = with_grants(Part.of(graph, Bound({})).renamed(names.of_marked), unmarked)
     return together([whole, *(member.part.renamed(names.of_member(member)) for member in members)])
 
 
@@ -134,8 +144,7 @@ class _Names:
         def name(element: Element) -> Element:
             if not element.is_channel:
                 return replace(element, robot=member.robot.id)
-            full = member.full[element]
-            return self._channel(replace(full, name=member.robot.add + full.name))
+            return self._channel(member.full[element])
 
         return name
 
@@ -148,16 +157,10 @@ class _Names:
 
 
 def _marked(policy: Policy, robot: Robot) -> Policy:
-    """A policy in which enclaves and nodes are told from those of other robots."""
-    mark = f"{robot.id}{MARK}"
+    """A policy as the robot runs it, in which enclaves and nodes are told from those of other robots."""
+    mark, run = f"{robot.id}{MARK}", pushed(policy, robot.add)
     return replace(
-        policy,
-        profiles=tuple(replace(p, enclave=mark + p.enclave, node=mark + p.node) for p in policy.profiles),
-        grants=tuple(
-            replace(g, enclave=mark + g.enclave, node=mark + g.node, name=robot.add + g.name) for g in policy.grants
-        ),
+        run,
+        profiles=tuple(replace(p, enclave=mark + p.enclave, node=mark + p.node) for p in run.profiles),
+        grants=tuple(replace(g, enclave=mark + g.enclave, node=mark + g.node) for g in run.grants),
     )
-
-
-def _unmarked(grant: Grant) -> Grant:
-    return replace(grant, enclave=grant.enclave.split(MARK)[1], node=grant.node.split(MARK)[1])

@@ -16,7 +16,7 @@ from rosprivacy.analysis.model import Diagnostic, Method, Place, Severity, State
 from rosprivacy.ingest.elements import is_outside, read_element, read_limits
 from rosprivacy.ingest.entries import EXACT, SHIPPED, Entry, FlowEntry, specificity
 from rosprivacy.ingest.filereader import FileReader
-from rosprivacy.ingest.names import LONGEST_NAME
+from rosprivacy.ingest.names import LONGEST_NAME, is_pattern
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -114,7 +114,8 @@ class LabelReader(FileReader):
                 continue
             rank = self.rank(specificity(name))
             read = self._node if section == "nodes" else self._channel
-            statements = tuple(read(label, Place(self.file, at), rank))
+            glob = is_pattern(name)
+            statements = tuple(replace(said, glob=glob) for said in read(label, Place(self.file, at), rank))
             subjects = self._subjects(label) if section == "nodes" else ()
             self.entries.append(Entry(SECTIONS[section], name, Place(self.file, at), statements, subjects))
 
@@ -226,7 +227,8 @@ class LabelReader(FileReader):
         place = Place(self.file, item.line)
         ends = {key: self._end(value) for key, _, value in item.entries if key in ("from", "to")}
         rank = self.rank(sum(specificity(name) for name in ends.values()))
-        statements = tuple(self._restrictions(item, FLOW_KEYS, rank))
+        glob = any(map(is_pattern, ends.values()))
+        statements = tuple(replace(said, glob=glob) for said in self._restrictions(item, FLOW_KEYS, rank))
         if len(ends) < len(("from", "to")):
             self.problem(item.line, "a flow needs from and to", "write {from: /a, to: /b, never: [Video]}")
             return
@@ -251,7 +253,7 @@ class LabelReader(FileReader):
                 element = self._name(item)
                 place, rank = Place(self.file, item.line), self.rank(specificity(element))
                 method = Method.ANONYMISE if role == "sanitizer" else None
-                statement = Statement(role, (name,), rank, place, method)
+                statement = Statement(role, (name,), rank, place, method, glob=is_pattern(element))
                 self.entries.append(Entry(kinds, element, place, (statement,)))
             if role == "sanitizer" and value.items:
                 message = "a sanitizer of the paper's six lists ends the category; the method is not stated"

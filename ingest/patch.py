@@ -18,7 +18,9 @@ from xml.parsers import expat
 from xml.sax.saxutils import escape
 
 from rosprivacy.analysis.errors import InputErrors, shown
+from rosprivacy.analysis.files_read import one_run
 from rosprivacy.ingest.policy import ROLES, read_policy
+from rosprivacy.ingest.regular import contents
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -92,7 +94,7 @@ def patch(policies: Iterable[Policy], grants: Collection[Grant]) -> Patch:
 
 def _changed(policy: Policy, grants: list[Grant]) -> dict[str, tuple[bytes, bytes]] | None:
     """File -> (before, after); None if no way of changing gives what it should."""
-    before = {name: Path(name).read_bytes() for name, _ in policy.sources}
+    before = {name: contents(Path(name)) for name, _ in policy.sources}
     moved = Counter(_key(replace(grant, allow=False) if grant in set(grants) else grant) for grant in policy.grants)
     added = Counter(map(_key, policy.grants)) + Counter(_key(replace(grant, allow=False)) for grant in grants)
     for change, expected in ((_move, moved), (_add, added)):
@@ -121,7 +123,8 @@ def _grants(policy: Policy, texts: Mapping[str, bytes]) -> Counter[Key] | None:
             copy.write_bytes(texts[name])
         try:
             copied = str(Path(folder, os.path.relpath(paths[policy.file], root)))
-            return Counter(map(_key, read_policy(copied, include_root=folder).grants))
+            with one_run():  # copies of ours, which are gone soon, are no inputs
+                return Counter(map(_key, read_policy(copied, include_root=folder).grants))
         except InputErrors:
             return None
 

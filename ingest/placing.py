@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.elements import Limit
     from rosprivacy.ingest.entries import FlowEntry
     from rosprivacy.ingest.fleet import Fleet
+    from rosprivacy.ingest.joins import Met
     from rosprivacy.ingest.parts import Key
 
 
@@ -44,12 +45,15 @@ class Placed:
         Which robots of the graph stand for which of the fleet.
     profiles
         By robot of the graph.
+    met
+        Where the flows of the fleet file begin and end.
     """
 
     graph: FlowGraph
     bound: Bound
     likeness: Likeness
     profiles: Mapping[str, tuple[Profile, ...]]
+    met: frozenset[Met] = frozenset()
 
 
 def place(fleet: Fleet, groups: Sequence[Alike], members: Mapping[str, Member], view: str) -> Placed:
@@ -76,7 +80,7 @@ def _placed(placing: _Placing, groups: Sequence[Alike], members: Mapping[str, Me
     if placing.problems:
         raise InputErrors(placing.problems)
     graph, bound = numbered(part, profiles, view)
-    return Placed(graph, bound, likeness(groups), profiles)
+    return Placed(graph, bound, likeness(groups), profiles, frozenset(placing.met))
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,12 +95,15 @@ class Some:
         Per flow of the fleet file: the elements here that its two ends mean.
     restated
         Lines of the fleet file that state a flow within one robot of which a label file says more.
+    met
+        Where the flows of the fleet file begin and end here.
     """
 
     part: Part
     profiles: Mapping[str, tuple[Profile, ...]]
     ends: tuple[tuple[tuple[Element, ...], tuple[Element, ...]], ...]
     restated: tuple[Place, ...]
+    met: frozenset[Met] = frozenset()
 
 
 def place_some(fleet: Fleet, members: Iterable[Member], view: str, *, own: bool) -> Some:
@@ -118,7 +125,7 @@ def place_some(fleet: Fleet, members: Iterable[Member], view: str, *, own: bool)
     part, profiles = placing.part(view)
     if placing.problems:
         raise InputErrors(placing.problems)
-    return Some(part, profiles, tuple(placing.ends()), tuple(placing.restated))
+    return Some(part, profiles, tuple(placing.ends()), tuple(placing.restated), frozenset(placing.met))
 
 
 def place_chosen(fleet: Fleet, groups: Sequence[Alike], members: Mapping[str, Member], view: str) -> Placed:
@@ -178,6 +185,7 @@ class _Placing:
     def __init__(self, fleet: Fleet, *, whole: bool = True, own: bool = True) -> None:
         self.problems: list[InputError] = []
         self.restated: list[Place] = []
+        self.met: set[Met] = set()
         self._fleet = fleet
         self._whole = whole
         self._owns = own
@@ -233,9 +241,9 @@ class _Placing:
 
     def ends(self) -> Iterator[tuple[tuple[Element, ...], tuple[Element, ...]]]:
         """Return, per flow of the fleet file, the elements that its ends mean."""
-        for flow in self._fleet.flows:
-            sources, targets = (tuple(self._find(end, flow)) for end in (flow.source, flow.target))
-            yield sources, targets
+        for number, flow in enumerate(self._fleet.flows):
+            sources = tuple(self._find(flow.source, flow, (number, 0)))
+            yield sources, tuple(self._find(flow.target, flow, (number, 1)))
 
     def _add_flows(self, whole: Part) -> None:
         lines: dict[Key, list[Place]] = defaultdict(list)
@@ -248,14 +256,16 @@ class _Placing:
                     flow_said(flow, key, lines, whole.said)
         add_lines(whole, lines)
 
-    def _find(self, end: str, flow: FlowEntry) -> list[Element]:
+    def _find(self, end: str, flow: FlowEntry, at: tuple[int, int]) -> list[Element]:
         if self._whole and (problem := no_robot(self._fleet, flow, end)):
             self.problems.append(problem)
             return []
         robots = chosen(end, self._ends) if COLON in end else [""]
         name = end.partition(COLON)[2] if COLON in end else end
         ends = [self._ends[robot] for robot in robots]
-        found = [element for one in ends for element in one.find(name)]
+        there = {robot: one.find(name) for robot, one in zip(robots, ends, strict=True)}
+        self.met |= {(*at, robot) for robot, elements in there.items() if elements}
+        found = [element for elements in there.values() for element in elements]
         if self._whole and not found:
             known = [other for one in ends for kind in one.names.values() for other in kind]
             self.problems.append(nowhere(flow, end, known))

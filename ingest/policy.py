@@ -185,8 +185,9 @@ class _Reader:
         enclave, owned = owner.enclave, owner.node
         for item in names:
             name, place = self._name(item, namespace, node), Place(item.file, item.element.sourceline or 0)
+            absolute = (item.element.text or "").startswith("/")
             for role, allow in granted:
-                self.grants.append(Grant(allow, role, kind, name, enclave, owned, place))
+                self.grants.append(Grant(allow, role, kind, name, enclave, owned, place, absolute))
 
     def _name(self, item: Item, namespace: str, node: str) -> str:
         element = item.element

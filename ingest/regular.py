@@ -1,6 +1,7 @@
 """A file that the user names -> its bytes: a regular file, of bounded size, or an error that says why not.
 
-A pipe would be waited for, a device read without end: neither is opened.
+A pipe would be waited for, a device read without end: neither is opened. What is read is noted, so that it is not
+written in the same run.
 """
 
 from __future__ import annotations
@@ -9,11 +10,24 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import reason
+from rosprivacy.analysis.files_read import noted
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from rosprivacy.analysis.errors import InputError
+
+
+def contents(path: Path, name: str = "") -> bytes:
+    """Read a file whole, and note that it was read; for callers that have made sure what it is.
+
+    Parameters
+    ----------
+    name
+        By which the user knows it; the path by default.
+    """
+    with path.open("rb") as file:
+        return noted(file, name or str(path)).read()
 
 
 def read_regular(file: str, max_bytes: int, fail: Callable[[int, str, str], InputError]) -> bytes:
@@ -39,6 +53,6 @@ def read_regular(file: str, max_bytes: int, fail: Callable[[int, str, str], Inpu
             raise fail(0, "not a regular file", "name a regular file")
         if path.stat().st_size > max_bytes:
             raise fail(0, f"more than {max_bytes} bytes", "split the file")
-        return path.read_bytes()
+        return contents(path)
     except (OSError, ValueError) as error:
         raise fail(0, f"cannot be read: {reason(error)}", "check the path and its permissions") from None

@@ -7,6 +7,7 @@ In: policies, or a file saved before. Out: the same facts again, with file and l
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import GraphError, InputErrors, shown
@@ -20,6 +21,10 @@ if TYPE_CHECKING:
 FORMAT = "rosprivacy.graph/1"
 MAX_BYTES = 2**30
 AGAIN = "save it again with --save-graph"
+UNKNOWN = (
+    "saved by an earlier version, which did not keep which names a policy writes absolute: all are taken so, as they "
+    "stand here; save it again from the policies"
+)
 _ROLES = {role: kind for kind, roles in ROLES.values() for role in roles}
 
 
@@ -60,6 +65,10 @@ def _read(file: str, fail: Callable[[int, str, str], GraphError]) -> tuple[Polic
     policies = tuple(_read_policy(policy) for policy in data["policies"])
     if not policies:
         raise fail(1, "a saved graph without policies", AGAIN)
+    if any("absolute" not in grant for policy in data["policies"] for grant in policy["grants"]):
+        first = policies[0]
+        told = (*first.diagnostics, Diagnostic(Place(file, 1), Severity.WARNING, UNKNOWN))
+        return (replace(first, diagnostics=told), *policies[1:])
     return policies
 
 
@@ -75,6 +84,7 @@ def _policy(policy: Policy) -> dict[str, Any]:
                 "rule": "ALLOW" if grant.allow else "DENY",
                 "role": grant.role,
                 "name": grant.name,
+                "absolute": grant.absolute,
                 "enclave": grant.enclave,
                 "node": grant.node,
                 "file": grant.place.file,
@@ -100,6 +110,7 @@ def _read_policy(saved: dict[str, Any]) -> Policy:
             _text(g["enclave"]),
             _text(g["node"]),
             _place(g),
+            _flag(g.get("absolute", True)),
         )
         for g in saved["grants"]
     ]
@@ -117,6 +128,12 @@ def _place(saved: dict[str, Any]) -> Place:
     if not isinstance(line, int):
         raise TypeError(f"line {line!r}")
     return Place(_text(saved["file"]), line)
+
+
+def _flag(value: Any) -> bool:
+    if not isinstance(value, bool):
+        raise TypeError(repr(value))
+    return value
 
 
 def _text(value: Any) -> str:

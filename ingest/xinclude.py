@@ -22,6 +22,7 @@ from lxml import etree
 
 from rosprivacy.analysis.errors import InputError, InputErrors, PolicyError, reason, shown
 from rosprivacy.analysis.model import Diagnostic, Place, Severity
+from rosprivacy.ingest.regular import contents
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -211,7 +212,7 @@ class Documents:
             raise _error(place, what, "allow more with --max-bytes, or split the policy")
         if known:
             return known[0]
-        data = _read(path, place)
+        data = _read(path, file, place)
         root = _parse(data, file)
         self.sources[file] = hashlib.sha256(data).hexdigest()
         self._parsed[path] = (root, size)
@@ -257,9 +258,9 @@ def _size(path: Path, file: str, place: Place) -> int:
     return found.st_size
 
 
-def _read(path: Path, place: Place) -> bytes:
+def _read(path: Path, file: str, place: Place) -> bytes:
     try:
-        return path.read_bytes()
+        return contents(path, file)
     except OSError as error:
         raise _error(place, f"cannot be read: {error.strerror}", "check its permissions") from None
 

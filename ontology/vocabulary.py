@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputErrors, OntologyError, reason
+from rosprivacy.analysis.files_read import noted
 from rosprivacy.analysis.hierarchy import Hierarchy
 from rosprivacy.analysis.legal import close
 from rosprivacy.ontology import cache as kept
@@ -176,7 +177,8 @@ def _read(file: str) -> bytes:
         if path.stat().st_size > LARGEST:
             size = f"{path.stat().st_size / 2**20:.0f} MB are too large"
             raise refused(size, f"an ontology of categories has at most {LARGEST // 2**20} MB")
-        return path.read_bytes()
+        with path.open("rb") as data:
+            return noted(data, file).read()
     except (OSError, ValueError) as error:
         raise refused(f"cannot be read: {reason(error)}", "check the name and your rights") from None
 

@@ -1,6 +1,6 @@
 // name: pseudonymised-at-leaks
 // kind: path
-// description: Which data reaches a leak in pseudonymised form only, which is personal data still, and who did that?
+// description: Which data reaches a leak pseudonymised past all other leaks, which is personal data still, and who did that?
 // param robot: robot, only this robot; all of them if it is empty, default ""
 // returns robot: string, name of the robot
 // returns category: string, the kind of data that arrives

@@ -1,66 +1,196 @@
-"""Files are written whole or not at all: to a neighbour first, then renamed over the old one.
+"""The one place that writes files of users: whole or not at all, and never what was read in the same run.
 
-What is no regular file (a pipe, ``/dev/stdout``) cannot be replaced so and is written to.
+Texts are written to a neighbour first, which is then renamed over the old file. What is no regular file (a pipe,
+``/dev/stdout``) cannot be replaced so and is written to.
 """
 
 from __future__ import annotations
 
 import os
+import stat
 import tempfile
+import unicodedata
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.errors import InputError, reason
+from rosprivacy.analysis.errors import InputError, InputErrors, reason, shown
+from rosprivacy.analysis.files_read import read_as
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Iterator
+
+STANDARD_OUTPUT = Path("/dev/stdout")
 
 
-def write_texts(texts: Mapping[Path, str | bytes]) -> None:
+@dataclass(frozen=True, slots=True)
+class _Output:
+    """Where a text is to go.
+
+    Attributes
+    ----------
+    named
+        As the user wrote it.
+    file
+        What is behind the name, links followed.
+    status
+        Of what is there already.
+    """
+
+    named: Path
+    file: Path
+    status: os.stat_result | None
+
+    @property
+    def stream(self) -> bool:
+        """Whether it is written to as it is."""
+        return self.status is not None and not (stat.S_ISREG(self.status.st_mode) or stat.S_ISDIR(self.status.st_mode))
+
+
+def write_texts(texts: Iterable[tuple[Path, str | bytes | None]], *, edited: Path | None = None) -> None:
     """Write UTF-8 texts, or bytes, to files, all of them or none.
+
+    Parameters
+    ----------
+    texts
+        File and text; None for a file that is left as it is this time, and refused as if it were written.
+    edited
+        The one input that is meant to be replaced by what was made of it.
 
     Raises
     ------
     InputError
         If a folder is not there or a file cannot be written; what was at the paths is then untouched.
+    InputErrors
+        If a file was read in this run, or is named for two outputs; the same.
     """
-    staged: dict[str, Path] = {}
-    at = Path()
+    texts = list(texts)
+    outputs = check_outputs([file for file, _ in texts], edited=edited)
+    staged: list[tuple[Path, _Output]] = []
+    pairs = [(at, text) for at, (_, text) in zip(outputs, texts, strict=True) if text is not None]
     try:
-        for at, text in texts.items():
-            if at.exists() and not at.is_file() and not at.is_dir():
-                at.write_bytes(_bytes(text))
-            else:
-                target = at.resolve()
-                staged[_stage(target, text)] = target
-        for temporary, at in staged.items():
-            Path(temporary).replace(at)
+        for at, text in pairs:
+            if not at.stream:
+                with _told(at.named):
+                    staged.append((_stage(at, _bytes(text)), at))
+        for at, text in pairs:
+            if at.stream:
+                with _told(at.named):
+                    at.named.write_bytes(_bytes(text))
+        for temporary, at in staged:
+            with _told(at.named):
+                temporary.replace(at.file)
+                _keep_name(at.file.parent)
+    finally:
+        for temporary, _ in staged:
+            temporary.unlink(missing_ok=True)
+
+
+def check_outputs(files: Iterable[Path], *, edited: Path | None = None) -> list[_Output]:
+    """Refuse outputs over inputs, and two outputs on one file, by what the names lead to.
+
+    Raises
+    ------
+    InputError
+        If it cannot be told what a name leads to.
+    InputErrors
+        With every output that is refused.
+    """
+    outputs = []
+    for file in files:
+        with _told(file):
+            outputs.append(_Output(file, file.resolve(), _status(file)))
+    problems = [*_over_inputs(outputs, edited), *_on_one_file(outputs)]
+    if problems:
+        raise InputErrors(problems)
+    return outputs
+
+
+def _over_inputs(outputs: list[_Output], edited: Path | None) -> Iterator[InputError]:
+    for at in outputs:
+        if at.stream or at.named == edited:
+            continue
+        name = read_as(str(at.file), at.status)
+        if name is not None:
+            same = "" if name == str(at.named) else f"is the same file as {shown(name)}, which "
+            yield InputError(str(at.named), 0, f"{same}is read in this run", "name another file to write to")
+
+
+def _on_one_file(outputs: list[_Output]) -> Iterator[InputError]:
+    first: dict[object, Path] = {}
+    for at in outputs:
+        if at.stream:
+            continue
+        key = _key(at)
+        if key in first:
+            also = "" if first[key] == at.named else f", also as {shown(str(first[key]))}"
+            what = f"is named for two outputs{also}"
+            yield InputError(str(at.named), 0, what, "name a file for each; upper and lower case alone do not differ")
+        first.setdefault(key, at.named)
+
+
+def _key(at: _Output) -> object:
+    """What two names have in common that lead to one file, on any file system.
+
+    Of a file that is not there yet nobody can say whether its folder tells case or forms of Unicode apart, so neither
+    is told apart.
+    """
+    if at.status and at.status.st_ino:
+        return at.status.st_dev, at.status.st_ino
+    folder = _status(at.file.parent)
+    name = unicodedata.normalize("NFC", at.file.name).casefold()
+    return (folder.st_dev, folder.st_ino, name) if folder and folder.st_ino else (at.file.parent, name)
+
+
+def _status(file: Path) -> os.stat_result | None:
+    """Links are followed here and not only by ``resolve``: a system that distrusts a link of others refuses this."""
+    try:
+        return file.stat()
+    except (FileNotFoundError, NotADirectoryError):
+        return None
+
+
+@contextmanager
+def _told(file: Path) -> Iterator[None]:
+    try:
+        yield
     except (OSError, RuntimeError, ValueError) as error:
         hint = "name a file in a folder that can be written"
-        raise InputError(str(at), 0, f"cannot be written: {reason(error)}", hint) from None
-    finally:
-        for temporary in staged:
-            Path(temporary).unlink(missing_ok=True)
+        raise InputError(str(file), 0, f"cannot be written: {reason(error)}", hint) from None
 
 
 def _bytes(text: str | bytes) -> bytes:
     return text.encode() if isinstance(text, str) else text
 
 
-def _stage(target: Path, text: str | bytes) -> str:
+def _stage(at: _Output, data: bytes) -> Path:
     """Write a text beside its target, with the target's permissions; return where."""
-    if target.is_dir():
+    if at.status and stat.S_ISDIR(at.status.st_mode):
         raise IsADirectoryError(0, "it is a folder")
-    mode = target.stat().st_mode if target.exists() else 0o666 & ~_umask()
-    handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name[:50]}.")
+    mode = at.status.st_mode if at.status else 0o666 & ~_umask()
+    handle, name = tempfile.mkstemp(dir=at.file.parent, prefix=f".{at.file.name[:50]}.")
+    temporary = Path(name)
     try:
         with os.fdopen(handle, "wb") as file:
-            file.write(_bytes(text))
-        Path(temporary).chmod(mode)
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        temporary.chmod(stat.S_IMODE(mode))
     except BaseException:
-        Path(temporary).unlink(missing_ok=True)
+        temporary.unlink(missing_ok=True)
         raise
     return temporary
+
+
+def _keep_name(folder: Path) -> None:
+    """Write a new name through to the disk, where the system can; the file itself is there already."""
+    with suppress(OSError):
+        handle = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)
 
 
 def _umask() -> int:

@@ -11,12 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.legal import turned_special
 from rosprivacy.analysis.treatment import cleanings, makings
+from rosprivacy.report import taken_away
 from rosprivacy.report.outside import inventory, taken_by_kind
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Collection, Iterable, Mapping
 
     from rosprivacy.analysis.hierarchy import Hierarchy
+    from rosprivacy.analysis.ledger import TakenAway
     from rosprivacy.analysis.model import Analysis, Category, Diagnostic, Element, Finding, Grant, Legal, Step
 
 FORMAT = "rosprivacy.analysis/1"
@@ -30,6 +32,7 @@ def document(
     diagnostics: Iterable[Diagnostic],
     assumptions: Mapping[str, Any],
     subjects: Mapping[int, tuple[str, ...]] | None = None,
+    taken: Collection[TakenAway] = (),
 ) -> dict[str, Any]:
     """Return the analysis as one JSON object.
 
@@ -41,6 +44,8 @@ def document(
         What the answer rests on, made by the caller who knows the files.
     subjects
         By vertex: whom the data of a source are about.
+    taken
+        The ledger: what was taken away on the data's side.
     """
     graph = analysis.graph
     return {
@@ -67,6 +72,7 @@ def document(
             }
             for end in analysis.unknown_ends
         ],
+        "taken_away": taken_away.rows(taken, element_dict),
         "carries": [
             {
                 "element": element_dict(carried.element),
@@ -95,6 +101,7 @@ def document(
         "diagnostics": [_diagnostic(d) for d in (*diagnostics, *analysis.diagnostics)],
         "assumptions": {
             **assumptions,
+            "taken_away": taken_away.counts(taken),
             "taken_by_kind": taken_by_kind(analysis),
             "sanitizers_without_method": [
                 {"element": element_dict(element), "category": category, "taken_as": "pseudonymise"}
@@ -243,6 +250,7 @@ def _finding(finding: Finding, categories: Mapping[str, Category]) -> dict[str, 
         **law_of(finding, categories),
         **({"reason": finding.reason} if finding.reason else {}),
         "accepted": finding.accepted,
+        **({"beside_pseudonymised": True} if finding.beside else {}),
     }
     if finding.paths:
         shown["paths"] = [[element_dict(element) for element in path] for path in finding.paths]

@@ -13,8 +13,10 @@ from rich.text import Text
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import CHANNELS
 from rosprivacy.report.decided import decision_lines
+from rosprivacy.report.terminal_asked import asked_at_verdict, asked_lines, may_be_asked
 from rosprivacy.report.terminal_ends import end_lines, ends_at_verdict
 from rosprivacy.report.terminal_fleet import fleet_lines, robots_of
+from rosprivacy.report.terminal_ledger import counted, listed
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -67,7 +69,7 @@ def _lines(report: Mapping[str, Any], *, verbose: bool, quiet: bool) -> Iterator
     if accepted and report["verdict"] != "leak":
         style, meaning = "bold yellow", ACCEPTED[report["verdict"]]
     meaning += f"; {_count(accepted, 'finding')} accepted" if accepted else ""
-    meaning += "".join(f"; {end}" for end in ends_at_verdict(report))
+    meaning += "".join(f"; {end}" for end in ends_at_verdict(report)) + asked_at_verdict(report)
     yield f"{report['verdict']}: {meaning}", style
     if quiet:
         return
@@ -76,6 +78,8 @@ def _lines(report: Mapping[str, Any], *, verbose: bool, quiet: bool) -> Iterator
     yield from _findings(report)
     yield from _review(report, verbose=verbose)
     yield from end_lines(report, most=None if verbose else SHOWN)
+    if verbose:
+        yield from listed(report)
     yield from _assumed(report)
     yield from _diagnostics(report, verbose=verbose)
 
@@ -102,14 +106,15 @@ def _findings(report: Mapping[str, Any]) -> Iterator[Line]:
         form = "pseudonymised " if finding["pseudonymised"] else ""
         style = "dim" if finding["dismissed"] or finding["accepted"] else "bold"
         yield "", ""
-        what = f"{KINDS[finding['kind']]}{form}{finding['category']}"
+        what = f"{KINDS[finding['kind']]}{form}{finding['category']}{may_be_asked(report, finding['category'])}"
         yield f"{number}. {what}: {_name(source)} -> {_name(leak)}   [{finding['id']}]", style
         yield from robots_of(report, finding)
         if "reason" in finding:
             yield f"   {shown(finding['reason'])}", ""
         if finding["dismissed"]:
             through = ", ".join(_name(element) for element in finding["through"])
-            yield f"   only through {through}, which has a finding of its own", "dim"
+            past = "; past it, data gets there pseudonymised only" if finding.get("beside_pseudonymised") else ""
+            yield f"   only through {through}, which has a finding of its own{past}", "dim"
         yield from decision_lines(finding)
         yield from _way(finding, roles, unreviewed)
         yield from _paths(finding)
@@ -202,6 +207,7 @@ def _assumed(report: Mapping[str, Any]) -> Iterator[Line]:
         yield f"   {channels} taken as mundane (rosprivacy labels --standard)", ""
     else:
         yield "   no standard channels taken as mundane", ""
+    yield from counted(report)
     if "database" in assumptions:
         robots = _count(assumptions["database"]["robots"], "robot")
         yield f"   {robots} in the database, as loaded from these files and changed there since", ""
@@ -214,12 +220,7 @@ def _assumed(report: Mapping[str, Any]) -> Iterator[Line]:
     if "decisions" in assumptions:
         taken = assumptions["decisions"]
         yield f"   decisions {shown(taken['file'])} (sha256 {taken['sha256'][:12]}), as of {taken['today']}", ""
-    if assumptions["categories_asked"] != "all":
-        yield f"   only {', '.join(assumptions['categories_asked'])} and narrower categories", ""
-    if assumptions["data_types_asked"] != "all":
-        yield f"   only data that is {' or '.join(assumptions['data_types_asked'])}", ""
-    if assumptions["article9_only"]:
-        yield "   only what can fall under Article 9(1) GDPR, or of which that is not known", ""
+    yield from asked_lines(report)
     for file in assumptions["ontologies"]:
         yield f"   more categories of {shown(file['file'])} (sha256 {file['sha256'][:12]})", ""
     yield f"   law as of {assumptions['law_as_of']}", ""

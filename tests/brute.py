@@ -6,10 +6,10 @@ A state is (vertex, category, pseudonymised). Statements here all have one name 
 from __future__ import annotations
 
 import re
-from collections import deque
 from dataclasses import dataclass, field
 from datetime import date
 from functools import cache
+from heapq import heappop, heappush
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import Place, Statement
@@ -73,6 +73,7 @@ class Brute:
     hierarchy: Hierarchy
     never: dict[tuple[int, int], set[str]] = field(default_factory=dict)  # of flows
     outside: dict[int, tuple[str, Outside]] = field(default_factory=dict)  # kind, facts
+    sides: dict[int, int] = field(default_factory=dict)  # what is read from a wildcard -> what is written to it
     along: set[tuple[int, int, Data]] = field(default_factory=set)  # what the last spread sent along flows
 
     def nearness(self, statement: Statement, category: str) -> int | None:
@@ -146,24 +147,27 @@ class Brute:
     def spread(
         self, sources: Collection[int], stop: Callable[[int, Data], bool] = lambda _v, _d: False
     ) -> dict[tuple[int, Data], int]:
-        """What is where (arrives, starts or is made there) -> least number of flows from a source."""
-        present: dict[tuple[int, Data], int] = {}
-        leaving: deque[tuple[int, Data, int]] = deque()
-        left = set()
+        """What is where (arrives, starts or is made there) -> least number of flows from a source.
 
-        def leave(vertex: int, data: Data, level: int) -> None:
-            if (vertex, data) not in left:
-                left.add((vertex, data))
-                leaving.append((vertex, data, level))
+        The two sides of a wildcard are one element, so the way from one to the other is no step.
+        """
+        present: dict[tuple[int, Data], int] = {}
+        leaving: list[tuple[int, int, Data]] = []  # a heap: level, vertex, data
+        left = set()
+        self.along = set()
+
+        def there(vertex: int, data: Data, level: int) -> None:
+            present[vertex, data] = min(level, present.get((vertex, data), level))
 
         for source in sorted(sources):
             for data in self.emitted(source):
-                present[source, data] = 0
-                leave(source, data, 0)
-        arrived = set()
-        self.along = set()
+                there(source, data, 0)
+                heappush(leaving, (0, source, data))
         while leaving:
-            vertex, data, level = leaving.popleft()
+            level, vertex, data = heappop(leaving)
+            if (vertex, data) in left:
+                continue
+            left.add((vertex, data))
             for a, b in self.edges:
                 if a != vertex:
                     continue
@@ -172,18 +176,16 @@ class Brute:
                 if any(named in self.hierarchy.ancestors[data[0]] for named in self.never.get((a, b), ())):
                     continue
                 self.along.add((a, b, data))
-                if (b, data) in arrived:
-                    continue
-                arrived.add((b, data))
-                present.setdefault((b, data), level + 1)
+                after = level if self.sides.get(b) == a else level + 1
+                there(b, data, after)
                 if stop(b, data):
                     continue
                 if not self.kills(b, data[0]) or (data[1] and self.only_hides(b, data[0])):
-                    leave(b, data, level + 1)
+                    heappush(leaving, (after, b, data))
                 for made in self.made(b, data):
-                    present.setdefault((b, made), level + 1)
+                    there(b, made, after)
                     if not stop(b, made):
-                        leave(b, made, level + 1)
+                        heappush(leaving, (after, b, made))
         return present
 
     def sources(self) -> set[int]:
@@ -221,12 +223,13 @@ class Brute:
 
     def findings(
         self, accepted: Callable[[str, int, int, bool], bool] = lambda _c, _s, _l, _h: False
-    ) -> dict[tuple[str, str, int, int], tuple[bool, bool, int]]:
-        """S10: (kind, category, source, leak) -> (pseudonymised, dismissed, length of the shortest way to show).
+    ) -> dict[tuple[str, str, int, int, bool], tuple[bool, bool, int]]:
+        """S10: (kind, category, source, leak, beside) -> (pseudonymised, dismissed, length of the way to show).
 
+        ``beside`` is plain data that arrives through another leak only, where pseudonymised data arrives without one.
         ``accepted`` says of (category, source, leak, pseudonymised) whether that disclosure is.
         """
-        found: dict[tuple[str, str, int, int], tuple[bool, bool, int]] = {}
+        found: dict[tuple[str, str, int, int, bool], tuple[bool, bool, int]] = {}
         for source in self.sources():
             whole = self.spread([source])
             for leak, category in {(v, c) for v, (c, _) in whole}:
@@ -240,17 +243,20 @@ class Brute:
                     "storage-limitation": self.kept_too_long(leak, category),
                     "third-country-transfer": self.abroad(leak),
                 }
+                plain, hidden = (leak, (category, False)), (leak, (category, True))
                 for kind in [kind for kind, holds in kinds.items() if holds]:
-                    ways = (
-                        [(whole, False)]
-                        if kind != "disclosure"
-                        else [(self.spread([source], other), False), (whole, True)]
-                    )
-                    for way, dismissed in ways:
-                        for hidden in (False, True):
-                            if (leak, (category, hidden)) in way:
-                                key = (kind, category, source, leak)
-                                found.setdefault(key, (hidden, dismissed, way[leak, (category, hidden)]))
+                    key = (kind, category, source, leak)
+                    free = self.spread([source], other) if kind == "disclosure" else whole
+                    if plain in free:
+                        found[*key, False] = (False, False, free[plain])
+                    elif hidden in free:
+                        found[*key, False] = (True, False, free[hidden])
+                        if plain in whole:
+                            found[*key, True] = (False, True, whole[plain])
+                    elif plain in whole:
+                        found[*key, False] = (False, True, whole[plain])
+                    else:
+                        found[*key, False] = (True, True, whole[hidden])
         return found
 
     def covered(self, vertex: int, category: str) -> bool:
@@ -265,37 +271,51 @@ class Brute:
         )
 
     def open(self) -> dict[int, tuple[set[str], int, bool]]:
-        """S11: vertex -> (categories, distance, frontier)."""
+        """S11: vertex -> (categories, distance, frontier).
+
+        A node is on the frontier if some category gets there past no other open node and no leak of that category.
+        """
         whole = self.spread(self.sources())
         questions = {(v, c) for v, (c, _) in whole if not self.covered(v, c)}
+        first = set()
+        for category in {c for _, c in questions}:
 
-        def end(v: int, data: Data) -> bool:
-            c = data[0]
-            return self.has(v, "leak", c) or (v in self.nodes and (v, c) in questions)
+            def end(v: int, data: Data, category: str = category) -> bool:
+                leak = data[0] == category and self.has(v, "leak", category)
+                return leak or (v in self.nodes and (v, data[0]) in questions)
 
-        first = {(v, c) for v, (c, _) in self.spread(self.sources(), end)}
-        result = {}
-        for vertex in {v for v, _ in questions}:
+            first |= {(v, c) for v, (c, _) in self.spread(self.sources(), end) if c == category}
+        result: dict[int, tuple[set[str], int, bool]] = {}
+        for vertex in sorted({v for v, _ in questions}):
             categories = {c for v, c in questions if v == vertex}
             distance = min(d for (v, (c, _)), d in whole.items() if v == vertex and c in categories)
             frontier = vertex in self.nodes and any((vertex, c) in first for c in categories)
-            result[vertex] = (categories, distance, frontier)
+            one = self.one(vertex, result)
+            known = result.get(one, (set(), distance, False))
+            result[one] = (known[0] | categories, min(known[1], distance), frontier)
         return result
 
-    def unknown_ends(self) -> dict[int, set[str]]:
-        """S11: channels with data that no edge leaves -> categories; elements outside ROS that no edge enters -> none.
+    def one(self, vertex: int, known: Collection[int]) -> int:
+        """S4: the two sides of a wildcard are one element: what is read is told at what is written, if that is told."""
+        other = self.sides.get(vertex)
+        return other if other is not None and other in known else vertex
 
-        An element outside ROS is no such end where data begins and goes on from.
+    def unknown_ends(self) -> dict[int, set[str]]:
+        """S11: channels with data that no node reads -> categories; elements outside ROS that no edge enters -> none.
+
+        A node that reads a wildcard reads the channels that it matches. An element outside ROS is no such end where
+        data begins and goes on from.
         """
-        at: dict[int, set[str]] = {}
-        for vertex, (category, _) in self.spread(self.sources()):
-            at.setdefault(vertex, set()).add(category)
-        known = {a for a, _ in self.edges}
-        ends = {v: at[v] for v in at if v not in self.nodes and v not in known}
-        entered = {b for _, b in self.edges}
+        read = {a for a, b in self.edges if b in self.nodes and a not in self.nodes}
+        while more := {a for a, b in self.edges if b in read and a not in self.nodes} - read:
+            read |= more
+        ends: dict[int, set[str]] = {}
+        for vertex, (category, _) in sorted(self.spread(self.sources())):
+            if vertex not in self.nodes and vertex not in read:
+                ends.setdefault(self.one(vertex, ends), set()).add(category)
+        entered, left = {b for _, b in self.edges}, {a for a, _ in self.edges}
         for vertex in self.outside:
-            names = self.hierarchy.ancestors
-            begins = vertex in known and any(self.has(vertex, "source", name) for name in names)
+            begins = vertex in left and any(self.has(vertex, "source", c) for c in self.hierarchy.ancestors)
             if vertex not in entered and not begins:
                 ends[vertex] = set()
         return ends

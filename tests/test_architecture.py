@@ -40,6 +40,45 @@ def test_data_flows_one_way(room: str) -> None:
         assert imported_rooms(file) <= MAY[room] | {room}, file
 
 
+OPENERS = {"open", "fdopen", "read_bytes", "read_text"}
+WRITERS = {"write_bytes", "write_text", "mkstemp", "NamedTemporaryFile", "TemporaryFile", "rename", "truncate"}
+OF_ITS_OWN = {  # modules that touch files in another way, and why none of these is a user's
+    "ingest/regular.py": "notes what it reads",
+    "ontology/vocabulary.py": "notes what it reads; and what is shipped",
+    "report/compare/earlier.py": "notes what it reads",
+    "report/atomic.py": "the one writer",
+    "ingest/policy.py": "asks xinclude.py to open",
+    "ingest/patch.py": "copies in a folder of its own, gone at once",
+    "ingest/labels.py": "what is shipped",
+    "ontology/own.py": "what is shipped",
+    "queries/library.py": "what is shipped",
+    "ontology/cache.py": "the cache of categories",
+    "report/pictures/graphviz_worker.py": "a process that draws, with pipes only",
+    "src/rosprivacy/cli_diff.py": "looks how a file begins; what then reads it notes it",
+    "src/rosprivacy/cli_output.py": "the null device, when standard output is gone",
+    "src/rosprivacy/cluster/session.py": "settings of Spark in a folder of its own, gone at its end",
+    "src/rosprivacy/database.py": "the private Neo4j",
+    "src/rosprivacy/libraries.py": "the private Neo4j",
+    "src/rosprivacy/server.py": "the private Neo4j",
+    "src/rosprivacy/state.py": "the private Neo4j",
+}
+
+
+def test_there_is_one_writer_of_files_and_every_reader_notes_them() -> None:
+    """What is read is not written: that holds only as long as nothing is opened beside these."""
+    folders = [*MAY, "src/rosprivacy"]
+    touching = set()
+    for file in sorted(path for folder in folders for path in (ROOT / folder).rglob("*.py")):
+        if any(link in file.parents for link in (ROOT / "src" / "rosprivacy" / room for room in MAY)):
+            continue
+        calls = (node.func for node in ast.walk(ast.parse(file.read_text("utf-8"))) if isinstance(node, ast.Call))
+        names = {call.attr if isinstance(call, ast.Attribute) else getattr(call, "id", "") for call in calls}
+        if names & (OPENERS | WRITERS):
+            touching.add(str(file.relative_to(ROOT)))
+    assert touching - OF_ITS_OWN.keys() == set()
+    assert OF_ITS_OWN.keys() - touching == set()  # no reason is left over
+
+
 def test_the_rooms_ship_under_the_package() -> None:
     for room in MAY:
         assert (ROOT / "src" / "rosprivacy" / room).resolve() == ROOT / room

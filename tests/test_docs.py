@@ -27,6 +27,8 @@ COMMAND_LINE = ROOT / "docs" / "command-line.md"
 DATABASE = ROOT / "docs" / "database.md"
 CATEGORIES = ROOT / "docs" / "categories.md"
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md"]
+SECURITY = ROOT / "docs" / "security.md"
+PAGES.append(ROOT / "SECURITY.md")
 
 HEAD = """\
 # The command line
@@ -152,6 +154,15 @@ def test_the_ontologies_that_are_shown_are_read(block: str, tmp_path: Path) -> N
     file.write_text(block, "utf-8")
     found = load(tmp_path / "cache", [str(file)])
     assert len(found.categories) > len(load().categories)
+
+
+def test_what_holds_a_promise_is_there() -> None:
+    """docs/security.md names a test or a file for each promise."""
+    named = re.findall(r"`((?:[\w.-]+/)+[\w.-]+\.\w+)(?:::(\w+))?`", SECURITY.read_text("utf-8"))
+    assert len(named) > 20
+    for file, test in named:
+        assert not test or f"def {test}(" in (ROOT / file).read_text("utf-8"), (file, test)
+        assert (ROOT / file).is_file(), file
 
 
 def test_no_registry_is_named() -> None:

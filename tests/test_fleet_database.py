@@ -186,7 +186,7 @@ def expected_findings(case: Case) -> set[tuple[Any, ...]]:
     brute, elements = case.brute()
     return {
         (kind, category, elements[a].robot, elements[a].name, elements[b].robot, elements[b].name)
-        for kind, category, a, b in brute.findings()
+        for kind, category, a, b, _ in brute.findings()
     }
 
 

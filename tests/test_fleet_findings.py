@@ -165,16 +165,16 @@ def test_patterns_are_those_of_all_robots_in_one_graph(case: Case) -> None:
     view = FleetView.of(analysis, placed.likeness)
     brute, elements = case.brute()
     expected: dict[tuple[object, ...], list[tuple[bool, bool, str]]] = defaultdict(list)
-    for (kind, category, source, leak), (hidden, dismissed, _) in brute.findings().items():
+    for (kind, category, source, leak, beside), (hidden, dismissed, _) in brute.findings().items():
         a, b = elements[source], elements[leak]
         across = a.robot != b.robot and {a.robot, b.robot} <= set(case.robots)
         where = a.robot if a.robot in case.robots else b.robot
-        key = (kind, category, _alike(a, case), _alike(b, case), across)
+        key = (kind, category, _alike(a, case), _alike(b, case), across, beside)
         expected[key].append((dismissed, hidden, where if where in case.robots else ""))
     got = {}
     for pattern in view.patterns:
         f, robots = pattern.finding, placed.likeness
-        key = (f.kind, f.category, robots.alike(f.source), robots.alike(f.leak), pattern.across)
+        key = (f.kind, f.category, robots.alike(f.source), robots.alike(f.leak), pattern.across, f.beside)
         got[key] = (pattern.count, pattern.dismissed, pattern.pseudonymised, pattern.robots)
         assert pattern.id == pattern_id(f, robots)
     assert got == {
@@ -220,7 +220,7 @@ def test_each_finding_is_one_of_all_robots_in_one_graph(case: Case) -> None:
     expected = brute.findings()
     number = {element: vertex for vertex, element in elements.items()}
     for f in analysis.findings:
-        key = (f.kind, f.category, number[f.source], number[f.leak])
+        key = (f.kind, f.category, number[f.source], number[f.leak], f.beside)
         assert (f.pseudonymised, f.dismissed, len(f.witness) - 1) == expected[key]
 
 

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from rosprivacy.analysis.findings import finding_id
+from rosprivacy.analysis.model import Element
 from tests.command import cli
 
 if TYPE_CHECKING:
@@ -52,6 +54,159 @@ def ends(cli: Cli, *more: str) -> list[dict[str, Any]]:
     document = json.loads(cli("analyze", "p.xml", "-l", "l.yaml", "--format", "json", *more).stdout)
     found: list[dict[str, Any]] = document["unknown_ends"]
     return found
+
+
+RECORDER = (
+    profile("cam", ("publish", "topic", "/video")),
+    profile("blur", ("subscribe", "topic", "/video"), ("publish", "topic", "/blurred")),
+    profile("recorder", ("subscribe", "topic", "/video"), ("publish", "topic", "/raw_clips")),
+    profile("cloud", ("subscribe", "topic", "/blurred"), ("subscribe", "topic", "/raw_clips")),
+)
+RECORDER_LABELS = (
+    "nodes: {/cam: {source: [Video]}, /blur: {sanitizer: {Video: pseudonymise}}, /recorder: {leak: [Video]}, "
+    "/cloud: {leak: [Video]}}\n"
+)
+
+
+def analysis(cli: Cli, *more: str) -> dict[str, Any]:
+    document: dict[str, Any] = json.loads(cli("analyze", "p.xml", "-l", "l.yaml", "--format", "json", *more).stdout)
+    return document
+
+
+class TestPlainBesidePseudonymised:
+    """Rule S10: that data arrives pseudonymised does not hide that it arrives as it is (defect D2)."""
+
+    def test_both_are_told(self, cli: Cli) -> None:
+        policy(*RECORDER)
+        labels(RECORDER_LABELS)
+        done = cli("analyze", "p.xml", "-l", "l.yaml")
+        assert done.returncode == 1
+        titles = [line.split("   [")[0] for line in done.stdout.splitlines() if line[:2] in ("1.", "2.", "3.")]
+        assert titles == [
+            "1. pseudonymised Video: /cam -> /cloud",
+            "2. Video: /cam -> /cloud",
+            "3. Video: /cam -> /recorder",
+        ]
+        only = "   only through /recorder, which has a finding of its own; past it, data gets there pseudonymised only"
+        assert only in done.stdout.splitlines()
+
+    def test_ids_are_those_of_before_and_one_more(self, cli: Cli) -> None:
+        policy(*RECORDER)
+        labels(RECORDER_LABELS)
+        hidden, plain, recorder = analysis(cli)["findings"]
+        ids = [finding_id("Video", Element("node", "/cam"), Element("node", name)) for name in ("/cloud", "/recorder")]
+        assert [hidden["id"], recorder["id"]] == ids
+        assert (plain["dismissed"], plain["pseudonymised"], plain["beside_pseudonymised"]) == (True, False, True)
+        assert plain["id"] == finding_id("Video", Element("node", "/cam"), Element("node", "/cloud"), beside=True)
+        assert plain["id"] not in ids
+
+    def test_each_is_decided_about_by_itself(self, cli: Cli) -> None:
+        policy(*RECORDER)
+        labels(RECORDER_LABELS)
+        Path("r.json").write_text(json.dumps(analysis(cli)), "utf-8")
+        _, plain, _ = analysis(cli)["findings"]
+        said = ("--reason", "x", "--owner", "y", "--legal-basis", "6(1)(f)")
+        assert cli("decide", "accept", plain["id"], "--report", "r.json", *said).returncode == 0
+        decided = analysis(cli, "--decisions", "decisions.yaml")
+        assert [finding["accepted"] for finding in decided["findings"]] == [False, True, False]
+        assert decided["verdict"] == "leak"
+
+    def test_what_is_accepted_pseudonymised_is_not_accepted_as_it_is(self, cli: Cli) -> None:
+        """Once the recorder is accepted, plain data gets to the cloud past no other leak: a finding to decide anew."""
+        policy(*RECORDER)
+        labels(RECORDER_LABELS)
+        Path("r.json").write_text(json.dumps(analysis(cli)), "utf-8")
+        hidden, _, recorder = analysis(cli)["findings"]
+        said = ("--reason", "x", "--owner", "y", "--legal-basis", "6(1)(f)")
+        assert cli("decide", "accept", hidden["id"], recorder["id"], "--report", "r.json", *said).returncode == 0
+        decided = analysis(cli, "--decisions", "decisions.yaml")
+        cloud, recorder = decided["findings"]
+        assert (cloud["pseudonymised"], cloud["dismissed"], cloud["accepted"]) == (False, False, False)
+        assert recorder["accepted"]
+
+    def test_on_a_fleet_it_is_a_pattern_of_its_own(self, cli: Cli) -> None:
+        policy(*RECORDER)
+        labels(RECORDER_LABELS)
+        robot = "{policies: [p.xml], labels: [l.yaml]}"
+        Path("f.yaml").write_text(f"fleet: 1\nrobots: {{a: {robot}, b: {robot}}}\n", "utf-8")
+        document = json.loads(cli("analyze", "--fleet", "f.yaml", "--format", "json").stdout)
+        told = [(p["findings"], p["dismissed"], p["pseudonymised"]) for p in document["fleet"]["patterns"]]
+        assert told == [(2, 0, 2), (2, 2, 0), (2, 0, 0)]
+
+
+class TestFrontier:
+    """Rule S11: what cuts the frontier is a leak of the category, and a wildcard is one element (D4, D7)."""
+
+    def test_a_leak_of_another_kind_cuts_nothing(self, cli: Cli) -> None:
+        policy(
+            profile("cam", ("publish", "topic", "/a")),
+            profile("d", ("subscribe", "topic", "/a"), ("publish", "topic", "/c")),
+            profile("m", ("subscribe", "topic", "/c")),
+        )
+        labels(
+            "nodes: {/cam: {source: [Video]}, /d: {leak: [Video], derives: [{from: Video, to: FaceTemplate}], "
+            "sanitizer: {Video: drop}}}\n"
+        )
+        lines = cli("analyze", "p.xml", "-l", "l.yaml").stdout.splitlines()
+        at = lines.index("Review next (nodes that data reaches first): 1")
+        assert lines[at + 1] == "   /m  (node; FaceTemplate; 4 steps from a source)"
+
+    def test_the_sides_of_a_wildcard_are_one_element(self, cli: Cli) -> None:
+        policy(profile("s", ("publish", "topic", "/*")), profile("m", ("subscribe", "topic", "/*")))
+        labels("nodes: {/s: {source: [Video]}}\n")
+        (node,) = [q for q in analysis(cli)["open"] if q["element"]["kind"] == "node"]
+        assert (node["element"]["name"], node["distance"]) == ("/m", 2)
+        labels("nodes: {/s: {source: [Video]}, /m: {leak: [Video]}}\n")
+        (finding,) = analysis(cli)["findings"]
+        assert len(finding["steps"]) == 2
+
+
+class TestRestrictions:
+    """Rules S7 and S11: what was emitted as a broader kind may be of the kind asked for (case 11)."""
+
+    def system(self) -> None:
+        policy(
+            profile("camera", ("publish", "topic", "/video")),
+            profile("id", ("publish", "topic", "/ids")),
+            profile("uplink", ("subscribe", "topic", "/video")),
+            profile("store", ("subscribe", "topic", "/ids")),
+        )
+        labels(
+            "nodes: {/camera: {source: [PersonalData]}, /uplink: {leak: [Biometric]}, /id: {source: [FaceTemplate]}, "
+            "/store: conduit}\nchannels: {/video: sensitive, /ids: sensitive}\n"
+        )
+
+    def test_a_broader_kind_is_followed_and_marked(self, cli: Cli) -> None:
+        self.system()
+        done = cli("analyze", "p.xml", "-l", "l.yaml", "-c", "Biometric")
+        assert done.returncode == 1
+        first, *lines = done.stdout.splitlines()
+        assert first == "leak: data can reach a leak; only Biometric was asked for"
+        assert any(line.startswith("1. PersonalData (may be Biometric): /camera -> /uplink   [") for line in lines)
+        assert "   and PersonalData, since it is broader (may be Biometric)" in lines
+        assert analysis(cli, "-c", "Biometric")["assumptions"]["may_be_asked"] == {"PersonalData": ["Biometric"]}
+
+    @pytest.mark.parametrize(
+        ("filters", "named"),
+        [
+            (("-c", "Location", "-c", "Voice"), "Location, Voice"),
+            (("--data-type", "image"), "data that is image"),
+            (("--article9",), "what can fall under Article 9(1) GDPR"),
+            (("-c", "Voice", "--article9"), "Voice and what can fall under Article 9(1) GDPR"),
+        ],
+    )
+    def test_the_verdict_names_the_restriction_also_when_it_is_all(
+        self, cli: Cli, filters: tuple[str, ...], named: str
+    ) -> None:
+        self.system()
+        (line,) = cli("analyze", "p.xml", "-l", "l.yaml", "-q", *filters).stdout.splitlines()
+        assert line.endswith(f"; only {named} was asked for")
+
+    def test_a_kind_that_is_neither_narrower_nor_broader_is_left_out(self, cli: Cli) -> None:
+        self.system()
+        found = analysis(cli, "-c", "Location")
+        assert {finding["category"] for finding in found["findings"]} <= {"PersonalData"}
+        assert [category["name"] for category in found["categories"]] == ["PersonalData"]
 
 
 class TestUnknownEnds:

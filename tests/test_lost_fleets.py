@@ -20,6 +20,7 @@ from rosprivacy.ingest.labels import read_labels
 from rosprivacy.ingest.names import covers
 from rosprivacy.ontology.vocabulary import load
 from tests.test_fleet import policy, write
+from tests.test_parts import in_list
 
 if TYPE_CHECKING:
     from tests.command import Cli, Done
@@ -258,3 +259,235 @@ class TestDecisionsBetweenRobots:
         assert "accept leak /uplink, robot b, from_robot a" in done.stdout
         assert "from_robot: a\n" in Path("d.yaml").read_text("utf-8")
         assert cli("analyze", "--fleet", "fleet.yaml", "--decisions", "d.yaml").returncode == 0
+
+
+class TestANameWrittenAbsolute:
+    """Case 7, rule S1: a pushed namespace goes before nodes, relative and ``~`` names; an absolute name stays."""
+
+    FLEET = (
+        "robots:\n  a: {policies: [cam.xml], labels: [cam.yaml], domain: lab, namespace: {add: /r1}}\n"
+        "  b: {policies: [up.xml], labels: [up.yaml], domain: lab}\n"
+    )
+
+    MODEL = "models: {m: {policies: p.xml, labels: l.yaml, namespace: {add: '/*'}}}\n"
+
+    @pytest.mark.parametrize(
+        ("camera", "uplink", "code"),
+        [
+            ("/video", "/video", 1),
+            ("video", "/r1/video", 1),
+            ("video", "/video", 0),
+            ("~video", "/r1/camera/video", 1),
+            ("/video", "/*", 1),
+            ("/vid*", "/video", 1),
+            ("video", "/r1/*", 1),
+            ("vid*", "/video", 0),
+        ],
+    )
+    def test_it_is_the_same_channel_for_another_robot(self, cli: Cli, camera: str, uplink: str, code: int) -> None:
+        write("cam.xml", policy(f"/camera>{camera}").replace("~video", "~/video"))
+        write("up.xml", policy(f"/uplink<{uplink}"))
+        for side in ("cam", "up"):
+            labels = Path(f"{side}.yaml").read_text("utf-8").partition("channels")[0]
+            write(f"{side}.yaml", labels + "channels: {'/*': sensitive, '*': sensitive}\n")
+        done = analysed(cli, self.FLEET, "-v")
+        assert done.returncode == code
+        assert ("Video: a:/camera -> b:/uplink" in done.stdout) is bool(code)
+        told = "robot a: 1 name is written absolute and stays outside the namespace that is pushed: "
+        assert (told in done.stdout) is camera.startswith("/")
+
+    def test_services_and_actions_too(self, cli: Cli) -> None:
+        for kind, asks, answers in (("service", "request", "reply"), ("action", "call", "execute")):
+            for file, node, role in (("cam", "camera", asks), ("up", "uplink", answers)):
+                group = f'<{kind}s {role}="ALLOW"><{kind}>/ask</{kind}></{kind}s>'
+                write(f"{file}.xml", policy(f"/{node}").replace("</profile>", f"{group}</profile>"))
+                labels = Path(f"{file}.yaml").read_text("utf-8").partition("channels")[0]
+                write(f"{file}.yaml", labels)
+            assert findings(cli, self.FLEET) == (1, [("a:/camera", "b:/uplink")])
+
+    def test_a_deny_takes_out_what_it_is_written_for(self, cli: Cli) -> None:
+        """An absolute DENY cuts no relative ALLOW, and a relative one no absolute."""
+        own = "robots:\n  a: {policies: [p.xml], labels: [l.yaml], namespace: {add: /r1}}\n"
+        write("l.yaml", LABELS.partition("channels")[0])
+        for written, denied, code in (("video", "/video", 1), ("/video", "video", 1), ("/video", "/video", 0)):
+            write("p.xml", policy(f"/camera>{written},!{denied}", f"/uplink<{written}"))
+            assert analysed(cli, own).returncode == code, (written, denied)
+
+    def test_robots_whose_names_lie_in_their_namespace_are_not_alike(self, cli: Cli) -> None:
+        """The uplink reads /r1/video in full: on r1 that is the camera's, on r2 it is not."""
+        write("p.xml", policy("/camera>video", "/uplink</r2/video"))
+        write("l.yaml", LABELS.partition("channels")[0])
+        fleet = f"{self.MODEL}groups: [{{robots: 2, model: m, id: r*}}]\n"
+        assert findings(cli, fleet) == (1, [("r2:/camera", "r2:/uplink")])
+
+    def test_one_name_in_both_ways_is_two_channels(self, cli: Cli) -> None:
+        write("p.xml", policy("/camera>video", "/uplink</video"))
+        own = "robots:\n  a: {policies: [p.xml], labels: [l.yaml], namespace: {add: /r1}}\n"
+        done = analysed(cli, own)
+        assert "robot a: /video written absolute and relative, under the namespace that is pushed two" in done.stdout
+        assert "a:/r1/video" in done.stdout
+
+    def test_many_robots_that_are_alike_are_still_read_once(self, cli: Cli) -> None:
+        fleet = f"{self.MODEL}groups: [{{robots: 9, model: m}}]\n"
+        done = analysed(cli, fleet, "-v")
+        assert "on 9 of 9 robots" in done.stdout
+        assert done.stdout.count("model m: 1 name is written absolute and stays") == 1
+        assert "(9; model m)" in cli("fleet", "fleet.yaml").stdout
+
+    def test_a_saved_graph_keeps_how_names_are_written(self, cli: Cli) -> None:
+        """One of an earlier version does not: that is told, and its names are taken as they stand."""
+        assert cli("analyze", "p.xml", "-l", "l.yaml", "--save-graph", "g.json").returncode == 1
+        saved = json.loads(Path("g.json").read_text("utf-8"))
+        assert [grant["absolute"] for policy in saved["policies"] for grant in policy["grants"]] == [True, True]
+        write("up.xml", policy("/screen</video"))
+        assert "earlier version" not in cli("analyze", "up.xml", "--add", "g.json", "-l", "l.yaml").stdout
+        for policy_ in saved["policies"]:
+            for grant in policy_["grants"]:
+                del grant["absolute"]
+        write("g.json", json.dumps(saved))
+        done = cli("analyze", "up.xml", "--add", "g.json", "-l", "l.yaml")
+        assert done.returncode == 1
+        assert "saved by an earlier version, which did not keep which names a policy writes absolute" in done.stdout
+
+
+WRITTEN = ("x", "y", "/x", "/y", "~/x", "/r1/x", "/r2/x", "*", "/*", "/r1/*", "/*x")
+
+
+@st.composite
+def namespaced(draw: st.DrawFn) -> dict[str, tuple[str, list[tuple[str, str, str]]]]:
+    """Robots: the namespace that is pushed, and (node, role, name); a name that begins with ! is denied."""
+    grant = st.tuples(
+        st.sampled_from(("cam", "mid", "up")),
+        st.sampled_from(("publish", "subscribe")),
+        st.builds("{}{}".format, st.sampled_from(("", "", "", "!")), st.sampled_from(WRITTEN)),
+    )
+    robots = draw(st.integers(1, 3))
+    spaces = st.sampled_from(("", "/r1", "/r2"))
+    return {f"b{i}": (draw(spaces), draw(st.lists(grant, min_size=1, max_size=6))) for i in range(robots)}
+
+
+def enclave(robot: str, space: str, grants: list[tuple[str, str, str]]) -> str:
+    """A policy's enclave, for a robot whose nodes run in a namespace."""
+    profiles = ""
+    for node in ("cam", "mid", "up"):
+        mine = [(role, name) for who, role, name in grants if who == node]
+        rules = "".join(
+            f'<topics {role}="{"DENY" if name[0] == "!" else "ALLOW"}"><topic>{name.strip("!")}</topic></topics>'
+            for role, name in mine
+        )
+        profiles += f'<profile ns="{space or "/"}" node="{robot}_{node}">{rules}</profile>'
+    return f'<enclave path="/{robot}"><profiles>{profiles}</profiles></enclave>'
+
+
+def whole(*enclaves: str) -> str:
+    return f'<policy version="0.2.0"><enclaves>{"".join(enclaves)}</enclaves></policy>'
+
+
+def labelled(robots: dict[str, str]) -> str:
+    nodes: dict[str, object] = {}
+    for robot, space in robots.items():
+        nodes |= {f"{space}/{robot}_cam": {"source": ["Video"]}, f"{space}/{robot}_up": {"leak": ["Video"]}}
+    return json.dumps({"labels": 1, "nodes": nodes})
+
+
+@pytest.mark.parametrize("domain", ["", "lab"])
+@given(robots=namespaced())
+def test_a_pushed_namespace_is_as_if_each_profile_had_it(
+    domain: str, robots: dict[str, tuple[str, list[tuple[str, str, str]]]]
+) -> None:
+    """Against all robots of a domain in one policy, in which the profiles' ns is the namespace (rules S1, S4, S5)."""
+    with TemporaryDirectory() as at:
+        spec: dict[str, dict[str, object]] = {}
+        for robot, (space, grants) in robots.items():
+            write(f"{at}/{robot}.xml", whole(enclave(robot, "", grants)))
+            write(f"{at}/{robot}.json", labelled({robot: ""}))
+            spec[robot] = {"policies": f"{robot}.xml", "labels": f"{robot}.json"}
+            spec[robot] |= {"namespace": {"add": space}} if space else {}
+            spec[robot] |= {"domain": domain} if domain else {}
+        write(f"{at}/fleet.json", json.dumps({"fleet": 1, "robots": spec}))
+        found = rosprivacy.analyze_fleet(f"{at}/fleet.json").document()
+        got = {tuple(f[end]["name"].lstrip("/") for end in ("source", "leak")) for f in found["findings"]}
+        expected = set()
+        together = [list(robots)] if domain else [[robot] for robot in robots]
+        for some in together:
+            write(f"{at}/all.xml", whole(*(enclave(robot, *robots[robot]) for robot in some)))
+            write(f"{at}/all.json", labelled({robot: robots[robot][0] for robot in some}))
+            one = rosprivacy.analyze([f"{at}/all.xml"], [f"{at}/all.json"]).document()
+            expected |= {
+                tuple(f[end]["name"].rpartition("/")[2] for end in ("source", "leak")) for f in one["findings"]
+            }
+    assert got == expected
+
+
+class TestWhatJoinsNothing:
+    """Case 10 (c), rule S11: a domain or an infrastructure that joins nothing is told by name, and counted."""
+
+    ROBOT = "robots: {a: {policies: [cam.xml], labels: [cam.yaml]%s}}\n"
+    BASE_ALONE = (
+        "infrastructure base joins nothing: it names no domain, so it has one of its own, and no flow of the fleet "
+        "file leads to it or from it"
+    )
+    OWN = "a DDS domain of its own, and no flow of the fleet file names it together with anything else"
+    BASE = "infrastructure: {base: {policies: [up.xml], labels: [up.yaml]%s}}\n"
+
+    @pytest.mark.parametrize(
+        ("fleet", "notices"),
+        [
+            (
+                ROBOT % ", domain: lab" + BASE % "",
+                [
+                    "domain lab joins nothing: a is alone in it",
+                    f"{BASE_ALONE}; domains here: lab",
+                ],
+            ),
+            (
+                ROBOT % ", domain: lab" + BASE % ", domain: Lab",
+                [
+                    "domain Lab joins nothing: base is alone in it; did you mean lab?",
+                    "domain lab joins nothing: a is alone in it; did you mean Lab?",
+                ],
+            ),
+            (
+                "robots: {a: {policies: cam.xml, labels: cam.yaml}, b: {policies: up.xml, labels: up.yaml}}\n",
+                [f"2 robots join nothing: each has {OWN}: a, b"],
+            ),
+            (
+                "models: {m: {policies: cam.xml, labels: cam.yaml}}\ngroups: [{robots: 12, model: m, id: r*}]\n",
+                [
+                    f"12 robots join nothing: each has {OWN}: "
+                    + ", ".join(f"r{n:02}" for n in range(1, 11))
+                    + " and 2 more"
+                ],
+            ),
+            (
+                ROBOT % "" + BASE % "" + "flows: [{from: 'a:/camera', to: 'a:/camera'}]\n",  # within one robot
+                [
+                    BASE_ALONE,
+                    f"1 robot joins nothing: it has {OWN}: a",
+                ],
+            ),
+            (
+                ROBOT % "" + BASE % "" + "elements: {s: {kind: storage}}\nflows: [{from: '*:/camera', to: s}]\n",
+                [  # the glob means base too, which has no such node
+                    BASE_ALONE
+                ],
+            ),
+            (ROBOT % ", domain: lab" + BASE % ", domain: lab", []),
+            (ROBOT % "" + BASE % "" + "flows: [{from: 'a:/camera', to: 'base:/uplink'}]\n", []),
+            (ROBOT % "", []),  # a fleet of one
+        ],
+    )
+    def test_each_is_a_notice_in_memory_and_in_parts(self, cli: Cli, fleet: str, notices: list[str]) -> None:
+        done = analysed(cli, fleet, "-f", "json")
+        document = json.loads(done.stdout)
+        ours = [d for d in document["diagnostics"] if "join" in d["message"]]
+        assert [d["message"] for d in ours] == notices
+        assert {(d["severity"], d["file"]) for d in ours} <= {("notice", "fleet.yaml")}
+        in_parts = in_list("fleet.yaml").document()
+        assert [d for d in in_parts["diagnostics"] if "join" in d["message"]] == ours
+        assert in_parts["verdict"] == document["verdict"]
+        text = analysed(cli, fleet, "-v").stdout
+        assert all(notice in text for notice in notices)
+        count = len(notices)
+        told = f"{count} notice{'s' * (count > 1)} (-v shows them)"
+        assert (told in analysed(cli, fleet).stdout) is bool(count)

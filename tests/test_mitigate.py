@@ -64,7 +64,7 @@ def left(random: Random, accepted: set[Key] | None = None) -> set[Key]:
     """The open findings by brute force."""
     taken = accepted or set()
     found = random.brute().findings(lambda c, s, leak, _: ("disclosure", c, s, leak) in taken)
-    return {key for key, (_, dismissed, _) in found.items() if not dismissed} - taken
+    return {key[:4] for key, (_, dismissed, _) in found.items() if not dismissed} - taken
 
 
 def key_of(finding: Finding, number: dict[Element, int]) -> Key:

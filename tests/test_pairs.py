@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
 from hypothesis import given
 
 from rosprivacy.analysis.errors import InputErrors
@@ -30,8 +31,10 @@ def same(system: System, bound: Bound) -> None:
     for part in pairs(found.spread, tuple(concerns(found.spread, bound, system.hierarchy)), found.spread.all_bits):
         ends = list(zip(part.sources.tolist(), part.leaks.tolist(), strict=True))
         assert ends == sorted(set(ends))
-        for (source, leak), hidden, dismissed in zip(ends, part.pseudonymised, part.dismissed, strict=True):
-            got.add((part.kind, found.emitted[part.category], source, leak, bool(hidden), bool(dismissed)))
+        flags = np.column_stack([part.pseudonymised, part.dismissed, part.beside])
+        for end, (hidden, dismissed, beside) in zip(ends, flags.tolist(), strict=True):
+            pair = part.kind, found.emitted[part.category], *end
+            got |= {(*pair, hidden, dismissed), *([(*pair, False, True)] if beside else [])}
     assert got == {
         (f.kind, f.category, number[f.source], number[f.leak], f.pseudonymised, f.dismissed) for f in found.findings
     }

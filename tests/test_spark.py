@@ -17,12 +17,15 @@ from hypothesis import Phase, given, settings
 import rosprivacy
 from rosprivacy import database
 from rosprivacy.analysis.errors import ClusterError, InputError, InputErrors
+from rosprivacy.analysis.files_read import one_run
 from rosprivacy.assembly import run_stored
 from rosprivacy.cluster import session as spark
 from rosprivacy.cluster.fleets import run_on_spark
 from rosprivacy.cluster.results import check_new, read
+from rosprivacy.report.atomic import check_outputs
 from rosprivacy.settings import Settings
 from tests.graphs import ROOT, dump
+from tests.test_cli import XI
 from tests.test_fleet import write
 from tests.test_fleet_database import rows as rows_in_memory
 from tests.test_fleet_findings import Case, fleets
@@ -83,6 +86,21 @@ def test_problems_that_workers_meet_are_told_as_in_memory(fleet_file: str) -> No
     write(fleet_file, FLEET.replace("policies: hall.xml", "policies: wall.xml", 1))
     with pytest.raises(InputErrors, match=r"^hall.yaml:2: .*mirror"):
         run_on_spark(fleet_file, Settings())
+
+
+@pytest.mark.usefixtures("session")
+def test_what_workers_have_read_is_no_output(fleet_file: str) -> None:
+    """Workers are processes of their own; what a policy includes is opened by them only."""
+    part = '<profile ns="/" node="extra"><topics publish="ALLOW"><topic>/extra</topic></topics></profile>'
+    write("part.xml", part)
+    include = f'<xi:include {XI} href="part.xml"/></profiles>'
+    write("eye.xml", Path("eye.xml").read_text("utf-8").replace("</profiles>", include, 1))
+    with one_run():
+        on_spark(fleet_file)
+        for file in ("part.xml", "eye.xml", "odd.yaml", fleet_file):
+            with pytest.raises(InputErrors, match="is read in this run"):
+                check_outputs([Path(file)])
+        check_outputs([Path("new.json")])
 
 
 @pytest.fixture(scope="module")

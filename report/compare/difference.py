@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 FORMAT = "rosprivacy.diff/1"
 SECTIONS = ("findings", "robots", "grants", "elements")
 NAMES = {
-    "findings": ("kind", "category", "source", "leak", "across"),
+    "findings": ("kind", "category", "source", "leak", "across", "beside"),
     "robots": ("robot",),
     "grants": ("policy", "enclave", "node", "role", "kind", "name"),
     "elements": ("robot", "kind", "name", "leg"),

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import InputError, reason, shown
+from rosprivacy.analysis.files_read import noted
 from rosprivacy.report.document import FORMAT
 
 if TYPE_CHECKING:
@@ -68,7 +69,8 @@ def read_earlier(file: str) -> Earlier:
             raise InputError(file, 0, "is no file", HINT)
         if path.stat().st_size > LARGEST:
             raise InputError(file, 0, f"{path.stat().st_size / 2**20:.0f} MB are too large", HINT)
-        data = path.read_bytes()
+        with path.open("rb") as opened:
+            data = noted(opened, file).read()
         document = json.loads(data.decode("utf-8"))
     except (OSError, ValueError, RecursionError) as error:
         line = getattr(error, "lineno", 0)

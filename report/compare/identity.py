@@ -45,11 +45,12 @@ class Identity:
         return (robot, element["kind"], element["name"], element.get("leg", ""))
 
     def finding(self, finding: Mapping[str, Any]) -> Key:
-        """Return (kind, category, source, leak, whether it goes across robots)."""
+        """Return (kind, category, source, leak, whether it goes across robots, whether beside a pseudonymised one)."""
         pattern = self.patterns.get(finding["id"])
         across = "across" if pattern and pattern["across"] else ""
         ends = (self._end(finding["source"]), self._end(finding["leak"]))
-        return (finding["kind"], finding["category"], *ends, across)
+        beside = "beside" if finding.get("beside_pseudonymised") else ""
+        return (finding["kind"], finding["category"], *ends, across, beside)
 
     def _end(self, element: Mapping[str, Any]) -> str:
         """A source or leak by name; with its robot where that is none, such as what is shared."""

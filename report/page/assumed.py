@@ -48,6 +48,8 @@ def assumed(index: Index) -> Iterator[str]:
         yield words("a.types", names=words.row(_type(kind, index) for kind in said["data_types_asked"]))
     if said.get("article9_only"):
         yield words("a.article9")
+    for category, kinds in said.get("may_be_asked", {}).items():
+        yield words("a.broader", data=index.data(category), kinds=index.all_data(kinds))
     if "database" in said:
         yield words("a.database", robots=words.count(said["database"]["robots"], "robot"))
     if not said["labels"]:

@@ -203,6 +203,8 @@ def _notes(finding: Mapping[str, Any], index: Index) -> Iterator[str]:
         yield f"{words('f.reason')}: {printable(finding['reason'])}"
     if finding["dismissed"]:
         yield words("f.dismissed", names=words.row(map(name, finding["through"])))
+    if finding.get("beside_pseudonymised"):
+        yield words("f.beside")
     if finding["pseudonymised"]:
         yield words("f.pseudonymised")
     if finding["disjoint_paths"] > 1:

@@ -173,6 +173,7 @@ WORDS = {
         "The answer is only about data that can fall under Article 9(1) GDPR, or of which that is not known. Other "
         "personal data were not looked at."
     ),
+    "a.broader": "{data} is a part of this answer too: it is a broader kind, and may be {kinds}.",
     "a.database": "The graph of {robots} came from a database, where people can have changed it after it was loaded.",
     "a.unstated": (
         "{element} is labelled as cleaning {data}, but no label states how. It was taken as pseudonymisation: the data "
@@ -289,10 +290,11 @@ WORDS = {
     "f.third-country-transfer": "{data} from {source} can get to {leak}, outside the EEA, without a stated basis.",
     "f.single": "{data} is brought in and let out at {source} itself.",
     "f.pseudonymised": (
-        "The data arrives pseudonymised only. That is still personal data for whoever can tell the persons "
+        "On these ways the data arrives pseudonymised only. That is still personal data for whoever can tell the persons "
         "(recital 26 GDPR). To be answered: can this recipient do so, alone or with what others hold?"
     ),
     "f.dismissed": "Every way to it goes through {names}, which has an entry of its own. Assess that one first.",
+    "f.beside": "Past it, the data gets there pseudonymised only: that is an entry of its own.",
     "f.special": "{element} makes data of this kind, which can be a special category, of data that are none.",
     "f.ways": "{n} ways share no step; closing one leaves the others.",
     "f.paths": "Further ways",

@@ -7,13 +7,38 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import InputErrors, OntologyError, shown
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from rosprivacy.analysis.model import Category
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.settings import Settings
 
 
 def asked_for(vocabulary: Vocabulary, settings: Settings) -> set[str] | None:
-    """Return the categories that the answer is about, narrower ones included; None for all."""
+    """Return the categories that the answer is about; None for all.
+
+    These are what the filters name, narrower kinds, and broader ones: data of these may be of the kind asked for (S7,
+    S11).
+    """
+    named = _named(vocabulary, settings)
+    if named is None:
+        return None
+    return named.union(*(vocabulary.hierarchy.broader(name) for name in named))
+
+
+def may_be(vocabulary: Vocabulary, settings: Settings, emitted: Iterable[str]) -> dict[str, list[str]]:
+    """Return the emitted categories that the answer is about only since they may be what is asked for -> what of it."""
+    named = _named(vocabulary, settings)
+    if named is None:
+        return {}
+    broader = {name: set(vocabulary.hierarchy.broader(name)) for name in named}
+    first = {name for name in named if not broader[name] & named}
+    found = {name: sorted(kind for kind in first if name in broader[kind]) for name in sorted(emitted)}
+    return {name: kinds for name, kinds in found.items() if kinds and name not in named}
+
+
+def _named(vocabulary: Vocabulary, settings: Settings) -> set[str] | None:
+    """What the filters name, with narrower kinds; None where there is no filter."""
     if not (settings.categories or settings.article9 or settings.data_types):
         return None
     asked = set(vocabulary.categories)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.analysis.findings import Options, analyse
+from rosprivacy.analysis.ledger import ledger
 from rosprivacy.analysis.patterns import FleetView
 from rosprivacy.asked import asked_for
 from rosprivacy.assumptions import (
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
     from neo4j import Driver
 
     from rosprivacy.analysis.decisions import Decided
+    from rosprivacy.analysis.ledger import TakenAway
     from rosprivacy.analysis.model import Analysis, Bound, Diagnostic, FlowGraph, Policy
     from rosprivacy.ingest.labels import Labels
     from rosprivacy.ingest.rows import RobotRows
@@ -69,6 +71,13 @@ class Result:
         """The analysis as readers get it: of a fleet one finding of each pattern, one robot of those that are alike."""
         return self.fleet.shown(self.analysis) if self.fleet else self.analysis
 
+    @property
+    def taken_away(self) -> tuple[TakenAway, ...]:
+        """The ledger: what was taken away on the data's side, and on whose word; of robots that are alike of one."""
+        rows = ledger(self.analysis, self.bound, self.vocabulary.hierarchy, self.diagnostics)
+        beside = self.fleet.likeness.second if self.fleet else ()
+        return tuple(row for row in rows if row.element is None or row.element.robot not in beside)
+
     def document(self) -> dict[str, Any]:
         """Return the JSON document of the contract."""
         vocabulary = self.vocabulary
@@ -79,6 +88,7 @@ class Result:
             self.diagnostics,
             self.assumptions,
             self.bound.subjects,
+            self.taken_away,
         )
         made = with_decisions(made, self.decided) if self.decided else made
         return fleet_document(made, self.analysis, self.fleet) if self.fleet else made
@@ -149,7 +159,9 @@ def run_stored(driver: Driver, settings: Settings) -> Result:
     joined = joined_to(decisions, analysis, vocabulary, asked, stored.likeness)
     said, loaded = put_together(stored.robots.values(), analysis)
     said += joined.diagnostics if joined else ()
-    assumptions = own_assumptions(stored.graph, settings, vocabulary) | loaded | assumed_decisions(decisions)
+    assumptions = (
+        own_assumptions(stored.graph, settings, vocabulary, analysis.emitted) | loaded | assumed_decisions(decisions)
+    )
     view = FleetView.of(analysis, stored.likeness) if len(stored.robots) > 1 else None
     result = Result(analysis, stored.bound, vocabulary, (), said, assumptions, options=chosen, decided=joined)
     return replace(result, fleet=view)

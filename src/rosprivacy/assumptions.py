@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import rosprivacy
 from rosprivacy.analysis.model import Diagnostic, Place, Severity
+from rosprivacy.asked import may_be
 from rosprivacy.ingest.countries import countries
 
 if TYPE_CHECKING:
@@ -22,8 +23,17 @@ if TYPE_CHECKING:
     from rosprivacy.settings import Settings
 
 
-def own_assumptions(graph: FlowGraph, settings: Settings, vocabulary: Vocabulary) -> dict[str, Any]:
-    """Return what is assumed whatever is read."""
+def own_assumptions(
+    graph: FlowGraph, settings: Settings, vocabulary: Vocabulary, emitted: Iterable[str]
+) -> dict[str, Any]:
+    """Return what is assumed whatever is read.
+
+    Parameters
+    ----------
+    emitted
+        The categories that the answer is about.
+    """
+    broader = may_be(vocabulary, settings, emitted)
     return {
         "rosprivacy": rosprivacy.__version__,
         "view": graph.view,
@@ -34,6 +44,7 @@ def own_assumptions(graph: FlowGraph, settings: Settings, vocabulary: Vocabulary
         "categories_asked": list(settings.categories) or "all",
         "article9_only": settings.article9,
         "data_types_asked": list(settings.data_types) or "all",
+        **({"may_be_asked": broader} if broader else {}),
         "paths": settings.paths,
         "max_paths": settings.max_paths,
     }
@@ -50,7 +61,7 @@ def what_it_rests_on(
     """Return the assumptions of a report (rule S12)."""
     labels = ((file.file, file.sha256, file.shipped) for file in files)
     return {
-        **own_assumptions(graph, settings, vocabulary),
+        **own_assumptions(graph, settings, vocabulary, analysis.emitted),
         **_adequacy(analysis),
         **files_read(sources, labels, settings, analysis.standard_channels),
     }

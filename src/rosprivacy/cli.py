@@ -24,8 +24,10 @@ from rosprivacy import (
     cli_mitigate,
     cli_report,
     cli_views,
+    cli_why_not,
 )
 from rosprivacy.analysis.errors import InputError, RosPrivacyError
+from rosprivacy.analysis.files_read import one_run
 from rosprivacy.cli_options import (
     DecisionsFile,
     Engine,
@@ -73,13 +75,16 @@ app.command()(cli_categories.categories)
 app.command()(cli_mitigate.mitigate)
 app.command()(cli_decide.decide)
 app.command()(cli_report.report)
+app.command("why-not")(cli_why_not.why_not)
 
 
 @app.callback(invoke_without_command=True)
 def root(
+    context: typer.Context,
     version: Annotated[bool, typer.Option("--version", help="Print the version.")] = False,
 ) -> None:
     """Where personal data can go in a ROS 2 system, per kind of data."""
+    context.with_resource(one_run())  # until the command has ended
     if version:
         print(f"rosprivacy {rosprivacy.__version__}")
         raise typer.Exit
@@ -117,7 +122,7 @@ def analyze(
             metavar="NAME",
             autocompletion=complete_category,
             show_default=False,
-            help="Answer for this category and narrower ones only; may be repeated.",
+            help="Answer for this category, narrower and broader ones only; may be repeated.",
         ),
     ] = None,
     article9: Annotated[
@@ -175,6 +180,10 @@ def analyze(
         raise typer.BadParameter("--decisions are taken into account in memory only: leave out --engine spark")
     if (master or results) and engine is not Engine.spark:
         raise typer.BadParameter("--master and --results are for --engine spark")
+    if results and output:
+        from rosprivacy.report.atomic import check_outputs
+
+        check_outputs([Path(results), output])
     if from_database:
         if policies or labels or add or save_graph or fleet:
             raise typer.BadParameter(

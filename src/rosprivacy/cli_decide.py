@@ -87,7 +87,6 @@ def decide(
     from rosprivacy.ingest.decide import with_decision
     from rosprivacy.ingest.decisions import is_date
     from rosprivacy.ontology.vocabulary import load
-    from rosprivacy.report.atomic import write_texts
 
     pattern = {"category": category, "source": source, "leak": leak, "robot": robot, "from_robot": from_robot}
     targets = [{key: value for key, value in pattern.items() if value}] if not ids else [{"id": one} for one in ids]
@@ -114,9 +113,9 @@ def decide(
     for target in targets:
         remark = _remark(found, target)
         text = with_decision(str(decisions), text, {**target, **said}, remark, vocabulary)
-    write_texts({decisions: text or ""})
     about = "; ".join(", ".join(f"{key} {shown(str(value))}" for key, value in target.items()) for target in targets)
-    emit(f"{shown(str(decisions))}: {choice.value} {about}\n", None)
+    answer = f"{shown(str(decisions))}: {choice.value} {about}\n"
+    emit(answer, None, {decisions: text or ""}, edited=decisions)  # the one file that is meant to be read and written
 
 
 def _text(file: Path) -> str | None:
@@ -138,9 +137,11 @@ def _text(file: Path) -> str | None:
 
 def _findings(report: Path) -> dict[str, dict[str, Any]]:
     """The findings of a JSON report by id, those of a fleet by the ids of their patterns."""
+    from rosprivacy.ingest.regular import contents
+
     hint = "write it with rosprivacy analyze --format json -o FILE"
     try:
-        document = json.loads(report.read_text("utf-8"))
+        document = json.loads(contents(report))
         findings = {finding["id"]: finding for finding in document["findings"]}
         if not document.get("fleet"):
             return findings

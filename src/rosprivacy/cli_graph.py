@@ -264,9 +264,11 @@ def _pairs(given: list[str]) -> dict[str, str]:
 
 
 def _read(file: Path | None) -> str:
+    from rosprivacy.ingest.regular import contents
+
     assert file is not None
     try:
-        return file.read_text("utf-8")
+        return contents(file).decode("utf-8")
     except (OSError, ValueError) as error:
         raise QueryError(f"{shown(str(file))}:0: cannot be read: {reason(error)}; name a file of Cypher") from None
 

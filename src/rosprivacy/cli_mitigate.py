@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import sys
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from rosprivacy.analysis.errors import shown
 from rosprivacy.cli_options import (
     DecisionsFile,
     Format,
@@ -59,7 +61,7 @@ def mitigate(
             metavar="NAME",
             autocompletion=complete_category,
             show_default=False,
-            help="Remove the findings of this category and narrower ones only; may be repeated.",
+            help="Remove the findings of this category, narrower and broader ones only; may be repeated.",
         ),
     ] = None,
     category: SixLists = "PersonalData",
@@ -97,9 +99,11 @@ def mitigate(
     kinds = tuple(kind.value for kind in by) if by else CHANGES
     found = run_mitigation(result, str(limits) if limits else None, kinds)
     report = found.document()
-    texts = {patch: found.patch.diff} if patch else {}
+    texts = {patch: found.patch.diff or None} if patch else {}
     if format is Format.json:
         emit(as_text(report), output, texts)
     else:
         emit(on_console(lambda console: print_mitigation(console, report), colour=output is None), output, texts)
+    if patch and not found.patch.diff:
+        print(f"{shown(str(patch))}: left as it is: there is no patch; the answer says why", file=sys.stderr)
     raise typer.Exit(0 if found.complete else 1)

@@ -47,6 +47,13 @@ class FailOn(StrEnum):
     all = "all"
 
 
+class TextOrJson(StrEnum):
+    """For people, or for programs."""
+
+    text = "text"
+    json = "json"
+
+
 class Engine(StrEnum):
     """What carries data through a fleet."""
 

@@ -17,25 +17,23 @@ if TYPE_CHECKING:
 SIGPIPE = 13  # the module signal lacks it on Windows
 
 
-def emit(text: str, output: Path | None, others: Mapping[Path, str] | None = None) -> None:
-    """Write the text to a file or to standard output, and other files with it."""
-    texts = {**(others or {}), **({output: text} if output else {})}
-    if texts:
-        from rosprivacy.report.atomic import write_texts
+def emit(
+    text: str | bytes,
+    output: Path | None,
+    others: Mapping[Path, str | None] | None = None,
+    *,
+    edited: Path | None = None,
+) -> None:
+    """Write the text to a file or to standard output, and other files with it; see ``write_texts``.
 
-        write_texts(texts)
+    Bytes are not put into the terminal's own encoding.
+    """
+    from rosprivacy.report.atomic import STANDARD_OUTPUT, write_texts
+
+    answer = (output, text) if output else (STANDARD_OUTPUT, None)
+    write_texts([*(others or {}).items(), answer], edited=edited)
     if not output:
         _print(text)
-
-
-def emit_bytes(data: bytes, output: Path | None) -> None:
-    """Write what is not text in the terminal's own encoding to a file or to standard output."""
-    if not output:
-        _print(data)
-        return
-    from rosprivacy.report.atomic import write_texts
-
-    write_texts({output: data})
 
 
 def _print(text: str | bytes) -> None:

@@ -26,7 +26,7 @@ from rosprivacy.cli_options import (
     ViewChosen,
     complete_category,
 )
-from rosprivacy.cli_output import emit_bytes, progress_of
+from rosprivacy.cli_output import emit, progress_of
 
 if TYPE_CHECKING:
     from rosprivacy.assembly import Result
@@ -89,7 +89,7 @@ def report(
             metavar="NAME",
             autocompletion=complete_category,
             show_default=False,
-            help="Report on this category and narrower ones only; may be repeated.",
+            help="Report on this category, narrower and broader ones only; may be repeated.",
         ),
     ] = None,
     ontology: Ontologies = None,
@@ -132,7 +132,7 @@ def report(
     else:
         result = _result(policies, labels, settings, neo4j, from_database=from_database)
     text = _text(result, format, lang.value, title, since, redact=redact)
-    emit_bytes(text.encode(), output)  # it says of itself that it is UTF-8
+    emit(text.encode(), output)  # it says of itself that it is UTF-8
 
 
 def _result(

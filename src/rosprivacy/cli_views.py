@@ -25,7 +25,7 @@ from rosprivacy.cli_options import (
     ViewChosen,
     complete_category,
 )
-from rosprivacy.cli_output import emit_bytes, progress_of
+from rosprivacy.cli_output import emit, progress_of
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.model import Profile
@@ -94,7 +94,7 @@ def graph(
             metavar="NAME",
             autocompletion=complete_category,
             show_default=False,
-            help="Draw what this category and narrower ones reach; may be repeated.",
+            help="Draw what this category, narrower and broader ones reach; may be repeated.",
         ),
     ] = None,
     finding: Annotated[
@@ -248,17 +248,17 @@ def _write(picture: Picture, form: PictureFormat, output: Path | None, direction
         done = drawn(picture, form.value, direction=direction, seconds=seconds)
         for said in done.said:
             print(said, file=sys.stderr)
-        emit_bytes(done.data, output)
+        emit(done.data, output)
         return
     if form is PictureFormat.graphml:
         from rosprivacy.report.pictures.graphml import graphml
 
-        emit_bytes(graphml(picture).encode(), output)
+        emit(graphml(picture).encode(), output)
         return
     if form is PictureFormat.dot:
         from rosprivacy.report.pictures.dot import dot
 
-        emit_bytes(dot(picture, direction=direction).encode(), output)
+        emit(dot(picture, direction=direction).encode(), output)
         return
     from rosprivacy.report.pictures.mermaid import mermaid, too_large
 
@@ -266,4 +266,4 @@ def _write(picture: Picture, form: PictureFormat, output: Path | None, direction
     if too_large(picture, text):
         said = "Mermaid draws no more than 500 lines or 50,000 characters as it is usually set: draw less"
         print(said, file=sys.stderr)
-    emit_bytes(text.encode(), output)
+    emit(text.encode(), output)

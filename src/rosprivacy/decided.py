@@ -61,7 +61,8 @@ def accepts(decisions: Decisions | None, likeness: Likeness = NO_ROBOTS) -> Call
 
 def in_fleet(case: Case, likeness: Likeness) -> Case:
     """Return a case with its pattern and robots; where it stands for more than itself it has no id of its own."""
-    pattern = pattern_of(case.kind, case.category, case.source, case.leak, likeness)
-    source, leak = (end.robot if likeness.is_robot(end.robot) else "" for end in (case.source, case.leak))
-    own = case.id if likeness.alone(case.source, case.leak) else ""
+    ends = case.source, case.leak
+    pattern = pattern_of(case.kind, case.category, *ends, likeness, beside=case.beside)
+    source, leak = (end.robot if likeness.is_robot(end.robot) else "" for end in ends)
+    own = case.id if likeness.alone(*ends) else ""
     return replace(case, id=own, pattern=pattern, robots=(source, leak))

@@ -18,12 +18,14 @@ from rosprivacy.assumptions import assumed_decisions, remembered, sources_of, wh
 from rosprivacy.decided import accepts, decisions_of, joined_to
 from rosprivacy.ingest.alike import Alike, alike
 from rosprivacy.ingest.binding import bind
-from rosprivacy.ingest.domains import Member, stripped
+from rosprivacy.ingest.domains import Member, stripped, with_grants
 from rosprivacy.ingest.files import read_policies
 from rosprivacy.ingest.fleet import Fleet, Robot, read_fleet
 from rosprivacy.ingest.fleetrows import FleetRows
 from rosprivacy.ingest.graph import build
+from rosprivacy.ingest.joins import joins_nothing
 from rosprivacy.ingest.labels import Labels, read_labels
+from rosprivacy.ingest.namespaces import as_written, pushed, told
 from rosprivacy.ingest.outside import extend
 from rosprivacy.ingest.parts import Part
 from rosprivacy.ingest.placing import Placed, place
@@ -31,7 +33,7 @@ from rosprivacy.ontology.vocabulary import load
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.decisions import Decisions
-    from rosprivacy.analysis.model import Diagnostic
+    from rosprivacy.analysis.model import Diagnostic, Policy
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.settings import Settings
 
@@ -44,6 +46,8 @@ class Read:
     ----------
     members
         By id of the first robot of each group.
+    joins
+        Those of the diagnostics that say what joins nothing.
     """
 
     fleet: Fleet
@@ -52,6 +56,7 @@ class Read:
     placed: Placed
     labels: tuple[Labels, ...]
     diagnostics: tuple[Diagnostic, ...]
+    joins: tuple[Diagnostic, ...] = ()
     decisions: Decisions | None = None
 
 
@@ -118,7 +123,7 @@ def rows_of_fleet(read: Read, result: Result, settings: Settings) -> FleetRows:
         )
         more[group.robots[0].id] = remembered(said, member.diagnostics)
     everything = {**result.assumptions, "policies": [], "labels": []}
-    more[read.fleet.name] = remembered(everything, ())
+    more[read.fleet.name] = remembered(everything, read.joins)
     return FleetRows(read.placed, result.analysis, result.vocabulary, more)
 
 
@@ -145,8 +150,9 @@ def read_all(file: str, vocabulary: Vocabulary, settings: Settings) -> Read:
         raise InputErrors(problems)
     placed = place(fleet, groups, members, settings.view)
     labels = tuple(sorted(reader.labels.values(), key=lambda labels: (labels.file, labels.own)))
-    diagnostics = dict.fromkeys(d for member in members.values() for d in member.diagnostics)
-    return Read(fleet, groups, members, placed, labels, tuple(diagnostics), decisions)
+    joins = joins_nothing(fleet, groups, placed.met)
+    diagnostics = dict.fromkeys((*(d for member in members.values() for d in member.diagnostics), *joins))
+    return Read(fleet, groups, members, placed, labels, tuple(diagnostics), joins, decisions)
 
 
 class Reader:
@@ -156,30 +162,41 @@ class Reader:
         self.labels: dict[tuple[str, bool], Labels] = {}
         self._vocabulary = vocabulary
         self._settings = settings
+        self._policies: dict[tuple[str, ...], tuple[tuple[Policy, ...], tuple[Diagnostic, ...]]] = {}
         self._members: dict[object, Member] = {}
 
     def member(self, robot: Robot) -> Member:
         """Return a robot with its graph."""
-        key = (robot.policies, robot.labels, robot.own, robot.strip)
+        key = (robot.policies, robot.labels, robot.own, robot.strip, robot.add)
         if key not in self._members:
             self._members[key] = self._made(robot)
-        return replace(self._members[key], robot=robot)
+        member = self._members[key]
+        who = f"model {robot.model}" if robot.model else f"robot {robot.id}"
+        said = told(member.policies, who, robot.add)
+        return replace(member, robot=robot, diagnostics=(*member.diagnostics, *said))
+
+    def _read_policies(self, robot: Robot) -> tuple[tuple[Policy, ...], tuple[Diagnostic, ...]]:
+        settings = self._settings
+        if robot.policies not in self._policies:
+            self._policies[robot.policies] = read_policies(
+                robot.policies,
+                include_root=settings.include_root,
+                max_bytes=settings.max_bytes,
+                progress=settings.progress,
+            )
+        return self._policies[robot.policies]
 
     def _made(self, robot: Robot) -> Member:
         settings = self._settings
         files = self._read_labels(robot)
-        policies, said = read_policies(
-            robot.policies,
-            include_root=settings.include_root,
-            max_bytes=settings.max_bytes,
-            progress=settings.progress,
-        )
-        told = [*(d for policy in policies for d in policy.diagnostics), *said]
-        told += [d for labels in files for d in labels.diagnostics]
-        graph, full = stripped(build(policies, settings.view), robot.strip)
+        policies, said = self._read_policies(robot)
+        diagnostics = [*(d for policy in policies for d in policy.diagnostics), *said]
+        diagnostics += [d for labels in files for d in labels.diagnostics]
+        run = [pushed(policy, robot.add) for policy in policies]
+        graph, full = stripped(build(run, settings.view), robot.strip or robot.add)
         extended = extend(graph, files)
-        part = Part.of(extended, bind(extended, files))
-        return Member(robot, policies, part, full, graph.profiles, tuple(files), tuple(dict.fromkeys(told)))
+        part = with_grants(Part.of(extended, bind(extended, files)), lambda grant: as_written(grant, robot.add))
+        return Member(robot, policies, part, full, graph.profiles, tuple(files), tuple(dict.fromkeys(diagnostics)))
 
     def _read_labels(self, robot: Robot) -> list[Labels]:
         settings = self._settings

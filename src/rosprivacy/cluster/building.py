@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.domains import Member
     from rosprivacy.ingest.elements import Limit
     from rosprivacy.ingest.fleet import Fleet, Robot
+    from rosprivacy.ingest.joins import Met
     from rosprivacy.ingest.split import Unit
 
     Read = Callable[[Robot], Member]  # a robot -> the same with its graph
@@ -60,6 +61,8 @@ class Told:
         (lines, side 0 or 1) -> (unit, for how many elements of the fleet the elements stand that these lines name).
     restated
         Places of flows that a label file says more of.
+    met
+        Where the flows of the fleet file begin and end.
     """
 
     problems: tuple[Problem, ...] = ()
@@ -72,6 +75,7 @@ class Told:
     found: tuple[tuple[bool, bool], ...] = ()
     named: Mapping[tuple[Lines, int], Mapping[str, int]] = field(default_factory=dict)
     restated: tuple[Place, ...] = ()
+    met: frozenset[Met] = frozenset()
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,6 +128,7 @@ def told_of(one: Some, members: Sequence[Member]) -> Told:
         countries=any(facts.country for facts in one.part.outside.values()),
         found=tuple((bool(sources), bool(targets)) for sources, targets in one.ends),
         restated=one.restated,
+        met=one.met,
     )
 
 
@@ -148,6 +153,7 @@ def joined(one: Told, other: Told) -> Told:
         found=found,
         named=ends,
         restated=(*one.restated, *other.restated),
+        met=one.met | other.met,
     )
 
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.counts import Counts
 from rosprivacy.analysis.errors import FleetError, InputError, InputErrors, reason
+from rosprivacy.analysis.files_read import note
 from rosprivacy.analysis.model import Diagnostic, Place, Severity
 from rosprivacy.asked import asked_for
 from rosprivacy.assembly import Result
@@ -27,6 +28,7 @@ from rosprivacy.fleets import Reader
 from rosprivacy.ingest.alike import alike
 from rosprivacy.ingest.countries import countries
 from rosprivacy.ingest.fleet import read_fleet
+from rosprivacy.ingest.joins import joins_nothing
 from rosprivacy.ingest.split import crossing_lines, split
 from rosprivacy.ontology.vocabulary import load
 
@@ -97,6 +99,7 @@ def run_on_spark(file: str, settings: Settings, master: str | None = None, resul
         _check_whole(question)
     with session(master) as spark:
         found = analyse_in_parts(question, partial(scatter, spark))
+        _note_what_workers_read(found)
         told = shown(question, found, settings.paths, settings.max_paths)
         answer = result(question, found, told, settings, vocabulary)
         if results:
@@ -105,13 +108,22 @@ def run_on_spark(file: str, settings: Settings, master: str | None = None, resul
         return answer
 
 
+def _note_what_workers_read(found: Found) -> None:
+    """Workers are processes of their own, whose notes nobody sees here: what they have read is no output either."""
+    for name in (*(file for file, _ in found.told.sources), *(file for file, *_ in found.told.labels)):
+        if Path(name).is_file():
+            note(name, Path(name).stat())
+
+
 def plan_of(question: Question, found: Found, answer: Result, settings: Settings) -> tuple[Plan, tuple[Unit, ...]]:
     """Return what the rows of units are made with, and the units."""
     fixed, units = split(question.groups)
     examples = tuple(unit for unit in units if unit.name in found.examples)
     fleet = replace(question.fleet, robots=(), infrastructure=())
     assumptions = answer.assumptions
-    return Plan(fleet, fixed, examples, found.shared, found.leaking, assumptions, settings, question.reader), units
+    joins = joins_nothing(question.fleet, question.groups, found.told.met)
+    plan = Plan(fleet, fixed, examples, found.shared, found.leaking, assumptions, settings, question.reader, joins)
+    return plan, units
 
 
 def _check_whole(question: Question) -> None:
@@ -132,7 +144,7 @@ def _check_whole(question: Question) -> None:
 def result(question: Question, found: Found, told: Shown, settings: Settings, vocabulary: Vocabulary) -> SparkResult:
     """Put together what a report says."""
     assumptions = {
-        **own_assumptions(told.placed.graph, settings, vocabulary),
+        **own_assumptions(told.placed.graph, settings, vocabulary, told.analysis.emitted),
         **({"countries_as_of": countries().as_of} if found.told.countries else {}),
         **files_read(sorted(found.told.sources), sorted(found.told.labels), settings, 0),
         "fleet": [{"file": name, "sha256": digest} for name, digest in question.fleet.sources],
@@ -142,7 +154,8 @@ def result(question: Question, found: Found, told: Shown, settings: Settings, vo
         f"analysed in parts, {found.open:,} open elements in the whole fleet: ways and distances are the shortest "
         "among the robots that are shown, and open elements and unknown ends are listed of these"
     )
-    said = (*found.told.diagnostics, Diagnostic(Place("--engine spark", 0), Severity.NOTICE, bounds))
+    joins = joins_nothing(question.fleet, question.groups, found.told.met)
+    said = (*found.told.diagnostics, *joins, Diagnostic(Place("--engine spark", 0), Severity.NOTICE, bounds))
     policies = {policy.file: policy for member in told.members.values() for policy in member.policies}
     labels = {file.file: file for member in told.members.values() for file in member.files}
     return SparkResult(

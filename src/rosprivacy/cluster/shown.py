@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.domains import Member
     from rosprivacy.ingest.placing import Placed
 
-Wanted = dict[int, set[tuple[str, int, int]]]
+Wanted = dict[int, set[tuple[str, int, int, bool]]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +68,7 @@ def shown(question: Question, found: Found, paths: str, max_paths: int) -> Shown
         wanted: Wanted = defaultdict(set)
         for group in found.groups:
             category = spread.categories.index(group.category)
-            wanted[vertex[group.source]].add((group.kind, vertex[group.leak], category))
+            wanted[vertex[group.source]].add((group.kind, vertex[group.leak], category, group.beside))
         return dict(wanted)
 
     options = Options(question.asked, paths, max_paths, choose=choose)

@@ -25,8 +25,9 @@ from rosprivacy.ontology.vocabulary import load
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
-    from rosprivacy.analysis.model import Analysis, Element
+    from rosprivacy.analysis.model import Analysis, Diagnostic, Element
     from rosprivacy.analysis.outside import Concern, Outside
+    from rosprivacy.analysis.pairs import Pairs
     from rosprivacy.analysis.spread import Spread
     from rosprivacy.cluster.building import Read
     from rosprivacy.ingest.alike import Alike
@@ -38,7 +39,7 @@ if TYPE_CHECKING:
     from rosprivacy.settings import Settings
 
 AT_ONCE = 25  # units that are placed in one graph
-Wanted = dict[int, set[tuple[str, int, int]]]
+Wanted = dict[int, set[tuple[str, int, int, bool]]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,6 +60,8 @@ class Plan:
         See ``Found``.
     assumptions
         Of the answer about the whole fleet.
+    joins
+        What a reader has to know of the fleet: what joins nothing.
     """
 
     fleet: Fleet
@@ -69,6 +72,7 @@ class Plan:
     assumptions: Mapping[str, Any]
     settings: Settings
     reader: Callable[[], Read]
+    joins: tuple[Diagnostic, ...] = ()
 
 
 def unit_rows(units: Sequence[Unit], plan: Plan) -> list[RobotRows]:
@@ -117,6 +121,15 @@ def _placed(units: Sequence[Unit], plan: Plan, read: Read) -> tuple[Placed, dict
     return replace(placed, bound=limited(placed, plan.shared)), members
 
 
+def _each_finding(part: Pairs) -> Iterator[tuple[int, int, bool, bool, bool]]:
+    """(source, leak, dismissed, pseudonymised, beside) of each finding of the pairs."""
+    columns = (part.sources, part.leaks, part.dismissed, part.pseudonymised, part.beside)
+    for source, leak, dismissed, hidden, beside in zip(*(c.tolist() for c in columns), strict=True):
+        yield source, leak, dismissed, hidden, False
+        if beside:
+            yield source, leak, True, False, True
+
+
 def _fleet_rows(placed: Placed, members: Mapping[str, Member], plan: Plan, mine: Mapping[str, str]) -> FleetRows:
     """Findings that begin in our units: each that stays there or ends at what is shared, and one for all others."""
     vocabulary = load(ontologies=plan.settings.ontologies)
@@ -128,24 +141,21 @@ def _fleet_rows(placed: Placed, members: Mapping[str, Member], plan: Plan, mine:
         ours = [element.robot in mine for element in elements]
         wanted: Wanted = {}
         for part in pairs(found, kinds, mask):
-            beyond: dict[tuple[int, Element], tuple[bool, bool, int]] = {}
-            rows = zip(
-                *(c.tolist() for c in (part.sources, part.leaks, part.dismissed, part.pseudonymised)), strict=True
-            )
-            for source, leak, dismissed, hidden in rows:
+            beyond: dict[tuple[int, Element, bool], tuple[bool, bool, int]] = {}
+            for source, leak, dismissed, hidden, beside in _each_finding(part):
                 if owner[source] == owner[leak] or not owner[source] or not owner[leak]:
                     if ours[source] or ours[leak] or not (owner[source] or owner[leak]):
-                        wanted.setdefault(source, set()).add((part.kind, leak, part.category))
+                        wanted.setdefault(source, set()).add((part.kind, leak, part.category, beside))
                 elif ours[source]:
-                    key = source, placed.likeness.alike(elements[leak])
+                    key = source, placed.likeness.alike(elements[leak]), beside
                     beyond[key] = min(beyond.get(key, (True, True, leak)), (dismissed, hidden, leak))
-            for (source, _), (_, _, leak) in beyond.items():
-                wanted.setdefault(source, set()).add((part.kind, leak, part.category))
+            for (source, _, beside), (_, _, leak) in beyond.items():
+                wanted.setdefault(source, set()).add((part.kind, leak, part.category, beside))
         return wanted
 
     analysis = analyse(placed.graph, placed.bound, vocabulary.hierarchy, Options(choose=choose))
     said = {name: _more(member, analysis, plan, vocabulary) for name, member in members.items()}
-    said[plan.fleet.name] = remembered({**plan.assumptions, "policies": [], "labels": []}, ())
+    said[plan.fleet.name] = remembered({**plan.assumptions, "policies": [], "labels": []}, plan.joins)
     known = _verdicts(analysis, plan)
     more = {name: {**some, "verdict": known.get(name, str(Verdict.UNDETERMINED))} for name, some in said.items()}
     return FleetRows(placed, analysis, vocabulary, more, most_across=0)
