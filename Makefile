@@ -3,7 +3,10 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test clean
+LOCK := uv pip compile --quiet --upgrade --universal --python-version 3.11 --generate-hashes --no-emit-index-url \
+	--no-annotate --custom-compile-command 'make locks' pyproject.toml -
+
+.PHONY: demo test locks clean
 
 demo: $(VENV)/installed
 	$(BIN)/rosprivacy analyze examples/factory/before.policy.xml --labels examples/factory/run2.labels.yaml --fail-on never
@@ -20,6 +23,11 @@ $(VENV)/installed-dev: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --editable '.[dev,bench]'
 	touch $@ $(VENV)/installed
+
+# What the GitHub Action and the image install, with the hashes of all files, and what builds rosprivacy itself. Needs uv.
+locks:
+	echo 'setuptools>=77' | $(LOCK) --output-file requirements.lock
+	printf 'setuptools>=77\nneo4j-rust-ext>=5.26\n' | $(LOCK) --output-file docker/requirements.lock
 
 clean:
 	rm -rf $(VENV) build dist

@@ -27,7 +27,7 @@ from rosprivacy.analysis.model import (
     Step,
     Verdict,
 )
-from rosprivacy.analysis.outside import concerns, country_unknown
+from rosprivacy.analysis.outside import concerns, country_unknown, on_day
 from rosprivacy.analysis.paths import WITNESS, Between, further
 from rosprivacy.analysis.questions import open_questions
 from rosprivacy.analysis.search import START, Net, Search, path_to, present, search
@@ -62,6 +62,8 @@ class Options:
     accepts
         Whether a person has accepted that a category of a source reaches a leak, in one form; such a leak hides
         nothing that lies behind it (rule S10).
+    today
+        The day on which adequacy decisions hold or have ended, ``YYYY-MM-DD``; empty where none is taken to have.
     choose
         Of a spread, the kinds of findings and the bits of the categories: source -> ``Chosen`` of the findings to
         make; None for all.
@@ -72,6 +74,7 @@ class Options:
     max_paths: int = MAX_PATHS
     accepts: Callable[[Case], bool] | None = None
     choose: Callable[[Spread, Sequence[Concern], int], Mapping[int, AbstractSet[Chosen]]] | None = None
+    today: str = ""
 
 
 def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Options | None = None) -> Analysis:
@@ -89,6 +92,7 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
     the part of the graph between the two.
     """
     options = options or Options()
+    bound = replace(bound, outside=on_day(bound.outside, options.today))
     found = spread(graph, bound, hierarchy)
     kinds = tuple(concerns(found, bound, hierarchy))
     wanted = [c for c in found.categories if options.categories is None or c in options.categories]

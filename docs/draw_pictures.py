@@ -89,7 +89,7 @@ def main(wanted: list[str]) -> None:
             output = DOCS / "pictures" / f"{drawing.name}.svg"
             command = ["rosprivacy", "graph", *system.files, *drawing.options.split(), "--output", str(output)]
             print(" ".join(command))
-            subprocess.run([sys.executable, "-m", *command], cwd=system.folder, check=True)
+            subprocess.run([sys.executable, "-P", "-m", *command], cwd=system.folder, check=True)
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.legal import turned_special
 from rosprivacy.analysis.treatment import cleanings, makings
 from rosprivacy.report import taken_away
-from rosprivacy.report.outside import inventory, taken_by_kind
+from rosprivacy.report.outside import inventory, taken_by_kind, without_backups
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
@@ -103,6 +103,7 @@ def document(
             **assumptions,
             "taken_away": taken_away.counts(taken),
             "taken_by_kind": taken_by_kind(analysis),
+            "backups_taken_as_none": [element_dict(element) for element in without_backups(analysis)],
             "sanitizers_without_method": [
                 {"element": element_dict(element), "category": category, "taken_as": "pseudonymise"}
                 for element, category in analysis.unstated

@@ -236,6 +236,8 @@ def _assumed_outside(report: Mapping[str, Any]) -> Iterator[Line]:
     assumptions = report["assumptions"]
     for kind, role in assumptions["taken_by_kind"].items():
         yield f"   {kind}: {TAKEN[role]} ({role}), unless a label says otherwise", ""
+    if taken := assumptions["backups_taken_as_none"]:
+        yield f"   backups are not stated, taken to have none: {', '.join(map(_name, taken))}", "yellow"
     if "countries_as_of" in assumptions:
         yield f"   EEA and adequacy decisions as of {assumptions['countries_as_of']}: check them", ""
     for row in report["outside"]:

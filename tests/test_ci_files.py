@@ -41,8 +41,8 @@ def runner(tmp_path: Path) -> dict[str, str]:
     """What a runner gives to a step; rosprivacy is there already, as after the first step."""
     bin_folder = tmp_path / "temp" / "rosprivacy" / "bin"
     bin_folder.mkdir(parents=True)
-    for name in ("python", "rosprivacy"):
-        (bin_folder / name).write_text(f'#!/bin/sh\nexec "{sys.executable}" "$@"\n')
+    for name, words in (("python", ""), ("rosprivacy", "-P -m rosprivacy")):
+        (bin_folder / name).write_text(f'#!/bin/sh\nexec "{sys.executable}" {words} "$@"\n')
         (bin_folder / name).chmod(0o755)
     return {
         "RUNNER_TEMP": str(tmp_path / "temp"),
@@ -126,6 +126,142 @@ def test_bad_input_ends_the_action_with_the_problem(runner: dict[str, str], tmp_
     assert "hello" not in done.stdout
 
 
+def hostile(folder: Path) -> Path:
+    """Fill a checkout with what a tool might run or import, and return the file that is then there."""
+    trace = folder.parent / "ran"
+    for name in TAKEN_FOR_MODULES:
+        planted(folder / name, f"open({str(trace)!r}, 'a').write(__file__ + ' ')\n")
+    for name in TAKEN_FOR_COMMANDS:
+        planted(folder / name, f"#!/bin/sh\necho {name} >> '{trace}'\n").chmod(0o755)
+    script = folder / "sed"
+    planted(
+        folder / ".git" / "config",
+        f"[core]\nfsmonitor = {script}\nhooksPath = .git/hooks\n[diff]\nexternal = {script}\n",
+    )
+    planted(folder / "pyproject.toml", '[build-system]\nrequires = []\nbuild-backend = "setup"\nbackend-path = ["."]\n')
+    planted(folder / "setup.cfg", "[metadata]\nname = attr: json.name\n")
+    planted(folder / "pip.conf", "[install]\nindex-url = http://127.0.0.1:9/\n")
+    planted(folder / "requirements.lock", "evil==1\n")
+    planted(folder / "evil.pth", f"import os; open({str(trace)!r}, 'a').write('pth')\n")
+    for name in ("rosprivacy.sarif", "rosprivacy.json"):  # what is written there would be written elsewhere
+        (folder / name).symlink_to("../victim")
+    planted(folder.parent / "victim", "mine")
+    return trace
+
+
+def planted(file: Path, text: str) -> Path:
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(text, "utf-8")
+    return file
+
+
+TAKEN_FOR_MODULES = (
+    *("json.py", "secrets.py", "re.py", "typing.py", "resource.py", "_compat_pickle.py", "sitecustomize.py"),
+    *(
+        "usercustomize.py",
+        "setup.py",
+        "yaml.py",
+        "lxml/__init__.py",
+        "rosprivacy/__init__.py",
+        "rosprivacy/__main__.py",
+    ),
+    *("pip/__init__.py", "pip/__main__.py", "venv/__init__.py", "venv/__main__.py", "ensurepip/__main__.py"),
+    *("setuptools/__init__.py", "setuptools/build_meta.py"),
+)
+TAKEN_FOR_COMMANDS = (
+    *("python", "python3", "sed", "cat", "rm", "dirname", "git", "jq", ".bashrc", ".profile", ".bash_profile"),
+    *(
+        ".git/hooks/post-checkout",
+        ".git/hooks/post-index-change",
+        ".git/hooks/pre-commit",
+        ".git/hooks/fsmonitor-watchman",
+    ),
+)
+FROM_HERE = {"PYTHONPATH": f"{os.pathsep}/nowhere"}  # as `export PYTHONPATH=$PYTHONPATH:…` makes it: the current folder
+
+
+def test_nothing_of_a_hostile_checkout_runs_in_the_action(runner: dict[str, str], tmp_path: Path) -> None:
+    checkout = tmp_path / "checkout"
+    shutil.copytree(FACTORY, checkout / "p")
+    trace = hostile(checkout)
+    inputs = {"policies": "p/before.policy.xml", "labels": "p/run2.labels.yaml"}
+    tokens = set()
+    for _ in range(2):
+        *_, done = run_action(inputs, {**runner, **FROM_HERE}, checkout)
+        assert not trace.exists(), trace.read_text("utf-8")
+        assert done.returncode == 1, done.stderr
+        assert outputs(runner) == {"verdict": "leak", "findings": "2"}
+        tokens.add(re.match("::stop-commands::([0-9a-f]{32})\n", done.stdout)[1])  # type: ignore[index] # or it fails
+    assert len(tokens) == 2
+    assert (tmp_path / "victim").read_text("utf-8") == "mine"
+    assert json.loads((checkout / "rosprivacy.json").read_text("utf-8"))["verdict"] == "leak"
+
+
+def test_an_answer_that_the_checkout_brings_is_not_taken_for_ours(runner: dict[str, str], tmp_path: Path) -> None:
+    """If the analysis fails, a later step must not find one."""
+    for name in ("rosprivacy.sarif", "rosprivacy.json"):
+        planted(tmp_path / "checkout" / name, '{"verdict": "no-leak-found", "findings": []}')
+    *_, done = run_action({"policies": "none.policy.xml"}, runner, tmp_path / "checkout")
+    assert done.returncode == 2
+    assert list((tmp_path / "checkout").iterdir()) == []
+    assert not Path(runner["GITHUB_OUTPUT"]).exists()
+
+
+def test_the_action_writes_through_no_linked_folder(runner: dict[str, str], tmp_path: Path) -> None:
+    shutil.copytree(FACTORY, tmp_path / "checkout" / "p")
+    planted(tmp_path / "elsewhere" / "out.json", "mine")
+    (tmp_path / "checkout" / "out").symlink_to(tmp_path / "elsewhere")
+    inputs = {"policies": "p/before.policy.xml", "labels": "p/run2.labels.yaml", "json": "out/out.json"}
+    *_, done = run_action(inputs, runner, tmp_path / "checkout")
+    assert done.returncode == 2
+    assert done.stderr == "out/out.json:0: it is behind a link of the checkout; name a file in a real folder\n"
+    assert (tmp_path / "elsewhere" / "out.json").read_text("utf-8") == "mine"
+
+
+@pytest.mark.slow
+def test_nothing_of_a_hostile_checkout_runs_while_the_action_installs(tmp_path: Path) -> None:
+    """The first step too; and what it installs is what the lock names."""
+    action, checkout = hooks_repository(tmp_path / "action"), tmp_path / "checkout"
+    shutil.copytree(FACTORY, checkout / "p")
+    trace = hostile(checkout)
+    (tmp_path / "temp").mkdir()
+    runner = {
+        "RUNNER_TEMP": str(tmp_path / "temp"),
+        "GITHUB_ACTION_PATH": str(action),
+        "GITHUB_OUTPUT": str(tmp_path / "output"),
+        "GITHUB_STEP_SUMMARY": str(tmp_path / "summary.md"),
+    }
+    inputs = {"policies": "p/before.policy.xml", "labels": "p/run2.labels.yaml", "python": sys.executable}
+    done = run_action(inputs, {**runner, **FROM_HERE}, checkout)
+    assert not trace.exists(), trace.read_text("utf-8")
+    assert [step.returncode for step in done] == [0, 1], done[-1].stderr
+    assert outputs(runner) == {"verdict": "leak", "findings": "2"}
+    pip = [str(tmp_path / "temp" / "rosprivacy" / "bin" / "python"), "-I", "-m", "pip", "freeze", "--all"]
+    there = subprocess.run(pip, capture_output=True, text=True, check=True).stdout
+    lock = (ROOT / "requirements.lock").read_text("utf-8")
+    locked, known = ({alike(line.split(" ")[0]) for line in text.splitlines()} for text in (lock, there))
+    assert {line for line in known - locked if not line.startswith("pip==")} == {"rosprivacy"}
+    assert any(line.startswith("setuptools==") for line in known)
+
+
+def alike(pin: str) -> str:
+    """A pin with its name written as all tools take for the same."""
+    return re.sub("[-_.]+", "-", pin.lower())
+
+
+@pytest.mark.slow
+def test_a_file_with_another_hash_is_not_installed(tmp_path: Path) -> None:
+    action = hooks_repository(tmp_path / "action")
+    lock = (action / "requirements.lock").read_text("utf-8")
+    (action / "requirements.lock").write_text(re.sub("sha256:[0-9a-f]{8}", "sha256:00000000", lock), "utf-8")
+    (tmp_path / "temp").mkdir()
+    runner = {"RUNNER_TEMP": str(tmp_path / "temp"), "GITHUB_ACTION_PATH": str(action)}
+    (done,) = run_action({"python": sys.executable, "policies": "p"}, runner, tmp_path)
+    assert done.returncode == 1
+    assert "DO NOT MATCH THE HASHES" in done.stderr
+    assert not (tmp_path / "temp" / "rosprivacy" / "bin" / "rosprivacy").exists()
+
+
 @pytest.mark.slow
 def test_the_action_installs_itself(tmp_path: Path) -> None:
     shutil.copytree(FACTORY, tmp_path / "p")
@@ -206,6 +342,27 @@ def test_the_hook_fails_on_a_leak_and_passes_without_one(tmp_path: Path) -> None
     assert "Passed" in clean.stdout
 
 
+def test_nothing_of_a_hostile_repository_runs_in_the_hook(tmp_path: Path) -> None:
+    """Its own entry, in the environment of the tests; git and its hooks are pre-commit's business."""
+    hooks = tmp_path / "hooks"
+    hooks.mkdir()
+    shutil.copy(HOOKS, hooks)
+    committed(hooks)
+    folder = users_repository(tmp_path / "user", hooks, {"language": "system", "args": arguments(2)})
+    trace = tmp_path / "ran"
+    for name in TAKEN_FOR_MODULES:
+        planted(folder / name, f"open({str(trace)!r}, 'a').write(__file__ + ' ')\n")
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    variables = {"PRE_COMMIT_HOME": str(tmp_path / "home"), "PATH": path, "GIT_CONFIG_NOSYSTEM": "1", **FROM_HERE}
+    command = [sys.executable, "-I", "-m", "pre_commit", "run", "--all-files", "--verbose", "--color=never"]
+    done = subprocess.run(
+        command, cwd=folder, env={**os.environ, **variables}, capture_output=True, text=True, check=False
+    )
+    assert not trace.exists(), trace.read_text("utf-8")
+    assert "Video: /safety_camera -> /archive_server" in done.stdout, done.stdout + done.stderr
+    assert done.returncode == 1
+
+
 @pytest.mark.slow
 def test_pre_commit_installs_the_hook_from_this_repository(tmp_path: Path) -> None:
     hooks = hooks_repository(tmp_path / "hooks")
@@ -280,12 +437,65 @@ def test_long_lists_are_cut_and_say_so(tmp_path: Path) -> None:
     assert len(comment) < 10_000
 
 
+def workflow() -> Any:
+    return yaml.safe_load((CI / "privacy.yml").read_text("utf-8"))
+
+
+def say_what_changes(runner: dict[str, str], checkout: Path, outcome: str, **more: str) -> str:
+    """Run that step of the workflow, after an analysis of the pull request; return its comment."""
+    (step,) = (step for step in workflow()["jobs"]["paths-to-assess"]["steps"] if "NOTHING" in step.get("env", {}))
+    variables = {name: value for name, value in step["env"].items() if "${{" not in value} | {"BEFORE": outcome}
+    environment = {**os.environ, **runner, **variables, **more, "FORK": "true"}
+    command = ["bash", "--noprofile", "--norc", "-eo", "pipefail", "-c", step["run"]]
+    done = subprocess.run(command, cwd=checkout, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return Path(runner["GITHUB_STEP_SUMMARY"]).read_text("utf-8")
+
+
+@pytest.mark.parametrize("outcome", ["failure", "success"])
+def test_a_pull_request_is_not_its_own_baseline(outcome: str, runner: dict[str, str], tmp_path: Path) -> None:
+    """It brings a before.json that says that nothing is new; and an analysis that failed leaves one half done."""
+    new, old = json.dumps(report_of(2)), json.dumps(report_of(1))
+    for name in ("before.json", "after.json"):
+        planted(tmp_path / "checkout" / name, new)
+    planted(Path(runner["RUNNER_TEMP"], "after.json"), new)
+    planted(Path(runner["RUNNER_TEMP"], "before.json"), new if outcome == "failure" else old)
+    comment = say_what_changes(runner, tmp_path / "checkout", outcome)
+    assert "**New ways to assess: 2**" in comment
+    assert ("**There is no baseline**: " in comment) == (outcome == "failure")
+    before = "not analysed before" if outcome == "failure" else "undetermined"
+    assert f"Verdict: `{before}` before, `leak` now." in comment
+
+
+def test_nothing_of_a_hostile_checkout_runs_while_it_is_compared(runner: dict[str, str], tmp_path: Path) -> None:
+    trace = hostile(tmp_path / "checkout")
+    for name in ("before.json", "after.json"):
+        planted(Path(runner["RUNNER_TEMP"], name), json.dumps(report_of(2)))
+    comment = say_what_changes(runner, tmp_path / "checkout", "success", **FROM_HERE)
+    assert not trace.exists(), trace.read_text("utf-8")
+    assert "No way to assess is new, gone or changed." in comment
+
+
+def test_who_reads_a_pull_request_can_write_nothing() -> None:
+    """And who can write checks nothing out; the baseline is made before the pull request is there."""
+    assert workflow()["permissions"] == {}
+    for job in workflow()["jobs"].values():
+        outs = [step["with"] for step in job["steps"] if step.get("uses", "").startswith("actions/checkout@")]
+        assert all(out["persist-credentials"] is False for out in outs)
+        assert not outs or job["permissions"] == {"contents": "read"}
+    steps = workflow()["jobs"]["paths-to-assess"]["steps"]
+    at = {step.get("name"): i for i, step in enumerate(steps)}
+    assert at["Check out what the pull request is for"] < at["As it is"] < at["Check out what would be"]
+    assert at["Check out what would be"] < at["As it would be"] < at["Say what changes"]
+    for name in ("As it is", "As it would be"):
+        assert all(steps[at[name]]["with"][kind].startswith("${{ runner.temp }}/") for kind in ("sarif", "json"))
+
+
 def test_the_workflow_runs_what_is_there() -> None:
-    workflow = yaml.safe_load((CI / "privacy.yml").read_text("utf-8"))
-    steps = workflow["jobs"]["paths-to-assess"]["steps"]
+    steps = workflow()["jobs"]["paths-to-assess"]["steps"]
     inputs = yaml.safe_load(ACTION.read_text("utf-8"))["inputs"]
     ours = [step["with"] for step in steps if step.get("uses", "").endswith("/rosprivacy@main")]
     assert len(ours) == 2
     assert all(set(given) <= set(inputs) for given in ours)
-    assert "pull_request_target" not in workflow[True]  # YAML reads 'on' so
-    assert not any("${{" in step.get("run", "") for step in steps)
+    assert "pull_request_target" not in workflow()[True]  # YAML reads 'on' so
+    assert not any("${{" in step.get("run", "") for job in workflow()["jobs"].values() for step in job["steps"])

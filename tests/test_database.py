@@ -17,10 +17,8 @@ from dataclasses import replace
 from io import StringIO
 from pathlib import Path
 from threading import Thread
-from types import SimpleNamespace
 from typing import TYPE_CHECKING
 from urllib.request import urlopen
-from zipfile import ZipFile
 
 import pytest
 
@@ -645,48 +643,22 @@ def test_the_private_server_has_the_settings_that_confine_it(private_neo4j: Conn
 @pytest.mark.usefixtures("local_extra")
 def test_the_users_repositories_are_asked(nowhere: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """And what goes wrong there does not show the address of a mirror, which may hold a password."""
-    import jgo
+    from jgo.util import http
 
-    (tmp_path / "jgo.conf").write_text("[repositories]\ncentral = https://user:pw@mirror.example/maven\n", "utf-8")
+    settings = f"[settings]\nrepo_cache = {tmp_path}\n[repositories]\ncentral = https://user:pw@mirror.example/maven\n"
+    (tmp_path / "jgo.conf").write_text(settings, "utf-8")
     monkeypatch.setenv("JGO_CONFIG_FILE", str(tmp_path / "jgo.conf"))
-    asked: list[dict[str, str]] = []
+    asked: list[str] = []
 
-    def resolve(_: str, repositories: dict[str, str]) -> list[object]:
-        asked.append(repositories)
-        raise ConnectionError(str(repositories))
+    def get(url: str, **_: object) -> None:
+        asked.append(url)
+        raise ConnectionError(url)
 
-    monkeypatch.setattr(jgo, "resolve", resolve)
+    monkeypatch.setattr(http, "get", get)
     with pytest.raises(DatabaseError) as error:
         database.start()
-    assert asked == [{"central": "https://user:pw@mirror.example/maven"}]
+    assert all(url.startswith("https://user:pw@mirror.example/maven/org/") for url in asked[:1])
+    assert asked
     assert "cannot be fetched (ConnectionError); check the network" in one_line(error)
     assert "mirror.example" not in str(error.value)
     assert not (nowhere / "jars.json").exists()
-
-
-@pytest.mark.parametrize("cut", [0, 1, 60])
-def test_a_jar_that_was_broken_off_is_fetched_again(cut: int, tmp_path: Path) -> None:
-    path = tmp_path / "some.jar"
-
-    def download() -> Path:
-        if not path.exists():  # as jgo: what is there is taken
-            with ZipFile(path, "w") as jar:
-                jar.writestr("Some.class", "x" * 100)
-        return path
-
-    size = download().stat().st_size
-    path.write_bytes(path.read_bytes()[: size * cut // 100])
-    assert libraries._fetch_jar(SimpleNamespace(resolve=download)) == path
-    assert path.stat().st_size == size
-
-
-def test_a_jar_that_stays_damaged_is_an_error(tmp_path: Path) -> None:
-    path = tmp_path / "some.jar"
-
-    def download() -> Path:
-        path.write_text("<html>sign in first</html>", "utf-8")
-        return path
-
-    with pytest.raises(ValueError, match="is damaged"):
-        libraries._fetch_jar(SimpleNamespace(resolve=download))
-    assert not path.exists()

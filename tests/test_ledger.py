@@ -117,7 +117,8 @@ GLOBS = [statement("mundane"), statement("never", "Any"), statement("only", "Loc
 
 def answer(brute: Brute) -> tuple[dict[tuple[str, str, int, int], tuple[bool, bool]], set[tuple[int, str]]]:
     """Finding -> (not dismissed, plain); (vertex, category) that is open."""
-    findings = {key: (not dismissed, not hidden) for key, (hidden, dismissed, _) in brute.findings().items()}
+    told = {key[:4]: forms for key, forms in brute.findings().items() if not key[4]}  # none beside another
+    findings = {key: (not dismissed, not hidden) for key, (hidden, dismissed, _) in told.items()}
     return findings, {(v, c) for v, (categories, *_) in brute.open().items() for c in categories}
 
 

@@ -22,11 +22,12 @@ from rosprivacy.assembly import run_stored
 from rosprivacy.cluster import session as spark
 from rosprivacy.cluster.fleets import run_on_spark
 from rosprivacy.cluster.results import check_new, read
+from rosprivacy.fleets import run_fleet
 from rosprivacy.report.atomic import check_outputs
 from rosprivacy.settings import Settings
 from tests.graphs import ROOT, dump
 from tests.test_cli import XI
-from tests.test_fleet import write
+from tests.test_fleet import policy, write
 from tests.test_fleet_database import rows as rows_in_memory
 from tests.test_fleet_findings import Case, fleets
 from tests.test_parts import FLEET, documents, fleet_file, same
@@ -86,6 +87,40 @@ def test_problems_that_workers_meet_are_told_as_in_memory(fleet_file: str) -> No
     write(fleet_file, FLEET.replace("policies: hall.xml", "policies: wall.xml", 1))
     with pytest.raises(InputErrors, match=r"^hall.yaml:2: .*mirror"):
         run_on_spark(fleet_file, Settings())
+
+
+LOST = """fleet: 1
+models: {m: {policies: p.xml, labels: l.yaml, domain: lab, namespace: {add: /*}}}
+groups: [{robots: 3, model: m, id: r*}]
+robots:
+  a: {policies: a/p.xml, labels: l.yaml, domain: Lab}
+  b: {policies: b/p.xml, labels: l.yaml}
+infrastructure: {base: {policies: p.xml, labels: l.yaml}}
+"""
+LABELS = "labels: 1\nnodes: {/camera: {source: [Video]}, /uplink: {leak: [Video]}}\n"
+INCLUDED = (
+    '<xi:include xmlns:xi="http://www.w3.org/2001/XInclude" href="f.xml" xpointer="xpointer(/profile/*)"/></profile>'
+)
+
+
+@pytest.mark.usefixtures("session")
+def test_what_a_fleet_must_not_lose(fleet_file: str) -> None:
+    """Absolute names under a pushed namespace, includes of a policy in UTF-16, what joins nothing (S1, S10, S11)."""
+    write(fleet_file, LOST)
+    write("l.yaml", LABELS)
+    write("p.xml", policy("/camera>/video,image", "/uplink</video,/r2/image"))
+    for robot, topic in (("a", "/other"), ("b", "/video")):
+        write(f"{robot}/f.xml", f'<profile><topics subscribe="ALLOW"><topic>{topic}</topic></topics></profile>')
+        text = policy("/camera>/video", "/uplink").replace("</profile></profiles>", f"{INCLUDED}</profiles>")
+        Path(robot, "p.xml").write_bytes(text.encode("utf-16"))
+    expected, got = run_fleet(fleet_file, Settings()).document(), run_on_spark(fleet_file, Settings()).document()
+    got["diagnostics"].pop()  # how far an answer in parts goes
+    assert {"r1", "b"} <= {finding["source"]["robot"] for finding in expected["findings"]}
+    assert sum("join" in said["message"] for said in expected["diagnostics"]) == 3
+    assert sum("written absolute" in said["message"] for said in expected["diagnostics"]) == 1
+    for key in ("verdict", "findings", "diagnostics"):
+        assert got[key] == expected[key]
+    assert got["fleet"]["patterns"] == expected["fleet"]["patterns"]
 
 
 @pytest.mark.usefixtures("session")
@@ -265,6 +300,47 @@ def test_bad_usage_is_told(cli: Cli, options: list[str], problem: str) -> None:
     done = cli("analyze", *options)
     assert done.returncode == 2
     assert problem in " ".join(done.stderr.split())
+
+
+@pytest.fixture
+def checkout(tmp_path: Path) -> Path:
+    """A stranger's checkout: each of its files would leave a trace if it was run or imported."""
+    names = ["_compat_pickle.py", "resource.py", "json.py", "pyspark/__init__.py", "rosprivacy/__main__.py"]
+    for name in [*names, "sub/socket.py"]:
+        plant(tmp_path / "checkout" / name, f"open({str(tmp_path / 'ran')!r}, 'a').write(__file__)\n")
+    (tmp_path / "checkout" / "jars").mkdir()
+    for name in ("bin/spark-submit", "bin/java", "sub/python3", "sub/java", "sub/ps"):
+        file = plant(tmp_path / "checkout" / name, f"#!/bin/sh\necho {name} >> {tmp_path / 'ran'}\n")
+        file.chmod(0o755)
+    return tmp_path / "checkout"
+
+
+def plant(file: Path, text: str) -> Path:
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(text, "utf-8")
+    return file
+
+
+@pytest.mark.parametrize("folder", [".", "sub"])  # pyspark looks for a Spark in the parent of the current folder, too
+def test_nothing_of_a_checkout_is_run(checkout: Path, folder: str) -> None:
+    """And the workers are the Python that runs us, also where another one stands first in PATH."""
+    fleet = str(ROOT / "examples" / "fleet" / "fleet.yaml")
+    variables = {
+        name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "SPARK", "PYSPARK"))
+    }
+    command = [sys.executable, "-P", "-m", "rosprivacy", "analyze", "--fleet", fleet, "--engine", "spark"]
+    done = subprocess.run(
+        command,
+        cwd=checkout / folder,
+        env={**variables, "PATH": os.defpath},
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+    assert not (checkout.parent / "ran").exists(), (checkout.parent / "ran").read_text("utf-8")
+    assert done.returncode == 1, done.stderr
+    assert "ModuleNotFoundError" not in done.stderr
 
 
 def test_without_the_extra_it_says_how_to_get_it(tmp_path: Path) -> None:

@@ -147,6 +147,7 @@ WORDS = {
     "a.categories": "Die Antwort betrifft nur diese Datenarten und engere: {names}. Andere wurden nicht betrachtet.",
     "a.types": "Die Antwort betrifft nur Daten dieser Formen: {names}. Andere wurden nicht betrachtet.",
     "a.article9": "Die Antwort betrifft nur Daten, die unter Artikel 9 Absatz 1 DSGVO fallen können oder von denen das nicht bekannt ist. Andere personenbezogene Daten wurden nicht betrachtet.",
+    "a.backups": "Zu Sicherungskopien liegt keine Angabe vor, angenommen wurden keine: {names}.",
     "a.broader": "{data} gehört auch zu dieser Antwort: Es ist eine weitere Datenart und kann {kinds} sein.",
     "a.database": "Der Graph ({robots}) stammt aus einer Datenbank, in der Personen ihn nach dem Laden geändert haben können.",
     "a.unstated": "{element} soll laut Angabe bereinigen ({data}), aber keine Angabe sagt, wie. Es wurde Pseudonymisierung angenommen: Die Daten sind weiter personenbezogen.",

@@ -173,6 +173,7 @@ WORDS = {
         "The answer is only about data that can fall under Article 9(1) GDPR, or of which that is not known. Other "
         "personal data were not looked at."
     ),
+    "a.backups": "Backups are not stated, and taken to be none: {names}.",
     "a.broader": "{data} is a part of this answer too: it is a broader kind, and may be {kinds}.",
     "a.database": "The graph of {robots} came from a database, where people can have changed it after it was loaded.",
     "a.unstated": (

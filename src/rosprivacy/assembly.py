@@ -5,6 +5,7 @@ In: what a user names. Out: a ``Result``.
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -21,6 +22,7 @@ from rosprivacy.assumptions import (
     sources_of,
     what_it_rests_on,
 )
+from rosprivacy.clock import judged_on
 from rosprivacy.decided import accepts, decisions_of, joined_to
 from rosprivacy.ingest.binding import bind
 from rosprivacy.ingest.files import read_policies
@@ -122,7 +124,8 @@ def run(policies: tuple[str, ...], labels: tuple[str, ...], settings: Settings) 
     graph = extend(build(system, settings.view), files)
     bound = bind(graph, files)
     decisions = decisions_of(settings, vocabulary)
-    options = Options(asked, settings.paths, settings.max_paths, accepts(decisions))
+    day = settings.today or judged_on(os.environ)
+    options = Options(asked, settings.paths, settings.max_paths, accepts(decisions), today=day)
     analysis = analyse(graph, bound, vocabulary.hierarchy, options)
     joined = joined_to(decisions, analysis, vocabulary, asked)
     said = tuple(d for policy in system for d in policy.diagnostics) + diagnostics
@@ -149,11 +152,12 @@ def run_stored(driver: Driver, settings: Settings) -> Result:
     vocabulary = load(ontologies=settings.ontologies)
     asked = asked_for(vocabulary, settings)
     stored = read_stored(driver, vocabulary)
-    everything = Options(None, settings.paths, settings.max_paths)
+    day = settings.today or judged_on(os.environ)
+    everything = Options(None, settings.paths, settings.max_paths, today=day)
     analysis = analyse(stored.graph, stored.bound, vocabulary.hierarchy, everything)
     write_back(driver, stored, analysis, vocabulary)
     decisions = decisions_of(settings, vocabulary)
-    chosen = Options(asked, settings.paths, settings.max_paths, accepts(decisions, stored.likeness))
+    chosen = replace(everything, categories=asked, accepts=accepts(decisions, stored.likeness))
     if chosen != everything:
         analysis = analyse(stored.graph, stored.bound, vocabulary.hierarchy, chosen)
     joined = joined_to(decisions, analysis, vocabulary, asked, stored.likeness)

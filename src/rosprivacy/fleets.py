@@ -5,6 +5,7 @@ In: a fleet file. Out: a ``Result`` with ``fleet``. Robots that are alike are re
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -15,6 +16,7 @@ from rosprivacy.analysis.patterns import FleetView
 from rosprivacy.asked import asked_for
 from rosprivacy.assembly import Result
 from rosprivacy.assumptions import assumed_decisions, remembered, sources_of, what_it_rests_on
+from rosprivacy.clock import judged_on
 from rosprivacy.decided import accepts, decisions_of, joined_to
 from rosprivacy.ingest.alike import Alike, alike
 from rosprivacy.ingest.binding import bind
@@ -89,7 +91,8 @@ def analysed(read: Read, vocabulary: Vocabulary, settings: Settings, *, every: b
     placed = read.placed
     decisions = read.decisions
     groups = None if every or decisions else Groups(placed.likeness)
-    options = Options(asked, settings.paths, settings.max_paths, accepts(decisions, placed.likeness), groups)
+    day = settings.today or judged_on(os.environ)
+    options = Options(asked, settings.paths, settings.max_paths, accepts(decisions, placed.likeness), groups, day)
     analysis = analyse(placed.graph, placed.bound, vocabulary.hierarchy, options)
     policies = [policy for member in read.members.values() for policy in member.policies]
     assumptions = what_it_rests_on(placed.graph, sources_of(policies), read.labels, analysis, settings, vocabulary)

@@ -20,6 +20,7 @@ from rosprivacy.analysis.crossed import Crossed
 from rosprivacy.analysis.errors import FleetError, InputError, InputErrors
 from rosprivacy.analysis.model import Verdict
 from rosprivacy.analysis.network import Network
+from rosprivacy.analysis.outside import on_day
 from rosprivacy.analysis.pairs import forms
 from rosprivacy.analysis.patterns import different
 from rosprivacy.analysis.spread import emitted, fill, meaning
@@ -61,6 +62,8 @@ class Question:
         Makes what reads a robot, wherever it is called.
     asked
         Names of categories; None for all.
+    today
+        As of ``Options``.
     """
 
     fleet: Fleet
@@ -69,6 +72,7 @@ class Question:
     reader: Callable[[], Read]
     hierarchy: Hierarchy
     asked: Collection[str] | None = None
+    today: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,13 +167,14 @@ class _Run:
         categories = sorted(told.emitted | emitted(core.part.elements.values()))
         piece, gates = core_piece(core, at, question.view)
         piece = with_limits(piece, fleet, told.limits)
+        piece = replace(piece, bound=replace(piece.bound, outside=on_day(piece.bound.outside, question.today)))
         ours = meaning(piece.graph, piece.bound, question.hierarchy, categories)
         network = Network.of(ours)
         middle = Core(network, np.array(gates, np.int64), np.array(piece.border, np.int64))
         ready = built.map(
             partial(
                 workers.ready, fleet=alone, at=at, view=question.view, categories=categories,
-                hierarchy=question.hierarchy,
+                hierarchy=question.hierarchy, today=question.today,
             ),
             keep=True,
         )  # fmt: skip

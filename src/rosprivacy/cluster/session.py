@@ -1,7 +1,8 @@
 """Apache Spark for fleets: a session, and the parts of a fleet as partitions.
 
 pyspark comes with the ``[spark]`` extra and is imported where it is used. A local session listens on 127.0.0.1 only
-and shows no page; for a cluster its own configuration holds.
+and shows no page; for a cluster its own configuration holds. Nothing is run or imported from the current folder, which
+may be a checkout of a stranger's.
 """
 
 from __future__ import annotations
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
 LOCAL = "local[*]"
 HOST = "127.0.0.1"
 MASTERS = re.compile(r"local(\[(\*|[0-9]+)(,[0-9]+)?\])?|spark://.+|yarn|k8s://.+")
+SAFE_PATH = {"PYTHONSAFEPATH": "1"}  # as ``python -P``: the current folder is not searched for modules
 PER_CORE = 4  # parts: some take longer than others
 MISSING = "--engine spark needs pyspark; pip install 'rosprivacy[spark]'"
 NO_JAVA = "--engine spark needs Java 17 or later; install one, or pip install 'rosprivacy[local]', which brings one"
@@ -122,14 +124,10 @@ def session(master: str | None) -> Iterator[SparkSession]:
             "spark.ui.enabled": "false",
             "spark.ui.showConsoleProgress": "false",
             "spark.driver.extraJavaOptions": f"-Dlog4j2.configurationFile={log.as_uri()}",
+            **{f"spark.executorEnv.{name}": value for name, value in SAFE_PATH.items()},  # of Python's workers, too
         }
         if master.startswith("local"):
-            settings |= {
-                "spark.driver.host": HOST,
-                "spark.driver.bindAddress": HOST,
-                "spark.pyspark.python": sys.executable,
-                "spark.local.dir": folder,
-            }
+            settings |= {"spark.driver.host": HOST, "spark.driver.bindAddress": HOST, "spark.local.dir": folder}
         builder = SparkSession.builder.master(master).appName("rosprivacy")
         for key, value in settings.items():
             builder = builder.config(key, value)
@@ -174,9 +172,14 @@ def _reach(master: str) -> None:
 @contextmanager
 def _environment(master: str, folder: Path) -> Iterator[None]:
     """What Spark reads from the environment, for as long as the session lives."""
-    changed: dict[str, str] = {}
+    changed = dict(SAFE_PATH)
+    if "SPARK_HOME" not in os.environ:  # pyspark would look in the parent of the current folder first
+        changed["SPARK_HOME"] = str(_spark_home())
     if master.startswith("local"):
         changed["SPARK_LOCAL_IP"] = HOST
+        # Only the environment says which Python the workers are: pyspark does not ask ``spark.pyspark.python``, which
+        # is for spark-submit, and takes the first python3 of PATH without it.
+        changed["PYSPARK_PYTHON"] = sys.executable
     if os.name == "posix":
         changed["JAVA_HOME"] = str(_java_home(folder))
     before = {key: os.environ.get(key) for key in changed}
@@ -189,6 +192,15 @@ def _environment(master: str, folder: Path) -> Iterator[None]:
                 del os.environ[key]
             else:
                 os.environ[key] = value
+
+
+def _spark_home() -> Path:
+    """The Spark that pyspark brings, or that it was told to fetch when it was installed."""
+    import pyspark  # noqa: PLC0415 - an extra
+
+    brought = Path(pyspark.__file__).resolve().parent
+    fetched = brought / "spark-distribution"
+    return fetched if fetched.is_dir() else brought
 
 
 def _java_home(folder: Path) -> Path:

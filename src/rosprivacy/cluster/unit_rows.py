@@ -153,7 +153,9 @@ def _fleet_rows(placed: Placed, members: Mapping[str, Member], plan: Plan, mine:
                 wanted.setdefault(source, set()).add((part.kind, leak, part.category, beside))
         return wanted
 
-    analysis = analyse(placed.graph, placed.bound, vocabulary.hierarchy, Options(choose=choose))
+    analysis = analyse(
+        placed.graph, placed.bound, vocabulary.hierarchy, Options(choose=choose, today=plan.settings.today or "")
+    )
     said = {name: _more(member, analysis, plan, vocabulary) for name, member in members.items()}
     said[plan.fleet.name] = remembered({**plan.assumptions, "policies": [], "labels": []}, plan.joins)
     known = _verdicts(analysis, plan)
