@@ -67,6 +67,8 @@ class Options:
     choose
         Of a spread, the kinds of findings and the bits of the categories: source -> ``Chosen`` of the findings to
         make; None for all.
+    unread
+        Where grants stand that were not read: with any, nothing is said to have no leak (rule S11).
     """
 
     categories: Collection[str] | None = None
@@ -75,6 +77,7 @@ class Options:
     accepts: Callable[[Case], bool] | None = None
     choose: Callable[[Spread, Sequence[Concern], int], Mapping[int, AbstractSet[Chosen]]] | None = None
     today: str = ""
+    unread: tuple[Place, ...] = ()
 
 
 def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Options | None = None) -> Analysis:
@@ -104,7 +107,7 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
     sources = any(found.begins(vertex) & mask for vertex in range(len(graph.elements)))
     return Analysis(
         graph=graph,
-        verdict=_verdict(findings, questions, sources=sources),
+        verdict=_verdict(findings, questions, known=sources and not options.unread),
         emitted=tuple(wanted),
         findings=findings,
         open=questions,
@@ -119,11 +122,11 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
     )
 
 
-def _verdict(findings: Iterable[Finding], questions: Iterable[OpenQuestion], *, sources: bool) -> Verdict:
-    """Rule S12. Without any source nothing was asked, so nothing can be said."""
+def _verdict(findings: Iterable[Finding], questions: Iterable[OpenQuestion], *, known: bool) -> Verdict:
+    """Rule S12. Without any source nothing was asked, and with grants that were not read not all is known."""
     if any(not finding.dismissed and not finding.accepted for finding in findings):
         return Verdict.LEAK
-    return Verdict.UNDETERMINED if any(True for _ in questions) or not sources else Verdict.NO_LEAK_FOUND
+    return Verdict.UNDETERMINED if any(True for _ in questions) or not known else Verdict.NO_LEAK_FOUND
 
 
 def _no_source(options: Options) -> Diagnostic:

@@ -18,7 +18,7 @@ from rosprivacy.analysis.border import Core
 from rosprivacy.analysis.counts import Counts, counted
 from rosprivacy.analysis.crossed import Crossed
 from rosprivacy.analysis.errors import FleetError, InputError, InputErrors
-from rosprivacy.analysis.model import Verdict
+from rosprivacy.analysis.model import Verdict, unread
 from rosprivacy.analysis.network import Network
 from rosprivacy.analysis.outside import on_day
 from rosprivacy.analysis.pairs import forms
@@ -263,7 +263,7 @@ class _Run:
         needed |= {unit[robot] for robot in ends if robot in unit}
         leak = any(group.count > group.dismissed for group in groups)
         begins = any(ours.begins(v) & mask for v in ours.facts) or any(answer.begins for answer in answers)
-        is_open = bool(count or core_open) or not begins
+        is_open = bool(count or core_open) or not begins or bool(unread(told.diagnostics))
         verdict = Verdict.LEAK if leak else Verdict.UNDETERMINED if is_open else Verdict.NO_LEAK_FOUND
         counts = sum((answer.counts for answer in answers), counted(piece.graph, ours, self._likeness, (), mine))
         return Found(
