@@ -80,7 +80,7 @@ def _denied(found: Spread) -> Iterator[Closure]:
     for flow in found.graph.denied:
         bits = found.leaves.get(flow.source, 0)
         if bits:
-            lines = {denial.place: None for denial in sorted(flow.denials, key=lambda denial: _key(denial.place))}
+            lines = {denial.place: None for denial in sorted(flow.denials, key=lambda denial: line_key(denial.place))}
             yield Closure(DENY, flow.source, flow.target, bits, tuple(lines))
 
 
@@ -168,10 +168,10 @@ def _extents(found: Spread, lines: set[Line]) -> dict[Line, Opened]:
             more[denial.place].add((flow.source, flow.target))
     extents = {line: Opened(elements[line], flows[line], tuple(sorted(more[line]))) for line in lines}
     several = [(line, opened) for line, opened in extents.items() if opened.size > 1]
-    return dict(sorted(several, key=lambda pair: _key(pair[0])))
+    return dict(sorted(several, key=lambda pair: line_key(pair[0])))
 
 
-def _key(line: Line) -> tuple[str, int, str]:
+def line_key(line: Line) -> tuple[str, int, str]:
     """Statements by their place and what they say; policy lines by their place."""
     if isinstance(line, Place):
         return (line.file, line.line, "")

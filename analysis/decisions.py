@@ -13,13 +13,13 @@ from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import DecisionError
-from rosprivacy.analysis.model import Diagnostic, Severity
+from rosprivacy.analysis.model import Diagnostic, Place, Severity
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.hierarchy import Hierarchy
-    from rosprivacy.analysis.model import Element, Finding, Place
+    from rosprivacy.analysis.model import Element, Finding
 
 FARTHEST = 1_000_000
 
@@ -178,6 +178,8 @@ class Decisions:
     ----------
     today
         ISO date.
+    instead_of
+        An earlier date that was asked for, by which fewer decisions have expired; empty if there is none.
     """
 
     file: str
@@ -185,6 +187,7 @@ class Decisions:
     today: str
     entries: tuple[Decision, ...]
     hierarchy: Hierarchy = field(repr=False)
+    instead_of: str = ""
 
     def state(self, decision: Decision) -> State:
         """Whether a decision is still valid."""
@@ -298,6 +301,10 @@ def _diagnostics(
     joined: Decided, findings: Mapping[str, Finding], special: Mapping[str, str], former: Iterable[int]
 ) -> Iterator[Diagnostic]:
     """What a reader has to know: expired and orphaned decisions, what one no longer decides, missing legal bases."""
+    asked, today = joined.decisions.instead_of, joined.decisions.today
+    if asked:
+        message = f"by its day, {asked}, fewer decisions have expired than today, {today}; the later day counts"
+        yield Diagnostic(Place("SOURCE_DATE_EPOCH", 0), Severity.WARNING, message)
     for entry, ids, state, lost in zip(joined.decisions.entries, joined.about, joined.states, former, strict=True):
         what = f"the decision to {entry.choice} {entry.id or 'a pattern'}"
         if lost:

@@ -28,7 +28,7 @@ from rosprivacy.analysis.model import (
     Step,
     Verdict,
 )
-from rosprivacy.analysis.outside import concerns, country_unknown
+from rosprivacy.analysis.outside import concerns, country_unknown, on_day
 from rosprivacy.analysis.paths import WITNESS, Between, further
 from rosprivacy.analysis.questions import open_questions
 from rosprivacy.analysis.search import START, Net, Search, path_to, present, search
@@ -63,9 +63,13 @@ class Options:
     accepts
         Whether a person has accepted that a category of a source reaches a leak, in one form; such a leak hides
         nothing that lies behind it (rule S10).
+    today
+        The day on which adequacy decisions hold or have ended, ``YYYY-MM-DD``; empty where none is taken to have.
     choose
         Of a spread, the kinds of findings and the bits of the categories: source -> ``Chosen`` of the findings to
         make; None for all.
+    unread
+        Where grants stand that were not read: with any, nothing is said to have no leak (rule S11).
     """
 
     categories: Collection[str] | None = None
@@ -73,6 +77,8 @@ class Options:
     max_paths: int = MAX_PATHS
     accepts: Callable[[Case], bool] | None = None
     choose: Callable[[Spread, Sequence[Concern], int], Mapping[int, AbstractSet[Chosen]]] | None = None
+    today: str = ""
+    unread: tuple[Place, ...] = ()
 
 
 def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Options | None = None) -> Analysis:
@@ -90,6 +96,7 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
     the part of the graph between the two.
     """
     options = options or Options()
+    bound = replace(bound, outside=on_day(bound.outside, options.today))
     found = spread(graph, bound, hierarchy)
     kinds = tuple(concerns(found, bound, hierarchy))
     wanted = [c for c in found.categories if options.categories is None or c in options.categories]
@@ -101,7 +108,7 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
     sources = any(found.begins(vertex) & mask for vertex in range(len(graph.elements)))
     return Analysis(
         graph=graph,
-        verdict=_verdict(findings, questions, sources=sources),
+        verdict=_verdict(findings, questions, known=sources and not options.unread),
         emitted=tuple(wanted),
         findings=findings,
         open=questions,
@@ -118,11 +125,11 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
     )
 
 
-def _verdict(findings: Iterable[Finding], questions: Iterable[OpenQuestion], *, sources: bool) -> Verdict:
-    """Rule S12. Without any source nothing was asked, so nothing can be said."""
+def _verdict(findings: Iterable[Finding], questions: Iterable[OpenQuestion], *, known: bool) -> Verdict:
+    """Rule S12. Without any source nothing was asked, and with grants that were not read not all is known."""
     if any(not finding.dismissed and not finding.accepted for finding in findings):
         return Verdict.LEAK
-    return Verdict.UNDETERMINED if any(True for _ in questions) or not sources else Verdict.NO_LEAK_FOUND
+    return Verdict.UNDETERMINED if any(True for _ in questions) or not known else Verdict.NO_LEAK_FOUND
 
 
 def _no_source(options: Options) -> Diagnostic:

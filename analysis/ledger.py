@@ -14,9 +14,10 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.closures import PERHAPS, Closure, behind, closures
+from rosprivacy.analysis.closures import PERHAPS, Closure, behind, closures, line_key
 from rosprivacy.analysis.model import Place, Statement
 from rosprivacy.analysis.outside import concerns, country_unknown
+from rosprivacy.analysis.roles import NOTHING_SAID
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -180,10 +181,12 @@ def _reviewed(found: Spread, asked: int) -> Iterator[TakenAway]:
     """Elements that are not asked about because labels answer for them (rule S11)."""
     for vertex, decided in sorted(found.facts.items()):
         by_lines: dict[tuple[Statement, ...], list[str]] = defaultdict(list)
+        makers = {line for fact in decided.values() for line in fact.reviewers if line.role == "derivation"}
         for category in found.names(found.present(vertex) & asked):
-            fact = decided.get(category)
-            if fact and fact.reviewers and fact.passes and not fact.leaks and not fact.emits:
-                by_lines[fact.reviewers].append(category)
+            fact = decided.get(category, NOTHING_SAID)
+            reviewers = {*fact.reviewers, *(line for line in makers if line.to == category)}  # who makes it knows of it
+            if reviewers and not fact.leaks and not fact.emits:
+                by_lines[tuple(sorted(reviewers, key=line_key))].append(category)
         for lines, categories in by_lines.items():
             places = tuple(sorted({line.place for line in lines}, key=_line))
             glob = all(line.glob for line in lines)

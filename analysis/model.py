@@ -10,7 +10,7 @@ from enum import StrEnum
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from rosprivacy.analysis.outside import Outside
     from rosprivacy.analysis.spread import Spread
@@ -113,6 +113,11 @@ class Grant:
         Of the channel as written: ``topic``, ``service`` or ``action``.
     name
         Fully qualified.
+    policy
+        The policy file that was read, whatever it includes: a DENY counts in its own policy only (rule S5).
+    dead
+        Whether the line stands after the first ``<profiles>`` of the first ``<enclave>`` of its path: sros2 does not
+        read it there. An ALLOW is taken all the same, a DENY takes nothing away (rule S5).
     absolute
         Whether the policy writes the name so: then it stays as it is under a namespace that is pushed (rule S1).
     """
@@ -124,7 +129,17 @@ class Grant:
     enclave: str
     node: str
     place: Place
+    policy: str = ""
+    dead: bool = False
     absolute: bool = False
+
+
+UNREAD_FILE = "unread-file"  # grants that no policy brings in: what they allow is not known (rule S11)
+DEAD_DENY = "dead-deny"
+SHARED_ENCLAVE = "shared-enclave"
+FALLBACK_TAKEN = "fallback-taken"
+EMPTY_GROUP = "empty-group"
+REFUSED_NAME = "refused-name"
 
 
 class Severity(StrEnum):
@@ -142,13 +157,19 @@ class Diagnostic:
     Attributes
     ----------
     code
-        What it is, for programs; empty where nobody has to tell it from others.
+        What it is, for programs: ``UNREAD_FILE`` and others; empty where nobody has to tell it from others.
     """
 
     place: Place
     severity: Severity
     message: str
     code: str = ""
+
+
+def unread(diagnostics: Iterable[Diagnostic]) -> tuple[Place, ...]:
+    """Return where grants stand that were not read (rule S11), sorted."""
+    places = {said.place for said in diagnostics if said.code == UNREAD_FILE}
+    return tuple(sorted(places, key=lambda place: (place.file, place.line)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -205,6 +226,9 @@ class FlowGraph:
         Of all policies, sorted.
     view
         ``declared`` or ``enforced``, rule S6.
+    denied_matches
+        Flows of role ``matches`` that a DENY took out (rules S4, S5): between a pattern and what it would cover or
+        meet. Sorted alike; ``grants`` is empty, ``denials`` are the DENY lines.
     """
 
     elements: tuple[Element, ...]
@@ -212,6 +236,7 @@ class FlowGraph:
     denied: tuple[Flow, ...]
     profiles: tuple[Profile, ...]
     view: str = "declared"
+    denied_matches: tuple[Flow, ...] = ()
 
 
 ARTICLE_9 = "GDPR Art. 9(1)"

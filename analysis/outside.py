@@ -6,7 +6,7 @@ nobody stated about an element is taken by its kind: data passes what only holds
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import DISCLOSURE, STORAGE_LIMITATION, THIRD_COUNTRY, Place, Statement
@@ -66,6 +66,8 @@ class Outside:
         recipients (``PARTLY``), or ``THIRD``.
     adequacy
         Whom a partial decision covers.
+    until
+        The last day of an adequacy decision that ends by itself, ``YYYY-MM-DD``.
     encrypted
         Whether it is at rest; None where nothing is said.
     operator
@@ -84,6 +86,7 @@ class Outside:
     country: str = ""
     area: str = ""
     adequacy: str = ""
+    until: str = ""
     encrypted: bool | None = None
     operator: str = ""
     recipient: str = ""
@@ -138,14 +141,23 @@ def _nearest(stated: Iterable[tuple[str, Duration]], category: str, hierarchy: H
     return [duration for steps, duration in known if steps == nearest]
 
 
+def on_day(outside: Mapping[int, Outside], today: str) -> dict[int, Outside]:
+    """Return facts as they are on a day: where an adequacy decision has ended, there is none (rule S10)."""
+    return {
+        vertex: replace(facts, area=THIRD) if facts.until and today > facts.until else facts
+        for vertex, facts in outside.items()
+    }
+
+
 def transferred(facts: Outside) -> str:
     """Return why data there has left the EEA without a stated basis; empty if it has not."""
     if facts.area not in (PARTLY, THIRD) or (facts.transfer and (facts.area, facts.transfer) != (THIRD, ADEQUACY)):
         return ""
+    ended = f"the adequacy decision ended on {facts.until}" if facts.until else ""
     if facts.transfer:
-        return f"in {facts.country}; the basis stated is adequacy, and no such decision is known"
+        return f"in {facts.country}; the basis stated is adequacy, and {ended or 'no such decision is known'}"
     partly = f"whose adequacy decision covers {facts.adequacy}"
-    what = "for which no adequacy decision is known" if facts.area == THIRD else partly
+    what = f"for which {ended or 'no adequacy decision is known'}" if facts.area == THIRD else partly
     return f"in {facts.country}, {what}; no basis for the transfer is stated"
 
 

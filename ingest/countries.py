@@ -34,19 +34,23 @@ class Countries:
         Code -> one of the areas of ``analysis/outside.py``.
     partly
         Code -> whom a partial adequacy decision covers.
+    until
+        Code -> the last day of an adequacy decision that ends by itself.
     """
 
     as_of: str
     areas: Mapping[str, str]
     partly: Mapping[str, str]
+    until: Mapping[str, str]
 
     def place(self, code: str) -> dict[str, str]:
-        """Return the facts of an element in a country: code, area, whom a partial decision covers.
+        """Return the facts of an element in a country: code, area, whom a partial decision covers, how long it holds.
 
         >>> countries().place("US")["area"]
         'partly'
         """
-        return {"country": code, "area": self.areas[code], "adequacy": self.partly.get(code, "")}
+        more = {"adequacy": self.partly.get(code, ""), "until": self.until.get(code, "")}
+        return {"country": code, "area": self.areas[code], **more}
 
     def hint(self, text: str) -> str:
         """Return what to write instead of a code that is none."""
@@ -66,7 +70,8 @@ def countries() -> Countries:
     for key, area in (("eea", INSIDE), ("parts", INSIDE), ("adequate", ADEQUATE), ("others", THIRD)):
         areas |= {item.text: area for item in parts[key].items}
     partly = {key: value.text for key, _, value in parts["partly"].entries}
-    return Countries(parts["as_of"].text, areas | dict.fromkeys(partly, PARTLY), partly)
+    until = {key: value.text for key, _, value in parts["until"].entries}
+    return Countries(parts["as_of"].text, areas | dict.fromkeys(partly, PARTLY), partly, until)
 
 
 def _broken(line: int, problem: str, hint: str) -> InputError:

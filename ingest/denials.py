@@ -1,7 +1,8 @@
 """Grants set to DENY: which lines would cut some flows, and what else would go with them (rules S3 to S5).
 
 In: policies, the graph that they make, flows. Out: ``Denial``s; policies with some grants set to DENY. A DENY holds for
-its enclave and direction, and for all that its name covers; it takes names out of the enclave's wildcards.
+its policy, enclave and direction, and for all that its name covers; it takes names out of the enclave's wildcards.
+One that sros2 does not read takes nothing away: there only the ALLOW goes that it takes the place of (rule S5).
 """
 
 from __future__ import annotations
@@ -17,8 +18,10 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Sequence
 
     from rosprivacy.analysis.model import FlowGraph, Grant, Place, Policy
+    from rosprivacy.ingest.names import Endpoint
 
-Part = tuple[str, bool, str]  # enclave, whether it writes, DDS name or expression
+# policy, enclave, whether it writes, DDS name or expression; the line, where sros2 does not read it (rule S5)
+Part = tuple[str, str, bool, str, str]
 
 
 def with_denied(policies: Iterable[Policy], grants: Collection[Grant]) -> tuple[Policy, ...]:
@@ -66,16 +69,25 @@ def denials(policies: Iterable[Policy], graph: FlowGraph, flows: Collection[int]
 
 def _denied(grant: Grant) -> frozenset[Part]:
     """What an enclave may no longer do when a line is set to DENY."""
-    ends = endpoints(grant.role, grant.kind, grant.name)
-    return frozenset((grant.enclave, end.writes, end.dds) for end in ends)
+    return frozenset(_part(grant, end) for end in endpoints(grant.role, grant.kind, grant.name))
+
+
+def _part(grant: Grant, end: Endpoint) -> Part:
+    line = f"{grant.place} {grant.role} {grant.name} {grant.node}" if grant.dead else ""
+    return (grant.policy, grant.enclave, end.writes, end.dds, line)
+
+
+def _counts(one: Part, part: Part) -> bool:
+    """Whether a denial says anything about a part: one that sros2 does not read is about its own line only."""
+    return one[:3] == part[:3] and one[4] in ("", part[4])
 
 
 def _covered(part: Part, denied: Iterable[Part]) -> bool:
-    return any(one[:2] == part[:2] and covers(one[2], part[2]) for one in denied)
+    return any(_counts(one, part) and covers(one[3], part[3]) for one in denied)
 
 
 def _touched(part: Part, denied: Iterable[Part]) -> bool:
-    return any(one[:2] == part[:2] and overlaps(one[2], part[2]) for one in denied)
+    return any(_counts(one, part) and overlaps(one[3], part[3]) for one in denied)
 
 
 def _together(
@@ -104,7 +116,7 @@ class _Rights:
             if flow.role == "matches":
                 self.matches[flow.source].append(f)
                 self.matches[flow.target].append(f)
-        self.patterns = [part for part in self.by_part if is_pattern(part[2])]
+        self.patterns = [part for part in self.by_part if is_pattern(part[3]) or part[4]]
 
     def _of(self, f: int) -> Iterator[Part]:
         flow = self.graph.flows[f]
@@ -113,12 +125,12 @@ class _Rights:
         for grant in flow.grants:
             for end in endpoints(grant.role, grant.kind, grant.name):
                 if (end.writes, end.kind, end.name, end.leg) == (writes, channel.kind, channel.name, channel.leg):
-                    yield (grant.enclave, end.writes, end.dds)
+                    yield _part(grant, end)
 
     def touched(self, denied: Iterable[Part]) -> Iterator[Part]:
         """The parts that a denial touches."""
         for one in denied:
-            near = self.by_part if is_pattern(one[2]) else (one, *self.patterns)
+            near = self.by_part if is_pattern(one[3]) else dict.fromkeys((one, *self.patterns))
             yield from (part for part in near if part in self.by_part and _touched(part, (one,)))
 
     def denial(self, grants: tuple[Grant, ...], denied: frozenset[Part]) -> Denial:

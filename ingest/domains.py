@@ -80,7 +80,10 @@ def stripped(graph: FlowGraph, namespace: str) -> tuple[FlowGraph, dict[Element,
 
     nodes = {element.name: new.name for element, new in shown.items() if element.is_node}
     profiles = tuple(replace(profile, node=nodes[profile.node]) for profile in graph.profiles)
-    changed = FlowGraph(elements, renumbered(graph.flows), renumbered(graph.denied), profiles, graph.view)
+    changed = FlowGraph(
+        elements, renumbered(graph.flows), renumbered(graph.denied), profiles, graph.view,
+        renumbered(graph.denied_matches),
+    )  # fmt: skip
     return changed, {new: element for element, new in shown.items()}
 
 

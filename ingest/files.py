@@ -1,23 +1,36 @@
 """What the user names on the command line -> policies: files, folders and globs.
 
-In: paths. Out: ``Policy`` facts in a stable order. A file that was named is read or refused; in a folder or behind a
-glob, XML that is no policy is passed over with a notice, and a folder without any policy is an error.
+In: paths. Out: ``Policy`` facts in a stable order. A file that was named is read or refused. What lies in a folder or
+behind a glob and is not read is said (rule S11): grants that no policy brings in with a warning, all else with a
+notice. A folder without any policy is an error.
 """
 
 from __future__ import annotations
 
 import os
-from glob import glob, has_magic
+from dataclasses import dataclass, field
+from glob import has_magic
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors, PolicyError, reason
-from rosprivacy.analysis.model import Diagnostic, Place, Policy, Severity
+from rosprivacy.analysis.model import UNREAD_FILE, Diagnostic, Place, Policy, Severity
+from rosprivacy.ingest.folders import contents
 from rosprivacy.ingest.policy import NotAPolicyError, read_policy
 from rosprivacy.ingest.xinclude import MAX_BYTES
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Callable, Collection, Iterable, Sequence
+
+
+@dataclass(slots=True)
+class _Expanded:
+    """The files behind the arguments; ``found`` by folder or glob."""
+
+    named: set[str] = field(default_factory=set)
+    found: dict[str, set[str]] = field(default_factory=dict)
+    notices: list[Diagnostic] = field(default_factory=list)
+    problems: list[InputError] = field(default_factory=list)
 
 
 def read_policies(
@@ -41,7 +54,8 @@ def read_policies(
     policies
         In the order of their paths.
     diagnostics
-        A notice for each XML file of a folder that is no policy.
+        For each XML file of a folder that is no policy a notice, or a warning if it has grants that nothing includes;
+        for each folder a notice on how many other files it has.
 
     Raises
     ------
@@ -49,15 +63,19 @@ def read_policies(
         With the problems of all files.
     """
     arguments = tuple(arguments)
-    named, found, problems = _expand(arguments)
+    expanded = _expand(arguments)
+    named, found, problems = expanded.named, expanded.found, expanded.problems
     policies: list[Policy] = []
-    skipped: list[InputError] = []
+    skipped: list[NotAPolicyError] = []
     for file in progress(sorted({*named, *(file for files in found.values() for file in files)})):
         try:
             policies.append(read_policy(file, include_root=include_root, max_bytes=max_bytes))
         except InputErrors as error:
-            fragment = isinstance(error.errors[0], NotAPolicyError) and file not in named
-            (skipped if fragment else problems).extend(error.errors)
+            first = error.errors[0]
+            if isinstance(first, NotAPolicyError) and file not in named:
+                skipped.append(first)
+            else:
+                problems += error.errors
     passed_over = {error.file for error in skipped}
     for argument, files in found.items():
         if files <= passed_over:
@@ -66,42 +84,44 @@ def read_policies(
         problems.append(PolicyError("nothing", 0, "no SROS 2 policy found", "name a file or folder that has one"))
     if problems:
         raise InputErrors(problems)
-    notices = [Diagnostic(Place(e.file, e.line), Severity.NOTICE, f"not read by itself: {e.problem}") for e in skipped]
-    return tuple(policies), tuple(notices)
+    included = {os.path.realpath(name) for policy in policies for name, _ in policy.sources}
+    return tuple(policies), (*(_not_read(error, included) for error in skipped), *expanded.notices)
 
 
-def _expand(arguments: Iterable[str]) -> tuple[set[str], dict[str, set[str]], list[InputError]]:
+def _not_read(error: NotAPolicyError, included: Collection[str]) -> Diagnostic:
+    """What is to be said of XML that is no policy: grants that nothing brings in are a gap (rule S11)."""
+    place = Place(error.file, error.line)
+    if not error.grants or os.path.realpath(error.file) in included:
+        return Diagnostic(place, Severity.NOTICE, f"not read by itself: {error.problem}")
+    what = f"not read: {error.problem}, and no policy read here includes it, so what it grants is not known"
+    return Diagnostic(place, Severity.WARNING, f"{what}; name the policy that does, or remove it", UNREAD_FILE)
+
+
+def _expand(arguments: Iterable[str]) -> _Expanded:
     """Return the files named, what folders and globs hold, and what is not there; each file under one spelling."""
-    named: set[str] = set()
-    found: dict[str, set[str]] = {}
-    problems: list[InputError] = []
+    expanded = _Expanded()
     spelt: dict[str, str] = {}
     for argument in sorted(set(arguments), key=lambda name: (len(name), name)):
         try:
-            files = _inside(argument)
+            held = contents(argument)
         except (OSError, ValueError) as error:
-            problems.append(PolicyError(argument or "''", 0, f"cannot be read: {reason(error)}", "name a policy"))
+            what = f"cannot be read: {reason(error)}"
+            expanded.problems.append(PolicyError(argument or "''", 0, what, "name a policy"))
             continue
-        if files is None:
-            named.add(spelt.setdefault(os.path.abspath(argument), argument))  # noqa: PTH100 - by its text
-        elif files:
-            found[argument] = {spelt.setdefault(os.path.abspath(file), file) for file in sorted(files)}  # noqa: PTH100
-        else:
-            what = "no file matches" if has_magic(argument) else "a folder with no .xml file"
-            problems.append(
-                PolicyError(argument, 0, what, "correct the pattern" if has_magic(argument) else "name a policy")
-            )
-    return named, found, problems
-
-
-def _inside(argument: str) -> set[str] | None:
-    """The files of a folder or glob; None for a file that is named."""
-    path = Path(argument)
-    if not argument:
-        raise ValueError("no name")
-    if path.is_dir():
-        return {str(file) for file in path.rglob("*.xml") if file.is_file()}
-    if has_magic(argument) and not path.exists():
-        matches = glob(argument, recursive=True)  # noqa: PTH207 - absolute patterns too
-        return {match for match in matches if Path(match).is_file()}
-    return None
+        if held is None:
+            expanded.named.add(spelt.setdefault(os.path.abspath(argument), argument))  # noqa: PTH100 - by its text
+            continue
+        expanded.problems += held.problems
+        if said := held.said(argument):
+            expanded.notices.append(said)
+        if held.files:
+            expanded.found[argument] = {
+                spelt.setdefault(os.path.abspath(file), file)  # noqa: PTH100
+                for file in sorted(held.files)
+            }
+        elif not held.problems:
+            glob = has_magic(argument) and not Path(argument).is_dir()
+            what = "no file matches" if glob else "a folder with no .xml file"
+            hint = "correct the pattern" if glob else "name a policy"
+            expanded.problems.append(PolicyError(argument, 0, what, hint))
+    return expanded

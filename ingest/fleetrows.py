@@ -41,6 +41,8 @@ class FleetRows:
         Further properties of each ``Robot``, by the robot of the graph.
     most_across
         See ``left_out``.
+    not_read
+        Robots of the graph of which grants were not read (rule S11).
 
     Attributes
     ----------
@@ -56,9 +58,11 @@ class FleetRows:
         vocabulary: Vocabulary,
         more: Mapping[str, Mapping[str, Any]],
         most_across: int | None = None,
+        not_read: Iterable[str] = (),
     ) -> None:
         most_across = MOST_ACROSS if most_across is None else most_across
         self._more = more
+        self._not_read = frozenset(not_read)
         self._placed = placed
         self._analysis = analysis
         self._vocabulary = vocabulary
@@ -216,11 +220,16 @@ class FleetRows:
             (question.element for question in analysis.open),
             (carried.element for carried in analysis.carried),
             lambda element: first.get(element.robot, element.robot),
+            self._not_read,
         )
 
 
 def verdicts(
-    findings: Iterable[Finding], open_at: Iterable[Element], reached: Iterable[Element], robot_of: Any
+    findings: Iterable[Finding],
+    open_at: Iterable[Element],
+    reached: Iterable[Element],
+    robot_of: Any,
+    not_read: Iterable[str] = (),
 ) -> dict[str, str]:
     """Return the verdict on each robot that data reached (rule S12): what comes from it or gets out at it counts.
 
@@ -228,9 +237,11 @@ def verdicts(
     ----------
     robot_of
         Element -> name of its robot.
+    not_read
+        Robots of which grants were not read.
     """
     leaking = {robot_of(e) for finding in findings if not finding.dismissed for e in (finding.source, finding.leak)}
-    unsettled = {robot_of(element) for element in open_at}
+    unsettled = {robot_of(element) for element in open_at} | set(not_read)
     settled = {robot_of(element) for element in reached} - unsettled
     found = dict.fromkeys(unsettled, str(Verdict.UNDETERMINED)) | dict.fromkeys(settled, str(Verdict.NO_LEAK_FOUND))
     return found | dict.fromkeys(leaking, str(Verdict.LEAK))

@@ -181,6 +181,15 @@ def overlaps(a: str, b: str) -> bool:
     return _table(_tokens(a), _tokens(b), _meets)
 
 
+def tokens(pattern: str) -> tuple[Token, ...]:
+    """Return what an expression stands for, from left to right: sets of characters, and None for ``*``.
+
+    >>> tokens("a*")
+    (((97, 97),), None)
+    """
+    return _tokens(pattern)
+
+
 def _posix(pattern: str) -> str:
     """``[^…]`` is ``[!…]`` to glibc, but not to Python's fnmatch."""
     return pattern.replace("[^", "[!")

@@ -156,7 +156,8 @@ def with_flows(
         kept = [Flow(moved[f.source], moved[f.target], f.role, f.grants, f.denials) for f in old]
         return tuple(sorted([*kept, *new], key=lambda f: (f.source, f.target, f.role)))
 
-    return FlowGraph(tuple(known), renumbered(graph.flows, added), renumbered(graph.denied), graph.profiles, graph.view)
+    allowed, denied = renumbered(graph.flows, added), renumbered(graph.denied)
+    return FlowGraph(tuple(known), allowed, denied, graph.profiles, graph.view, renumbered(graph.denied_matches))
 
 
 def _sorted(places: Iterable[Place]) -> list[Place]:

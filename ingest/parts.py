@@ -33,7 +33,7 @@ class Part:
     flows
         Allowed ones, with their grants.
     denied
-        With grants and denials.
+        With grants and denials; matches that DENYs take out too.
     said
         Statements about flows.
     through
@@ -57,7 +57,10 @@ class Part:
         return cls(
             {element: bound.elements.get(vertex, ()) for vertex, element in enumerate(elements)},
             {key: flow.grants for key, flow in zip(keys, graph.flows, strict=True)},
-            {(elements[f.source], elements[f.target], f.role): (f.grants, f.denials) for f in graph.denied},
+            {
+                (elements[f.source], elements[f.target], f.role): (f.grants, f.denials)
+                for f in (*graph.denied, *graph.denied_matches)
+            },
             {keys[index]: said for index, said in bound.flows.items()},
             {(elements[v], names): tuple(keys[i] for i in flows) for (v, names), flows in bound.through.items()},
             {elements[vertex]: facts for vertex, facts in bound.outside.items()},
@@ -109,9 +112,14 @@ def numbered(part: Part, profiles: Mapping[str, tuple[Profile, ...]], view: str)
     index = {key: i for i, (*_, key) in enumerate(rows)}
     flows = tuple(Flow(a, b, role, part.flows[key]) for a, b, role, key in rows)
     refused = [(number[a], number[b], r, both) for (a, b, r), both in part.denied.items() if (a, b, r) not in index]
-    denied = sorted(refused, key=itemgetter(0, 1, 2))
+    denied = [Flow(a, b, role, *both) for a, b, role, both in sorted(refused, key=itemgetter(0, 1, 2))]
     graph = FlowGraph(
-        elements, flows, tuple(Flow(a, b, r, *both) for a, b, r, both in denied), tuple(sorted_profiles), view
+        elements,
+        flows,
+        tuple(flow for flow in denied if flow.role != "matches"),
+        tuple(sorted_profiles),
+        view,
+        tuple(flow for flow in denied if flow.role == "matches"),
     )
     bound = Bound(
         {number[element]: said for element, said in part.elements.items() if said},

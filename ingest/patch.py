@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Grant, Policy
 
 GROUPS = {kind: group for group, (kind, _) in ROLES.items()}
-Key = tuple[bool, str, str, str, str, str]
+Key = tuple[bool, str, str, str, str, str, bool]
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +75,8 @@ def patch(policies: Iterable[Policy], grants: Collection[Grant]) -> Patch:
     """Return the patch that sets some grants to DENY in the files that they were read from.
 
     A line is moved into a group that denies; where that cannot be (its group allows other roles too, or the line
-    stands in a file that others include), a group that denies is added to the profile and wins (rule S5).
+    stands in a file that others include), a group that denies is added to the profile and wins (rule S5). It would not
+    where sros2 does not read the profile: there a line is moved or not changed.
     """
     diffs: dict[str, str] = {}
     for policy in policies:
@@ -97,7 +98,8 @@ def _changed(policy: Policy, grants: list[Grant]) -> dict[str, tuple[bytes, byte
     before = {name: contents(Path(name)) for name, _ in policy.sources}
     moved = Counter(_key(replace(grant, allow=False) if grant in set(grants) else grant) for grant in policy.grants)
     added = Counter(map(_key, policy.grants)) + Counter(_key(replace(grant, allow=False)) for grant in grants)
-    for change, expected in ((_move, moved), (_add, added)):
+    ways = ((_move, moved), (_add, added))
+    for change, expected in ways[:1] if any(grant.dead for grant in grants) else ways:
         after = dict(before)
         once = {(g.place, g.role, g.kind, g.name, g.node): g for g in grants}  # a profile that is included twice
         upwards = sorted(
@@ -109,7 +111,7 @@ def _changed(policy: Policy, grants: list[Grant]) -> dict[str, tuple[bytes, byte
 
 
 def _key(grant: Grant) -> Key:
-    return (grant.allow, grant.role, grant.kind, grant.name, grant.enclave, grant.node)
+    return (grant.allow, grant.role, grant.kind, grant.name, grant.enclave, grant.node, grant.dead)
 
 
 def _grants(policy: Policy, texts: Mapping[str, bytes]) -> Counter[Key] | None:

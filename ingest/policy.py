@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors, PolicyError, shown
-from rosprivacy.analysis.model import Diagnostic, Grant, Place, Policy, Profile, Severity
+from rosprivacy.analysis.model import DEAD_DENY, EMPTY_GROUP, Diagnostic, Grant, Place, Policy, Profile, Severity
 from rosprivacy.ingest.names import LONGEST_NAME, resolve
 from rosprivacy.ingest.xinclude import MAX_BYTES, Documents, Item, has_text
 
@@ -37,7 +37,15 @@ FRAGMENTS = frozenset(PARENTS)
 
 
 class NotAPolicyError(PolicyError):
-    """The root element is not ``<policy>``: a fragment that policies include, or another format."""
+    """The root element is not ``<policy>``: a fragment that policies include, or another format.
+
+    Attributes
+    ----------
+    grants
+        Whether it is a fragment with grants in it, or with includes that can bring some.
+    """
+
+    grants = False
 
 
 def read_policy(file: str, *, include_root: str | None = None, max_bytes: int = MAX_BYTES) -> Policy:
@@ -64,7 +72,7 @@ def read_policy(file: str, *, include_root: str | None = None, max_bytes: int = 
     """
     documents = Documents(Path(include_root) if include_root else Path(file).parent, max_bytes)
     root = documents.open(file)
-    reader = _Reader(documents)
+    reader = _Reader(documents, file)
     reader.policy(root)
     problems = [*documents.problems, *reader.problems]
     if problems:
@@ -83,12 +91,14 @@ class _Reader:
     """Walks the document once, from the outside in."""
 
     documents: Documents
+    file: str
     problems: list[InputError] = field(default_factory=list)
     diagnostics: list[Diagnostic] = field(default_factory=list)
     profiles: list[Profile] = field(default_factory=list)
     grants: list[Grant] = field(default_factory=list)
     old: bool = False
     namespace: str = ""
+    first: Place | None = None  # where sros2 has read its fill of this enclave: what follows is dead (rule S5)
 
     def policy(self, root: Item) -> None:
         if root.tag != "policy":
@@ -141,18 +151,20 @@ class _Reader:
         self._attributes(enclave, {"path"})
         path = self._required(enclave, "path")
         if path in seen:
-            message = f"enclave {path} again (first at {seen[path]}): sros2 uses the first only; both are read"
-            self._warning(enclave.place, message)
+            message = f"enclave {path} again (first at {seen[path]}): sros2 uses the first only"
+            self._warning(enclave.place, f"{message}; what this one allows is read too, what it denies is not")
+        self.first = seen.get(path)
         seen.setdefault(path, enclave.place)
         groups = list(self._elements(enclave, {"profiles"}))
         if not groups:
             self._problem(enclave.place, f"<{enclave.tag}> without <profiles>", "add <profiles> with a <profile>")
         for extra in groups[1:]:
-            message = f"several <profiles> in enclave {path}: DDS uses the first grant only; all are read"
-            self._warning(extra.place, message)
+            message = f"several <profiles> in enclave {path}: DDS uses the first grant only"
+            self._warning(extra.place, f"{message}; what these allow is read too, what they deny is not")
         for group in groups:
             self._attributes(group, {"type"})
             self._profiles(group, path)
+            self.first = self.first or group.place
 
     def _profiles(self, group: Item, enclave: str | None) -> None:
         profiles = list(self._elements(group, {"profile"}))
@@ -181,13 +193,21 @@ class _Reader:
         if not names:
             self._problem(group.place, f"<{group.tag}> is empty", f"add a <{kind}>, or remove it")
         if not granted:
-            self._notice(group.place, f"<{group.tag}> without {' or '.join(roles)} grants nothing")
+            message = (
+                f'<{group.tag}> without {" or ".join(roles)} grants nothing; write {roles[0]}="ALLOW", or remove it'
+            )
+            self._warning(group.place, message, EMPTY_GROUP)
         enclave, owned = owner.enclave, owner.node
         for item in names:
             name, place = self._name(item, namespace, node), Place(item.file, item.element.sourceline or 0)
             absolute = (item.element.text or "").startswith("/")
             for role, allow in granted:
-                self.grants.append(Grant(allow, role, kind, name, enclave, owned, place, absolute))
+                dead = self.first is not None
+                self.grants.append(Grant(allow, role, kind, name, enclave, owned, place, self.file, dead, absolute))
+                if dead and not allow:
+                    message = f"dead DENY: {role} {name} is not taken away, since sros2 uses the first <profiles> of"
+                    message += f" enclave {enclave} only ({self.first}); move it there"
+                    self._warning(place, message, DEAD_DENY)
 
     def _name(self, item: Item, namespace: str, node: str) -> str:
         element = item.element
@@ -246,8 +266,8 @@ class _Reader:
     def _problem(self, place: Place, problem: str, hint: str) -> None:
         self.problems.append(PolicyError(place.file, place.line, problem, hint))
 
-    def _warning(self, place: Place, message: str) -> None:
-        self.diagnostics.append(Diagnostic(place, Severity.WARNING, shown(message)))
+    def _warning(self, place: Place, message: str, code: str = "") -> None:
+        self.diagnostics.append(Diagnostic(place, Severity.WARNING, shown(message), code))
 
     def _notice(self, place: Place, message: str) -> None:
         self.diagnostics.append(Diagnostic(place, Severity.NOTICE, shown(message)))
@@ -263,5 +283,8 @@ def _misplaced(tag: str, parent: str, allowed: Collection[str]) -> tuple[str, st
 def _not_a_policy(root: Item) -> NotAPolicyError:
     what = f"the root element is <{shown(root.tag)}>, not <policy>"
     if root.tag in FRAGMENTS:
-        return NotAPolicyError(root.file, root.place.line, what, "name the policy that includes it")
+        fragment = NotAPolicyError(root.file, root.place.line, what, "name the policy that includes it")
+        tags = {str(element.tag).rpartition("}")[2] for element in root.element.iter()}
+        fragment.grants = not tags.isdisjoint({*ROLES, *(kind for kind, _ in ROLES.values()), "include"})
+        return fragment
     return NotAPolicyError(root.file, root.place.line, what, "name an SROS 2 policy")

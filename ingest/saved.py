@@ -7,11 +7,12 @@ In: policies, or a file saved before. Out: the same facts again, with file and l
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import GraphError, InputErrors, shown
-from rosprivacy.analysis.model import Diagnostic, Grant, Place, Policy, Profile, Severity
+from rosprivacy.analysis.model import DEAD_DENY, Diagnostic, Grant, Place, Policy, Profile, Severity
 from rosprivacy.ingest.policy import ROLES
 from rosprivacy.ingest.regular import read_regular
 
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 FORMAT = "rosprivacy.graph/1"
 MAX_BYTES = 2**30
 AGAIN = "save it again with --save-graph"
+_AGAIN = re.compile(r"enclave (.+) again \(first at |several <profiles> in enclave (.+): DDS uses", re.DOTALL)
 UNKNOWN = (
     "saved by an earlier version, which did not keep which names a policy writes absolute: all are taken so, as they "
     "stand here; save it again from the policies"
@@ -89,11 +91,18 @@ def _policy(policy: Policy) -> dict[str, Any]:
                 "node": grant.node,
                 "file": grant.place.file,
                 "line": grant.place.line,
+                **({} if grant.allow and not grant.dead else {"dead": grant.dead}),
             }
             for grant in policy.grants
         ],
         "diagnostics": [
-            {"severity": str(d.severity), "message": d.message, "file": d.place.file, "line": d.place.line}
+            {
+                "severity": str(d.severity),
+                "message": d.message,
+                "file": d.place.file,
+                "line": d.place.line,
+                **({"code": d.code} if d.code else {}),
+            }
             for d in policy.diagnostics
         ],
     }
@@ -110,6 +119,8 @@ def _read_policy(saved: dict[str, Any]) -> Policy:
             _text(g["enclave"]),
             _text(g["node"]),
             _place(g),
+            _text(saved["file"]),
+            _flag(g.get("dead", False)),
             _flag(g.get("absolute", True)),
         )
         for g in saved["grants"]
@@ -119,8 +130,33 @@ def _read_policy(saved: dict[str, Any]) -> Policy:
         if (grant.enclave, grant.node) not in owners:
             raise ValueError(f"grant of {grant.node}, which has no profile in {grant.enclave}")
     sources = tuple(sorted((_text(name), _text(digest)) for name, digest in saved["sources"].items()))
-    said = [Diagnostic(_place(d), Severity(d["severity"]), _text(d["message"])) for d in saved["diagnostics"]]
+    said = [
+        Diagnostic(_place(d), Severity(d["severity"]), _text(d["message"]), _text(d.get("code", "")))
+        for d in saved["diagnostics"]
+    ]
+    if any(g["rule"] == "DENY" and "dead" not in g for g in saved["grants"]):
+        grants, more = _of_earlier_version(grants, said)
+        said += more
     return Policy(_text(saved["file"]), sources, tuple(profiles), tuple(grants), tuple(said))
+
+
+def _of_earlier_version(grants: list[Grant], said: Iterable[Diagnostic]) -> tuple[list[Grant], list[Diagnostic]]:
+    """Grants of a graph that does not say which lines sros2 does not read: those that may be such take nothing away.
+
+    The warning about a second ``<profiles>`` or ``<enclave>`` says where it begins; what stands there or below, and
+    what is included from another file, may belong to it.
+    """
+    again = [(d.place, match[1] or match[2]) for d in said if (match := _AGAIN.match(d.message))]
+    read: list[Grant] = []
+    told: dict[Diagnostic, None] = {}
+    for grant in grants:
+        file, line = grant.place.file, grant.place.line
+        starts = [p for p, path in again if path == grant.enclave and (p.file != file or p.line <= line)]
+        read.append(replace(grant, dead=bool(starts)))
+        if starts and not grant.allow:
+            message = f"DENY of {shown(grant.name)} is taken as dead: the graph was saved by an earlier version, which"
+            told[Diagnostic(grant.place, Severity.WARNING, f"{message} does not say; {AGAIN}", DEAD_DENY)] = None
+    return read, list(told)
 
 
 def _place(saved: dict[str, Any]) -> Place:

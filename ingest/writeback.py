@@ -10,12 +10,13 @@ from collections import defaultdict
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import DatabaseError
-from rosprivacy.analysis.model import Verdict
+from rosprivacy.analysis.model import Verdict, unread
 from rosprivacy.ingest import statements as cypher
 from rosprivacy.ingest.ids import category_labels, element_id
 from rosprivacy.ingest.neo4j import refusals, run, write
 from rosprivacy.ingest.results import Names, Roles, element_results, finding_rows, flow_results, origin_rows
 from rosprivacy.ingest.rows import kind_labels
+from rosprivacy.ingest.said import diagnostics_of
 from rosprivacy.ingest.schema import DERIVES_FROM, ELEMENT, KIND_LABELS, SUFFIXES
 
 if TYPE_CHECKING:
@@ -141,7 +142,8 @@ class _Changes:
         """Rule S12 for one robot: what comes from it or gets out at it, what is open there, whether any data came."""
         if robot in self._leaking:
             return str(Verdict.LEAK)
-        settled = robot in self._reached and robot not in self._open
+        not_read = unread(diagnostics_of(self._stored.robots.get(robot, {})))
+        settled = robot in self._reached and robot not in self._open and not not_read
         return str(Verdict.NO_LEAK_FOUND if settled else Verdict.UNDETERMINED)
 
 

@@ -21,7 +21,7 @@ from urllib.parse import unquote
 from lxml import etree
 
 from rosprivacy.analysis.errors import InputError, InputErrors, PolicyError, reason, shown
-from rosprivacy.analysis.model import Diagnostic, Place, Severity
+from rosprivacy.analysis.model import FALLBACK_TAKEN, Diagnostic, Place, Severity
 from rosprivacy.ingest.regular import contents
 
 if TYPE_CHECKING:
@@ -186,6 +186,8 @@ class Documents:
         fallbacks = [child for child in include.element if str(child.tag).rpartition("}")[2] == "fallback"]
         if not fallbacks:
             raise _error(include.place, f"included file {shown(repr(href))} not found", "correct the href")
+        message = f"included file {href!r} not found: what stands in <fallback> is read in its place; correct the href"
+        self.diagnostics.append(Diagnostic(include.place, Severity.WARNING, shown(message), FALLBACK_TAKEN))
         fallback = Item.of(fallbacks[0], include.file, (*include.chain, (include.file, "fallback")))
         if has_text(fallback):
             raise _error(fallback.place, "text in <fallback>", "write elements, or remove it")

@@ -10,17 +10,29 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.legal import turned_special
+from rosprivacy.analysis.model import UNREAD_FILE
 from rosprivacy.analysis.ranks import in_words
 from rosprivacy.analysis.treatment import cleanings, makings
 from rosprivacy.report import taken_away
-from rosprivacy.report.outside import inventory, taken_by_kind
+from rosprivacy.report.outside import inventory, taken_by_kind, without_backups
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
 
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.ledger import TakenAway
-    from rosprivacy.analysis.model import Analysis, Category, Diagnostic, Element, Finding, Grant, Legal, Step
+    from rosprivacy.analysis.model import (
+        Analysis,
+        Category,
+        Diagnostic,
+        Element,
+        Finding,
+        Flow,
+        FlowGraph,
+        Grant,
+        Legal,
+        Step,
+    )
     from rosprivacy.analysis.overruled import Overruled
 
 FORMAT = "rosprivacy.analysis/1"
@@ -98,13 +110,15 @@ def document(
         **_inventory(analysis),
         "flows": len(graph.flows),
         "denied_flows": len(graph.denied),
+        "denied": [_denied(flow, graph) for flow in graph.denied],
         "elements": len({element.identity for element in graph.elements}),
         "standard_channels": analysis.standard_channels,
         "diagnostics": [_diagnostic(d) for d in (*diagnostics, *analysis.diagnostics)],
         "assumptions": {
             **assumptions,
-            "taken_away": taken_away.counts(taken),
+            "taken_away_by": taken_away.counts(taken),
             "taken_by_kind": taken_by_kind(analysis),
+            "backups_taken_as_none": [element_dict(element) for element in without_backups(analysis)],
             "sanitizers_without_method": [
                 {"element": element_dict(element), "category": category, "taken_as": "pseudonymise"}
                 for element, category in analysis.unstated
@@ -119,6 +133,11 @@ def document(
             "overruled": [_overruled(one) for one in analysis.spread.overruled],
         },
     }
+
+
+def files_not_read(document: Mapping[str, Any]) -> int:
+    """Return how many files with grants were not read: why a verdict can be undetermined with nothing open (S11)."""
+    return len({said["file"] for said in document["diagnostics"] if said.get("code") == UNREAD_FILE})
 
 
 def as_text(value: Any) -> str:
@@ -289,6 +308,17 @@ def _step(step: Step) -> dict[str, Any]:
     }
 
 
+def _denied(flow: Flow, graph: FlowGraph) -> dict[str, Any]:
+    """What one line allows and another denies (rule S5)."""
+    return {
+        "source": element_dict(graph.elements[flow.source]),
+        "target": element_dict(graph.elements[flow.target]),
+        "role": flow.role,
+        "allowed_by": [_grant(grant) for grant in flow.grants],
+        "denied_by": [_grant(grant) for grant in flow.denials],
+    }
+
+
 def _grant(grant: Grant) -> dict[str, Any]:
     return {"file": grant.place.file, "line": grant.place.line, "enclave": grant.enclave, "profile": grant.node}
 
@@ -299,4 +329,5 @@ def _diagnostic(diagnostic: Diagnostic) -> dict[str, Any]:
         "line": diagnostic.place.line,
         "severity": str(diagnostic.severity),
         "message": diagnostic.message,
+        **({"code": diagnostic.code} if diagnostic.code else {}),
     }

@@ -38,6 +38,11 @@ def taken_by_kind(analysis: Analysis) -> dict[str, str]:
     return {kind: TAKEN[kind] for kind in sorted({e.kind for e in analysis.outside} & set(TAKEN))}
 
 
+def without_backups(analysis: Analysis) -> list[Element]:
+    """Return the storages of whose backups nothing is stated: they are taken to have none (rule S9)."""
+    return [e for e, facts in analysis.outside.items() if e.kind == "storage" and facts.backups is None]
+
+
 def _facts(facts: Outside) -> dict[str, Any]:
     said = {
         "retention": _durations(facts.retention),

@@ -13,7 +13,9 @@ from rich.text import Text
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import CHANNELS
 from rosprivacy.report.decided import decision_lines
+from rosprivacy.report.document import files_not_read
 from rosprivacy.report.terminal_asked import asked_at_verdict, asked_lines, may_be_asked
+from rosprivacy.report.terminal_denied import denied_lines
 from rosprivacy.report.terminal_ends import end_lines, ends_at_verdict
 from rosprivacy.report.terminal_fleet import fleet_lines, robots_of
 from rosprivacy.report.terminal_labels import overruled_lines, standard_lines
@@ -44,7 +46,8 @@ KINDS = {
     "third-country-transfer": "leaves the EEA without a stated basis: ",
 }
 TAKEN = {"conduit": "passes on all that gets there", "leak": "lets out all that gets there"}
-SHOWN = 12  # open elements of a kind, without --verbose
+UNREAD = "no leak reached, but policy files with grants were not read"
+SHOWN = 12  # open elements of a kind, or denied flows, without --verbose
 Line = tuple[str, str]  # text, style
 
 
@@ -65,7 +68,7 @@ def print_report(console: Console, report: Mapping[str, Any], *, verbose: bool =
 def _lines(report: Mapping[str, Any], *, verbose: bool, quiet: bool) -> Iterator[Line]:
     style, meaning = VERDICTS[report["verdict"]]
     if not any(report["categories"]) or (report["verdict"] == "undetermined" and not report["open"]):
-        meaning = "no data was followed"
+        meaning = UNREAD if files_not_read(report) and any(report["categories"]) else "no data was followed"
     accepted = sum(finding["accepted"] for finding in report["findings"])
     if accepted and report["verdict"] != "leak":
         style, meaning = "bold yellow", ACCEPTED[report["verdict"]]
@@ -79,6 +82,7 @@ def _lines(report: Mapping[str, Any], *, verbose: bool, quiet: bool) -> Iterator
     yield from _findings(report)
     yield from _review(report, verbose=verbose)
     yield from end_lines(report, most=None if verbose else SHOWN)
+    yield from denied_lines(report, most=None if verbose else SHOWN)
     if verbose:
         yield from listed(report)
     yield from _assumed(report, verbose=verbose)
@@ -234,6 +238,8 @@ def _assumed_outside(report: Mapping[str, Any]) -> Iterator[Line]:
     assumptions = report["assumptions"]
     for kind, role in assumptions["taken_by_kind"].items():
         yield f"   {kind}: {TAKEN[role]} ({role}), unless a label says otherwise", ""
+    if taken := assumptions["backups_taken_as_none"]:
+        yield f"   backups are not stated, taken to have none: {', '.join(map(_name, taken))}", "yellow"
     if "countries_as_of" in assumptions:
         yield f"   EEA and adequacy decisions as of {assumptions['countries_as_of']}: check them", ""
     for row in report["outside"]:

@@ -36,7 +36,7 @@ SAYS = {
 
 def counted(report: Mapping[str, Any]) -> Iterator[Line]:
     """Return what ``Assumed`` says: how much was taken away, by what, and how much of it closed a path."""
-    taken = report["assumptions"]["taken_away"]
+    taken = report["assumptions"]["taken_away_by"]
     if not taken:
         return
     parts = [f"{number:,} {COUNTED[by][number != 1]}" for by, number in taken.items()]

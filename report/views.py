@@ -67,7 +67,7 @@ def ros_view(
     for flow in graph.denied:
         lines.add(*_ends(analysis, flow), DENIED, flow.role, flow.denials)
     effective = {grant for flow in graph.denied for grant in flow.denials}
-    denying = [grant for grant in denials if not grant.allow]
+    denying = [grant for grant in denials if not grant.allow and not grant.dead]
     undrawn = sum(not _deny(lines, grant, graph, hidden) and grant not in effective for grant in denying)
     for key in boxes.keys() & covered.keys():
         if boxes[key].pattern:

@@ -155,15 +155,21 @@ def test_a_folder_passes_over_what_does_not_end_in_xml(tmp_path: Path) -> None:
     assert read(str(tmp_path)) == [str(tmp_path / "p.xml")]
 
 
-def test_fragments_and_other_xml_of_a_folder_are_passed_over_with_a_notice(tmp_path: Path) -> None:
+def test_fragments_and_other_xml_of_a_folder_are_told(tmp_path: Path) -> None:
     policy(tmp_path / "p.xml")
     write(tmp_path / "common" / "node.xml", f"<!-- x -->\n{FRAGMENT}")
     write(tmp_path / "package.xml", "<package/>")
     policies, notices = read_policies([str(tmp_path)])
     assert [Path(policy.file).name for policy in policies] == ["p.xml"]
+    hint = "name the policy that does, or remove it"
+    unknown = f"no policy read here includes it, so what it grants is not known; {hint}"
     shown = [(str(n.severity), str(n.place).removeprefix(f"{tmp_path}/"), n.message) for n in notices]
     assert shown == [
-        ("notice", "common/node.xml:2", "not read by itself: the root element is <profile>, not <policy>"),
+        (
+            "warning",
+            "common/node.xml:2",
+            f"not read: the root element is <profile>, not <policy>, and {unknown}",
+        ),
         ("notice", "package.xml:1", "not read by itself: the root element is <package>, not <policy>"),
     ]
 
@@ -200,11 +206,14 @@ def test_a_folder_that_links_to_itself_is_read_once(tmp_path: Path) -> None:
     assert read(str(tmp_path)) == [file]
 
 
-def test_a_dangling_link_in_a_folder_is_passed_over(tmp_path: Path) -> None:
-    file = policy(tmp_path / "p.xml")
+def test_a_dangling_link_in_a_folder_is_an_error(tmp_path: Path) -> None:  # rule S11
+    policy(tmp_path / "p.xml")
     (tmp_path / "q.xml").symlink_to("none.xml")
     (tmp_path / "r.xml").symlink_to("r.xml")
-    assert read(str(tmp_path)) == [file]
+    assert refused(str(tmp_path)) == [
+        f"{tmp_path}/q.xml:0: a link to nothing: none.xml; correct the link, or remove it",
+        f"{tmp_path}/r.xml:0: a link to nothing: r.xml; correct the link, or remove it",
+    ]
 
 
 # ---------------------------------------------------------------- globs

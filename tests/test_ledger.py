@@ -7,6 +7,7 @@ force gains nothing, or the line stood in the ledger before.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import count
 from typing import TYPE_CHECKING
 
 from hypothesis import given
@@ -16,7 +17,8 @@ from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.findings import analyse
 from rosprivacy.analysis.ledger import ledger
 from rosprivacy.analysis.model import GLOB, Bound, Flow, FlowGraph, Grant, Place, Statement
-from tests.test_findings import System, statement, systems
+from tests.test_findings import HIERARCHY, System, statement, systems
+from tests.test_fleet_findings import Case, fleets, found_in
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -115,21 +117,22 @@ def stated(draw: st.DrawFn) -> Stated:
 GLOBS = [statement("mundane"), statement("never", "Any"), statement("only", "Loc"), statement("never", "Face")]
 
 
-def answer(brute: Brute) -> tuple[dict[tuple[str, str, int, int, bool], tuple[bool, bool]], set[tuple[int, str]]]:
+def answer(brute: Brute) -> tuple[dict[tuple[str, str, int, int], tuple[bool, bool]], set[tuple[int, str]]]:
     """Finding -> (not dismissed, plain); (vertex, category) that is open."""
-    findings = {key: (not dismissed, not hidden) for key, (hidden, dismissed, _) in brute.findings().items()}
+    told = {key[:4]: forms for key, forms in brute.findings().items() if not key[4]}  # none beside another
+    findings = {key: (not dismissed, not hidden) for key, (hidden, dismissed, _) in told.items()}
     return findings, {(v, c) for v, (categories, *_) in brute.open().items() for c in categories}
 
 
-def gains(system: Stated, line: int) -> tuple[bool, bool]:
-    """Whether findings (or worse ones), and whether questions, come about when a line is taken out."""
-    findings, questions = answer(system.brute())
-    after, asked = answer(system.without(line).brute())
-    worse = any(
-        key not in findings or any(now and not before for now, before in zip(state, findings[key], strict=True))
-        for key, state in after.items()
+def worse(before: Brute, after: Brute) -> tuple[bool, bool]:
+    """Whether findings (or worse ones), and whether questions, come about between two systems."""
+    findings, questions = answer(before)
+    later, asked = answer(after)
+    more = any(
+        key not in findings or any(now and not then for now, then in zip(state, findings[key], strict=True))
+        for key, state in later.items()
     )
-    return worse, bool(asked - questions)
+    return more, bool(asked - questions)
 
 
 def rows_of(rows: tuple[TakenAway, ...], line: int) -> Iterator[TakenAway]:
@@ -148,7 +151,63 @@ def test_what_is_taken_away_stands_in_the_ledger(system: Stated) -> None:
             analyse(system.without(line).graph(), system.without(line).bound(), system.system.hierarchy)
         except InputErrors:
             continue  # what is left contradicts itself
-        found, asked = gains(system, line)
+        found, asked = worse(system.brute(), system.without(line).brute())
         own = list(rows_of(rows, line))
         assert not found or any(row.leak or row.perhaps for row in own), (line, own)
         assert not asked or any(row.open or row.itself or row.perhaps for row in own), (line, own)
+
+
+@st.composite
+def stated_fleets(draw: st.DrawFn) -> Case:
+    """A fleet in which every line of a model's labels, and of what is shared, has a place of its own."""
+    case = draw(fleets())
+    new: dict[int, System] = {}
+    for number, system in enumerate(case.systems):
+        lines = count(1)
+        said = {
+            vertex: [replace(one, place=Place(f"model{number}.yaml", next(lines))) for one in statements]
+            for vertex, statements in system.said.items()
+        }
+        new[id(system)] = replace(system, said=said)
+    lines = count(1)
+    shared = {
+        name: (kind, stated, [replace(one, place=Place("fleet.yaml", next(lines))) for one in said])
+        for name, (kind, stated, said) in case.shared.items()
+    }
+    return replace(case, robots={robot: new[id(system)] for robot, system in case.robots.items()}, shared=shared)
+
+
+def lines_of(case: Case) -> set[Place]:
+    said = [one for system in case.systems for statements in system.said.values() for one in statements]
+    said += [one for _, _, statements in case.shared.values() for one in statements]
+    return {one.place for one in said if one.role not in ADDS}
+
+
+def fleet_without(case: Case, place: Place) -> Case:
+    new = {
+        id(system): replace(system, said={v: [s for s in said if s.place != place] for v, said in system.said.items()})
+        for system in case.systems
+    }
+    shared = {
+        name: (kind, stated, [s for s in said if s.place != place])
+        for name, (kind, stated, said) in case.shared.items()
+    }
+    return replace(case, robots={robot: new[id(system)] for robot, system in case.robots.items()}, shared=shared)
+
+
+@given(stated_fleets())
+def test_what_is_taken_away_on_a_fleet_stands_in_the_ledger(case: Case) -> None:
+    """The same of robots that are read once for all that are alike, and of what they share."""
+    result = found_in(case)
+    if result is None:
+        return
+    analysis, placed = result
+    rows = ledger(analysis, placed.bound, HIERARCHY)
+    for place in sorted(lines_of(case), key=lambda place: (place.file, place.line)):
+        other = fleet_without(case, place)
+        if found_in(other) is None:
+            continue
+        found, asked = worse(case.brute()[0], other.brute()[0])
+        own = [row for row in rows if place in row.places]
+        assert not found or any(row.leak or row.perhaps for row in own), (place, own)
+        assert not asked or any(row.open or row.itself or row.perhaps for row in own), (place, own)

@@ -209,6 +209,76 @@ class TestRestrictions:
         assert [category["name"] for category in found["categories"]] == ["PersonalData"]
 
 
+STORED = (
+    "nodes: {/camera: {source: [Video]}, /uplink: conduit}\nchannels: {/video: sensitive}\nlimits: {Video: P1D}\n"
+    "elements: {disk: {kind: storage, country: %s, retention: P1D%s}}\nflows: [{from: /uplink, to: disk}]\n"
+)
+
+
+class TestWhatIsTaken:
+    """Rules S9, S10 and S12: what nobody states is told, and what has ended does not hold (cases 13 to 15)."""
+
+    def accepted_until(self, day: str) -> None:
+        policy(CAM, UP.format(topic="/video"))
+        labels("nodes: {/camera: {source: [Video]}, /uplink: {leak: [Video]}}\nchannels: {/video: sensitive}\n")
+        entry = f"{{category: Video, decision: accept, reason: x, owner: y, legal_basis: [6(1)(f)], expires: {day}}}"
+        Path("d.yaml").write_text(f"decisions: 1\nfindings: [{entry}]\n", "utf-8")
+
+    def test_no_build_revives_an_acceptance(self, cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.accepted_until("2025-01-01")
+        monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
+        done = cli("analyze", "p.xml", "-l", "l.yaml", "--decisions", "d.yaml")
+        assert done.returncode == 1
+        said = "warning: SOURCE_DATE_EPOCH:0: by its day, 1970-01-01, fewer decisions have expired than today, "
+        assert said in done.stdout
+        assert "expired on 2025-01-01 and no longer counts; decide anew" in done.stdout
+
+    def test_where_nothing_has_expired_the_fixed_day_stays(self, cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
+        """Rule S14: the same bytes on every day."""
+        self.accepted_until("9998-01-01")
+        monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
+        found = analysis(cli, "--decisions", "d.yaml")
+        assert found["assumptions"]["decisions"]["today"] == "1970-01-01"
+        assert found["verdict"] == "no-leak-found"
+        monkeypatch.setenv("SOURCE_DATE_EPOCH", "253370764800")  # 9999-01-01: the later day counts here, too
+        assert cli("analyze", "p.xml", "-l", "l.yaml", "--decisions", "d.yaml").returncode == 1
+
+    def test_backups_that_nobody_states_are_told(self, cli: Cli) -> None:
+        policy(CAM, UP.format(topic="/video"))
+        labels(STORED % ("DE", ""))
+        done = cli("analyze", "p.xml", "-l", "l.yaml")
+        assert done.returncode == 0
+        assert "   backups are not stated, taken to have none: disk" in done.stdout.splitlines()
+        disk = {"robot": "", "kind": "storage", "name": "disk"}
+        assert analysis(cli)["assumptions"]["backups_taken_as_none"] == [disk]
+        labels(STORED % ("DE", ", backups: false"))
+        assert "backups are not stated" not in cli("analyze", "p.xml", "-l", "l.yaml").stdout
+
+    @pytest.mark.parametrize(
+        ("more", "reason"),
+        [
+            ("", "in GB, for which the adequacy decision ended on 2031-12-27; no basis for the transfer is stated"),
+            (
+                ", transfer: adequacy",
+                "in GB; the basis stated is adequacy, and the adequacy decision ended on 2031-12-27",
+            ),
+        ],
+    )
+    def test_an_adequacy_decision_ends(self, cli: Cli, monkeypatch: pytest.MonkeyPatch, more: str, reason: str) -> None:
+        policy(CAM, UP.format(topic="/video"))
+        labels(STORED % ("GB", f", backups: false{more}"))
+        monkeypatch.setenv("SOURCE_DATE_EPOCH", "1956268800")  # 2031-12-29
+        done = cli("analyze", "p.xml", "-l", "l.yaml")
+        assert done.returncode == 1
+        assert f"   {reason}" in done.stdout.splitlines()
+
+    def test_until_then_it_holds(self, cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
+        policy(CAM, UP.format(topic="/video"))
+        labels(STORED % ("GB", ", backups: false"))
+        monkeypatch.setenv("SOURCE_DATE_EPOCH", "1956139200")  # 2031-12-27
+        assert cli("analyze", "p.xml", "-l", "l.yaml").returncode == 0
+
+
 class TestUnknownEnds:
     """Rule S11: what is not known is said (case 10)."""
 

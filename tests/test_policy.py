@@ -280,7 +280,8 @@ def test_each_group_has_its_two_roles(tmp_path: Path, group: str, item: str, kin
 def test_a_group_without_attribute_grants_nothing_and_says_so(tmp_path: Path) -> None:
     result = read(tmp_path, of("\n<topics><topic>a</topic></topics>"))
     assert granted(result) == []
-    assert said(result) == [("notice", 2, "<topics> without publish or subscribe grants nothing")]
+    hint = 'write publish="ALLOW", or remove it'
+    assert said(result) == [("warning", 2, f"<topics> without publish or subscribe grants nothing; {hint}")]
 
 
 # ---------------------------------------------------------------- names
@@ -464,7 +465,8 @@ def test_an_old_version_with_enclaves_is_not_taken_in_silence(tmp_path: Path) ->
 
 
 def test_diagnostics_are_warnings_and_notices_only(tmp_path: Path) -> None:
-    result = read(tmp_path, policy(enclave(profile("<topics><topic> </topic></topics>", "a"))))
+    body = enclave(profile("<topics><topic> </topic></topics>", "a"))
+    result = read(tmp_path, policy(body, head='version="0.1.0"'))
     assert {d.severity for d in result.diagnostics} == {Severity.WARNING, Severity.NOTICE}
 
 

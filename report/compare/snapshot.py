@@ -75,7 +75,7 @@ def _grants(policies: Iterable[Policy], *, named: bool) -> Facts:
     for policy in policies:
         for g in policy.grants:
             key = (policy.file if named else "", g.enclave, g.node, g.role, g.kind, g.name)
-            rules[key].add("ALLOW" if g.allow else "DENY")
+            rules[key].add("ALLOW" if g.allow else "dead DENY" if g.dead else "DENY")
     return {key: {"rule": " and ".join(sorted(found))} for key, found in rules.items()}
 
 

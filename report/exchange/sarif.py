@@ -12,12 +12,20 @@ from __future__ import annotations
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.model import Place, Severity
+from rosprivacy.analysis.model import Place, Severity, unread
 from rosprivacy.report.exchange.inventory import law_of
 from rosprivacy.report.exchange.places import Places, in_a_file, to_review
 from rosprivacy.report.exchange.sarif_flows import flows_between, further_ways, prose, text
 from rosprivacy.report.exchange.sarif_results import LAW, ROOT, Files, Results
-from rosprivacy.report.exchange.sarif_rules import NO_VERDICT, NOTHING_FOLLOWED, RULES, UNREVIEWED, descriptors, rule_of
+from rosprivacy.report.exchange.sarif_rules import (
+    FILES_NOT_READ,
+    NO_VERDICT,
+    NOTHING_FOLLOWED,
+    RULES,
+    UNREVIEWED,
+    descriptors,
+    rule_of,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -54,11 +62,12 @@ def sarif(
     accepted
         Id of a finding -> why a person accepted it (reason, owner, until when). Only decisions that hold now.
     """
-    files = Files(root)
+    files, diagnostics = Files(root), tuple(diagnostics)
     law = {name: law_of(categories[name]) for name in analysis.emitted}
     taxa = sorted({legal.iri: legal for said in law.values() for legal in said}.values(), key=lambda legal: legal.name)
     found = (rule_of(finding.kind) for finding in analysis.findings)
-    rules = {rule.id: rule for rule in (*RULES, *found, UNREVIEWED, NOTHING_FOLLOWED)}
+    not_read = [FILES_NOT_READ] if unread(diagnostics) else []
+    rules = {rule.id: rule for rule in (*RULES, *found, UNREVIEWED, NOTHING_FOLLOWED, *not_read)}
     made = Results(
         analysis,
         Places.of(analysis, assumptions),

@@ -15,7 +15,7 @@ from rosprivacy.analysis.model import Verdict
 from rosprivacy.report.exchange.artifacts import uri_of
 from rosprivacy.report.exchange.places import NOWHERE, of_step, to_review
 from rosprivacy.report.exchange.sarif_flows import flows_of, logical, named, prose, text
-from rosprivacy.report.exchange.sarif_rules import NOTHING_FOLLOWED, UNREVIEWED, rule_of
+from rosprivacy.report.exchange.sarif_rules import FILES_NOT_READ, NOTHING_FOLLOWED, UNREVIEWED, Rule, rule_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -84,7 +84,8 @@ class Results:
         for question in to_review(self.analysis):
             yield self._question(question)
         if self.analysis.verdict is Verdict.UNDETERMINED and not self.analysis.open:
-            yield self._nothing_followed()
+            not_read = FILES_NOT_READ.id in self.rules and self.analysis.carried
+            yield self._rule_alone(FILES_NOT_READ if not_read else NOTHING_FOLLOWED)
 
     def _finding(self, finding: Finding) -> dict[str, Any]:
         rule = rule_of(finding.kind)
@@ -136,8 +137,8 @@ class Results:
             "properties": {"categories": [shown(name) for name in question.categories], "distance": question.distance},
         }
 
-    def _nothing_followed(self) -> dict[str, Any]:
-        rule = NOTHING_FOLLOWED
+    def _rule_alone(self, rule: Rule) -> dict[str, Any]:
+        """A result about the whole system."""
         return {
             "ruleId": rule.id,
             "ruleIndex": self.rules[rule.id],

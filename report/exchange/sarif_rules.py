@@ -95,6 +95,13 @@ UNREVIEWED = Rule(
     ),
     NONE,
 )
+FILES_NOT_READ = Rule(
+    "files-not-read",
+    "PoliciesNotRead",
+    "Policy files with grants were not read: that nothing is found does not say that there is nothing.",
+    "A folder that was named holds a part of a policy that no policy includes. What it allows is not known.",
+    ("Name the policy that includes the file, or remove the file.",),
+)
 NOTHING_FOLLOWED = Rule(
     "no-data-followed",
     "PersonalDataNotFollowed",

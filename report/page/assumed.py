@@ -49,6 +49,8 @@ def assumed(index: Index) -> Iterator[str]:
         yield words("a.types", names=words.row(_type(kind, index) for kind in said["data_types_asked"]))
     if said.get("article9_only"):
         yield words("a.article9")
+    if taken := said.get("backups_taken_as_none"):
+        yield words("a.backups", names=words.row(map(name, taken)))
     for category, kinds in said.get("may_be_asked", {}).items():
         yield words("a.broader", data=index.data(category), kinds=index.all_data(kinds))
     if "database" in said:

@@ -10,7 +10,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.report.compare.changes import ASKED, Changes, changes
+from rosprivacy.report.document import files_not_read
 from rosprivacy.report.page import assumed, cleaned, elements, tables
+from rosprivacy.report.page.closed import Closed, closed
 from rosprivacy.report.page.criteria import Criterion, criteria
 from rosprivacy.report.page.decision_texts import Decision, orphans
 from rosprivacy.report.page.fleet_told import Fleet, fleet_told
@@ -93,6 +95,7 @@ class Outline:
     assumptions: tuple[str, ...]
     files: tuple[assumed.File, ...]
     remarks: tuple[assumed.Remark, ...]
+    closed: tuple[Closed, ...]
     fleet: Fleet | None
     changes: Changed | None
     subjects: tables.Table
@@ -165,6 +168,7 @@ def outline(
         assumptions=tuple(assumed.assumed(index)),
         files=assumed.files(index),
         remarks=assumed.remarks(index),
+        closed=closed(index),
         fleet=fleet_told(index, entries),
         changes=_changed(differ, earlier, entries, index) if differ and earlier else None,
         subjects=subjects,
@@ -209,7 +213,8 @@ def _title(index: Index) -> str:
 def _verdict(index: Index) -> str:
     """The verdict; ``nothing`` where no data was followed (rule S12: nothing was asked, so nothing can be said)."""
     verdict = str(index.document["verdict"])
-    followed = index.document["categories"] and (verdict != "undetermined" or index.document["open"])
+    asked = verdict != "undetermined" or index.document["open"] or files_not_read(index.document)
+    followed = index.document["categories"] and asked
     return verdict if followed else "nothing"
 
 

@@ -177,6 +177,7 @@ WORDS = {
         "The answer is only about data that can fall under Article 9(1) GDPR, or of which that is not known. Other "
         "personal data were not looked at."
     ),
+    "a.backups": "Backups are not stated, and taken to be none: {names}.",
     "a.broader": "{data} is a part of this answer too: it is a broader kind, and may be {kinds}.",
     "a.database": "The graph of {robots} came from a database, where people can have changed it after it was loaded.",
     "a.unstated": (
@@ -190,6 +191,27 @@ WORDS = {
     "a.limit": "How long {element} keeps {data} was not judged: no label file states a limit.",
     "a.law": "The law is that of {date}, as the ontology of the program knows it. Proposals of new law are not applied.",
     "a.labels": "Labels are a person's word. The program cannot check what a node does inside, or what leaves it past ROS.",
+    "t.closed": "Closed on somebody's word: without it, data would get on",
+    "k.intro": (
+        "Each row is a line of a policy or label file, or a decision, that keeps data from a recipient or from an "
+        "element that nobody has reviewed. The result holds only as far as these lines are right."
+    ),
+    "c.closed": "Where data ends",
+    "c.word": "On whose word",
+    "c.behind": "What lies behind",
+    "k.leak": "recipient {element}",
+    "k.open": "not reviewed: {element}",
+    "k.perhaps": "not worked out",
+    "k.glob": "{said}, by a glob",
+    "k.deny": "denied by the policy",
+    "k.standard-channel": "standard channel, taken to carry no personal data",
+    "k.mundane": "said to carry no personal data",
+    "k.only": "said to carry other data only",
+    "k.never": "said never to carry it",
+    "k.sanitizer": "said to clean it",
+    "k.outdone": "a label of higher rank",
+    "k.decision": "accepted by a decision",
+    "k.restriction": "not asked about",
     "t.files": "Files that were read",
     "c.file": "File",
     "c.role": "Role",

@@ -5,12 +5,14 @@ In: what a user names. Out: a ``Result``.
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.analysis.findings import Options, analyse
 from rosprivacy.analysis.ledger import ledger
+from rosprivacy.analysis.model import unread
 from rosprivacy.analysis.patterns import FleetView
 from rosprivacy.asked import asked_for
 from rosprivacy.assumptions import (
@@ -21,12 +23,15 @@ from rosprivacy.assumptions import (
     sources_of,
     what_it_rests_on,
 )
+from rosprivacy.clock import judged_on
 from rosprivacy.decided import accepts, decisions_of, joined_to
 from rosprivacy.ingest.binding import bind, unused
 from rosprivacy.ingest.files import read_policies
 from rosprivacy.ingest.graph import build
+from rosprivacy.ingest.joint import joint_warnings
 from rosprivacy.ingest.labels import read_labels
 from rosprivacy.ingest.outside import extend
+from rosprivacy.ingest.said import diagnostics_of
 from rosprivacy.ingest.saved import read_saved
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.report.decided import with_decisions
@@ -122,7 +127,9 @@ def run(policies: tuple[str, ...], labels: tuple[str, ...], settings: Settings) 
     graph = extend(build(system, settings.view), files)
     bound = bind(graph, files)
     decisions = decisions_of(settings, vocabulary)
-    options = Options(asked, settings.paths, settings.max_paths, accepts(decisions))
+    not_read = unread((*diagnostics, *(d for policy in system for d in policy.diagnostics)))
+    day = settings.today or judged_on(os.environ)
+    options = Options(asked, settings.paths, settings.max_paths, accepts(decisions), today=day, unread=not_read)
     analysis = analyse(graph, bound, vocabulary.hierarchy, options)
     joined = joined_to(decisions, analysis, vocabulary, asked)
     said = tuple(d for policy in system for d in policy.diagnostics) + diagnostics
@@ -149,11 +156,13 @@ def run_stored(driver: Driver, settings: Settings) -> Result:
     vocabulary = load(ontologies=settings.ontologies)
     asked = asked_for(vocabulary, settings)
     stored = read_stored(driver, vocabulary)
-    everything = Options(None, settings.paths, settings.max_paths)
+    not_read = unread(said for robot in stored.robots.values() for said in diagnostics_of(robot))
+    day = settings.today or judged_on(os.environ)
+    everything = Options(None, settings.paths, settings.max_paths, today=day, unread=not_read)
     analysis = analyse(stored.graph, stored.bound, vocabulary.hierarchy, everything)
     write_back(driver, stored, analysis, vocabulary)
     decisions = decisions_of(settings, vocabulary)
-    chosen = Options(asked, settings.paths, settings.max_paths, accepts(decisions, stored.likeness))
+    chosen = replace(everything, categories=asked, accepts=accepts(decisions, stored.likeness))
     if chosen != everything:
         analysis = analyse(stored.graph, stored.bound, vocabulary.hierarchy, chosen)
     joined = joined_to(decisions, analysis, vocabulary, asked, stored.likeness)
@@ -189,7 +198,7 @@ def read_system(policies: tuple[str, ...], settings: Settings) -> tuple[tuple[Po
         )
     known = {policy.file for policy in read}  # read again is read anew
     system = (*read, *(policy for policy in saved if policy.file not in known))
-    return tuple(sorted(system, key=lambda policy: policy.file)), diagnostics
+    return tuple(sorted(system, key=lambda policy: policy.file)), (*diagnostics, *joint_warnings(system))
 
 
 def standard_channels(graph: FlowGraph, vocabulary: Vocabulary, settings: Settings) -> set[tuple[str, str]]:

@@ -12,6 +12,7 @@ import rosprivacy
 from rosprivacy.analysis.model import Diagnostic, Place, Severity
 from rosprivacy.asked import may_be
 from rosprivacy.ingest.countries import countries
+from rosprivacy.ingest.said import diagnostics_of, diagnostics_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -112,13 +113,8 @@ def remembered(assumptions: Mapping[str, Any], diagnostics: Iterable[Diagnostic]
     """Return what the answer rests on as properties of a ``Robot``."""
     return {
         "assumptions": json.dumps(assumptions, sort_keys=True),
-        "diagnostics": json.dumps([_as_dict(diagnostic) for diagnostic in diagnostics]),
+        "diagnostics": diagnostics_text(diagnostics),
     }
-
-
-def _as_dict(diagnostic: Diagnostic) -> dict[str, Any]:
-    place = diagnostic.place
-    return {"file": place.file, "line": place.line, "severity": diagnostic.severity, "message": diagnostic.message}
 
 
 def put_together(
@@ -136,11 +132,7 @@ def put_together(
     standard = [said["standard_channels"] for said in loaded]
     distinct = {(entry["file"], entry["sha256"]) for entry in standard if entry}
     taken = [{"file": name, "sha256": digest} for name, digest in sorted(distinct)]
-    diagnostics = {
-        Diagnostic(Place(d["file"], d["line"]), Severity(d["severity"]), d["message"])
-        for robot in robots
-        for d in json.loads(robot.get("diagnostics") or "[]")
-    }
+    diagnostics = {said for robot in robots for said in diagnostics_of(robot)}
     assumptions = {
         **_adequacy(analysis),
         **files,

@@ -34,6 +34,15 @@ def source_date(environment: Mapping[str, str]) -> datetime | None:
         raise InputError(VARIABLE, 0, f"{shown(given)!r} is no time", hint) from None
 
 
+def judged_on(environment: Mapping[str, str]) -> str:
+    """Return the later of the environment's date and that of now: what has ended by either has ended.
+
+    >>> judged_on({"SOURCE_DATE_EPOCH": "0"}) > "2026-01-01", judged_on({"SOURCE_DATE_EPOCH": "253370764800"})
+    (True, '9999-01-01')
+    """
+    return max(today(environment), today({}))
+
+
 def today(environment: Mapping[str, str]) -> str:
     """Return the date, in UTC, as ``YYYY-MM-DD``: that of the environment, else that of now (rule S14).
 

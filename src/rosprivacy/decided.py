@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.decisions import Case, decided
 from rosprivacy.analysis.patterns import NO_ROBOTS, pattern_of
-from rosprivacy.clock import today
+from rosprivacy.clock import judged_on, today
 from rosprivacy.ontology.special import special_provision
 
 if TYPE_CHECKING:
@@ -30,7 +30,17 @@ def decisions_of(settings: Settings, vocabulary: Vocabulary) -> Decisions | None
         return None
     from rosprivacy.ingest.decisions import read_decisions  # noqa: PLC0415 - only where there are some
 
-    return read_decisions(settings.decisions, vocabulary, settings.today or today(os.environ))
+    found = read_decisions(settings.decisions, vocabulary, settings.today or today(os.environ))
+    return found if settings.today else not_revived(found, judged_on(os.environ))
+
+
+def not_revived(decisions: Decisions, latest: str) -> Decisions:
+    """Return decisions on a later day if one has expired by then: no fixed date of a build revives it (S14).
+
+    Where none has, the fixed date stays, and the answer is the same on every day.
+    """
+    later = replace(decisions, today=latest, instead_of=decisions.today)
+    return later if any(later.state(entry) != decisions.state(entry) for entry in decisions.entries) else decisions
 
 
 def joined_to(

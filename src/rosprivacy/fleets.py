@@ -5,16 +5,19 @@ In: a fleet file. Out: a ``Result`` with ``fleet``. Robots that are alike are re
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.analysis.findings import Options, analyse
 from rosprivacy.analysis.groups import Groups
+from rosprivacy.analysis.model import unread
 from rosprivacy.analysis.patterns import FleetView
 from rosprivacy.asked import asked_for
 from rosprivacy.assembly import Result
 from rosprivacy.assumptions import assumed_decisions, remembered, sources_of, what_it_rests_on
+from rosprivacy.clock import judged_on
 from rosprivacy.decided import accepts, decisions_of, joined_to
 from rosprivacy.ingest.alike import Alike, alike
 from rosprivacy.ingest.binding import bind, unused
@@ -24,6 +27,7 @@ from rosprivacy.ingest.fleet import Fleet, Robot, read_fleet
 from rosprivacy.ingest.fleetrows import FleetRows
 from rosprivacy.ingest.graph import build
 from rosprivacy.ingest.joins import joins_nothing
+from rosprivacy.ingest.joint import joint_warnings
 from rosprivacy.ingest.labels import Labels, read_labels
 from rosprivacy.ingest.namespaces import as_written, pushed, told
 from rosprivacy.ingest.outside import extend
@@ -89,7 +93,9 @@ def analysed(read: Read, vocabulary: Vocabulary, settings: Settings, *, every: b
     placed = read.placed
     decisions = read.decisions
     groups = None if every or decisions else Groups(placed.likeness)
-    options = Options(asked, settings.paths, settings.max_paths, accepts(decisions, placed.likeness), groups)
+    accepted, not_read = accepts(decisions, placed.likeness), unread(read.diagnostics)
+    day = settings.today or judged_on(os.environ)
+    options = Options(asked, settings.paths, settings.max_paths, accepted, groups, today=day, unread=not_read)
     analysis = analyse(placed.graph, placed.bound, vocabulary.hierarchy, options)
     policies = [policy for member in read.members.values() for policy in member.policies]
     assumptions = what_it_rests_on(placed.graph, sources_of(policies), read.labels, analysis, settings, vocabulary)
@@ -124,7 +130,8 @@ def rows_of_fleet(read: Read, result: Result, settings: Settings) -> FleetRows:
         more[group.robots[0].id] = remembered(said, member.diagnostics)
     everything = {**result.assumptions, "policies": [], "labels": []}
     more[read.fleet.name] = remembered(everything, read.joins)
-    return FleetRows(read.placed, result.analysis, result.vocabulary, more)
+    not_read = [name for name, member in read.members.items() if unread(member.diagnostics)]
+    return FleetRows(read.placed, result.analysis, result.vocabulary, more, not_read=not_read)
 
 
 def read_all(file: str, vocabulary: Vocabulary, settings: Settings) -> Read:
@@ -190,7 +197,7 @@ class Reader:
         settings = self._settings
         files = self._read_labels(robot)
         policies, said = self._read_policies(robot)
-        diagnostics = [*(d for policy in policies for d in policy.diagnostics), *said]
+        diagnostics = [*(d for policy in policies for d in policy.diagnostics), *said, *joint_warnings(policies)]
         diagnostics += [d for labels in files for d in labels.diagnostics]
         run = [pushed(policy, robot.add) for policy in policies]
         graph, full = stripped(build(run, settings.view), robot.strip or robot.add)

@@ -18,8 +18,9 @@ from rosprivacy.analysis.border import Core
 from rosprivacy.analysis.counts import Counts, counted
 from rosprivacy.analysis.crossed import Crossed
 from rosprivacy.analysis.errors import FleetError, InputError, InputErrors
-from rosprivacy.analysis.model import Verdict
+from rosprivacy.analysis.model import Verdict, unread
 from rosprivacy.analysis.network import Network
+from rosprivacy.analysis.outside import on_day
 from rosprivacy.analysis.pairs import forms
 from rosprivacy.analysis.patterns import different
 from rosprivacy.analysis.spread import emitted, fill, meaning
@@ -61,6 +62,8 @@ class Question:
         Makes what reads a robot, wherever it is called.
     asked
         Names of categories; None for all.
+    today
+        As of ``Options``.
     """
 
     fleet: Fleet
@@ -69,6 +72,7 @@ class Question:
     reader: Callable[[], Read]
     hierarchy: Hierarchy
     asked: Collection[str] | None = None
+    today: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,13 +167,14 @@ class _Run:
         categories = sorted(told.emitted | emitted(core.part.elements.values()))
         piece, gates = core_piece(core, at, question.view)
         piece = with_limits(piece, fleet, told.limits)
+        piece = replace(piece, bound=replace(piece.bound, outside=on_day(piece.bound.outside, question.today)))
         ours = meaning(piece.graph, piece.bound, question.hierarchy, categories)
         network = Network.of(ours)
         middle = Core(network, np.array(gates, np.int64), np.array(piece.border, np.int64))
         ready = built.map(
             partial(
                 workers.ready, fleet=alone, at=at, view=question.view, categories=categories,
-                hierarchy=question.hierarchy,
+                hierarchy=question.hierarchy, today=question.today,
             ),
             keep=True,
         )  # fmt: skip
@@ -258,7 +263,7 @@ class _Run:
         needed |= {unit[robot] for robot in ends if robot in unit}
         leak = any(group.count > group.dismissed for group in groups)
         begins = any(ours.begins(v) & mask for v in ours.facts) or any(answer.begins for answer in answers)
-        is_open = bool(count or core_open) or not begins
+        is_open = bool(count or core_open) or not begins or bool(unread(told.diagnostics))
         verdict = Verdict.LEAK if leak else Verdict.UNDETERMINED if is_open else Verdict.NO_LEAK_FOUND
         counts = sum((answer.counts for answer in answers), counted(piece.graph, ours, self._likeness, (), mine))
         return Found(

@@ -19,6 +19,7 @@ from rosprivacy.analysis.model import Diagnostic, Place, Severity
 from rosprivacy.asked import asked_for
 from rosprivacy.assembly import Result
 from rosprivacy.assumptions import files_read, own_assumptions
+from rosprivacy.clock import judged_on
 from rosprivacy.cluster.distributed import Question, analyse_in_parts
 from rosprivacy.cluster.results import check_new, write
 from rosprivacy.cluster.session import scatter, session
@@ -89,10 +90,10 @@ def run_on_spark(file: str, settings: Settings, master: str | None = None, resul
     """
     vocabulary = load(ontologies=settings.ontologies)
     fleet = read_fleet(file, vocabulary)
-    plain = replace(settings, progress=unchanged)
+    plain = replace(settings, progress=unchanged, today=settings.today or judged_on(os.environ))
     question = Question(
         fleet, alike(fleet), settings.view, partial(file_reader, plain, str(Path.cwd())), vocabulary.hierarchy,
-        asked_for(vocabulary, settings),
+        asked_for(vocabulary, settings), plain.today or "",
     )  # fmt: skip
     if results:
         check_new(results)

@@ -71,7 +71,7 @@ def shown(question: Question, found: Found, paths: str, max_paths: int) -> Shown
             wanted[vertex[group.source]].add((group.kind, vertex[group.leak], category, group.beside))
         return dict(wanted)
 
-    options = Options(question.asked, paths, max_paths, choose=choose)
+    options = Options(question.asked, paths, max_paths, choose=choose, today=question.today)
     analysis = analyse(placed.graph, placed.bound, question.hierarchy, options)
     view = FleetView(found.likeness, patterns_of(found.groups, analysis), found.deviants)
     analysis = replace(analysis, verdict=found.verdict, emitted=found.emitted)

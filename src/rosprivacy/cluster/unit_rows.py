@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.findings import Options, analyse
-from rosprivacy.analysis.model import Verdict
+from rosprivacy.analysis.model import Verdict, unread
 from rosprivacy.analysis.pairs import pairs
 from rosprivacy.assumptions import remembered, sources_of, what_it_rests_on
 from rosprivacy.cluster.shown import limited
@@ -23,7 +23,7 @@ from rosprivacy.ingest.split import unit_of
 from rosprivacy.ontology.vocabulary import load
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.model import Analysis, Diagnostic, Element
     from rosprivacy.analysis.outside import Concern, Outside
@@ -153,10 +153,12 @@ def _fleet_rows(placed: Placed, members: Mapping[str, Member], plan: Plan, mine:
                 wanted.setdefault(source, set()).add((part.kind, leak, part.category, beside))
         return wanted
 
-    analysis = analyse(placed.graph, placed.bound, vocabulary.hierarchy, Options(choose=choose))
+    analysis = analyse(
+        placed.graph, placed.bound, vocabulary.hierarchy, Options(choose=choose, today=plan.settings.today or "")
+    )
     said = {name: _more(member, analysis, plan, vocabulary) for name, member in members.items()}
     said[plan.fleet.name] = remembered({**plan.assumptions, "policies": [], "labels": []}, plan.joins)
-    known = _verdicts(analysis, plan)
+    known = _verdicts(analysis, plan, [name for name, member in members.items() if unread(member.diagnostics)])
     more = {name: {**some, "verdict": known.get(name, str(Verdict.UNDETERMINED))} for name, some in said.items()}
     return FleetRows(placed, analysis, vocabulary, more, most_across=0)
 
@@ -172,11 +174,11 @@ def _more(member: Member, analysis: Analysis, plan: Plan, vocabulary: Any) -> di
     return remembered(said, member.diagnostics)
 
 
-def _verdicts(analysis: Analysis, plan: Plan) -> dict[str, str]:
+def _verdicts(analysis: Analysis, plan: Plan, not_read: Iterable[str]) -> dict[str, str]:
     """The verdict on each robot; which of them leak is known of the whole fleet."""
     open_at = (question.element for question in analysis.open)
     reached = (carried.element for carried in analysis.carried)
-    found = verdicts((), open_at, reached, lambda element: element.robot)
+    found = verdicts((), open_at, reached, lambda element: element.robot, not_read)
     return found | dict.fromkeys(plan.leaking, str(Verdict.LEAK))
 
 

@@ -6,7 +6,7 @@ All of it is the program's own kernel on the part's graph; ``distributed.py`` pu
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 import numpy as np
@@ -16,7 +16,7 @@ from rosprivacy.analysis.counts import Counts, counted
 from rosprivacy.analysis.crossed import End, Source, Within
 from rosprivacy.analysis.crossing import Class, Crossing
 from rosprivacy.analysis.errors import InputErrors
-from rosprivacy.analysis.outside import concerns, country_unknown
+from rosprivacy.analysis.outside import concerns, country_unknown, on_day
 from rosprivacy.analysis.questions import open_bits
 from rosprivacy.analysis.spread import Spread, fill, meaning
 from rosprivacy.cluster.building import Problem, problems_of
@@ -72,9 +72,12 @@ class Ready:
     problems: tuple[Problem, ...] = ()
 
 
-def ready(part: Built, fleet: Fleet, at: Border, view: str, categories: Iterable[str], hierarchy: Hierarchy) -> Ready:
+def ready(
+    part: Built, fleet: Fleet, at: Border, view: str, categories: Iterable[str], hierarchy: Hierarchy, today: str
+) -> Ready:
     """Make the graph of a part."""
     piece = units_piece(fleet, part.units, at, view)
+    piece = replace(piece, bound=replace(piece.bound, outside=on_day(piece.bound.outside, today)))
     try:
         found = meaning(piece.graph, piece.bound, hierarchy, categories)
     except InputErrors as error:

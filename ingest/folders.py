@@ -1,0 +1,124 @@
+"""What lies in a folder or behind a glob: the files to read, what is passed over, what cannot be followed (rule S11).
+
+In: a path. Out: names of files. Links are followed, each folder is entered once whatever leads to it, and nothing is
+left out in silence: what does not end in ``.xml`` is counted, and a link to nothing is a problem.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field
+from glob import glob, has_magic
+from pathlib import Path
+
+from rosprivacy.analysis.errors import InputError, PolicyError, reason, shown
+from rosprivacy.analysis.model import Diagnostic, Place, Severity
+
+NAMED = 3  # of the files that are passed over
+
+
+@dataclass(slots=True)
+class Contents:
+    """What a folder or a glob holds.
+
+    Attributes
+    ----------
+    files
+        To be read.
+    others
+        Passed over, since their names do not end in ``.xml``; hidden ones are not counted.
+    """
+
+    files: set[str] = field(default_factory=set)
+    others: set[str] = field(default_factory=set)
+    problems: list[InputError] = field(default_factory=list)
+
+    def said(self, argument: str) -> Diagnostic | None:
+        """The notice about what is passed over."""
+        if not self.others:
+            return None
+        names = [shown(os.path.relpath(name, argument) if Path(argument).is_dir() else name) for name in self.others]
+        named = ", ".join([*sorted(names)[:NAMED], *(["…"] if len(names) > NAMED else [])])
+        count = "1 file is" if len(names) == 1 else f"{len(names):,} files are"
+        message = f"{count} not read, as the name does not end in .xml: {named}; name a policy among them by itself"
+        return Diagnostic(Place(argument, 0), Severity.NOTICE, message)
+
+
+def contents(argument: str) -> Contents | None:
+    """Return what a folder or a glob holds; None for a file that is named.
+
+    Raises
+    ------
+    OSError, ValueError
+        If there can be no such path.
+    """
+    if not argument:
+        raise ValueError("no name")
+    path = Path(argument)
+    found = _Walk(len(path.parts) - has_magic(argument))
+    if path.is_dir():
+        found.folder(argument)
+    elif has_magic(argument) and not path.exists():
+        for match in sorted(glob(argument, recursive=True)):  # noqa: PTH207 - absolute patterns too
+            found.match(match)
+    else:
+        return None
+    found.links()
+    return found.contents
+
+
+class _Walk:
+    """Walks folders: first those that stand there, then those that only a link leads to."""
+
+    def __init__(self, depth: int) -> None:
+        self.depth = depth  # of what was named, in parts of its path: above it, hidden folders are no matter
+        self.contents = Contents()
+        self._entered: set[str] = set()
+        self._links: list[str] = []
+
+    def match(self, name: str) -> None:
+        """What a glob matches: a file whatever it is called, or a folder."""
+        if Path(name).is_file():
+            self.contents.files.add(name)
+        elif Path(name).is_dir():
+            (self._links.append if Path(name).is_symlink() else self.folder)(name)
+        else:
+            self._entry(name)
+
+    def folder(self, name: str) -> None:
+        waiting = [name]
+        while waiting:
+            folder = waiting.pop()
+            real = os.path.realpath(folder)
+            if real in self._entered:
+                continue
+            self._entered.add(real)
+            try:
+                entries = sorted(os.listdir(folder))
+            except OSError as error:
+                hint = "check its permissions"
+                self.contents.problems.append(PolicyError(folder, 0, f"cannot be read: {reason(error)}", hint))
+                continue
+            for entry in entries:
+                path = str(Path(folder, entry))
+                if not Path(path).is_dir():
+                    self._entry(path)
+                elif Path(path).is_symlink():
+                    self._links.append(path)
+                else:
+                    waiting.append(path)
+
+    def links(self) -> None:
+        """Enter the folders that links lead to, and what links in these lead to."""
+        while self._links:
+            self.folder(self._links.pop(0))
+
+    def _entry(self, name: str) -> None:
+        path = Path(name)
+        if path.is_symlink() and not path.exists():
+            what = f"a link to nothing: {shown(str(path.readlink()))}"
+            self.contents.problems.append(PolicyError(name, 0, what, "correct the link, or remove it"))
+        elif path.is_file() and path.suffix.lower() == ".xml":
+            self.contents.files.add(name)
+        elif not any(part.startswith(".") for part in path.parts[self.depth :]):
+            self.contents.others.add(name)
