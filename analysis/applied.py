@@ -11,15 +11,13 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.model import Bound, Flow, Place, Statement
+from rosprivacy.analysis.model import CHANGED, Bound, Flow, Place, Statement
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.model import FlowGraph
     from rosprivacy.analysis.proposals import Step
-
-OWN_NAME = (1, 1_000_000)  # the rank of a user's label for a name that is spelt out
 
 
 def applied(
@@ -35,7 +33,7 @@ def applied(
     elements, flows = dict(bound.elements), dict(bound.flows)
     filtered: list[int] = []
     for step in steps:
-        never = Statement("never", step.categories, OWN_NAME, Place("proposal", 0))
+        never = Statement("never", step.categories, (CHANGED, 0), Place("proposal", 0))
         ends = {(source.shown_as, target.shown_as) for source, target in step.between}
         for index, flow in enumerate(graph.flows if ends else ()):
             if (graph.elements[flow.source].shown_as, graph.elements[flow.target].shown_as) in ends:

@@ -186,7 +186,7 @@ def _reviews(places: Places, by_channel: Mapping[int, set[int]]) -> Iterator[Cha
             parts[element.identity].append(vertex)
     for identity in dict.fromkeys(elements[v].identity for v in sorted(by_channel) if not elements[v].pattern):
         vertices = parts[identity]
-        covered = [merged(spread.covered.get(v, 0), places.k) for v in vertices]
+        covered = [merged(spread.covered.get(v, 0) | spread.named.get(v, 0), places.k) for v in vertices]
         passed = {i for v in vertices for i in by_channel.get(v, ())}
         open_ = frozenset(i for i in passed if not any(bits >> i & 1 for bits in covered))
         factor = places.factor(REVIEW, frozenset(), frozenset(vertices))

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis import standard
 from rosprivacy.analysis.decisions import Case
 from rosprivacy.analysis.model import (
     DISCLOSURE,
@@ -114,9 +115,11 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
         carried=_carried(found, mask, hierarchy),
         roles=_roles(found, mask),
         standard_channels=_standard_channels(found),
+        standard_reached=standard.reached(found, mask),
+        standard_unchanged=standard.unchanged(found, bound),
         spread=found,
         unstated=tuple(_unstated(found)),
-        diagnostics=() if sources else (_no_source(options),),
+        diagnostics=(*(one.diagnostic() for one in found.overruled), *(() if sources else (_no_source(options),))),
         outside={graph.elements[vertex]: facts for vertex, facts in sorted(bound.outside.items())},
         unknown_ends=unknown_ends(found, mask),
     )

@@ -164,6 +164,8 @@ def _outdone(found: Spread) -> Iterator[TakenAway]:
         here = found.names(found.present(vertex))
         for category, fact in sorted(decided.items()):
             for statement, by in fact.outdone:
+                if fact.leaks if statement.role == "leak" else fact.emits and not fact.through:
+                    continue  # another label says the same, and holds
                 if statement.role == "source" or category in here:
                     key = (vertex, statement.place, by.place)
                     rows.setdefault(key, (set(), statement.role, by.glob))[0].add(category)

@@ -366,6 +366,12 @@ class Method(StrEnum):
         return self is not Method.PSEUDONYMISE
 
 
+NAME, SEGMENT, GLOB = "name", "segment", "glob"  # how a label names an element
+STANDARD = 0  # the tier of the file of standard channels (rule S13); users' files are above it
+CHANGED = 3  # the tier of what a proposal changes: above all that is said now, in files and in a database
+STATED = "flow"  # the role of a flow that a person states (rule S9)
+
+
 @dataclass(frozen=True, slots=True)
 class Statement:
     """One thing that a label says of an element or a flow.
@@ -373,8 +379,9 @@ class Statement:
     Attributes
     ----------
     role
-        Of a node: ``source``, ``leak``, ``sanitizer``, ``conduit``, ``derivation``. Of a channel: ``mundane``,
-        ``sensitive``, ``only``, ``never``. Of a flow: ``only``, ``never``.
+        Of a node: ``source``, ``leak``, ``sanitizer``, ``conduit``, ``derivation``, and ``no-source`` and ``no-leak``,
+        which take back what is said by lower ranks. Of a channel: ``mundane``, ``sensitive``, ``only``, ``never``. Of a
+        flow: ``only``, ``never``.
     categories
         Names; empty means every category. One name for the roles of a node.
     rank
@@ -390,9 +397,10 @@ class Statement:
     through
         Of a source: name expressions of the channels that carry it; empty means all.
     shipped
-        Whether it comes from the standard channels' file (rule S13).
-    glob
-        Whether a glob names what it is about.
+        Whether it comes from a file of mundane channels that is not the user's (rule S13).
+    naming
+        How the label names the element: by a full ``NAME``, by a glob with its last ``SEGMENT`` written out, or by
+        another ``GLOB``.
     """
 
     role: str
@@ -404,7 +412,17 @@ class Statement:
     to: str = ""
     through: tuple[str, ...] = ()
     shipped: bool = False
-    glob: bool = False
+    naming: str = NAME
+
+    @property
+    def by_name(self) -> bool:
+        """Whether a user says it of a full name."""
+        return self.naming == NAME and self.rank[0] > STANDARD
+
+    @property
+    def glob(self) -> bool:
+        """Whether a glob names what it is about."""
+        return self.naming != NAME
 
 
 @dataclass(frozen=True, slots=True)
@@ -581,6 +599,10 @@ class Analysis:
         Per vertex and emitted category the roles of nodes that hold, sorted; what labels decided.
     standard_channels
         Channels taken as mundane by the shipped file (rule S13).
+    standard_reached
+        Of these, (channel, emitted categories that get to it and stop there).
+    standard_unchanged
+        Of these, those of which a glob of the user's says otherwise that does not count.
     spread
         The fixpoint itself: what is at every vertex and along every flow.
     unstated
@@ -601,6 +623,8 @@ class Analysis:
     standard_channels: int
     spread: Spread
     unstated: tuple[tuple[Element, str], ...] = ()
+    standard_reached: tuple[tuple[Element, tuple[str, ...]], ...] = ()
+    standard_unchanged: tuple[Element, ...] = ()
     diagnostics: tuple[Diagnostic, ...] = ()
     outside: Mapping[Element, Outside] = field(default_factory=dict)
     unknown_ends: tuple[UnknownEnd, ...] = ()

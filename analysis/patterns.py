@@ -178,6 +178,8 @@ class FleetView:
             carried=tuple(carried for carried in analysis.carried if carried.element.robot not in second),
             roles={element: said for element, said in analysis.roles.items() if element.robot not in second},
             unstated=tuple((element, name) for element, name in analysis.unstated if element.robot not in second),
+            standard_reached=tuple(row for row in analysis.standard_reached if row[0].robot not in second),
+            standard_unchanged=tuple(e for e in analysis.standard_unchanged if e.robot not in second),
             outside={element: facts for element, facts in analysis.outside.items() if element.robot not in second},
             unknown_ends=tuple(end for end in analysis.unknown_ends if end.element.robot not in second),
         )

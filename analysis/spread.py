@@ -12,11 +12,13 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.analysis.flow import fixpoint
+from rosprivacy.analysis.named import keep_named, named, stated_flows
 from rosprivacy.analysis.network import Network, as_numbers
+from rosprivacy.analysis.overruled import Overruled, overruled
 from rosprivacy.analysis.roles import NOTHING_SAID, Facts, facts
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Collection, Iterable, Iterator, Mapping
     from typing import Any
 
     from rosprivacy.analysis.hierarchy import Hierarchy
@@ -46,8 +48,12 @@ class Spread:
         The same for single flows.
     flow_begins
         Vertex -> bits that it emits along single flows only.
+    named
+        Channel -> bits that a source names it for.
     standard
         Channels taken as mundane on a shipped file's word alone (rule S13).
+    overruled
+        Sources and leaks that a statement says and another takes away.
     made
         Numbers of the categories that others are made into.
     arrives, leaves
@@ -68,7 +74,9 @@ class Spread:
     flow_emits: dict[int, int] = field(default_factory=dict)
     flow_keeps: dict[int, int] = field(default_factory=dict)
     flow_begins: dict[int, int] = field(default_factory=dict)
+    named: dict[int, int] = field(default_factory=dict)
     standard: set[int] = field(default_factory=set)
+    overruled: tuple[Overruled, ...] = ()
     made: set[int] = field(default_factory=set)
     arrives: dict[int, int] = field(default_factory=dict)
     leaves: dict[int, int] = field(default_factory=dict)
@@ -93,11 +101,14 @@ class Spread:
         arrives, leaves = self.arrives.get(vertex, 0), self.leaves.get(vertex, 0)
         return leaves if self.graph.elements[vertex].is_channel else arrives | leaves
 
+    def sends(self, index: int) -> int:
+        """What is sent along a flow, whether its end takes it up or not."""
+        bits = self.sent.get(self.graph.flows[index].source, 0) | self.flow_emits.get(index, 0)
+        return bits & self.flow_keeps.get(index, self.all_bits)
+
     def along(self, index: int) -> int:
         """What goes along a flow and is taken up at its end."""
-        flow = self.graph.flows[index]
-        bits = self.sent.get(flow.source, 0) & self.flow_keeps.get(index, self.all_bits)
-        bits |= self.flow_emits.get(index, 0) & self.flow_keeps.get(index, self.all_bits)
+        flow, bits = self.graph.flows[index], self.sends(index)
         if self.graph.elements[flow.target].is_channel:
             bits &= self.keeps.get(flow.target, self.all_bits)
         return bits
@@ -173,11 +184,20 @@ def meaning(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, categories: It
 
     for vertex, said in bound.elements.items():
         found.facts[vertex] = decide(said, graph.elements[vertex].name)
-        _set_vertex(found, vertex, bound)
     for index, said in bound.flows.items():
         ends = graph.elements[graph.flows[index].source], graph.elements[graph.flows[index].target]
-        kept = decide(said, f"the flow {ends[0].name} -> {ends[1].name}")
-        found.flow_facts[index] = kept
+        found.flow_facts[index] = decide(said, f"the flow {ends[0].name} -> {ends[1].name}")
+    found.overruled = overruled(found.facts, graph.elements)
+    problems += [error for one in found.overruled if (error := one.error())]
+    problems += keep_named(found.facts, found.flow_facts, graph, bound, hierarchy)
+    restricted = any(statement.through for said in bound.elements.values() for statement in said)
+    stated = stated_flows(graph) if restricted else {}
+    for category, _, vertex, _ in named(found.facts, graph, bound):
+        if category in categories:
+            found.named[vertex] = found.named.get(vertex, 0) | found.both(category)
+    for vertex in bound.elements:
+        _set_vertex(found, vertex, bound, stated)
+    for index, kept in found.flow_facts.items():
         found.flow_keeps[index] = _bits(found, kept, lambda fact: fact.passes)
     if problems:
         raise InputErrors(problems)
@@ -205,7 +225,7 @@ def _bits(found: Spread, decided: Mapping[str, Facts], test: Any) -> int:
     return bits
 
 
-def _set_vertex(found: Spread, vertex: int, bound: Bound) -> None:
+def _set_vertex(found: Spread, vertex: int, bound: Bound, stated: Mapping[int, Collection[int]]) -> None:
     decided = found.facts[vertex]
     if any(fact.standard for fact in decided.values()):
         found.standard.add(vertex)
@@ -230,7 +250,7 @@ def _set_vertex(found: Spread, vertex: int, bound: Bound) -> None:
         if fact.emits:
             emits |= after  # what a node makes of its own data leaves it like what it makes of others'
             emits |= 0 if fact.through else 1 << i
-        for flow in bound.through.get((vertex, fact.through), ()) if fact.emits else ():
+        for flow in {*bound.through.get((vertex, fact.through), ()), *stated.get(vertex, ())} if fact.through else ():
             found.flow_emits[flow] = found.flow_emits.get(flow, 0) | 1 << i
             found.flow_begins[vertex] = found.flow_begins.get(vertex, 0) | 1 << i
     found.derives[vertex] = tuple(sorted(pairs))

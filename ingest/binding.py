@@ -13,12 +13,13 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.durations import ordered
 from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, shown
-from rosprivacy.analysis.model import Bound
+from rosprivacy.analysis.model import Bound, Diagnostic, Severity
 from rosprivacy.analysis.outside import by_kind
+from rosprivacy.ingest.labels import OURS
 from rosprivacy.ingest.names import covers, is_pattern, matcher
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.model import FlowGraph, Statement
     from rosprivacy.analysis.outside import Outside
@@ -79,6 +80,16 @@ def join(graph: FlowGraph, labels: Sequence[Labels]) -> tuple[Bound, list[InputE
         subjects={vertex: tuple(sorted(groups)) for vertex, groups in sorted(subjects.items())},
     )
     return bound, problems
+
+
+def unused(graph: FlowGraph, labels: Iterable[Labels]) -> Iterator[Diagnostic]:
+    """Yield a notice for each name of a user's own file of standard channels that matches nothing (rule S13)."""
+    names = _Names(graph)
+    for file in labels:
+        for entry in file.entries if file.shipped and not file.file.startswith(OURS) else ():
+            if not names.matching(entry.name, entry.kinds):
+                error = names.unmatched(entry)
+                yield Diagnostic(entry.place, Severity.NOTICE, f"{error.problem}; {error.hint}")
 
 
 def _outside(graph: FlowGraph, labels: Iterable[Labels]) -> dict[int, Outside]:
@@ -148,9 +159,9 @@ class _Names:
 
 
 def _flows(graph: FlowGraph, leaving: Mapping[int, Sequence[int]], names: _Names, entry: FlowEntry) -> list[int]:
-    targets = set(names.matching(entry.target))
-    sources = names.matching(entry.source)
-    return [index for source in sources for index in leaving.get(source, ()) if graph.flows[index].target in targets]
+    sources, targets = (names.matching(end.name, (end.kind,) if end.kind else None) for end in entry.ends)
+    wanted = set(targets)
+    return [index for source in sources for index in leaving.get(source, ()) if graph.flows[index].target in wanted]
 
 
 def _leaving(graph: FlowGraph) -> dict[int, list[int]]:

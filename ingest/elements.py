@@ -19,6 +19,7 @@ from rosprivacy.ingest.countries import countries
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
+    from rosprivacy.ingest.entries import End
     from rosprivacy.ingest.yamlfile import Value
 
 LONGEST = 200  # characters of a name
@@ -40,6 +41,9 @@ class Reader(Protocol):
     def entries_of(self, value: Value, known: tuple[str, ...]) -> Iterable[tuple[str, int, Value]]:
         """Return the entries of a map, those with unknown keys reported."""
 
+    def end(self, value: Value) -> End:
+        """Return an end of a flow; its name is empty, and there is a problem, if it is none."""
+
     def kind_of_data(self, written: str, line: int) -> str:
         """Return the name of a category; empty, and a problem, if there is none."""
 
@@ -53,13 +57,13 @@ class Stated:
     outside
         Without limits.
     between
-        Names of the nodes that it joins, in both directions.
+        The nodes, or channels, that it joins, in both directions.
     """
 
     kind: str
     name: str
     outside: Outside
-    between: tuple[str, ...] = ()
+    between: tuple[End, ...] = ()
 
     @property
     def place(self) -> Place:
@@ -107,7 +111,7 @@ class _Facts:
     """The facts of one element, one after the other."""
 
     def __init__(self, reader: Reader) -> None:
-        self.between: tuple[str, ...] = ()
+        self.between: tuple[End, ...] = ()
         self._reader = reader
         self._retention: list[Limit] = []
         self._texts: dict[str, str] = {}
@@ -146,11 +150,11 @@ class _Facts:
                 self._retention.append((category, kept))
 
     def _take_between(self, line: int, value: Value) -> None:
-        names = tuple(item.text for item in value.items)
-        if len(names) < len(("one", "another")) or any(is_outside(name) for name in names):
+        ends = tuple(self._reader.end(item) for item in value.items)
+        if len(ends) < len(("one", "another")) or any(end.name and is_outside(end.name) for end in ends):
             self._reader.problem(line, "between names at least two nodes", "write [/one, /another]")
         else:
-            self.between = names
+            self.between = ends
 
     def _take_country(self, value: Value) -> None:
         if value.text in countries().areas:  # YAML takes NO for 'no', so the text counts

@@ -8,13 +8,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.model import GLOB, NAME, SEGMENT, STANDARD
 from rosprivacy.ingest.names import is_pattern, literals
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.model import Place, Statement
 
 EXACT = 1_000_000  # a name outranks every glob
-SHIPPED, OWN = 0, 1  # tiers: a person's own word outranks what comes with the program
+PROPOSED, SHIPPED, OWN = -1, STANDARD, 1  # tiers: infrastructure, standard channels, a person's own word (rule S13)
 ROBOT = EXACT // 2  # added for a robot of a fleet, which outranks its model between names or between globs (rule S7)
 FORMER_ROBOT = 2 * EXACT  # what databases of earlier versions have added: there a robot's glob outranked a model's name
 
@@ -37,16 +38,35 @@ class Entry:
 
 
 @dataclass(frozen=True, slots=True)
+class End:
+    """An end of a flow: a name or a glob, and which kind of element it means, where that is said (rule S9)."""
+
+    name: str
+    kind: str = ""
+
+
+@dataclass(frozen=True, slots=True)
 class FlowEntry:
     """What is said of the flows from one element to another, by names or globs.
 
     One with an end outside ROS is stated by it; others are in the policies.
+
+    Attributes
+    ----------
+    kinds
+        Of source and target, where the line says it; else empty.
     """
 
     source: str
     target: str
     place: Place
     statements: tuple[Statement, ...]
+    kinds: tuple[str, str] = ("", "")
+
+    @property
+    def ends(self) -> tuple[End, End]:
+        """Source and target."""
+        return End(self.source, self.kinds[0]), End(self.target, self.kinds[1])
 
 
 def specificity(name: str) -> int:
@@ -65,3 +85,15 @@ def as_ranked_now(stored: int) -> int:
     (True, 1000000)
     """
     return stored - FORMER_ROBOT + ROBOT if stored >= FORMER_ROBOT else stored
+
+
+def naming(name: str) -> str:
+    """Return how a label names elements: by a full name, a glob with its last segment written out, or another glob.
+
+    >>> naming("/camera/rosout"), naming("*/rosout"), naming("/camera/*"), naming("*rosout")
+    ('name', 'segment', 'glob', 'glob')
+    """
+    if not is_pattern(name):
+        return NAME
+    _, slash, last = name.rpartition("/")
+    return SEGMENT if slash and last and not is_pattern(last) else GLOB

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import Place
+from rosprivacy.ingest.elements import is_outside
 from rosprivacy.ingest.labelreader import LabelReader
 from rosprivacy.ingest.labels import OURS
 
@@ -49,6 +50,13 @@ class FleetReader(LabelReader):
     def states(self, ends: Iterable[str]) -> bool:  # noqa: ARG002 - whatever they are
         """Return True: no policy knows of a flow between robots."""
         return True
+
+    def name_on_flow(self, value: Value) -> str:
+        """Return the name at the end of a flow, with the robots that it is on."""
+        robots, colon, name = value.text.partition(":")
+        if value.kind == "text" and colon and robots and not is_outside(name):
+            return value.text
+        return super().name_on_flow(value)
 
     def text_of(self, value: Value, what: str, form: re.Pattern[str] = ID, hint: str = ID_HINT) -> str:
         """Return a text of some form."""

@@ -155,7 +155,7 @@ class FleetRows:
         for index, (flow, result) in enumerate(
             zip(self._graph.flows, flow_results(self._analysis, names), strict=True)
         ):
-            properties = allowed(result, self._placed.bound.flows.get(index, ()))
+            properties = allowed(result, self._placed.bound.flows.get(index, ()), self._vocabulary)
             leaving[self._graph.elements[flow.source].robot].append((flow, properties))
         for flow in self._graph.denied:
             leaving[self._graph.elements[flow.source].robot].append((flow, denied(flow)))

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.ingest.fleetfile import ID, NAMESPACE
-from rosprivacy.ingest.labelschema import END, label_schema, outside_sections
+from rosprivacy.ingest.labelschema import END, END_OF_KIND, label_schema, outside_sections
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -56,7 +56,7 @@ def fleet_schema(categories: Iterable[Category]) -> dict[str, Any]:
 
 def _end(word: str) -> dict[str, Any]:
     what = "an element of this file by its name, or an element of robots: carrier_*:/uplink"
-    return {**END, "description": f"{word} {what}."}
+    return {"anyOf": [END, END_OF_KIND], "description": f"{word} {what}."}
 
 
 def _files() -> dict[str, Any]:

@@ -12,11 +12,12 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, LabelError, shown
-from rosprivacy.analysis.model import Diagnostic, Method, Place, Severity, Statement
+from rosprivacy.analysis.model import GLOB, NAME, Diagnostic, Method, Place, Severity, Statement
+from rosprivacy.analysis.ranks import NONE_OF
 from rosprivacy.ingest.elements import is_outside, read_element, read_limits
-from rosprivacy.ingest.entries import EXACT, SHIPPED, Entry, FlowEntry, specificity
+from rosprivacy.ingest.entries import EXACT, SHIPPED, End, Entry, FlowEntry, naming, specificity
 from rosprivacy.ingest.filereader import FileReader
-from rosprivacy.ingest.names import LONGEST_NAME, is_pattern
+from rosprivacy.ingest.names import LONGEST_NAME
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -36,8 +37,10 @@ SIX_LISTS = ("source", "leak", "conduit", "sanitizer", "sensitive", "mundane")
 NODE_KEYS = ("source", "leak", "sanitizer", "conduit", "derives", "subjects", "note")
 SAYS_NOTHING = ("subjects", "note")  # of what data does
 CHANNEL_KEYS = ("only", "never", "note")
+END_KINDS = ("node", "topic", "service", "action")
 FLOW_KEYS = ("from", "to", "only", "never", "note")
 OUTSIDE = ("elements", "limits")
+NONE = "none"  # in place of categories: takes back what labels of lower rank say (rule S7)
 LONGEST_GROUP = 100  # characters of a group of persons
 
 
@@ -114,8 +117,7 @@ class LabelReader(FileReader):
                 continue
             rank = self.rank(specificity(name))
             read = self._node if section == "nodes" else self._channel
-            glob = is_pattern(name)
-            statements = tuple(replace(said, glob=glob) for said in read(label, Place(self.file, at), rank))
+            statements = tuple(replace(s, naming=naming(name)) for s in read(label, Place(self.file, at), rank))
             subjects = self._subjects(label) if section == "nodes" else ()
             self.entries.append(Entry(SECTIONS[section], name, Place(self.file, at), statements, subjects))
 
@@ -131,7 +133,9 @@ class LabelReader(FileReader):
             return
         for key, line, value in self.entries_of(label, NODE_KEYS):
             at = Place(self.file, line)
-            if key == "source":
+            if value.kind == "text" and value.text == NONE and key in NONE_OF:
+                yield Statement(NONE_OF[key], (), rank, at)
+            elif key == "source":
                 yield from self._source(value, at, rank)
             elif key in ("leak", "conduit"):
                 for name in self._categories(value, key):
@@ -204,7 +208,7 @@ class LabelReader(FileReader):
         if label.kind == "empty":
             return
         if label.kind == "text" and label.text in ("mundane", "sensitive"):
-            yield Statement(label.text, (), rank, place, shipped=self.tier == SHIPPED)
+            yield Statement(label.text, (), rank, place, shipped=self.tier <= SHIPPED)
             return
         if label.kind != "map":
             what = f"label {shown(label.text or label.kind)!r} on a channel"
@@ -214,9 +218,13 @@ class LabelReader(FileReader):
 
     def _restrictions(self, label: Value, keys: tuple[str, ...], rank: tuple[int, int]) -> Iterable[Statement]:
         """``only`` and ``never`` of a channel or flow."""
+        named: set[str] = set()
         for key, line, value in self.entries_of(label, keys):
             if key in ("only", "never"):
                 names = tuple(self._categories(value, key))
+                for name in sorted(named.intersection(names)):
+                    self.problem(line, f"{name} is under only and under never", "name it under one of them")
+                named.update(names)
                 if names:
                     yield Statement(key, names, rank, Place(self.file, line))
 
@@ -225,20 +233,22 @@ class LabelReader(FileReader):
             self.problem(item.line, f"a flow is a map, not a {item.kind}", "write {from: /a, to: /b, never: [Video]}")
             return
         place = Place(self.file, item.line)
-        ends = {key: self._end(value) for key, _, value in item.entries if key in ("from", "to")}
-        rank = self.rank(sum(specificity(name) for name in ends.values()))
-        glob = any(map(is_pattern, ends.values()))
-        statements = tuple(replace(said, glob=glob) for said in self._restrictions(item, FLOW_KEYS, rank))
+        ends = {key: self.end(value) for key, _, value in item.entries if key in ("from", "to")}
+        names = [end.name for end in ends.values()]
+        rank = self.rank(sum(map(specificity, names)))
+        how = GLOB if any(naming(name) != NAME for name in names) else NAME
+        statements = tuple(replace(s, naming=how) for s in self._restrictions(item, FLOW_KEYS, rank))
         if len(ends) < len(("from", "to")):
             self.problem(item.line, "a flow needs from and to", "write {from: /a, to: /b, never: [Video]}")
             return
-        stated = self.states(ends.values())
+        stated = self.states(names)
         if not stated and not (item.get("only") or item.get("never")):
             hint = "write {from: /a, to: /b, never: [Video]}; what policies do not know goes through an element"
             self.problem(item.line, "a flow between nodes and channels needs only or never", hint)
             return
-        if statements or (stated and all(ends.values())):
-            self.flows.append(FlowEntry(ends["from"], ends["to"], place, statements))
+        if statements or (stated and all(names)):
+            source, target = ends["from"], ends["to"]
+            self.flows.append(FlowEntry(source.name, target.name, place, statements, (source.kind, target.kind)))
 
     def states(self, ends: Iterable[str]) -> bool:
         """Return whether a line about a flow states it; flows between nodes and channels are in the policies."""
@@ -253,7 +263,7 @@ class LabelReader(FileReader):
                 element = self._name(item)
                 place, rank = Place(self.file, item.line), self.rank(specificity(element))
                 method = Method.ANONYMISE if role == "sanitizer" else None
-                statement = Statement(role, (name,), rank, place, method, glob=is_pattern(element))
+                statement = Statement(role, (name,), rank, place, method, naming=naming(element))
                 self.entries.append(Entry(kinds, element, place, (statement,)))
             if role == "sanitizer" and value.items:
                 message = "a sanitizer of the paper's six lists ends the category; the method is not stated"
@@ -296,10 +306,24 @@ class LabelReader(FileReader):
             self.diagnostics.append(Diagnostic(Place(self.file, line), Severity.NOTICE, message))
         return category.name
 
-    def _end(self, value: Value) -> str:
-        """The name or glob of ROS at the end of a flow, or the name of an element outside it."""
+    def end(self, value: Value) -> End:
+        """Return an end of a flow: a name or glob of ROS, with its kind where that is said, or a name outside ROS."""
+        if value.kind == "map":
+            return self._end_of_kind(value)
         if value.kind == "text" and value.text and is_outside(value.text):
-            return value.text
+            return End(value.text)
+        return End(self._name(value))
+
+    def _end_of_kind(self, value: Value) -> End:
+        entries = list(self.entries_of(value, END_KINDS))
+        if len(entries) != 1:
+            self.problem(value.line, "the end of a flow names one element", "write {topic: /map}, or {node: /map}, …")
+            return End("")
+        ((kind, _, name),) = entries
+        return End(self.name_on_flow(name), kind)
+
+    def name_on_flow(self, value: Value) -> str:
+        """Return the name or glob of ROS at the end of a flow."""
         return self._name(value)
 
     def _name(self, value: Value) -> str:
@@ -310,3 +334,16 @@ class LabelReader(FileReader):
             self.problem(value.line, what, f"no more than {LONGEST_NAME} are read")
             return ""
         return value.text
+
+
+def check_mundane(reader: LabelReader, top: Value) -> None:
+    """Refuse what a file of standard channels says beside that channels are mundane (rule S13)."""
+    hint = "write channels: {/name: mundane} only; other labels go into a file for --labels"
+    for key, line, _ in top.entries if top.kind == "map" else ():
+        if key in ("nodes", "flows", *OUTSIDE, *SIX_LISTS):
+            reader.problem(line, f"{key} in a file of standard channels", hint)
+    for entry in reader.entries:
+        for statement in entry.statements if "node" not in entry.kinds else ():
+            if statement.role != "mundane":
+                what = f"{shown(entry.name)!r} is {statement.role} in a file of standard channels"
+                reader.problem(statement.place.line, what, hint)

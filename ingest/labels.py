@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors, LabelError
 from rosprivacy.ingest import yamlfile
-from rosprivacy.ingest.entries import OWN, ROBOT, SHIPPED
-from rosprivacy.ingest.labelreader import LabelReader
+from rosprivacy.ingest.entries import OWN, PROPOSED, ROBOT, SHIPPED
+from rosprivacy.ingest.labelreader import LabelReader, check_mundane
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.model import Diagnostic
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 OURS, SHIPPED_FILES = "rosprivacy:", ("standard", "infrastructure")
-STANDARD = f"{OURS}standard"
+STANDARD, INFRASTRUCTURE = (f"{OURS}{name}" for name in SHIPPED_FILES)
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,8 +88,11 @@ def read_labels(
         top, data = yamlfile.read(_shipped_path(name) if file.startswith(OURS) and shipped else file, fail)
     except InputError as error:
         raise InputErrors([error]) from None
-    reader = LabelReader(file, vocabulary, category, SHIPPED if shipped else OWN, ROBOT if own else 0)
+    tier = OWN if not shipped else PROPOSED if file == INFRASTRUCTURE else SHIPPED
+    reader = LabelReader(file, vocabulary, category, tier, ROBOT if own else 0)
     reader.document(top)
+    if shipped:
+        check_mundane(reader, top)
     if reader.problems:
         raise InputErrors(reader.problems)
     return Labels(

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.model import NON_ROS, Method
 from rosprivacy.analysis.outside import RECIPIENTS, TRANSFERS
 from rosprivacy.ingest.elements import CARRIERS
-from rosprivacy.ingest.labelreader import LONGEST_GROUP, SAYS_NOTHING
+from rosprivacy.ingest.labelreader import END_KINDS, LONGEST_GROUP, NONE, SAYS_NOTHING
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -18,6 +18,14 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Category
 
 END = {"type": "string", "minLength": 1}
+END_OF_KIND = {
+    "type": "object",
+    "additionalProperties": False,
+    "minProperties": 1,
+    "maxProperties": 1,
+    "properties": dict.fromkeys(END_KINDS, END),
+    "description": "Which of several of that name: {topic: /map} or {node: /map}.",
+}
 OUTSIDE_NAME = {"type": "string", "pattern": r"^[^/*?\[:][^:]*$", "maxLength": 200}
 NAME = {"type": "string", "pattern": r"^[/*?\[]"}
 
@@ -69,6 +77,11 @@ def outside_sections() -> dict[str, Any]:
     }
 
 
+def _either(name: dict[str, Any]) -> dict[str, Any]:
+    """An end of a flow: a name, or a name with its kind."""
+    return {"anyOf": [name, END_OF_KIND]}
+
+
 def _section(kind: str, description: str) -> dict[str, Any]:
     return {
         "type": ["object", "null"],
@@ -104,7 +117,7 @@ def _definitions(categories: list[Category]) -> dict[str, Any]:
         "duration": {"type": "string", "pattern": "^P", "description": "ISO 8601, such as P30D."},
         "element": {"oneOf": [_element(kind, _node(one, some, note)) for kind in NON_ROS]},
         "flow": {
-            **_object({"from": END, "to": END, **restrictions, "note": note}),
+            **_object({"from": _either(END), "to": _either(END), **restrictions, "note": note}),
             "required": ["from", "to"],
             "anyOf": [  # what policies know can only be restricted
                 {"required": ["only"]},
@@ -133,7 +146,12 @@ def _element(kind: str, labels: dict[str, Any]) -> dict[str, Any]:
             "encrypted": {"type": "boolean", "description": "At rest."},
         }
     if kind in CARRIERS:
-        facts["between"] = {"type": "array", "minItems": 2, "items": NAME, "description": "Nodes that it joins."}
+        facts["between"] = {
+            "type": "array",
+            "minItems": 2,
+            "items": _either(NAME),
+            "description": "Nodes that it joins.",
+        }
     element = {**_object(facts | labels["properties"]), "required": ["kind"]}
     if kind == "device":
         element["anyOf"] = [{"required": [key]} for key in labels["properties"] if key not in SAYS_NOTHING]
@@ -142,13 +160,14 @@ def _element(kind: str, labels: dict[str, Any]) -> dict[str, Any]:
 
 def _node(one: dict[str, Any], some: dict[str, Any], note: dict[str, Any]) -> dict[str, Any]:
     channels = {"type": "array", "minItems": 1, "items": NAME}
+    none = {"const": NONE}
     return _object(
         {
             "source": {
-                "description": "Brings these in; as a map, only through the channels named.",
-                "anyOf": [some, _by_category(channels)],
+                "description": "Brings these in; as a map, only through the channels named; none takes labels back.",
+                "anyOf": [some, _by_category(channels), none],
             },
-            "leak": {**some, "description": "Lets these out."},
+            "leak": {"anyOf": [some, none], "description": "Lets these out; none takes labels of lower rank back."},
             "conduit": {**some, "description": "Reviewed: passes these on."},
             "sanitizer": {
                 "description": "Cleans these; a method that is not stated counts as pseudonymise.",

@@ -11,8 +11,9 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, shown
-from rosprivacy.analysis.model import Element, Flow, FlowGraph, Grant
+from rosprivacy.analysis.model import STATED, Element, Flow, FlowGraph, Grant
 from rosprivacy.ingest.elements import is_outside
+from rosprivacy.ingest.entries import End
 from rosprivacy.ingest.names import covers, is_pattern, matcher
 
 if TYPE_CHECKING:
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.elements import Stated
     from rosprivacy.ingest.labels import Labels
 
-FLOW = "flow"  # the role of a flow that a person states
+FLOW = STATED
 
 
 def extend(graph: FlowGraph, files: Sequence[Labels]) -> FlowGraph:
@@ -45,11 +46,11 @@ def extend(graph: FlowGraph, files: Sequence[Labels]) -> FlowGraph:
     for file in files:
         for flow in file.flows:
             if is_outside(flow.source) or is_outside(flow.target):
-                flows += ends.between(flow.source, flow.target, flow.place, problems)
+                flows += ends.between(*flow.ends, flow.place, problems)
     for entry in stated.values():
-        for name in entry.between:
-            flows += ends.between(name, entry.name, entry.place, problems)
-            flows += ends.between(entry.name, name, entry.place, problems)
+        for end in entry.between:
+            both = list(ends.between(end, End(entry.name), entry.place, problems))
+            flows += [*both, *((b, a, place) for a, b, place in both)]
     if problems:
         raise InputErrors(problems)
     return with_flows(graph, added, flows)
@@ -77,7 +78,7 @@ def _facts(entry: Stated) -> tuple[object, ...]:
 class Ends:
     """The elements that the ends of stated flows name.
 
-    A name of ROS means nodes, and channels only where no node has it; a glob means nodes if it covers any.
+    A name or glob of ROS means nodes or channels, whichever have it; where both do, the kind has to be said.
     """
 
     def __init__(self, elements: Iterable[Element]) -> None:
@@ -87,19 +88,24 @@ class Ends:
             self.names[kind][element.name].append(element)
 
     def between(
-        self, source: str, target: str, place: Place, problems: list[InputError]
+        self, source: End, target: End, place: Place, problems: list[InputError]
     ) -> Iterator[tuple[Element, Element, Place]]:
         """The flows from each element of one name to each of another."""
         sources, targets = self.find(source), self.find(target)
-        for name, found in ((source, sources), (target, targets)):
+        for end, found in ((source, sources), (target, targets)):
             if not found:
                 known = [other for kind in self.names for other in self.names[kind]]
-                problems.append(missing(name, known, place))
+                problems.append(missing(end, known, place))
+            elif kinds := two_meanings(end, found):
+                problems.append(ambiguous(end, kinds, place))
         yield from ((a, b, place) for a in sources for b in targets)
 
-    def find(self, name: str) -> list[Element]:
-        """The elements of a name or glob."""
-        return self._of("", name) if is_outside(name) else self._of("node", name) or self._of("channel", name)
+    def find(self, end: End) -> list[Element]:
+        """The elements of a name or glob, of the kind that is said or of all."""
+        if is_outside(end.name):
+            return self._of("", end.name)
+        found = [*self._of("node", end.name), *self._of("channel", end.name)]
+        return [element for element in found if end.kind in ("", element.kind)]
 
     def _of(self, kind: str, name: str) -> list[Element]:
         known = self.names[kind]
@@ -110,13 +116,28 @@ class Ends:
         return [element for other in covered for element in known[other]]
 
 
-def missing(name: str, known: Iterable[str], place: Place, error: type[InputError] = LabelError) -> InputError:
+def two_meanings(end: End, found: Iterable[Element]) -> tuple[str, ...]:
+    """Return the kinds of what an end means if nodes and channels are among it, and which is not said (rule S9)."""
+    kinds = {element.kind for element in found}
+    return () if end.kind or "node" not in kinds or kinds == {"node"} else ("node", *sorted(kinds - {"node"}))
+
+
+def ambiguous(end: End, kinds: Iterable[str], place: Place, error: type[InputError] = LabelError) -> InputError:
+    """Return the error for the end of a flow that names a node and a channel."""
+    written = f"'{end.name}'" if ":" in end.name or not end.name.startswith("/") else end.name
+    named = " and ".join(f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}" for kind in kinds)
+    hint = " or ".join(f"{{{kind}: {shown(written)}}}" for kind in kinds)
+    return error(place.file, place.line, f"a flow names {shown(end.name)!r}, which is {named}", f"write {hint}")
+
+
+def missing(end: End, known: Iterable[str], place: Place, error: type[InputError] = LabelError) -> InputError:
     """Return the error for the end of a flow that is not there, with the nearest names."""
-    alike = [other for other in dict.fromkeys(known) if is_outside(other) == is_outside(name)]
-    close = get_close_matches(name, alike, n=3, cutoff=0.5)
-    hint = "define it under elements" if is_outside(name) else "see the names with rosprivacy labels --init"
+    alike = [other for other in dict.fromkeys(known) if is_outside(other) == is_outside(end.name)]
+    close = get_close_matches(end.name, [other for other in alike if other != end.name], n=3, cutoff=0.5)
+    hint = "define it under elements" if is_outside(end.name) else "see the names with rosprivacy labels --init"
     hint = f"did you mean {' or '.join(map(shown, close))}?" if close else hint
-    return error(place.file, place.line, f"a flow names {shown(name)!r}, which is not there", hint)
+    kind = f"the {end.kind} " if end.kind else ""
+    return error(place.file, place.line, f"a flow names {kind}{shown(end.name)!r}, which is not there", hint)
 
 
 def with_flows(

@@ -18,7 +18,8 @@ from rosprivacy.analysis.outside import by_kind
 from rosprivacy.analysis.patterns import Likeness
 from rosprivacy.ingest.alike import COLON, chosen, known_to_flows
 from rosprivacy.ingest.domains import alone, pseudo_robot, shared
-from rosprivacy.ingest.outside import FLOW, Ends, line_of, merged, missing
+from rosprivacy.ingest.entries import End
+from rosprivacy.ingest.outside import FLOW, Ends, ambiguous, line_of, merged, missing, two_meanings
 from rosprivacy.ingest.parts import Part, numbered, together
 
 if TYPE_CHECKING:
@@ -148,13 +149,13 @@ def add_lines(part: Part, lines: Mapping[Key, Sequence[Place]]) -> None:
     part.said = {key: said for key, said in part.said.items() if said}
 
 
-def nowhere(flow: FlowEntry, end: str, known: Iterable[str]) -> InputError:
+def nowhere(flow: FlowEntry, end: End, known: Iterable[str]) -> InputError:
     """Return the error for the end of a flow that is on no robot; ``known`` are the names that it could mean."""
-    name = end.partition(COLON)[2] if COLON in end else end
-    if COLON not in end and name.startswith("/"):
+    name = end.name.partition(COLON)[2] if COLON in end.name else end.name
+    if COLON not in end.name and name.startswith("/"):
         what = f"a flow names {shown(name)!r} and does not say on which robots"
         return FleetError(flow.place.file, flow.place.line, what, f"write *:{name}, or the robot's id")
-    return missing(name, known, flow.place, FleetError)
+    return missing(End(name, end.kind), known, flow.place, FleetError)
 
 
 def no_robot(fleet: Fleet, flow: FlowEntry, end: str) -> InputError | None:
@@ -242,8 +243,9 @@ class _Placing:
     def ends(self) -> Iterator[tuple[tuple[Element, ...], tuple[Element, ...]]]:
         """Return, per flow of the fleet file, the elements that its ends mean."""
         for number, flow in enumerate(self._fleet.flows):
-            sources = tuple(self._find(flow.source, flow, (number, 0)))
-            yield sources, tuple(self._find(flow.target, flow, (number, 1)))
+            source, target = flow.ends
+            sources = tuple(self._find(source, flow, (number, 0)))
+            yield sources, tuple(self._find(target, flow, (number, 1)))
 
     def _add_flows(self, whole: Part) -> None:
         lines: dict[Key, list[Place]] = defaultdict(list)
@@ -256,16 +258,19 @@ class _Placing:
                     flow_said(flow, key, lines, whole.said)
         add_lines(whole, lines)
 
-    def _find(self, end: str, flow: FlowEntry, at: tuple[int, int]) -> list[Element]:
-        if self._whole and (problem := no_robot(self._fleet, flow, end)):
+    def _find(self, end: End, flow: FlowEntry, at: tuple[int, int]) -> list[Element]:
+        if self._whole and (problem := no_robot(self._fleet, flow, end.name)):
             self.problems.append(problem)
             return []
-        robots = chosen(end, self._ends) if COLON in end else [""]
-        name = end.partition(COLON)[2] if COLON in end else end
+        robots = chosen(end.name, self._ends) if COLON in end.name else [""]
+        name = end.name.partition(COLON)[2] if COLON in end.name else end.name
         ends = [self._ends[robot] for robot in robots]
-        there = {robot: one.find(name) for robot, one in zip(robots, ends, strict=True)}
+        there = {robot: one.find(End(name, end.kind)) for robot, one in zip(robots, ends, strict=True)}
         self.met |= {(*at, robot) for robot, elements in there.items() if elements}
         found = [element for elements in there.values() for element in elements]
+        kinds = next((kinds for elements in there.values() if (kinds := two_meanings(end, elements))), ())
+        if kinds:
+            self.problems.append(ambiguous(end, kinds, flow.place, FleetError))
         if self._whole and not found:
             known = [other for one in ends for kind in one.names.values() for other in kind]
             self.problems.append(nowhere(flow, end, known))

@@ -36,6 +36,7 @@ class Names:
     """
 
     def __init__(self, found: Spread, vocabulary: Vocabulary, labels: Mapping[str, str]) -> None:
+        self.vocabulary = vocabulary
         self._found = found
         self._hierarchy = vocabulary.hierarchy
         self._labels = labels

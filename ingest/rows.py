@@ -11,6 +11,7 @@ import json
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.model import GLOB
 from rosprivacy.analysis.outside import BY_KIND
 from rosprivacy.ingest.facts import properties_of
 from rosprivacy.ingest.ids import category_labels, element_id, enclave_id
@@ -184,14 +185,14 @@ def _flows(robot: str, analysis: Analysis, bound: Bound, names: Names, ids: Sequ
     results = flow_results(analysis, names)
     for index, (flow, result) in enumerate(zip(analysis.graph.flows, results, strict=True)):
         said = bound.flows.get(index, ())
-        yield flow_row(robot, flow, ids[flow.source], ids[flow.target], allowed(result, said))
+        yield flow_row(robot, flow, ids[flow.source], ids[flow.target], allowed(result, said, names.vocabulary))
     for flow in analysis.graph.denied:
         yield flow_row(robot, flow, ids[flow.source], ids[flow.target], denied(flow))
 
 
-def allowed(result: Row, said: Sequence[Statement]) -> Row:
+def allowed(result: Row, said: Sequence[Statement], vocabulary: Vocabulary) -> Row:
     """Return the properties of an allowed flow."""
-    return {"decision": "allow", **result, **_restrictions(said)}
+    return {"decision": "allow", **result, **_restrictions(said, vocabulary)}
 
 
 def denied(flow: Flow) -> Row:
@@ -214,12 +215,24 @@ def _grant(grant: Grant) -> Row:
     return {"file": place.file, "line": place.line, "enclave": grant.enclave, "profile": grant.node}
 
 
-def _restrictions(said: Sequence[Statement]) -> Row:
-    """What labels say of a flow: all ``never`` hold, and of ``only`` the one of the highest rank (rule S8)."""
-    never = sorted({name for statement in said if statement.role == "never" for name in statement.categories})
-    only = [statement for statement in said if statement.role == "only"]
-    best = max(only, key=lambda statement: statement.rank, default=None)
-    return {"never": never or None, "only": sorted(best.categories) if best else None}
+def _restrictions(said: Sequence[Statement], vocabulary: Vocabulary) -> Row:
+    """What labels say of a flow, in two lists of one rank that mean the same (rule S7).
+
+    ``never`` of a lower rank than ``only`` says nothing that this does not say; of a higher rank it takes names out of
+    it, and where none is left nothing goes along the flow.
+    """
+    ranked = [statement for statement in said if statement.role == "only"]
+    only = max(ranked, key=lambda statement: statement.rank, default=None)
+    nevers = [s for s in said if s.role == "never" and (only is None or s.rank >= only.rank)]
+    never = {name for statement in nevers for name in statement.categories}
+    globs = {s.naming for s in (*nevers, *([only] if only else ()))} == {GLOB}
+    row: Row = {"never": sorted(never) or None, "only": None, "naming": GLOB if globs else None}
+    if only is None:
+        return row
+    above = {name for s in nevers if s.rank > only.rank for name in s.categories}
+    left = [name for name in only.categories if not above & set(vocabulary.hierarchy.ancestors[name])]
+    never |= set() if left else {name for name, category in vocabulary.categories.items() if not category.broader}
+    return {**row, "never": sorted(never) or None, "only": sorted(left) or None}
 
 
 def _roles(robot: str, bound: Bound, vocabulary: Vocabulary, ids: Sequence[str]) -> dict[str, list[Row]]:
@@ -241,6 +254,7 @@ def add_roles(
             "line": statement.place.line,
             "tier": statement.rank[0],
             "specificity": statement.rank[1],
+            "naming": statement.naming,
             "every": None if statement.categories else True,
             "robot": robot,
             **_particulars(statement),

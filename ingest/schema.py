@@ -74,8 +74,11 @@ _OURS = Property("robot", STRING, "whose load wrote it; absent on what people ad
 _PLACE = (
     Property("file", STRING, "of the label"),
     Property("line", INTEGER, "of the label"),
-    Property("tier", INTEGER, "rank: 1 for a person's own label, 0 for one that comes with the program"),
+    Property(
+        "tier", INTEGER, "rank: 1 for a person's own label, 0 for the standard channels, -1 for proposed infrastructure"
+    ),
     Property("specificity", INTEGER, "rank: the more of the name is spelt out, the higher"),
+    Property("naming", STRING, "name, glob, or segment for a glob with its last segment written out"),
     Property("every", BOOLEAN, "the label names no category: it holds for every one"),
     _OURS,
 )
@@ -224,6 +227,7 @@ FLOWS_TO = RelationshipKind(
         Property("denied_by", STRINGS, "of a denied flow: file:line of the DENY"),
         Property("only", STRINGS, "a label: it carries these at most"),
         Property("never", STRINGS, "a label: it does not carry these"),
+        Property("naming", STRING, "of the label: glob where it names no end in full; absent else"),
         _OURS,
     ),
 )
@@ -236,6 +240,12 @@ ROLES = {
         (*_PLACE, Property("through", STRINGS, "only through these channels")),
     ),
     "leak": RelationshipKind("LEAKS", "Element", "DataCategory", "It lets the category out.", _PLACE),
+    "no-source": RelationshipKind(
+        "NO_SOURCE_OF", "Element", "DataCategory", "Labels of lower rank do not make it a source.", _PLACE
+    ),
+    "no-leak": RelationshipKind(
+        "LEAKS_NOT", "Element", "DataCategory", "Labels of lower rank do not make it a leak.", _PLACE
+    ),
     "sanitizer": RelationshipKind(
         "SANITIZES",
         "Element",

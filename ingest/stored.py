@@ -13,7 +13,22 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import GraphError, InputError, InputErrors, shown
-from rosprivacy.analysis.model import NON_ROS, Bound, Element, Flow, FlowGraph, Grant, Method, Place, Profile, Statement
+from rosprivacy.analysis.model import (
+    GLOB,
+    NAME,
+    NON_ROS,
+    SEGMENT,
+    STANDARD,
+    Bound,
+    Element,
+    Flow,
+    FlowGraph,
+    Grant,
+    Method,
+    Place,
+    Profile,
+    Statement,
+)
 from rosprivacy.analysis.outside import by_kind
 from rosprivacy.analysis.patterns import NO_ROBOTS, Likeness
 from rosprivacy.ingest.entries import EXACT, as_ranked_now
@@ -276,15 +291,15 @@ class _Reader:
                 raise InputErrors([_problem(what, "see docs/database.md for what a role has")]) from None
             alone = () if role in ("only", "never") or said.get("every") else (category,)
             together[(*facts, *alone)].append(category)
-        for (role, rank, place, method, stated, to, through, every, *_), categories in sorted(
+        for (role, rank, place, method, stated, to, through, every, naming, *_), categories in sorted(
             together.items(), key=lambda item: str(item[0])
         ):
             names = () if every else tuple(sorted(categories))
             if role == "derivation":
                 names = (to,)
                 to = categories[0]  # noqa: PLW2901 - it is stored the other way round: the target is what is made
-            shipped = role == "mundane" and rank[0] == 0
-            yield Statement(role, names, rank, place, method, stated=stated, to=to, through=through, shipped=shipped)
+            shipped = role == "mundane" and rank[0] <= STANDARD
+            yield Statement(role, names, rank, place, method, stated, to, through, shipped, naming)
 
 
 def _flow(row: tuple[int, int, str, str, Mapping[str, Any]], elements: tuple[Element, ...]) -> Flow:
@@ -329,7 +344,8 @@ def _restrictions(said: Mapping[str, Any]) -> Iterator[Statement]:
     """``only`` and ``never`` of a flow."""
     for role in ("only", "never"):
         if names := _names(said, role):
-            yield Statement(role, names, (HAND, EXACT), Place(DATABASE, 0))
+            naming = GLOB if said.get("naming") == GLOB else NAME
+            yield Statement(role, names, (HAND, EXACT), Place(DATABASE, 0), naming=naming)
 
 
 def _facts(role: str, category: str, said: Mapping[str, Any]) -> tuple[Any, ...]:
@@ -353,6 +369,7 @@ def _facts(role: str, category: str, said: Mapping[str, Any]) -> tuple[Any, ...]
         made_of,
         through,
         bool(said.get("every")),
+        str(said.get("naming") or (NAME if int(specificity) >= EXACT else SEGMENT)),  # absent in earlier versions
     )
 
 

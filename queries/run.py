@@ -1,12 +1,12 @@
-"""Cypher -> rows: read-only by the server's own access mode, with a bound on rows and on time. Takes a driver.
+"""Cypher -> rows: read-only by the server's own plan and access mode, with bounds on rows, size and time.
 
-In: a driver, Cypher, values. Out: ``Rows`` of plain values. What would write is refused by the server.
+In: a driver, Cypher, values. Out: ``Rows`` of plain values. What does more than read the graph is refused.
 """
 
 from __future__ import annotations
 
 import json
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.errors import DatabaseError as OurDatabaseError
 from rosprivacy.analysis.errors import QueryError, shown
 from rosprivacy.queries.library import NAMES
+from rosprivacy.queries.reading import refuse_unless_reading
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -23,7 +24,9 @@ if TYPE_CHECKING:
     from rosprivacy.queries.library import Query
 
 LIMIT = 1000
+FETCHED = 100  # rows at once; the server keeps them in memory until they are read
 TIMEOUT = 60.0  # seconds
+LARGEST = 100 * 2**20  # of all rows, as `_size` counts; what is held here while it is turned into text
 LONGEST_REASON = 400
 WAY = "path"  # the column of the pack that names elements in the order of the flow
 
@@ -68,24 +71,31 @@ def run(
     Raises
     ------
     QueryError
-        If the server refuses it: it writes, is not Cypher, lacks a parameter, or takes too long or too much memory.
+        If it does more than read the graph, or the server refuses it: it is not Cypher, lacks a parameter, or takes
+        too long or too much memory; also if its rows are too large.
     DatabaseError
         If the server cannot answer for a reason of its own.
     """
     import neo4j  # noqa: PLC0415 - light start
 
     with (
-        _refusals(timeout),
-        driver.session(default_access_mode=neo4j.READ_ACCESS, fetch_size=LIMIT) as session,
+        _refusals(driver, timeout),
+        driver.session(default_access_mode=neo4j.READ_ACCESS, fetch_size=FETCHED) as session,
         session.begin_transaction(timeout=timeout) as transaction,
     ):
+        refuse_unless_reading(transaction, text, values or {})
         result = transaction.run(text, dict(values or {}))
         columns = tuple(result.keys())
         rows: list[tuple[Any, ...]] = []
+        held = 0
         for record in result:
             if limit is not None and len(rows) == limit:
                 return Rows(columns, tuple(rows), more=True)
-            rows.append(tuple(plain(value) for value in record.values()))
+            row = tuple(plain(value) for value in record.values())
+            held += _size(row)
+            if held > LARGEST:
+                raise QueryError(f"the rows take more than {LARGEST // 2**20} MB; ask for less, or use a lower --limit")
+            rows.append(row)
         return Rows(columns, tuple(rows))
 
 
@@ -154,13 +164,38 @@ def as_cell(value: Any, column: str = WAY) -> str:
     return json.dumps(value, ensure_ascii=False, sort_keys=True)
 
 
+def _size(value: Any) -> int:
+    """Return about how many bytes a plain value takes as text."""
+    if isinstance(value, str):
+        return len(value)
+    if isinstance(value, dict):
+        return sum(len(key) + _size(item) for key, item in value.items())
+    return sum(map(_size, value)) if isinstance(value, list | tuple) else 8
+
+
 @contextmanager
-def _refusals(timeout: float | None) -> Iterator[None]:
+def _refusals(driver: Driver, timeout: float | None) -> Iterator[None]:
     """What the server refuses, as one line; that it is lost is said by whoever opened the driver."""
-    from neo4j.exceptions import ClientError, DatabaseError, Neo4jError  # noqa: PLC0415 - light start
+    from neo4j.exceptions import (  # noqa: PLC0415 - light start
+        ClientError,
+        DatabaseError,
+        DriverError,
+        Neo4jError,
+        ServiceUnavailable,
+        SessionExpired,
+    )
 
     try:
         yield
+    except (ServiceUnavailable, SessionExpired):
+        # A server that has no memory left for a value breaks the connection, and goes on.
+        with suppress(DriverError, Neo4jError):
+            driver.verify_connectivity()
+            what = "the server broke off while it answered, and runs: the answer may be too large for it"
+            raise QueryError(f"{what}; ask for less") from None
+        raise
+    except RecursionError:
+        raise QueryError("the rows hold lists in lists that are too deep to be read; ask for less") from None
     except Neo4jError as error:
         code, what = error.code or "", shown(" ".join((error.message or str(error)).split())[:LONGEST_REASON])
         if code.endswith("Statement.AccessMode"):

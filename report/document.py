@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.legal import turned_special
 from rosprivacy.analysis.model import UNREAD_FILE
+from rosprivacy.analysis.ranks import in_words
 from rosprivacy.analysis.treatment import cleanings, makings
 from rosprivacy.report import taken_away
 from rosprivacy.report.outside import inventory, taken_by_kind, without_backups
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
         Legal,
         Step,
     )
+    from rosprivacy.analysis.overruled import Overruled
 
 FORMAT = "rosprivacy.analysis/1"
 _KEYS = {"name": "provision"}  # what the contract calls otherwise than the model
@@ -121,6 +123,14 @@ def document(
                 {"element": element_dict(element), "category": category, "taken_as": "pseudonymise"}
                 for element, category in analysis.unstated
             ],
+            "standard_channels_reached": [
+                {"element": element_dict(replace(element, leg="")), "categories": list(categories)}
+                for element, categories in analysis.standard_reached
+            ],
+            "standard_channels_unchanged": [
+                element_dict(replace(element, leg="")) for element in analysis.standard_unchanged
+            ],
+            "overruled": [_overruled(one) for one in analysis.spread.overruled],
         },
     }
 
@@ -152,6 +162,18 @@ def element_dict(element: Element) -> dict[str, Any]:
     if element.pattern:
         shown["pattern"] = True
     return shown
+
+
+def _overruled(one: Overruled) -> dict[str, Any]:
+    """A source or leak that another statement takes away."""
+    return {
+        "role": one.role,
+        "categories": list(one.categories),
+        "elements": list(one.names),
+        "file": one.lost.place.file,
+        "line": one.lost.place.line,
+        "by": {"says": in_words(one.by), "file": one.by.place.file, "line": one.by.place.line},
+    }
 
 
 def _treatment(analysis: Analysis) -> dict[str, Any]:

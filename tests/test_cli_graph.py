@@ -148,6 +148,13 @@ class TestQuery:
             assert (done.returncode, done.stdout) == (0, "name\n/uplink\n")
         assert run("query", "--cypher", "MATCH (n:Nothing) RETURN n").stdout == "no rows\n"
 
+    @pytest.mark.usefixtures("loaded")
+    def test_no_cell_of_csv_is_a_formula(self, tmp_path: Path) -> None:
+        """Names stand in policies of strangers, and people open the rows in a spreadsheet. A number is none."""
+        (tmp_path / "mine.cypher").write_text("RETURN '=1+1' AS a, ' @x' AS b, -1 AS c, '-1' AS d, ['+1'] AS `=e`")
+        done = run("query", "--file", tmp_path / "mine.cypher", "-f", "csv")
+        assert done.stdout == "a,b,c,d,'=e\n'=1+1,' @x,-1,'-1,'+1\n"
+
     @pytest.mark.slow
     @pytest.mark.parametrize(
         ("arguments", "message"),

@@ -185,9 +185,7 @@ def seen(tool: Tool, question: int) -> str:
 def file_of(policies: list[str], labels: list[str], **options: Any) -> dict[str, Any]:
     result = analyze(policies, labels, **options)
     vocabulary = result.vocabulary
-    return cnil_pia(
-        result.analysis, result.bound, vocabulary.categories, vocabulary.hierarchy, result.assumptions, CREATED
-    )
+    return cnil_pia(result.analysis, vocabulary.categories, vocabulary.hierarchy, result.assumptions, CREATED)
 
 
 @pytest.fixture(scope="module")
@@ -301,7 +299,7 @@ def test_storages_and_recipients_with_what_was_stated_of_them() -> None:
         ("", "storage", "bucket"): {"retention": "P30D", "country": "DE", "encrypted": "yes"},
         ("", "external-system", "cloud"): {"country": "US", "basis": "standard contractual clauses"},
     }
-    tool = imported(cnil_pia(analysis, bound, vocabulary.categories, vocabulary.hierarchy, {}, CREATED, stated=stated))
+    tool = imported(cnil_pia(analysis, vocabulary.categories, vocabulary.hierarchy, {}, CREATED, stated=stated))
     assert "Kept in: storage bucket (P30D), storage disk (retention not stated)" in seen(tool, 121)
     assert "/blur: pseudonymise (the data is still personal), taken because the label states no method" in seen(
         tool, 122
@@ -347,7 +345,7 @@ def test_a_hostile_name_harms_nothing(tmp_path: Path) -> None:
     why = {finding.id: HOSTILE for finding in analysis.findings}
     vocabulary = result.vocabulary
     stated = {e.identity: {"country": HOSTILE, "basis": HOSTILE} for e in elements}
-    data = cnil_pia(analysis, result.bound, vocabulary.categories, vocabulary.hierarchy, files, CREATED, why, stated)
+    data = cnil_pia(analysis, vocabulary.categories, vocabulary.hierarchy, files, CREATED, why, stated)
     tool = imported(data)
     assert "<script>alert(1)</script>" in seen(tool, 121)  # seen as text
     assert "‹script›" in tool.answers[322]["list"][0]
@@ -362,7 +360,7 @@ def test_any_system_with_any_names_is_taken(system: System, suffix: str) -> None
     if analysed(system) is None:
         return
     analysis = analyse(graph, system.bound(), HIERARCHY)
-    tool = imported(cnil_pia(analysis, system.bound(), CATEGORIES, HIERARCHY, {}, CREATED))
+    tool = imported(cnil_pia(analysis, CATEGORIES, HIERARCHY, {}, CREATED))
     findings = [finding for finding in analysis.findings if not finding.dismissed]
     assert len(tool.answers.get(322, {"list": []})["list"]) == len(findings) + bool(analysis.open)
 

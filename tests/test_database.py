@@ -12,9 +12,11 @@ import stat
 import subprocess
 import sys
 import time
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import replace
 from io import StringIO
 from pathlib import Path
+from threading import Thread
 from typing import TYPE_CHECKING
 from urllib.request import urlopen
 
@@ -24,6 +26,8 @@ from rosprivacy import database, libraries, server, state
 from rosprivacy.analysis.errors import DatabaseError, QueryError
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     import psutil
 
     from rosprivacy.database import Connection
@@ -129,8 +133,10 @@ def test_a_server_without_tls_asked_for_it(private_neo4j: Connection) -> None:
 @pytest.mark.database
 def test_only_the_owner_can_read(private_neo4j: Connection) -> None:
     status = database.status()
-    assert stat.S_IMODE(status.folder.stat().st_mode) == 0o700
-    assert stat.S_IMODE(status.password_file.stat().st_mode) == 0o600
+    files = [status.folder, *status.folder.rglob("*")]
+    assert {"conf", "logs", "data", "import"} <= {path.name for path in files}
+    open_to_others = [path for path in files if stat.S_IMODE(path.stat().st_mode) & 0o077]
+    assert open_to_others == []
     assert status.password_file.read_text("ascii") == private_neo4j.password
     assert len(private_neo4j.password) == 48
     for file in (status.folder / "logs").iterdir():
@@ -179,7 +185,7 @@ def test_no_server_named_is_the_private_one(private_neo4j: Connection) -> None:
 @pytest.mark.slow
 @pytest.mark.database
 def test_two_starts_at_once_after_a_stop_make_one_server(private_neo4j: Connection) -> None:
-    """Also: data, password and ports are kept, and a process number that is another program's now is survived."""
+    """Also: data are kept, and a process number that is another program's now is survived."""
     assert ask(private_neo4j, "MERGE (n:Kept {x: 42}) RETURN n.x") == [42]
     assert database.stop()
     assert servers() == []
@@ -198,10 +204,10 @@ def test_two_starts_at_once_after_a_stop_make_one_server(private_neo4j: Connecti
         assert unrelated.poll() is None
         unrelated.communicate(b"\n")
 
-    assert said == [private_neo4j.uri] * 2
+    assert said == [database.status().uri] * 2
     assert [start.returncode for start in starts] == [0, 0]
     assert len(servers()) == 1
-    assert ask(private_neo4j, "MATCH (n:Kept) RETURN n.x") == [42]
+    assert ask(database.connection(None), "MATCH (n:Kept) RETURN n.x") == [42]
 
 
 @pytest.mark.slow
@@ -232,11 +238,11 @@ def test_a_killed_server_is_seen_and_started_again(private_neo4j: Connection, mo
     # For a moment after its birth a process has no command line yet; on a busy machine we look just then.
     look, unseen = server._process, iter([None, None, None])
     monkeypatch.setattr(server, "_process", lambda *which: next(unseen, look(*which)))
-    assert database.start() == private_neo4j
+    again = database.start()
     assert list(unseen) == []
     assert process().pid != killed.pid
     assert len(servers()) == 1
-    assert ask(private_neo4j, "RETURN 1") == [1]
+    assert ask(again, "RETURN 1") == [1]
 
 
 @pytest.mark.slow
@@ -353,26 +359,32 @@ def test_without_the_extra_there_is_nothing_to_stop(nowhere: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.database
 def test_the_commands(private_neo4j: Connection) -> None:
-    folder, page = database.state_folder(), database.status().browser
-    described = [
-        f"Neo4j {libraries.VERSION} is running",
-        f"Bolt:      {private_neo4j.uri}",
-        f"Browser:   {page}",
-        "User name: neo4j",
-        f"Password:  in {folder / 'password'}",
-        f"Files:     {folder}",
-    ]
+    assert private_neo4j
+    folder = database.state_folder()
+
+    def described() -> list[str]:
+        found = server.running(folder)
+        assert found
+        return [
+            f"Neo4j {libraries.VERSION} is running",
+            f"Bolt:      bolt://127.0.0.1:{found.bolt}",
+            f"Browser:   http://127.0.0.1:{found.http}/browser/",
+            "User name: neo4j",
+            f"Password:  in {folder / 'password'}",
+            f"Files:     {folder}",
+        ]
+
     stopped = [f"Neo4j {libraries.VERSION} is stopped; start it with: rosprivacy db start", f"Files:     {folder}"]
     for command, lines in [
         ("status", described),
-        ("path", [str(folder)]),
-        ("stop", ["Neo4j was running and is stopped"]),
-        ("status", stopped),
+        ("path", lambda: [str(folder)]),
+        ("stop", lambda: ["Neo4j was running and is stopped"]),
+        ("status", lambda: stopped),
         ("start", described),
         ("start", described),
     ]:
         done = rosprivacy("db", command)
-        assert (done.returncode, done.stdout.splitlines(), done.stderr) == (0, lines, ""), command
+        assert (done.returncode, done.stdout.splitlines(), done.stderr) == (0, lines(), ""), command
     assert len(servers()) == 1
 
 
@@ -482,6 +494,150 @@ def test_ports_are_kept_unless_taken() -> None:
         other, same = server._free_ports(*first)
     assert other != first[0]
     assert same == first[1]
+
+
+def test_ports_that_somebody_holds_without_listening_are_taken() -> None:
+    """Who holds them so could listen there a moment before the server does."""
+    first = server._free_ports(0, 0)
+    with held(*first):
+        assert not set(server._free_ports(*first)) & set(first)
+
+
+@contextmanager
+def held(*ports: int) -> Iterator[list[socket.socket]]:
+    """Sockets that are bound to ports as another user of the machine can do it, and do not listen yet."""
+    with ExitStack() as stack:
+        sockets = [stack.enter_context(socket.socket()) for _ in ports]
+        for each, port in zip(sockets, ports, strict=True):
+            each.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            each.bind(("127.0.0.1", port))
+        yield sockets
+
+
+@contextmanager
+def thief(listening: socket.socket) -> Iterator[bytearray]:
+    """Answer as a Bolt server does and keep what is said: the driver's third message holds the password."""
+    heard = bytearray()
+
+    def serve() -> None:
+        with suppress(OSError):
+            while True:
+                client = listening.accept()[0]
+                with client, suppress(OSError):
+                    client.settimeout(5)
+                    client.recv(20)  # the handshake: magic number and four versions
+                    client.sendall(b"\x00\x00\x04\x05")  # Bolt 5.4
+                    for _ in range(2):  # HELLO and LOGON; both get SUCCESS {server: "Neo4j/5.26.0"}
+                        heard.extend(client.recv(65536))
+                        success = b"\xb1\x70\xa2\x86server\x8cNeo4j/5.26.0\x8dconnection_id\x81x"
+                        client.sendall(len(success).to_bytes(2, "big") + success + b"\x00\x00")
+
+    Thread(target=serve, daemon=True).start()
+    yield heard
+
+
+@pytest.mark.slow
+@pytest.mark.database
+def test_who_waits_on_the_ports_of_the_last_start_hears_no_password(private_neo4j: Connection) -> None:
+    assert database.stop()
+    last = json.loads((database.state_folder() / "server.json").read_text("utf-8"))
+    with held(last["bolt"], last["http"]) as (bolt, http), thief(bolt) as heard:
+        free_ports = server._free_ports
+
+        def then_listen(*wanted: int) -> list[int]:
+            ports = free_ports(*wanted)
+            bolt.listen()
+            http.listen()
+            return ports
+
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(server, "_free_ports", then_listen)
+            again = database.start()
+        assert private_neo4j.password.encode() not in heard
+        assert not heard
+    assert ask(again, "RETURN 1") == [1]
+
+
+@pytest.mark.database
+def test_a_listener_that_is_not_the_servers_process_hears_nothing(
+    private_neo4j: Connection, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(database, "START_LIMIT", 1.0)
+    file = database.state_folder() / "server.json"
+    known = file.read_text("utf-8")
+    with socket.create_server(("127.0.0.1", 0)) as listening, thief(listening) as heard:
+        try:
+            file.write_text(json.dumps(json.loads(known) | {"bolt": listening.getsockname()[1]}), "utf-8")
+            with pytest.raises(DatabaseError) as error:
+                database.connection(None)
+        finally:
+            file.write_text(known, "utf-8")
+        assert not heard
+    assert "the private server does not listen on its ports within 1 s" in one_line(error)
+    assert ask(private_neo4j, "RETURN 1") == [1]
+
+
+@pytest.mark.slow
+@pytest.mark.database
+def test_every_start_has_a_new_password(private_neo4j: Connection) -> None:
+    assert database.stop()
+    again = database.start()
+    assert again.password != private_neo4j.password
+    assert len(again.password) == 48
+    with pytest.raises(DatabaseError) as error, database.open_driver(replace(again, password=private_neo4j.password)):
+        pass
+    assert "not accepted" in one_line(error)
+    assert database.connection(None) == again
+    assert not server.next_password_file(database.state_folder()).exists()
+
+
+@pytest.mark.database
+def test_a_start_that_is_broken_off_while_the_password_changes_locks_nobody_out(private_neo4j: Connection) -> None:
+    """Before the server took the new one, or after: one of the two files is right."""
+    folder = database.state_folder()
+    later = server.next_password_file(folder)
+    server.make_password(later)
+    assert database.connection(None) == private_neo4j
+    new = later.read_text("ascii")
+    with database.open_driver(private_neo4j) as driver:
+        change = "ALTER CURRENT USER SET PASSWORD FROM $old TO $new"
+        driver.execute_query(change, old=private_neo4j.password, new=new, database_="system")
+    assert database.connection(None).password == new
+    assert server.read_password(folder) == new
+    assert not later.exists()
+
+
+@pytest.mark.database
+@pytest.mark.parametrize("scheme", ["file", "http"])
+def test_the_private_server_reads_no_file_and_no_address(
+    private_neo4j: Connection, tmp_path: Path, scheme: str
+) -> None:
+    """By its own configuration, whoever asks: here no plan is looked at before."""
+    from neo4j.exceptions import Neo4jError
+
+    (tmp_path / "secret.csv").write_text("secret\n", "utf-8")
+    with socket.create_server(("127.0.0.1", 0)) as listening:
+        listening.settimeout(0.5)
+        address = f"http://127.0.0.1:{listening.getsockname()[1]}/x.csv"
+        url = (tmp_path / "secret.csv").as_uri() if scheme == "file" else address
+        with database.open_driver(private_neo4j) as driver, pytest.raises(Neo4jError, match="Cannot load from URL"):
+            driver.execute_query("LOAD CSV FROM $url AS line RETURN line", url=url)
+        with pytest.raises(TimeoutError):
+            listening.accept()
+
+
+@pytest.mark.database
+def test_the_private_server_has_the_settings_that_confine_it(private_neo4j: Connection) -> None:
+    """As the server itself names them; the list of addresses is an internal setting and is not shown."""
+    rows = "SHOW SETTINGS YIELD name, value RETURN [name, value]"
+    settings: dict[str, str] = dict(ask(private_neo4j, rows))  # type: ignore[arg-type]  # pairs
+    folder = database.state_folder()
+    assert settings["server.directories.import"] == str(folder / "import")
+    assert list((folder / "import").iterdir()) == []
+    assert settings["dbms.security.allow_csv_import_from_file_urls"] == "false"
+    assert settings["dbms.security.procedures.allowlist"] == "db.*,dbms.*,tx.*"
+    assert settings["db.transaction.timeout"] == "1h"
+    assert settings["db.memory.transaction.max"] == "614.40MiB"
 
 
 @pytest.mark.usefixtures("local_extra")

@@ -18,6 +18,7 @@ from rosprivacy.analysis.hierarchy import Hierarchy
 from rosprivacy.analysis.model import (
     DISCLOSURE,
     NON_ROS,
+    STATED,
     Analysis,
     Bound,
     Category,
@@ -80,21 +81,38 @@ class System:
         elements += [Element("topic", f"/t{i}") for i in range(self.channels)]
         for read, written in self.sides.items():
             elements[written], elements[read] = (Element("topic", "/w*", side=side) for side in ("write", "read"))
-        return FlowGraph(tuple(elements), tuple(Flow(a, b, "publish") for a, b in self.edges), (), ())
+        flows = tuple(Flow(a, b, STATED if (a, b) in self.stated else "publish") for a, b in self.edges)
+        return FlowGraph(tuple(elements), flows, (), ())
+
+    @property
+    def stated(self) -> set[tuple[int, int]]:
+        """Flows that begin or end outside ROS."""
+        return {(a, b) for a, b in self.edges if {a, b} & set(self.facts)}
+
+    def through(self) -> dict[tuple[int, tuple[str, ...]], tuple[int, ...]]:
+        """The flows to the channels that sources name."""
+        named = {(v, s.through) for v, said in self.said.items() for s in said if s.through}
+        names = [element.name for element in self.graph().elements]
+        ends = list(enumerate(self.edges))
+        return {(v, some): tuple(i for i, (a, b) in ends if a == v and names[b] in some) for v, some in named}
 
     def bound(self) -> Bound:
         flows = {i: (statement("never", *sorted(names)),) for i, names in self.never.items()}
         elements = self.graph().elements
         said = {v: (*said, *by_kind(elements[v])) for v, said in sorted(self.said.items())}
         facts = {v: facts for v, (_, facts) in self.facts.items()}
-        return Bound({v: statements for v, statements in said.items() if statements}, flows, outside=facts)
+        statements = {v: some for v, some in said.items() if some}
+        return Bound(statements, flows, self.through(), outside=facts)
 
     def analyse(self, options: Options | None = None) -> Analysis:
         return analyse(self.graph(), self.bound(), self.hierarchy, options)
 
     def brute(self) -> Brute:
         never = {self.edges[i]: names for i, names in self.never.items()}
-        return Brute(range(self.nodes), self.edges, self.said, self.hierarchy, never, self.facts, self.sides)
+        names = {v: e.name for v, e in enumerate(self.graph().elements)}
+        return Brute(
+            range(self.nodes), self.edges, self.said, self.hierarchy, never, self.facts, names, self.stated, self.sides
+        )
 
 
 @st.composite

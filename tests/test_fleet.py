@@ -155,7 +155,7 @@ class TestRobots:
     def test_a_robots_own_labels_outrank_its_models(self) -> None:
         write("own.yaml", "labels: 1\nnodes: {'/scr*': conduit}\nelements: {disk: {kind: storage, country: DE}}\n")
         write("eye.yaml", "labels: 1\nnodes: {/camera: {source: [Video], leak: [Video]}, /uplink: {leak: [Video]}}\n")
-        write("own.yaml", "labels: 1\nnodes: {/uplink: {conduit: [Video]}}\n")
+        write("own.yaml", "labels: 1\nnodes: {/uplink: {leak: none, conduit: [Video]}}\n")
         write("f.yaml", f"fleet: 1\n{MODELS}robots: {{a: {{model: eye}}, b: {{model: eye, labels: own.yaml}}}}\n")
         result = analysed(read_all("f.yaml", load(), Settings()), load(), Settings(), every=True)
         assert [(f.leak.robot, f.leak.name) for f in result.analysis.findings] == [

@@ -564,7 +564,8 @@ def test_a_shipped_file_is_a_valid_label_file_of_lower_rank(tmp_path: Path, name
     assert labels.shipped
     assert labels.file == f"rosprivacy:{name}"
     assert {statement.role for entry in labels.entries for statement in entry.statements} == {"mundane"}
-    assert {statement.rank[0] for entry in labels.entries for statement in entry.statements} == {0}
+    tiers = {statement.rank[0] for entry in labels.entries for statement in entry.statements}
+    assert tiers == {0 if name == "standard" else -1}  # S13: the proposal yields to every label of a user
     assert valid(shipped_text(name))
     assert not read(tmp_path, shipped_text(name)).shipped  # a copy is the user's own
 
@@ -717,11 +718,14 @@ def test_the_higher_rank_wins(tmp_path: Path, labels: list[str], role: str) -> N
     assert roles(analyse(tmp_path, source, *texts), "/filter") == {role}
 
 
-def test_a_users_file_outranks_a_shipped_one_however_general(
-    tmp_path: Path,
-) -> None:  # S13: read, replaced or outranked
+@pytest.mark.parametrize(
+    ("name", "role"), [("/rosout", "sensitive"), ("*/rosout", "sensitive"), ("*", "mundane"), ("/ros*", "mundane")]
+)
+def test_a_users_full_name_outranks_the_standard_file_and_so_does_a_glob_with_its_end_written_out(
+    tmp_path: Path, name: str, role: str
+) -> None:  # S13
     assert roles(analyse(tmp_path, VIDEO), "/rosout") == {"mundane"}
-    assert roles(analyse(tmp_path, f"{VIDEO}\ntopics: {{'*': sensitive}}"), "/rosout") == {"sensitive"}
+    assert roles(analyse(tmp_path, f"{VIDEO}\ntopics: {{'{name}': sensitive}}"), "/rosout") == {role}
 
 
 def test_a_shipped_file_that_a_user_names_does_not_outrank_his_own(tmp_path: Path) -> None:

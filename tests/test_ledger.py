@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.findings import analyse
 from rosprivacy.analysis.ledger import ledger
-from rosprivacy.analysis.model import Bound, Flow, FlowGraph, Grant, Place, Statement
+from rosprivacy.analysis.model import GLOB, Bound, Flow, FlowGraph, Grant, Place, Statement
 from tests.test_findings import HIERARCHY, System, statement, systems
 from tests.test_fleet_findings import Case, fleets, found_in
 
@@ -106,7 +106,7 @@ def stated(draw: st.DrawFn) -> Stated:
         glob = draw(st.sampled_from(GLOBS))
         among = range(system.nodes) if glob.role == "sanitizer" else range(system.nodes, system.nodes + system.channels)
         for vertex in draw(st.sets(st.sampled_from(among), min_size=2)) if len(among) > 1 else ():
-            said[vertex] = [replace(glob, place=Place("labels.yaml", line), glob=True)]
+            said[vertex] = [replace(glob, place=Place("labels.yaml", line), naming=GLOB)]
     denied = {}
     for edge in draw(st.sets(st.sampled_from(system.edges), max_size=3)):
         if system.edges.index(edge) not in system.never:
@@ -117,7 +117,7 @@ def stated(draw: st.DrawFn) -> Stated:
 GLOBS = [statement("mundane"), statement("never", "Any"), statement("only", "Loc"), statement("never", "Face")]
 
 
-def answer(brute: Brute) -> tuple[dict[tuple[str, str, int, int, bool], tuple[bool, bool]], set[tuple[int, str]]]:
+def answer(brute: Brute) -> tuple[dict[tuple[str, str, int, int], tuple[bool, bool]], set[tuple[int, str]]]:
     """Finding -> (not dismissed, plain); (vertex, category) that is open."""
     told = {key[:4]: forms for key, forms in brute.findings().items() if not key[4]}  # none beside another
     findings = {key: (not dismissed, not hidden) for key, (hidden, dismissed, _) in told.items()}

@@ -43,7 +43,8 @@ COUNTS = (
 
 @pytest.fixture
 def driver(neo4j_server: Connection) -> Iterator[Driver]:
-    with database.open_driver(neo4j_server) as driver:
+    assert neo4j_server
+    with database.open_driver(database.connection(None)) as driver:  # with its password of now: tests restart it
         driver.execute_query("MATCH (n) DETACH DELETE n")
         yield driver
 
@@ -385,13 +386,13 @@ class TestFaults:
     def test_a_server_that_only_reads_refuses_in_one_line(
         self, private_neo4j: Connection, monkeypatch: pytest.MonkeyPatch
     ) -> None:
+        assert private_neo4j
         assert database.stop()
         with monkeypatch.context() as patch:  # over before the fixture starts the server again for others
             only_reads = "server.databases.default_to_read_only=true\n"
             patch.setattr(server, "CONFIGURATION", server.CONFIGURATION + only_reads)
             try:
-                assert database.start() == private_neo4j
-                with database.open_driver(private_neo4j) as driver, pytest.raises(DatabaseError) as error:
+                with database.open_driver(database.start()) as driver, pytest.raises(DatabaseError) as error:
                     load(driver, [rows_of("r", factory(2))], VOCABULARY)
             finally:
                 database.stop()

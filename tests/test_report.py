@@ -34,6 +34,7 @@ from rosprivacy.report.page.markdown import markdown
 from rosprivacy.report.page.outline import Outline, outline
 from rosprivacy.report.page.redact import redacted
 from rosprivacy.report.page.words import TABLES, Words
+from rosprivacy.report.spreadsheet import FORMULA
 from tests.graphs import hospital
 from tests.reports import HOSTILE, care, fleet, hostile, run, with_decisions, with_outside
 
@@ -621,7 +622,7 @@ def test_no_cell_is_a_formula(tmp_path: Path, language: str) -> None:
     assert rows[0]["category"] == "'=1+1"
     assert len(rows) == len(document["findings"]) + 1  # and the storage
     for row in rows:
-        assert not [cell for cell in row.values() if cell.lstrip().startswith(article30.FORMULA)]
+        assert not [cell for cell in row.values() if cell.lstrip().startswith(FORMULA)]
 
 
 # ---------------------------------------------------------------- copies for others

@@ -223,7 +223,7 @@ def test_a_file_outside_has_a_whole_uri(tmp_path: Path) -> None:
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(EXAMPLES)
         log = sarif(
-            result.analysis, result.bound, result.vocabulary.categories, result.vocabulary.hierarchy,
+            result.analysis, result.vocabulary.categories,
             (), result.assumptions, tmp_path / "repo",
         )  # fmt: skip
     where = checked(log)["results"][0]["locations"][0]["physicalLocation"]["artifactLocation"]
@@ -298,7 +298,7 @@ def test_a_finding_that_no_file_speaks_of_is_at_the_first_line_of_what_it_rests_
     analysis = analyse(graph, bound, vocabulary.hierarchy)
 
     def places(assumptions: dict[str, Any]) -> set[tuple[str, int]]:
-        log = sarif(analysis, bound, vocabulary.categories, vocabulary.hierarchy, (), assumptions, tmp_path)
+        log = sarif(analysis, vocabulary.categories, (), assumptions, tmp_path)
         (found,) = [r for r in checked(log)["results"] if r["ruleId"] == "disclosure"]
         return {physical(found["locations"][0]), *(physical(step) for step in way(found))}
 
@@ -434,7 +434,7 @@ def log_of_system(system: System, suffix: str) -> dict[str, Any] | None:
     if analysed(system) is None:
         return None
     analysis = analyse(graph, system.bound(), HIERARCHY)
-    return sarif(analysis, system.bound(), CATEGORIES, HIERARCHY, (), {}, ROOT)
+    return sarif(analysis, CATEGORIES, (), {}, ROOT)
 
 
 @given(systems(), st.text(max_size=20))
@@ -458,7 +458,7 @@ def test_a_hostile_name_harms_nothing(tmp_path: Path) -> None:
     graph = replace(analysis.graph, elements=tuple(replace(e, name=names[e.name]) for e in analysis.graph.elements))
     vocabulary = result.vocabulary
     spread_anew = analyse(graph, result.bound, vocabulary.hierarchy)
-    log = sarif(spread_anew, result.bound, vocabulary.categories, vocabulary.hierarchy, (), {}, tmp_path)
+    log = sarif(spread_anew, vocabulary.categories, (), {}, tmp_path)
     run = checked(json.loads(json.dumps(log)))
     assert all(text.isprintable() and len(text) < 1500 for text in strings(run["results"]))
     texts = [r["message"]["text"] for r in run["results"]]
@@ -474,9 +474,7 @@ def test_a_file_name_that_is_no_text_is_a_uri_all_the_same(tmp_path: Path) -> No
     vocabulary = result.vocabulary
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(tmp_path)
-        log = sarif(
-            result.analysis, result.bound, vocabulary.categories, vocabulary.hierarchy, (), assumptions, tmp_path
-        )
+        log = sarif(result.analysis, vocabulary.categories, (), assumptions, tmp_path)
     run = checked(json.loads(json.dumps(log)))
     assert run["artifacts"][0]["location"]["uri"] == "p%FF%5Bx%5D.policy.xml"
     json.dumps(log, ensure_ascii=False).encode()

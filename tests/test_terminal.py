@@ -77,7 +77,7 @@ def test_long_lists_are_cut_and_say_so_unless_verbose() -> None:
 def test_what_was_assumed_is_said(care_home: dict[str, Any]) -> None:
     text = "\n".join(report(care_home))
     assert "view declared: each node does what its own profile says" in text
-    assert "69 standard ROS channels taken as mundane" in text
+    assert "75 standard ROS channels taken as mundane" in text
     assert "labels are a person's word; this is no legal verdict" in text
 
 

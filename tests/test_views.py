@@ -161,7 +161,7 @@ def test_nothing_that_counts_is_missing_from_the_privacy_view(system: System) ->
     for element, vertex in number.items():
         here = {data for v, data in present if v == vertex}
         kept = {d for d in here if not brute.kills(vertex, d[0]) or (d[1] and brute.only_hides(vertex, d[0]))}
-        goes_on = kept | {made for data in here for made in brute.made(vertex, data)} | brute.emitted(vertex)
+        goes_on = kept | {made for data in here for made in brute.made(vertex, data)} | set(brute.emitted(vertex))
         leaks = {c for c, _ in here if vertex in brute.nodes and brute.has(vertex, "leak", c)}
         if (here and goes_on) or leaks or element in {finding.leak for finding in found.findings}:
             expected.add(element.identity)

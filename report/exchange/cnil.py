@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from rosprivacy.analysis.hierarchy import Hierarchy
-    from rosprivacy.analysis.model import Analysis, Bound, Category, FlowGraph
+    from rosprivacy.analysis.model import Analysis, Category, FlowGraph
     from rosprivacy.report.exchange.cnil_answers import Stated
     from rosprivacy.report.exchange.inventory import Cleaning
 
@@ -45,7 +45,6 @@ NOTHING: Mapping[Any, Any] = {}
 
 def cnil_pia(
     analysis: Analysis,
-    bound: Bound,
     categories: Mapping[str, Category],
     hierarchy: Hierarchy,
     assumptions: Mapping[str, Any],
@@ -68,7 +67,7 @@ def cnil_pia(
     about
         What a reader has to know beside it, such as which robots of a fleet are named.
     """
-    known = Known(analysis, kinds_of(analysis, bound, categories, hierarchy), stated, accepted)
+    known = Known(analysis, kinds_of(analysis, categories, hierarchy), stated, accepted)
     measures = list(_measures(known))
     note = _note(analysis, assumptions, about)
     texts = {

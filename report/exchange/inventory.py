@@ -11,13 +11,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import ARTICLE_9_VERDICTS
-from rosprivacy.report.exchange.places import deciding
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.hierarchy import Hierarchy
-    from rosprivacy.analysis.model import Analysis, Bound, Category, Element, Finding, Legal
+    from rosprivacy.analysis.model import Analysis, Category, Element, Finding, Legal
 
 _STRENGTH = {verdict: number for number, verdict in enumerate(ARTICLE_9_VERDICTS)}
 
@@ -68,12 +67,10 @@ class Kind:
     open: tuple[Element, ...]
 
 
-def kinds_of(
-    analysis: Analysis, bound: Bound, categories: Mapping[str, Category], hierarchy: Hierarchy
-) -> tuple[Kind, ...]:
+def kinds_of(analysis: Analysis, categories: Mapping[str, Category], hierarchy: Hierarchy) -> tuple[Kind, ...]:
     """Return what is known of each emitted category, sorted by its name."""
     reached = _reached(analysis, hierarchy)
-    cleaned = list(cleanings(analysis, bound, hierarchy))
+    cleaned = list(cleanings(analysis, hierarchy))
     made = list(_made(analysis))
     return tuple(
         Kind(
@@ -96,15 +93,15 @@ def law_of(category: Category) -> tuple[Legal, ...]:
     return tuple(sorted(distinct, key=lambda legal: (_STRENGTH.get(legal.verdict, len(_STRENGTH)), legal.name)))
 
 
-def cleanings(analysis: Analysis, bound: Bound, hierarchy: Hierarchy) -> Iterator[Cleaning]:
+def cleanings(analysis: Analysis, hierarchy: Hierarchy) -> Iterator[Cleaning]:
     """Yield what cleans what gets there, by the label that decides it, in the order of the graph."""
     reached = _reached(analysis, hierarchy)
     here = {(name, element.identity) for name, elements in reached.items() for element in elements}
     for vertex, element in enumerate(analysis.graph.elements):
         for category, roles in sorted(analysis.roles.get(element, {}).items()):
-            said = deciding(bound.elements.get(vertex, ()), "sanitizer", category, hierarchy)
+            fact = analysis.spread.facts[vertex][category]
             there = "sanitizer" in roles and (category, element.identity) in here
-            if there and said and said.method:
+            for said in fact.by_role("sanitizer")[:1] if there else ():
                 yield Cleaning(element, category, str(said.method), said.stated)
 
 

@@ -10,14 +10,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import Place
-from rosprivacy.analysis.roles import MAY
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
     from typing import Any
 
-    from rosprivacy.analysis.hierarchy import Hierarchy
-    from rosprivacy.analysis.model import Analysis, Bound, Element, Finding, OpenQuestion, Statement, Step
+    from rosprivacy.analysis.model import Analysis, Element, Finding, OpenQuestion, Step
+    from rosprivacy.analysis.roles import Facts
 
     Shown = tuple[str, ...]
 
@@ -31,6 +30,8 @@ class Places:
 
     Attributes
     ----------
+    facts
+        Vertex -> category -> what labels decide; the statement of the highest rank stands first (rule S7).
     vertices
         Element at an end of a finding -> its vertices' numbers; the two sides of a wildcard are one to the reader.
     channels
@@ -41,15 +42,14 @@ class Places:
         The label files and policies that the answer rests on: the last resort.
     """
 
-    bound: Bound
-    hierarchy: Hierarchy
+    facts: Mapping[int, Mapping[str, Facts]]
     vertices: Mapping[Shown, tuple[int, ...]]
     channels: Mapping[Shown, Place]
     profiles: Mapping[str, Place]
     files: tuple[str, ...]
 
     @classmethod
-    def of(cls, analysis: Analysis, bound: Bound, hierarchy: Hierarchy, assumptions: Mapping[str, Any]) -> Places:
+    def of(cls, analysis: Analysis, assumptions: Mapping[str, Any]) -> Places:
         """Collect what is looked up, in one pass over elements and, where channels are to be reviewed, over flows."""
         ends = {element.shown_as for finding in analysis.findings for element in (finding.source, finding.leak)}
         vertices: dict[Shown, tuple[int, ...]] = {}
@@ -61,7 +61,7 @@ class Places:
             if in_a_file(profile.place):
                 profiles.setdefault(profile.node, profile.place)
         files = [entry["file"] for kind in ("labels", "policies") for entry in assumptions.get(kind) or ()]
-        return cls(bound, hierarchy, vertices, _lines(analysis), profiles, tuple(files))
+        return cls(analysis.spread.facts, vertices, _lines(analysis), profiles, tuple(files))
 
     def of_finding(self, finding: Finding) -> Place:
         """Return the line that lets the data into the leak; the line of a label where no policy line does (S3)."""
@@ -80,9 +80,9 @@ class Places:
 
     def of_role(self, element: Element, role: str, category: str) -> Place | None:
         """Return the line of the label that gives an element a role for a category, None if no file does."""
-        said = [s for vertex in self.vertices.get(element.shown_as, ()) for s in self.bound.elements.get(vertex, ())]
-        chosen = deciding((s for s in said if in_a_file(s.place)), role, category, self.hierarchy)
-        return chosen.place if chosen else None
+        facts = (self.facts.get(vertex, {}).get(category) for vertex in self.vertices.get(element.shown_as, ()))
+        said = (statement for fact in facts if fact for statement in fact.by_role(role))
+        return next((statement.place for statement in said if in_a_file(statement.place)), None)
 
     def of_profile(self, element: Element) -> Place | None:
         """Return where a node's profile begins, None if it has none."""
@@ -91,26 +91,6 @@ class Places:
     def last_resort(self) -> Place:
         """Return the first line of a file that the answer rests on."""
         return next((Place(file, 1) for file in self.files), NOWHERE)
-
-
-def deciding(statements: Iterable[Statement], role: str, category: str, hierarchy: Hierarchy) -> Statement | None:
-    """Return the statement behind a role of an element for a category: the highest rank, then the nearest (S7)."""
-    applying = []
-    for statement in statements:
-        distance = _distance(statement, category, hierarchy) if statement.role == role else None
-        if distance is not None:
-            rank = (-statement.rank[0], -statement.rank[1], distance, statement.place.file, statement.place.line)
-            applying.append((rank, statement))
-    return min(applying, key=lambda pair: pair[0])[1] if applying else None
-
-
-def _distance(statement: Statement, category: str, hierarchy: Hierarchy) -> int | None:
-    """How far a statement's categories are from one; None where it does not apply."""
-    if not statement.categories:
-        return len(hierarchy.ancestors)
-    pairs = [(category, named) for named in statement.categories]
-    pairs += [(named, category) for named in statement.categories] if statement.role in MAY else []
-    return min((d for one, other in pairs if (d := hierarchy.distance(one, other)) is not None), default=None)
 
 
 def to_review(analysis: Analysis) -> tuple[OpenQuestion, ...]:

@@ -31,8 +31,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
     from pathlib import Path
 
-    from rosprivacy.analysis.hierarchy import Hierarchy
-    from rosprivacy.analysis.model import Analysis, Bound, Category, Diagnostic, Legal
+    from rosprivacy.analysis.model import Analysis, Category, Diagnostic, Legal
 
 SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 MAX_RESULTS = 25_000
@@ -44,9 +43,7 @@ NOTHING: Mapping[str, str] = {}
 
 def sarif(
     analysis: Analysis,
-    bound: Bound,
     categories: Mapping[str, Category],
-    hierarchy: Hierarchy,
     diagnostics: Iterable[Diagnostic],
     assumptions: Mapping[str, Any],
     root: Path,
@@ -73,7 +70,7 @@ def sarif(
     rules = {rule.id: rule for rule in (*RULES, *found, UNREVIEWED, NOTHING_FOLLOWED, *not_read)}
     made = Results(
         analysis,
-        Places.of(analysis, bound, hierarchy, assumptions),
+        Places.of(analysis, assumptions),
         files,
         categories,
         law,

@@ -2,9 +2,6 @@
 
 In: a document and a language. Out: one row per kind of data and recipient; one without a recipient where none was
 found. What only a person can know is left empty, and a column says which fields these are.
-
-Spreadsheets run what begins with ``=`` and the like; such a cell gets an apostrophe in front, which they take as
-'this is text'.
 """
 
 from __future__ import annotations
@@ -22,6 +19,7 @@ from rosprivacy.report.page.patterns import grouped
 from rosprivacy.report.page.storages import STORAGE, retention
 from rosprivacy.report.page.tables import OUTSIDE, can_come_from
 from rosprivacy.report.page.words import Words
+from rosprivacy.report.spreadsheet import guarded
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -29,7 +27,6 @@ if TYPE_CHECKING:
     from rosprivacy.report.page.naming import Key
 
 SEPARATORS = {"en": ",", "de": ";"}  # as spreadsheets in that language expect
-FORMULA = ("=", "+", "-", "@", "\t", "\r", "＝", "＋", "－", "＠")
 BOM = "\ufeff"  # without it Excel takes UTF-8 for something else
 LETTERS = {"controller": "a", "purpose": "b", "subjects": "c", "role": "d", "transfer": "e", "retention": "f"}
 
@@ -65,15 +62,6 @@ def record(document: Mapping[str, Any], language: str) -> str:
     for entry in entries(index):
         writer.writerow([guarded(getattr(entry, column)) for column in columns])
     return BOM + text.getvalue()
-
-
-def guarded(cell: str) -> str:
-    """Return a cell that no spreadsheet takes for a formula.
-
-    >>> guarded("=1+1"), guarded("  =1+1"), guarded("video")
-    ("'=1+1", "'  =1+1", 'video')
-    """
-    return f"'{cell}" if cell.startswith(FORMULA) or cell.lstrip().startswith(FORMULA) else cell
 
 
 def entries(index: Index) -> tuple[Entry, ...]:

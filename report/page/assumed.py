@@ -42,6 +42,7 @@ def assumed(index: Index) -> Iterator[str]:
     yield words(f"a.view.{index.document['view']}")
     yield words("a.unlabelled")
     yield _standard(index)
+    yield from _stopped(index)
     if said["categories_asked"] != ALL:
         yield words("a.categories", names=words.row(map(fit, said["categories_asked"])))
     if said.get("data_types_asked", ALL) != ALL:
@@ -68,6 +69,23 @@ def _standard(index: Index) -> str:
         return index.words("a.standard.none")
     channels = index.words.count(index.document["standard_channels"], "channel")
     return index.words("a.standard", channels=channels, file=fit(taken["file"]), sha=taken["sha256"][:12])
+
+
+def _stopped(index: Index) -> Iterator[str]:
+    """Standard channels at which data stops, those of which a glob says otherwise, and what labels take away."""
+    words, said = index.words, index.document["assumptions"]
+    for row in said.get("standard_channels_reached", ()):
+        yield words("a.standard.reached", element=name(row["element"]), data=index.all_data(row["categories"]))
+    for element in said.get("standard_channels_unchanged", ()):
+        yield words("a.standard.unchanged", element=name(element))
+    for row in said.get("overruled", ()):
+        yield words(
+            f"a.overruled.{row['role']}",
+            elements=words.row(map(printable, row["elements"])),
+            data=index.all_data(row["categories"]),
+            lost=fit(f"{row['file']}:{row['line']}"),
+            by=fit(f"{row['by']['file']}:{row['by']['line']}"),
+        )
 
 
 def _type(kind: str, index: Index) -> str:

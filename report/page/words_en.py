@@ -167,6 +167,10 @@ WORDS = {
     ),
     "a.standard": "{channels} taken to carry no personal data, by the file {file} (SHA-256 {sha}).",
     "a.standard.none": "No standard ROS channel was taken to carry no personal data.",
+    "a.standard.reached": "{data} would get to {element}, and stops there for this.",
+    "a.standard.unchanged": "A label by a glob says that {element} may carry data; it does not count against that file.",
+    "a.overruled.source": "{elements}: no source of {data}, since the label at {by} takes away that at {lost}.",
+    "a.overruled.leak": "{elements}: no leak of {data}, since the label at {by} takes away that at {lost}.",
     "a.categories": "The answer is only about these kinds of data and narrower ones: {names}. Others were not looked at.",
     "a.types": "The answer is only about data of these types: {names}. Others were not looked at.",
     "a.article9": (

@@ -25,7 +25,7 @@ from rosprivacy.assumptions import (
 )
 from rosprivacy.clock import judged_on
 from rosprivacy.decided import accepts, decisions_of, joined_to
-from rosprivacy.ingest.binding import bind
+from rosprivacy.ingest.binding import bind, unused
 from rosprivacy.ingest.files import read_policies
 from rosprivacy.ingest.graph import build
 from rosprivacy.ingest.joint import joint_warnings
@@ -133,7 +133,7 @@ def run(policies: tuple[str, ...], labels: tuple[str, ...], settings: Settings) 
     analysis = analyse(graph, bound, vocabulary.hierarchy, options)
     joined = joined_to(decisions, analysis, vocabulary, asked)
     said = tuple(d for policy in system for d in policy.diagnostics) + diagnostics
-    said += tuple(d for file in files for d in file.diagnostics)
+    said += tuple(d for file in files for d in file.diagnostics) + tuple(unused(graph, files))
     said += joined.diagnostics if joined else ()
     rests_on = what_it_rests_on(graph, sources_of(system), files, analysis, settings, vocabulary)
     rests_on |= assumed_decisions(decisions)

@@ -275,6 +275,7 @@ def _read(file: Path | None) -> str:
 
 def _text(rows: Rows, form: RowFormat, *, wide: bool) -> str:
     from rosprivacy.queries.run import as_cell
+    from rosprivacy.report.spreadsheet import guarded
 
     if form is RowFormat.json:
         objects = [dict(zip(rows.columns, row, strict=True)) for row in rows.rows]
@@ -283,7 +284,10 @@ def _text(rows: Rows, form: RowFormat, *, wide: bool) -> str:
     if form is RowFormat.csv:
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
-        writer.writerows([rows.columns, *cells])
+        writer.writerow(map(guarded, rows.columns))
+        for values, row in zip(rows.rows, cells, strict=True):
+            numbers = [isinstance(value, int | float) for value in values]  # -1 is no formula
+            writer.writerow(c if number else guarded(c) for c, number in zip(row, numbers, strict=True))
         return text.getvalue()
     return _table(rows.columns, cells, wide=wide)
 

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import logging
 import os
-import socket
 import sys
 import time
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
@@ -94,6 +93,8 @@ def status() -> Status:
 def start(progress: Progress = bar) -> Connection:
     """Start the private server if it does not run, and wait until it answers. It goes on when this program ends.
 
+    Every start gives it a new password.
+
     Parameters
     ----------
     progress
@@ -113,7 +114,7 @@ def start(progress: Progress = bar) -> Connection:
         if on_terminal():
             print("Starting the private Neo4j; this takes some seconds", file=sys.stderr)
         try:
-            return _ready(folder, server.launch(folder, progress), written)
+            return _renewed(folder, _ready(folder, server.launch(folder, progress), written))
         except BaseException:  # also Ctrl-C: what nobody waits for any more is not left behind half started
             found = server.running(folder)
             if found:
@@ -241,25 +242,43 @@ def _ready(folder: Path, found: server.Server, written: int) -> Connection:
     written
         How much of the log is older than this start.
     """
-    to = Connection(_bolt(found), USER, server.read_password(folder), str(server.password_file(folder)))
     end = time.monotonic() + START_LIMIT
     while time.monotonic() < end:
-        # Bolt comes first and the page a moment later; a refused attempt of the driver costs more than one of ours.
-        if _accepts(found.bolt) and _accepts(found.http):
-            with open_driver(to):
-                return to
+        # Bolt comes first and the page a moment later; a refused attempt of the driver costs more than this look.
+        if server.listens(folder, found):
+            return _let_in(folder, found)
         if not server.running(folder):
             raise DatabaseError(_failure(folder, "the private server ended while it started", written))
         time.sleep(0.1)
-    raise DatabaseError(_failure(folder, f"the private server does not answer within {START_LIMIT:.0f} s", written))
+    problem = f"the private server does not listen on its ports within {START_LIMIT:.0f} s"
+    raise DatabaseError(_failure(folder, problem, written))
 
 
-def _accepts(port: int) -> bool:
+def _let_in(folder: Path, found: server.Server) -> Connection:
+    """Connect with the password that is kept, or with the next one if a start was broken off while it was taken."""
+    to = Connection(_bolt(found), USER, server.read_password(folder), str(server.password_file(folder)))
+    later = server.next_password_file(folder)
     try:
-        with socket.create_connection((server.HOST, port), timeout=1):
-            return True
-    except OSError:
-        return False
+        with open_driver(to):
+            return to
+    except DatabaseError:
+        if not later.exists():
+            raise
+    to = replace(to, password=later.read_text("ascii"))
+    with open_driver(to):
+        later.replace(server.password_file(folder))
+        return to
+
+
+def _renewed(folder: Path, to: Connection) -> Connection:
+    """Give the server a new password: one that somebody learnt is worth nothing after the next start."""
+    later = server.next_password_file(folder)
+    new = server.make_password(later)
+    with open_driver(to) as driver:
+        change = "ALTER CURRENT USER SET PASSWORD FROM $old TO $new"
+        driver.execute_query(change, old=to.password, new=new, database_="system")
+    later.replace(server.password_file(folder))
+    return replace(to, password=new)
 
 
 def _failure(folder: Path, problem: str, written: int) -> str:

@@ -20,7 +20,7 @@ from rosprivacy.assumptions import assumed_decisions, remembered, sources_of, wh
 from rosprivacy.clock import judged_on
 from rosprivacy.decided import accepts, decisions_of, joined_to
 from rosprivacy.ingest.alike import Alike, alike
-from rosprivacy.ingest.binding import bind
+from rosprivacy.ingest.binding import bind, unused
 from rosprivacy.ingest.domains import Member, stripped, with_grants
 from rosprivacy.ingest.files import read_policies
 from rosprivacy.ingest.fleet import Fleet, Robot, read_fleet
@@ -202,6 +202,7 @@ class Reader:
         run = [pushed(policy, robot.add) for policy in policies]
         graph, full = stripped(build(run, settings.view), robot.strip or robot.add)
         extended = extend(graph, files)
+        diagnostics += unused(extended, files)
         part = with_grants(Part.of(extended, bind(extended, files)), lambda grant: as_written(grant, robot.add))
         return Member(robot, policies, part, full, graph.profiles, tuple(files), tuple(dict.fromkeys(diagnostics)))
 

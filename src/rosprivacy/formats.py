@@ -38,9 +38,7 @@ def sarif_log(result: Result, accepted: Mapping[str, str] | None = None) -> dict
     vocabulary = result.vocabulary
     log = sarif(
         result.shown,
-        result.bound,
         vocabulary.categories,
-        vocabulary.hierarchy,
         result.diagnostics,
         assumptions,
         repository_root(named),
@@ -82,7 +80,6 @@ def pia_file(
     created = (source_date(os.environ) or datetime.now(UTC)).isoformat(timespec="milliseconds").replace("+00:00", "Z")
     return cnil_pia(
         analysis,
-        result.bound,
         vocabulary.categories,
         vocabulary.hierarchy,
         result.assumptions,

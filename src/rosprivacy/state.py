@@ -68,7 +68,7 @@ def locked() -> Iterator[Path]:
         import filelock  # noqa: PLC0415
     folder = state_folder()
     place = shown(str(folder))
-    lock = filelock.FileLock(folder / "lock", timeout=LOCK_LIMIT)
+    lock = filelock.FileLock(folder / "lock", timeout=LOCK_LIMIT, mode=0o600)
     try:
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         folder.chmod(0o700)
@@ -92,6 +92,13 @@ def write_private(path: Path, text: str) -> None:
     except BaseException:
         Path(temporary).unlink(missing_ok=True)
         raise
+
+
+def keep_private(folder: Path) -> None:
+    """Let only the owner into a folder and all that is in it; what a link leads to is left as it is."""
+    for path in (folder, *folder.rglob("*")):
+        if not path.is_symlink():
+            path.chmod(0o700 if path.is_dir() else 0o600)
 
 
 def _place(error: OSError, folder: str) -> str:

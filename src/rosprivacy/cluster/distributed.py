@@ -198,10 +198,10 @@ class _Run:
         building.raised(told.problems)
         problems: list[InputError] = []
         for number, flow in enumerate(self._fleet.flows):
-            for side, end in enumerate((flow.source, flow.target)):
-                problem = no_robot(self._fleet, flow, end)
+            for side, end in enumerate(flow.ends):
+                problem = no_robot(self._fleet, flow, end.name)
                 if problem is None and not (told.found[number][side] or core.ends[number][side]):
-                    problem = nowhere(flow, end, self._names(end, core, built))
+                    problem = nowhere(flow, end, self._names(end.name, core, built))
                 problems += [problem] if problem else []
         for place in told.restated if crossing_lines(self._fleet) else ():
             what = "a flow within a robot, of which a label file says more"

@@ -1,0 +1,114 @@
+"""What a query would do, by the server's own plan of it (``EXPLAIN``, which runs nothing), before it is run.
+
+In: an open transaction and the Cypher that is to run in it. Out: nothing, or why it is refused. The access mode of the
+session stops what writes to the graph. It does not stop ``LOAD CSV``, procedures, and what acts on the server; the
+plan shows these, whatever the text looks like. Only what is known to read the graph passes: a step that a newer server
+brings is refused until it stands here.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.errors import QueryError, shown
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from neo4j import Transaction
+
+INSTEAD = "queries only read the graph: use cypher-shell or the driver for it"
+# Operators of plans, as Neo4j's manual lists them, without what stands before and behind: `Partitioned`,
+# `Directed` and `Undirected`, `(All)`, `@neo4j`.
+_STEPS = """
+    AllNodesScan AllRelationshipsScan NodeByLabelScan UnionNodeByLabelsScan IntersectionNodeByLabelsScan
+    SubtractionNodeByLabelsScan RelationshipTypeScan UnionRelationshipTypesScan DynamicLabelNodeLookup
+    NodeIndexScan NodeIndexContainsScan NodeIndexEndsWithScan NodeIndexSeek NodeIndexSeekByRange NodeUniqueIndexSeek
+    NodeUniqueIndexSeekByRange MultiNodeIndexSeek NodeByIdSeek NodeByElementIdSeek
+    RelationshipIndexScan RelationshipIndexContainsScan RelationshipIndexEndsWithScan RelationshipIndexSeek
+    RelationshipIndexSeekByRange RelationshipUniqueIndexSeek RelationshipUniqueIndexSeekByRange
+    RelationshipByIdSeek RelationshipByElementIdSeek NodeCountFromCountStore RelationshipCountFromCountStore
+    Expand OptionalExpand VarLengthExpand ProjectEndpoints ShortestPath StatefulShortestPath PathPropagatingBFS
+    Repeat BidirectionalRepeat TriadicBuild TriadicFilter TriadicSelection
+    Apply SemiApply AntiSemiApply LetSemiApply LetAntiSemiApply SelectOrSemiApply SelectOrAntiSemiApply
+    LetSelectOrSemiApply LetSelectOrAntiSemiApply ConditionalApply AntiConditionalApply RollUpApply Anti Optional
+    CartesianProduct NodeHashJoin NodeLeftOuterHashJoin NodeRightOuterHashJoin ValueHashJoin
+    AssertSameNode AssertSameRelationship Union OrderedUnion Argument EmptyRow EmptyResult ProduceResults Projection
+    Filter Unwind Distinct OrderedDistinct EagerAggregation OrderedAggregation Aggregation Eager PreserveOrder
+    Sort PartialSort Top PartialTop Top1WithTies Limit ExhaustiveLimit Skip CacheProperties RemoteBatchProperties
+    ShowIndexes ShowConstraints ShowProcedures ShowFunctions
+"""
+_PROCEDURES = """
+    db.labels db.relationshipTypes db.propertyKeys db.info db.ping dbms.components
+    db.schema.visualization db.schema.nodeTypeProperties db.schema.relTypeProperties
+    db.index.fulltext.listAvailableAnalyzers db.index.fulltext.queryNodes db.index.fulltext.queryRelationships
+    db.index.vector.queryNodes db.index.vector.queryRelationships
+"""
+STEPS, PROCEDURES = frozenset(_STEPS.split()), frozenset(_PROCEDURES.split())
+CALL = "ProcedureCall"
+SCHEMA = ("CreateIndex", "DropIndex", "CreateConstraint", "DropConstraint", "DoNothingIf")
+LOAD = "LoadCSV"
+_STEP = re.compile(r"(?:Partitioned)?(?:Directed|Undirected)?([^(@]+).*", re.DOTALL)
+# A subquery inside an expression is no step of its own: the server writes it out in the details of the step, in its
+# own words. What text of a user stands there too is refused with it if it looks the same.
+_LOADS = re.compile(r"\bLOAD\s+CSV\b", re.IGNORECASE)
+_CALLS = re.compile(r"\b(?:Unr|R)esolvedCall\b|\bCALL\s+[^\s({]|\b(?:TERMINATE|SHOW)\s+TRANSACTION", re.IGNORECASE)
+_ADDED = "SHOW FUNCTIONS YIELD name, isBuiltIn WHERE NOT isBuiltIn RETURN name ORDER BY name"
+
+
+def refuse_unless_reading(transaction: Transaction, text: str, values: Mapping[str, Any]) -> None:
+    """Let a query pass that only reads the graph.
+
+    Parameters
+    ----------
+    transaction
+        The one that the query is to run in, so that it is the same server that plans and runs it.
+
+    Raises
+    ------
+    QueryError
+        If the query writes, reads files or addresses, calls what is not known to only read, or acts on the server.
+    """
+    summary = transaction.run(f"EXPLAIN {text}", dict(values)).consume()
+    if not summary.plan:
+        raise QueryError(f"the server gives no plan of the query, so what it does is not known; {INSTEAD}")
+    steps = list(_steps(summary.plan))
+    if summary.query_type in ("w", "rw") or steps[0]["operatorType"].startswith(SCHEMA):
+        raise QueryError("the query would write; queries only read: write with cypher-shell or the driver")
+    for step in steps:
+        for what in _faults(step):
+            raise QueryError(f"the query {what}; {INSTEAD}")
+    added = [record[0] for record in transaction.run(_ADDED)]
+    for name in added:
+        if any(name.lower() in _details(step).lower().replace("`", "") for step in steps):
+            what = f"calls {shown(name)}, which was added to Neo4j and is not known to only read"
+            raise QueryError(f"the query {what}; {INSTEAD}")
+
+
+def _steps(plan: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
+    waiting = [plan]
+    while waiting:
+        step = waiting.pop()
+        yield step
+        waiting += reversed(step.get("children", ()))
+
+
+def _details(step: Mapping[str, Any]) -> str:
+    return str(step["args"].get("Details", ""))
+
+
+def _faults(step: Mapping[str, Any]) -> Iterator[str]:
+    operator, details = step["operatorType"], _details(step)
+    match = _STEP.fullmatch(operator)
+    name = match.group(1) if match else operator
+    if name == LOAD or _LOADS.search(details):
+        yield "reads a file or an address (LOAD CSV)"
+    elif name == CALL:
+        procedure = details.partition("(")[0]
+        if procedure not in PROCEDURES:
+            yield f"calls {shown(procedure)}, which is not known to only read"
+    elif name not in STEPS:
+        yield f"has the step {shown(name)}, which is not known to only read"
+    if _CALLS.search(details):
+        yield "calls a procedure inside an expression; call it in a clause of its own"

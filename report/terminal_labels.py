@@ -1,0 +1,60 @@
+"""What labels take away, in the report for the terminal: standard channels, and sources and leaks that are overruled.
+
+In: a JSON document of the contract. Out: lines of what is assumed (rules S7, S12, S13).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.errors import shown
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+SHIPPED = "rosprivacy:standard"
+Line = tuple[str, str]  # text, style
+
+
+def standard_lines(report: Mapping[str, Any], most: int | None) -> Iterator[Line]:
+    """Return which standard channels were taken as mundane, on which file's word, and what data stops there."""
+    assumptions = report["assumptions"]
+    taken = assumptions["standard_channels"]
+    if not taken:
+        yield "   no standard channels taken as mundane", ""
+        return
+    count = report["standard_channels"]
+    by = f"by {shown(taken['file'])} (sha256 {taken['sha256'][:12]})"
+    by = "(rosprivacy labels --standard)" if taken["file"] == SHIPPED else by
+    yield f"   {count:,} standard ROS channel{'' if count == 1 else 's'} taken as mundane {by}", ""
+    reached = [f"{_name(row['element'])} ({', '.join(row['categories'])})" for row in reached_of(report)]
+    if reached:
+        yield f"   data gets to {len(reached):,} of them and stops there: {_listed(reached, most)}", ""
+    unchanged = [_name(element) for element in assumptions.get("standard_channels_unchanged", ())]
+    if unchanged:
+        what = f"of {len(unchanged):,} of them a glob says otherwise, which does not count: {_listed(unchanged, most)}"
+        yield f"   {what}; name them, or write out the end of the glob (*/rosout)", "yellow"
+
+
+def overruled_lines(report: Mapping[str, Any]) -> Iterator[Line]:
+    """Return how many sources and leaks labels say that other labels take away."""
+    rows = report["assumptions"].get("overruled", ())
+    if rows:
+        what = "label of a source or leak is" if len(rows) == 1 else "labels of sources or leaks are"
+        yield f"   {len(rows):,} {what} taken away by another label (see the warnings)", "yellow"
+
+
+def reached_of(report: Mapping[str, Any]) -> Sequence[Mapping[str, Any]]:
+    """Return the standard channels at which data stops; documents of earlier versions do not say."""
+    rows: Sequence[Mapping[str, Any]] = report["assumptions"].get("standard_channels_reached", ())
+    return rows
+
+
+def _listed(names: Sequence[str], most: int | None) -> str:
+    more = f" and {len(names) - most:,} more (-v shows all)" if most is not None and len(names) > most else ""
+    return ", ".join(names[:most]) + more
+
+
+def _name(element: Mapping[str, Any]) -> str:
+    robot = f"{element['robot']}:" if element["robot"] else ""
+    return shown(robot + element["name"])
