@@ -77,7 +77,7 @@ def _flows(found: Spread) -> Iterator[Closure]:
 
 def _denied(found: Spread) -> Iterator[Closure]:
     """Flows that a DENY takes back, with data at their start (rule S5)."""
-    for flow in found.graph.denied:
+    for flow in found.graph.taken_back:
         bits = found.leaves.get(flow.source, 0)
         if bits:
             lines = {denial.place: None for denial in sorted(flow.denials, key=lambda denial: line_key(denial.place))}
@@ -163,7 +163,7 @@ def _extents(found: Spread, lines: set[Line]) -> dict[Line, Opened]:
             for category in found.categories:
                 for line in decided[category].closers if category in decided else ():
                     closed[line][number] |= found.both(category)
-    for flow in found.graph.denied:
+    for flow in found.graph.taken_back:
         for denial in flow.denials:
             more[denial.place].add((flow.source, flow.target))
     extents = {line: Opened(elements[line], flows[line], tuple(sorted(more[line]))) for line in lines}

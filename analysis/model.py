@@ -238,6 +238,11 @@ class FlowGraph:
     view: str = "declared"
     denied_matches: tuple[Flow, ...] = ()
 
+    @property
+    def taken_back(self) -> tuple[Flow, ...]:
+        """All that a DENY takes away: flows of grants, and what a wildcard would cover or meet."""
+        return (*self.denied, *self.denied_matches)
+
 
 ARTICLE_9 = "GDPR Art. 9(1)"
 ARTICLE_9_VERDICTS = ("always", "conditional", "may-reveal", "no", "unknown")

@@ -174,7 +174,7 @@ class _Steps:
         flows: dict[int, list[tuple[int, int, tuple[Place, ...]]]] = defaultdict(list)
         for index, flow in enumerate(found.graph.flows):
             flows[flow.source].append((flow.target, index, ()))
-        for flow in found.graph.denied:
+        for flow in found.graph.taken_back:
             flows[flow.source].append((flow.target, -1, _sorted(denial.place for denial in flow.denials)))
         return cls(found, flows)
 

@@ -57,10 +57,7 @@ class Part:
         return cls(
             {element: bound.elements.get(vertex, ()) for vertex, element in enumerate(elements)},
             {key: flow.grants for key, flow in zip(keys, graph.flows, strict=True)},
-            {
-                (elements[f.source], elements[f.target], f.role): (f.grants, f.denials)
-                for f in (*graph.denied, *graph.denied_matches)
-            },
+            {(elements[f.source], elements[f.target], f.role): (f.grants, f.denials) for f in graph.taken_back},
             {keys[index]: said for index, said in bound.flows.items()},
             {(elements[v], names): tuple(keys[i] for i in flows) for (v, names), flows in bound.through.items()},
             {elements[vertex]: facts for vertex, facts in bound.outside.items()},

@@ -138,3 +138,30 @@ def test_a_name_that_is_not_there_is_an_error_with_the_nearest(cli: Cli) -> None
     done = cli("why-not", "/camera", "/uplink", "p.xml", "-l", "l.yaml", "-c", "Voice")
     assert done.returncode == 2
     assert "no source or derivation emits 'Voice'; emitted are: Video" in done.stderr
+
+
+def test_a_deny_that_takes_a_name_out_of_a_wildcard_stands_in_the_ledger(cli: Cli) -> None:
+    """Rule S4: the flow from the name to the wildcard is what the DENY takes away."""
+    Path("p.xml").write_text(
+        POLICY.replace(
+            "<topic>/clean</topic><topic>/still</topic></topics>\n<topics subscribe",
+            "<topic>/s*</topic></topics>\n<topics subscribe",
+        ),
+        "utf-8",
+    )
+    Path("l.yaml").write_text(LABELS, "utf-8")
+    row = next(row for row in taken(cli) if row["by"] == "deny")
+    assert (row["element"]["name"], row["to"]["name"], row["leak"]["name"]) == ("/still", "/s*", "/uplink")
+    assert row["places"] == [{"file": "p.xml", "line": 11}]
+    told = cli("why-not", "/camera", "/uplink", "p.xml", "-l", "l.yaml").stdout
+    assert "at /still -> /s*: deny for Video, p.xml:11" in told
+
+
+def test_a_wildcard_that_is_denied_as_a_whole_stands_in_the_ledger(cli: Cli) -> None:
+    policy = POLICY.replace(
+        "<topic>/clean</topic><topic>/still</topic></topics>\n<topics subscribe",
+        "<topic>/s*</topic></topics>\n<topics subscribe",
+    )
+    Path("p.xml").write_text(policy.replace('DENY"><topic>/still', 'DENY"><topic>/s*'), "utf-8")
+    rows = [row for row in taken(cli) if row["by"] == "deny"]
+    assert any(row["leak"] and row["leak"]["name"] == "/uplink" for row in rows)

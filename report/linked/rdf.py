@@ -35,12 +35,13 @@ from rosprivacy.report.linked.terms import (
 from rosprivacy.report.linked.things import Things
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Collection, Iterable, Iterator, Mapping
     from datetime import datetime
 
     from rdflib import URIRef
     from rdflib.term import Node
 
+    from rosprivacy.analysis.ledger import TakenAway
     from rosprivacy.analysis.model import Analysis, Diagnostic, Element, Finding
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.report.linked.facts import Change
@@ -69,6 +70,7 @@ def rdf_graph(
     when: datetime | None = None,
     stated: Stated = NOTHING,
     accepted: Mapping[str, str] = NOTHING,
+    taken: Collection[TakenAway] = (),
 ) -> Graph:
     """Return the findings of an analysis, its verdict and where they come from, as RDF.
 
@@ -83,12 +85,14 @@ def rdf_graph(
         ``encrypted``, ``operator``, ``role``, ``basis``.
     accepted
         Id of a finding -> why a person accepted it.
+    taken
+        The ledger.
 
     Notes
     -----
     Takes time linear in the hops of all witnesses and paths.
     """
-    told = document(analysis, vocabulary.categories, vocabulary.hierarchy, diagnostics, assumptions)
+    told = document(analysis, vocabulary.categories, vocabulary.hierarchy, diagnostics, assumptions, taken=taken)
     things = Things(vocabulary, by_path(told["assumptions"]), stated)
     findings = _Findings.of(analysis, vocabulary, things, stated, accepted)
     graph = Graph(bind_namespaces="none")

@@ -103,6 +103,7 @@ class Result:
         from rosprivacy.report.linked.rdf import rdf_graph  # noqa: PLC0415 - rdflib, only where it is used
         from rosprivacy.report.linked.serialise import SERIALISERS  # noqa: PLC0415
 
+        more = {"taken": self.taken_away, **more}
         graph = rdf_graph(self.shown, self.vocabulary, self.diagnostics, self.assumptions, **more)
         if self.fleet:
             from rosprivacy.report.exchange.fleet_formats import robot_triples  # noqa: PLC0415
