@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from rosprivacy.analysis.outside import Outside
-    from rosprivacy.analysis.spread import Spread
+    from rosprivacy.analysis.kernel.spreading import Spread
+    from rosprivacy.analysis.non_ros import Outside
 
 CHANNELS = ("action", "service", "topic")
 NON_ROS = ("device", "display", "external-system", "person", "shared-memory", "side-channel", "storage")  # rule S9

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.report.page.inline import Inline, Wishes, pictures_of
-from rosprivacy.report.page.renamed import renamed
+from rosprivacy.report.page.redacted_pictures import renamed
 from rosprivacy.report.pictures.graphviz import available
 from rosprivacy.report.pictures.looks import INK, LINE_LOOKS, ROLE_LOOKS, SHORTEST, WAY, Look
 from rosprivacy.report.pictures.phrases import TEXTS, Phrases

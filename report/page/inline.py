@@ -14,7 +14,7 @@ from rosprivacy.report.pictures.dot import dot
 from rosprivacy.report.pictures.graphviz import Graphviz, Job, TooLongError
 from rosprivacy.report.pictures.narrow import folded
 from rosprivacy.report.pictures.svg import alt_text
-from rosprivacy.report.views import LONGER, PER_BOX, FindingViews, bounded
+from rosprivacy.report.pictures.views import LONGER, PER_BOX, FindingViews, bounded
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping

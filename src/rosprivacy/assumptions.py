@@ -11,15 +11,15 @@ from typing import TYPE_CHECKING, Any
 import rosprivacy
 from rosprivacy.analysis.model import Diagnostic, Place, Severity
 from rosprivacy.asked import may_be
-from rosprivacy.ingest.countries import countries
-from rosprivacy.ingest.said import diagnostics_of, diagnostics_text
+from rosprivacy.ingest.database.robot_notices import diagnostics_of, diagnostics_text
+from rosprivacy.ingest.labels.countries import countries
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from rosprivacy.analysis.decisions import Decisions
     from rosprivacy.analysis.model import Analysis, FlowGraph, Policy
-    from rosprivacy.ingest.labels import Labels
+    from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.settings import Settings
 
