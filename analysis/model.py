@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from rosprivacy.analysis.kernel.spreading import Spread
-    from rosprivacy.analysis.non_ros import Outside
+    from rosprivacy.analysis.non_ros import NonRosFacts
 
 CHANNELS = ("action", "service", "topic")
 NON_ROS = ("device", "display", "external-system", "person", "shared-memory", "side-channel", "storage")  # rule S9
@@ -451,7 +451,7 @@ class Bound:
     elements: Mapping[int, tuple[Statement, ...]]
     flows: Mapping[int, tuple[Statement, ...]] = field(default_factory=dict)
     through: Mapping[tuple[int, tuple[str, ...]], tuple[int, ...]] = field(default_factory=dict)
-    outside: Mapping[int, Outside] = field(default_factory=dict)
+    outside: Mapping[int, NonRosFacts] = field(default_factory=dict)
     subjects: Mapping[int, tuple[str, ...]] = field(default_factory=dict)
 
 
@@ -631,5 +631,5 @@ class Analysis:
     standard_reached: tuple[tuple[Element, tuple[str, ...]], ...] = ()
     standard_unchanged: tuple[Element, ...] = ()
     diagnostics: tuple[Diagnostic, ...] = ()
-    outside: Mapping[Element, Outside] = field(default_factory=dict)
+    outside: Mapping[Element, NonRosFacts] = field(default_factory=dict)
     unknown_ends: tuple[UnknownEnd, ...] = ()

@@ -47,7 +47,7 @@ EVERY = ""  # in place of a category
 
 
 @dataclass(frozen=True, slots=True)
-class Outside:
+class NonRosFacts:
     """What is stated about a non-ROS element (rule S9).
 
     Attributes
@@ -100,12 +100,12 @@ def by_kind(element: Element) -> tuple[Statement, ...]:
     return (Statement(role, (), BY_KIND, NOWHERE),) if role else ()
 
 
-def country_unknown(element: Element, facts: Outside) -> bool:
+def country_unknown(element: Element, facts: NonRosFacts) -> bool:
     """Return whether nobody can say if data there has left the EEA (rule S11)."""
     return element.kind in PLACED and not facts.country and not facts.transfer
 
 
-def kept_too_long(facts: Outside, category: str, hierarchy: Hierarchy) -> str:
+def kept_too_long(facts: NonRosFacts, category: str, hierarchy: Hierarchy) -> str:
     """Return why a storage keeps a category too long; empty if it does not.
 
     The data may be of any narrower kind (rule S7), so each of these is held against the limit nearest to it.
@@ -127,7 +127,7 @@ def kept_too_long(facts: Outside, category: str, hierarchy: Hierarchy) -> str:
     return ""
 
 
-def limited(facts: Outside, category: str, hierarchy: Hierarchy) -> bool:
+def limited(facts: NonRosFacts, category: str, hierarchy: Hierarchy) -> bool:
     """Return whether it is stated how long a category may be kept there."""
     return bool(_nearest(facts.limits, category, hierarchy))
 
@@ -141,7 +141,7 @@ def _nearest(stated: Iterable[tuple[str, Duration]], category: str, hierarchy: H
     return [duration for steps, duration in known if steps == nearest]
 
 
-def on_day(outside: Mapping[int, Outside], today: str) -> dict[int, Outside]:
+def on_day(outside: Mapping[int, NonRosFacts], today: str) -> dict[int, NonRosFacts]:
     """Return facts as they are on a day: where an adequacy decision has ended, there is none (rule S10)."""
     return {
         vertex: replace(facts, area=THIRD) if facts.until and today > facts.until else facts
@@ -149,7 +149,7 @@ def on_day(outside: Mapping[int, Outside], today: str) -> dict[int, Outside]:
     }
 
 
-def transferred(facts: Outside) -> str:
+def transferred(facts: NonRosFacts) -> str:
     """Return why data there has left the EEA without a stated basis; empty if it has not."""
     if facts.area not in (PARTLY, THIRD) or (facts.transfer and (facts.area, facts.transfer) != (THIRD, ADEQUACY)):
         return ""

@@ -29,7 +29,7 @@ Edge = tuple[State, State, int]  # before, after, flow or ``NO_FLOW``
 
 
 @dataclass(frozen=True, slots=True)
-class Ways:
+class FlowsToLeaks:
     """The flows on ways to leaks.
 
     Attributes
@@ -44,7 +44,7 @@ class Ways:
     complete: bool = True
 
 
-def ways(
+def flows_to_leaks(
     net: Net,
     category: str,
     *,
@@ -53,7 +53,7 @@ def ways(
     past_leaks: bool = False,
     ends: Mapping[int, int] | None = None,
     about: int | None = None,
-) -> Ways:
+) -> FlowsToLeaks:
     """Return the flows that lie on a way of data from a source to a leak of a category.
 
     Parameters
@@ -93,7 +93,7 @@ def ways(
             short = [e for e in edges if ahead[e[0]] + (e[2] != NO_FLOW) + back[e[1]] <= longest]
             edges, complete = short, len(short) == len(edges)
         edges = _without_detours(edges)
-    return Ways(dict(sorted(_lengths(edges, ahead, back).items())), complete)
+    return FlowsToLeaks(dict(sorted(_lengths(edges, ahead, back).items())), complete)
 
 
 def _lengths(edges: list[Edge], ahead: Mapping[State, int], back: Mapping[State, int]) -> dict[int, int]:

@@ -26,7 +26,7 @@ SEARCHED = 10  # times the bound: so many ways of data are looked at, of which m
 
 
 @dataclass(frozen=True, slots=True)
-class Paths:
+class FurtherPaths:
     """Paths between a source and a leak.
 
     Attributes
@@ -169,7 +169,7 @@ def _shortest(edges: list[tuple[State, State]], source: State, leak: State) -> l
     return [state[0] for state in reversed(path)]
 
 
-def further(between: Between, leak: int, memory: dict[Any, Any], asked: str, most: int) -> Paths:
+def further(between: Between, leak: int, memory: dict[Any, Any], asked: str, most: int) -> FurtherPaths:
     """Count the paths that share no flow, and list those asked for.
 
     Parameters
@@ -181,7 +181,7 @@ def further(between: Between, leak: int, memory: dict[Any, Any], asked: str, mos
     """
     disjoint, edges = between.to(leak, memory)
     if asked == WITNESS:
-        return Paths(len(disjoint))
+        return FurtherPaths(len(disjoint))
     found: Iterable[list[int]] = disjoint
     if asked == ALL:
         import networkx as nx  # noqa: PLC0415 - as above
@@ -192,8 +192,8 @@ def further(between: Between, leak: int, memory: dict[Any, Any], asked: str, mos
     for number, path in enumerate(found):  # two ways of data that differs may be one way to the reader
         shown[_elements(between.net, path)] = None
         if len(shown) > most or number >= SEARCHED * most:
-            return Paths(len(disjoint), tuple(shown)[:most], bounded=True)
-    return Paths(len(disjoint), tuple(shown))
+            return FurtherPaths(len(disjoint), tuple(shown)[:most], bounded=True)
+    return FurtherPaths(len(disjoint), tuple(shown))
 
 
 def _elements(net: Net, path: list[int]) -> tuple[Element, ...]:

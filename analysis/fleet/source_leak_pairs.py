@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rosprivacy.analysis.kernel.arrays import Network, as_bits
+from rosprivacy.analysis.kernel.arrays import GraphArrays, as_bits
 from rosprivacy.analysis.kernel.fixpoint import WORD, fixpoint
 from rosprivacy.analysis.model import DISCLOSURE
 
@@ -72,12 +72,12 @@ def pairs(found: Spread, kinds: Sequence[Concern], mask: int) -> Iterator[Pairs]
     """
     k = len(found.categories)
     ends = [as_bits(found, len(found.graph.elements), concern.bits, 0) for concern in kinds]
-    network: Network | None = None
+    network: GraphArrays | None = None
     for i in range(k):
         leaks = [np.flatnonzero(_has(bits, i)) for bits in ends]
         if not mask >> i & 1 or not any(len(some) for some in leaks):
             continue
-        network = network or Network.of(found)
+        network = network or GraphArrays.of(found)
         yield from _pairs_of(found, network, i, kinds, leaks)
 
 
@@ -101,7 +101,7 @@ def forms(category: int, k: int, steps: Collection[tuple[int, int]]) -> tuple[in
     return tuple(sorted(back & ahead))
 
 
-class Category:
+class CategoryRun:
     """One category: from whom it can come, and in which forms its data can be on the way.
 
     Sources are followed by number: bit ``n * at + number`` of n sources is the form at place ``at`` of this one.
@@ -117,7 +117,7 @@ class Category:
         Vertices that bring it in, in any of its forms; sorted.
     """
 
-    def __init__(self, found: Spread, network: Network, category: int, forms: tuple[int, ...]) -> None:
+    def __init__(self, found: Spread, network: GraphArrays, category: int, forms: tuple[int, ...]) -> None:
         self._network = network
         k = len(found.categories)
         self._own = (category, category + k)
@@ -221,11 +221,11 @@ def unpacked(rows: Bits, first: int, n: int) -> Flags:
 
 
 def _pairs_of(
-    found: Spread, network: Network, number: int, kinds: Sequence[Concern], leaks: Sequence[Indices]
+    found: Spread, network: GraphArrays, number: int, kinds: Sequence[Concern], leaks: Sequence[Indices]
 ) -> Iterator[Pairs]:
     """The pairs of each kind, of one category."""
     steps = {(before, after) for pairs in found.derives.values() for before, after in pairs}
-    category = Category(found, network, number, forms(number, len(found.categories), steps))
+    category = CategoryRun(found, network, number, forms(number, len(found.categories), steps))
     rows: list[list[tuple[Indices, Indices, Flags, Flags, Flags]]] = [[] for _ in kinds]
     disclosed = next(number for number, concern in enumerate(kinds) if concern.kind == DISCLOSURE)
     everywhere = np.unique(np.concatenate(leaks))
@@ -244,7 +244,7 @@ def _pairs_of(
                 yield Pairs(concern.kind, number, *columns)
 
 
-def _reached(category: Category, sources: Indices, leaks: Indices, *, stop: bool) -> tuple[Flags, Flags, Indices]:
+def _reached(category: CategoryRun, sources: Indices, leaks: Indices, *, stop: bool) -> tuple[Flags, Flags, Indices]:
     """(as it is, pseudonymised): shape (leaks, sources), whether data is there; and the leaks."""
     numbers, n = np.arange(len(sources)), len(sources)
     arrives, leaves = category.carried(category.begun(sources, numbers, n), n, stop=stop)

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Network:
+class GraphArrays:
     """A labelled graph for the kernel.
 
     Attributes
@@ -51,7 +51,7 @@ class Network:
     derivations: Indices
 
     @classmethod
-    def of(cls, found: Spread) -> Network:
+    def of(cls, found: Spread) -> GraphArrays:
         """Make the arrays of a spread; O(flows · log flows)."""
         graph = found.graph
         count = len(graph.elements)
@@ -76,7 +76,7 @@ class Network:
         edges = Edges.of(vertices, np.array(sources, np.int64), np.array(targets, np.int64), nodes)
         return cls(count, edges, tuple(special), emitted, keep, np.array(derivations, np.int64).reshape(-1, 3))
 
-    def closed(self, vertices: Indices) -> Network:
+    def closed(self, vertices: Indices) -> GraphArrays:
         """Return the same where some vertices emit nothing and pass nothing on: there the graph is cut."""
         emitted, keep = self.emitted.copy(), self.keep.copy()
         emitted[vertices] = keep[vertices] = 0

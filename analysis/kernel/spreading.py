@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors
-from rosprivacy.analysis.kernel.arrays import Network, as_numbers
+from rosprivacy.analysis.kernel.arrays import GraphArrays, as_numbers
 from rosprivacy.analysis.kernel.fixpoint import fixpoint
 from rosprivacy.analysis.kernel.named_channels import keep_named, named, stated_flows
 from rosprivacy.analysis.kernel.overruled import Overruled, overruled
@@ -146,7 +146,7 @@ def spread(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy) -> Spread:
         If statements of equal rank contradict each other.
     """
     found = meaning(graph, bound, hierarchy, emitted(bound.elements.values()))
-    network = Network.of(found)
+    network = GraphArrays.of(found)
     fill(found, *fixpoint(network.edges, network.emitted, network.keep, network.derivations))
     return found
 

@@ -1,6 +1,6 @@
 """What could be changed so that data no longer gets there: filters, reviews, grants set to DENY, each with its cost.
 
-In: an analysis, the places on the ways to its open findings, the limits that the user sets. Out: ``Change``s. What is
+In: an analysis, the places on the ways to its open findings, the limits that the user sets. Out: ``Candidate``s. What is
 on its way to a time-critical node is never filtered nor cut.
 """
 
@@ -15,7 +15,7 @@ from rosprivacy.analysis.mitigation.cut_network import merged
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 
-    from rosprivacy.analysis.mitigation.change_sites import Places
+    from rosprivacy.analysis.mitigation.change_sites import ChangeSites
     from rosprivacy.analysis.mitigation.cut_network import Arc, At
     from rosprivacy.analysis.model import FlowGraph, Grant
 
@@ -99,7 +99,7 @@ class Denial:
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
+class Candidate:
     """One change that could be made.
 
     Attributes
@@ -139,7 +139,7 @@ class Change:
         return self.cuts(arc) or arc.flow in self.touched
 
 
-def uncut(changes: Iterable[Change]) -> Callable[[Arc], bool]:
+def uncut(changes: Iterable[Candidate]) -> Callable[[Arc], bool]:
     """Return the test whether an arc is cut by none of some changes, made once for many arcs."""
     flows: set[int] = set()
     filtered: set[At] = set()
@@ -154,9 +154,9 @@ def uncut(changes: Iterable[Change]) -> Callable[[Arc], bool]:
     )
 
 
-def changes(
-    places: Places, arcs: Sequence[Arc], denials: Callable[[Collection[int]], Sequence[Denial]]
-) -> tuple[Change, ...]:
+def candidates(
+    places: ChangeSites, arcs: Sequence[Arc], denials: Callable[[Collection[int]], Sequence[Denial]]
+) -> tuple[Candidate, ...]:
     """Return the changes that could be made on some ways, in a stable order: reviews, filters, denials.
 
     Parameters
@@ -177,7 +177,7 @@ def changes(
     return tuple(found)
 
 
-def _reviews(places: Places, by_channel: Mapping[int, set[int]]) -> Iterator[Change]:
+def _reviews(places: ChangeSites, by_channel: Mapping[int, set[int]]) -> Iterator[Candidate]:
     """A channel on the way that nobody has reviewed may turn out to carry none; a wildcard is not one channel."""
     elements, spread = places.graph.elements, places.spread
     parts: dict[tuple[str, str, str], list[int]] = defaultdict(list)
@@ -192,10 +192,10 @@ def _reviews(places: Places, by_channel: Mapping[int, set[int]]) -> Iterator[Cha
         factor = places.factor(REVIEW, frozenset(), frozenset(vertices))
         if open_ and factor is not None:
             cost = places.cost(places.limits.weights.review, factor, ())
-            yield Change(REVIEW, cost, channels=frozenset(vertices), categories=open_)
+            yield Candidate(REVIEW, cost, channels=frozenset(vertices), categories=open_)
 
 
-def _filters(places: Places, by_flow: Mapping[int, set[int]]) -> Iterator[Change]:
+def _filters(places: ChangeSites, by_flow: Mapping[int, set[int]]) -> Iterator[Candidate]:
     """A sanitizer between two elements; on what a wildcard covers there is no place for one."""
     wanted = [f for f in sorted(by_flow) if places.graph.flows[f].role != "matches"]
     for flows in dict.fromkeys(_together(places.graph, wanted)):
@@ -207,7 +207,7 @@ def _filters(places: Places, by_flow: Mapping[int, set[int]]) -> Iterator[Change
         readers = {reader for f in flows for reader in places.readers(f, bits)}
         cost = places.cost(places.limits.weights.filter, factor, readers)
         private = all(places.private(f) for f in flows)
-        yield Change(FILTER, cost, flows, categories=categories, readers=tuple(sorted(readers)), private=private)
+        yield Candidate(FILTER, cost, flows, categories=categories, readers=tuple(sorted(readers)), private=private)
 
 
 def _together(graph: FlowGraph, wanted: Iterable[int]) -> Iterator[frozenset[int]]:
@@ -245,7 +245,7 @@ def _channel(graph: FlowGraph, index: int) -> tuple[object, ...]:
     return (writes, graph.elements[flow.target if writes else flow.source].shown_as)
 
 
-def _denied(places: Places, denials: Iterable[Denial]) -> Iterator[Change]:
+def _denied(places: ChangeSites, denials: Iterable[Denial]) -> Iterator[Candidate]:
     """Grants set to DENY; not where a time-critical node would lose something."""
     flows, limits = places.graph.flows, places.limits
     for denial in denials:
@@ -257,6 +257,6 @@ def _denied(places: Places, denials: Iterable[Denial]) -> Iterator[Change]:
         readers = {reader for f in denial.flows for reader in places.readers(f)}
         lines = len({(grant.place, grant.role, grant.name) for grant in denial.grants})
         cost = places.cost(limits.weights.deny * lines, factor, readers)
-        yield Change(
+        yield Candidate(
             DENY, cost, denial.flows, grants=denial.grants, touched=denial.touched, readers=tuple(sorted(readers))
         )

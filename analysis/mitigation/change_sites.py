@@ -1,6 +1,6 @@
 """The places where changes can be made: who reads what goes through them, what comes late, what the limits say.
 
-In: an analysis and limits. Out: ``Places``, which answers for flows and channels.
+In: an analysis and limits. Out: ``ChangeSites``, which answers for flows and channels.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Analysis
 
 
-class Places:
+class ChangeSites:
     """The places where changes can be made, and who reads what goes through them.
 
     Parameters

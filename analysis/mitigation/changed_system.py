@@ -16,12 +16,12 @@ from rosprivacy.analysis.model import CHANGED, Bound, Flow, Place, Statement
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from rosprivacy.analysis.mitigation.proposals import Step
+    from rosprivacy.analysis.mitigation.proposals import ProposedStep
     from rosprivacy.analysis.model import FlowGraph
 
 
-def applied(
-    graph: FlowGraph, bound: Bound, steps: Iterable[Step], wild: Mapping[str, frozenset[int]]
+def with_changes(
+    graph: FlowGraph, bound: Bound, steps: Iterable[ProposedStep], wild: Mapping[str, frozenset[int]]
 ) -> tuple[FlowGraph, Bound]:
     """Return the system after reviews and filters; what is set to DENY is not in the graph already.
 

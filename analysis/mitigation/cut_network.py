@@ -1,6 +1,6 @@
 """The ways that have to be cut: from sources to open findings, as a network over (element, category) (rules S8, S10).
 
-In: a spread and, per group of sources, at which leaks their data may not arrive. Out: ``Ways``: numbered states and
+In: a spread and, per group of sources, at which leaks their data may not arrive. Out: ``CutNetwork``: numbered states and
 arcs between them, each arc with the flow that it goes along or the channel that it passes. The two planes of a
 category are one state: a sanitizer that pseudonymises lets it pass, one that ends it does not, in both planes alike.
 """
@@ -57,7 +57,7 @@ class Arc:
 
 
 @dataclass(slots=True)
-class Ways:
+class CutNetwork:
     """A network in which every arc lies on a way from ``BEGIN`` to ``END``.
 
     Attributes
@@ -80,7 +80,7 @@ def merged(bits: int, k: int) -> int:
     return (bits | bits >> k) & ((1 << k) - 1)
 
 
-def ways(net: Net, groups: Iterable[Group], categories: Collection[int]) -> Ways:
+def cut_network(net: Net, groups: Iterable[Group], categories: Collection[int]) -> CutNetwork:
     """Return the network of all ways from the sources of each group to its open findings.
 
     Parameters
@@ -93,7 +93,7 @@ def ways(net: Net, groups: Iterable[Group], categories: Collection[int]) -> Ways
     O(flows · categories) per group and category. They share no state but the two ends: what ends a way of one category
     does not end one on which it is made into another.
     """
-    found = Ways()
+    found = CutNetwork()
     for group in groups:
         for category in sorted(categories):
             _Builder(net, group, category, found, past=False).build()
@@ -105,7 +105,7 @@ def ways(net: Net, groups: Iterable[Group], categories: Collection[int]) -> Ways
 class _Builder:
     """Walks forward from what the sources of one group emit, to where one category may not get."""
 
-    def __init__(self, net: Net, group: Group, category: int, found: Ways, *, past: bool) -> None:
+    def __init__(self, net: Net, group: Group, category: int, found: CutNetwork, *, past: bool) -> None:
         self.net = net
         self.spread: Spread = net.spread
         self.k = len(net.spread.categories)
@@ -178,7 +178,7 @@ class _Builder:
                 self._arc(here, self._state(False, target, i), i, flow=index)
 
 
-def _pruned(found: Ways) -> Ways:
+def _pruned(found: CutNetwork) -> CutNetwork:
     """The arcs from which the end can be reached; the beginning reaches all of them."""
     back: dict[int, list[int]] = defaultdict(list)
     for arc in found.arcs:
@@ -190,10 +190,10 @@ def _pruned(found: Ways) -> Ways:
                 alive.add(before)
                 waiting.append(before)
     arcs = [arc for arc in dict.fromkeys(found.arcs) if arc.tail in alive and arc.head in alive]
-    return Ways(arcs, found.at, found.past)
+    return CutNetwork(arcs, found.at, found.past)
 
 
-def a_way(found: Ways, passable: Callable[[Arc], bool]) -> list[Arc] | None:
+def a_way(found: CutNetwork, passable: Callable[[Arc], bool]) -> list[Arc] | None:
     """Return a shortest way from the beginning to the end along arcs that are passable; None if there is none."""
     ahead = _ahead(found.arcs, passable)
     came: dict[int, Arc] = {}
@@ -211,7 +211,7 @@ def a_way(found: Ways, passable: Callable[[Arc], bool]) -> list[Arc] | None:
     return way[::-1]
 
 
-def open_ends(found: Ways, passable: Callable[[Arc], bool]) -> Iterator[tuple[At, bool, list[Arc]]]:
+def open_ends(found: CutNetwork, passable: Callable[[Arc], bool]) -> Iterator[tuple[At, bool, list[Arc]]]:
     """Yield every open finding's place that is reached along passable arcs, with a shortest way.
 
     Yields

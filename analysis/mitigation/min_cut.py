@@ -1,6 +1,6 @@
 """The cheapest set of changes that cuts every way of a network, and how certain it is that none is cheaper.
 
-In: ``Ways`` and ``Change``s. Out: ``Cut``s. networkx's minimum cut gives a set of changes, and with the cost of a
+In: ``CutNetwork`` and ``Candidate``s. Out: ``ChangeSet``s. networkx's minimum cut gives a set of changes, and with the cost of a
 change shared among the arcs that it cuts a bound that no set undercuts. Where every change cuts one arc the two meet:
 the set is a minimum cut and exact. Where they do not meet (a change that cuts several arcs makes the problem NP-hard:
 minimum label cut), a search by hitting sets closes the gap as long as it stays within its budget of steps.
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 
     import networkx as nx
 
-    from rosprivacy.analysis.mitigation.candidates import Change
-    from rosprivacy.analysis.mitigation.cut_network import Arc, Ways
+    from rosprivacy.analysis.mitigation.candidates import Candidate
+    from rosprivacy.analysis.mitigation.cut_network import Arc, CutNetwork
 
 BUDGET = 50_000  # steps of the search, each a choice of one change
 DEEPEST = 200  # changes that a search may choose
@@ -28,7 +28,7 @@ WHOLE = 720_720  # parts of a cost; many numbers divide it
 
 
 @dataclass(frozen=True, slots=True)
-class Cut:
+class ChangeSet:
     """Some changes that cut every way.
 
     Attributes
@@ -47,7 +47,7 @@ class Cut:
     sure: bool
 
 
-def cheapest(ways: Ways, changes: Sequence[Change], budget: int = BUDGET) -> tuple[Cut, ...]:
+def cheapest(ways: CutNetwork, changes: Sequence[Candidate], budget: int = BUDGET) -> tuple[ChangeSet, ...]:
     """Return cuts, the one to try first coming first; the last is sure. Every way must have an arc that can be cut.
 
     Notes
@@ -55,7 +55,7 @@ def cheapest(ways: Ways, changes: Sequence[Change], budget: int = BUDGET) -> tup
     networkx's maximum flow on the network, twice; then at most ``budget`` steps, each O(arcs) at worst.
     """
     if not ways.arcs:
-        return (Cut((), 0, 0, sure=True),)
+        return (ChangeSet((), 0, 0, sure=True),)
     sure = maybe = _Network.of(ways.arcs, changes, lambda change, arc: change.cuts(arc))
     if any(change.touched for change in changes):
         maybe = _Network.of(ways.arcs, changes, lambda change, arc: change.may_cut(arc))
@@ -89,7 +89,7 @@ class _Network:
     arcs_of: dict[int, int] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, arcs: Iterable[Arc], changes: Sequence[Change], cuts: Callable[[Change, Arc], bool]) -> _Network:
+    def of(cls, arcs: Iterable[Arc], changes: Sequence[Candidate], cuts: Callable[[Candidate, Arc], bool]) -> _Network:
         by_flow: dict[int, list[int]] = defaultdict(list)
         by_channel: dict[int, list[int]] = defaultdict(list)
         for number, change in enumerate(changes):
@@ -106,8 +106,8 @@ class _Network:
                 network.arcs_of[number] = network.arcs_of.get(number, 0) + 1
         return network
 
-    def cut(self, chosen: frozenset[int], lower: int) -> Cut:
-        return Cut(tuple(sorted(chosen)), self.cost(chosen), lower, sure=self.cuts(chosen))
+    def cut(self, chosen: frozenset[int], lower: int) -> ChangeSet:
+        return ChangeSet(tuple(sorted(chosen)), self.cost(chosen), lower, sure=self.cuts(chosen))
 
     def cost(self, chosen: Iterable[int]) -> int:
         return sum(self.costs[number] for number in chosen)

@@ -16,7 +16,7 @@ ITSELF, NOT_ALLOWED = "itself", "not-allowed"
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class ProposedStep:
     """One change of a proposal.
 
     Attributes
@@ -93,7 +93,7 @@ class Proposal:
     categories: tuple[str, ...]
     removed: tuple[Finding, ...]
     kept: tuple[Kept, ...]
-    steps: tuple[Step, ...]
+    steps: tuple[ProposedStep, ...]
     lower: int
     proven: bool
     verdict: Verdict

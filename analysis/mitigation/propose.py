@@ -17,21 +17,21 @@ from rosprivacy.analysis.findings.findings import Options, analyse
 from rosprivacy.analysis.kernel.search import Net
 from rosprivacy.analysis.kernel.spreading import bits_of, spread
 from rosprivacy.analysis.mitigation.affected import affected
-from rosprivacy.analysis.mitigation.candidates import DENY, FILTER, REVIEW, Limits, changes, uncut
-from rosprivacy.analysis.mitigation.change_sites import Places
-from rosprivacy.analysis.mitigation.changed_system import applied, opened
-from rosprivacy.analysis.mitigation.cut_network import Group, a_way, merged, open_ends, ways
+from rosprivacy.analysis.mitigation.candidates import DENY, FILTER, REVIEW, Limits, candidates, uncut
+from rosprivacy.analysis.mitigation.change_sites import ChangeSites
+from rosprivacy.analysis.mitigation.changed_system import opened, with_changes
+from rosprivacy.analysis.mitigation.cut_network import Group, a_way, cut_network, merged, open_ends
 from rosprivacy.analysis.mitigation.min_cut import BUDGET, cheapest
-from rosprivacy.analysis.mitigation.proposals import ITSELF, NOT_ALLOWED, Kept, Proposal, Step
+from rosprivacy.analysis.mitigation.proposals import ITSELF, NOT_ALLOWED, Kept, Proposal, ProposedStep
 from rosprivacy.analysis.model import DISCLOSURE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.hierarchy import Hierarchy
-    from rosprivacy.analysis.mitigation.candidates import Change, Denial
-    from rosprivacy.analysis.mitigation.cut_network import Arc, At, Ways
-    from rosprivacy.analysis.mitigation.min_cut import Cut
+    from rosprivacy.analysis.mitigation.candidates import Candidate, Denial
+    from rosprivacy.analysis.mitigation.cut_network import Arc, At, CutNetwork
+    from rosprivacy.analysis.mitigation.min_cut import ChangeSet
     from rosprivacy.analysis.model import Analysis, Bound, Element, Finding, FlowGraph, Grant
 
 
@@ -95,18 +95,18 @@ class _Work:
         self.vertex = {element: v for v, element in enumerate(self.elements)}
         self.findings = [f for f in open_findings(analysis) if f.category in names]
         self.wild = system.open_ended(analysis.graph)
-        self.places = Places(analysis, limits, {self.vertex[f.leak] for f in self.findings}, self.wild)
+        self.places = ChangeSites(analysis, limits, {self.vertex[f.leak] for f in self.findings}, self.wild)
 
     def proposal(self, budget: int) -> Proposal:
         """Find what to cut, cut it, and prove it."""
         sources = sorted({self.vertex[finding.source] for finding in self.findings})
         groups = [self._group(source) for source in sources]
-        everything = ways(self.net, groups, self.wanted)
-        options = changes(self.places, everything.arcs, self.system.denials)
+        everything = cut_network(self.net, groups, self.wanted)
+        options = candidates(self.places, everything.arcs, self.system.denials)
         kept = [kept for group in groups for kept in self._kept(group, options)]
         stays = {kept.finding.id for kept in kept}
         removed = tuple(finding for finding in self.findings if finding.id not in stays)
-        left = ways(self.net, self._grouped(groups, kept), self.wanted)
+        left = cut_network(self.net, self._grouped(groups, kept), self.wanted)
         plain = Proposal(self.names, removed, tuple(kept), (), 0, proven=not removed, verdict=self.analysis.verdict)
         if not removed:
             return plain
@@ -120,13 +120,13 @@ class _Work:
         return replace(plain, lower=lower)
 
     def _cuts(
-        self, left: Ways, options: Sequence[Change], groups: Sequence[Group], kept: Sequence[Kept], budget: int
-    ) -> Iterator[tuple[Cut, Ways]]:
+        self, left: CutNetwork, options: Sequence[Candidate], groups: Sequence[Group], kept: Sequence[Kept], budget: int
+    ) -> Iterator[tuple[ChangeSet, CutNetwork]]:
         """Cuts to try, the cheapest first: without regard to wildcards that get past filters, then with."""
         yield from ((cut, left) for cut in cheapest(left, options, budget))
         if all(change.private for change in options):
             return
-        later: list[tuple[Cut, Ways]] = []
+        later: list[tuple[ChangeSet, CutNetwork]] = []
         private = [n for n, change in enumerate(options) if change.private]
         for network, numbers in ((left, private), (self._opened(options, groups, kept), range(len(options)))):
             some = [options[n] for n in numbers]
@@ -135,14 +135,14 @@ class _Work:
                 later += [(replace(cut, chosen=tuple(numbers[n] for n in cut.chosen)), network) for cut in cuts]
         yield from sorted(later, key=lambda pair: pair[0].cost)
 
-    def _opened(self, options: Iterable[Change], groups: Iterable[Group], kept: Iterable[Kept]) -> Ways:
+    def _opened(self, options: Iterable[Candidate], groups: Iterable[Group], kept: Iterable[Kept]) -> CutNetwork:
         """The ways that there are when wildcards get past all filters that could be made."""
         graph, bound = self.system.graph, self.system.bound
         filtered = sorted({flow for change in options if not change.private for flow in change.flows})
         grown = spread(*opened(graph, bound, filtered, self.wild, bound), self.system.hierarchy)
         known = {group.sources for group in groups}
         others = [self._group(v) for v in grown.facts if grown.begins(v) and (v,) not in known]
-        return ways(Net.of(grown), self._grouped([*groups, *others], kept), self.wanted)
+        return cut_network(Net.of(grown), self._grouped([*groups, *others], kept), self.wanted)
 
     def _group(self, source: int) -> Group:
         """What is decided of one source."""
@@ -164,7 +164,7 @@ class _Work:
         leaks = merged(self.analysis.spread.leaks.get(at[0], 0), len(self.number))
         return bool(leaks >> at[1] & 1)
 
-    def _kept(self, group: Group, options: Sequence[Change]) -> Iterable[Kept]:
+    def _kept(self, group: Group, options: Sequence[Candidate]) -> Iterable[Kept]:
         """The findings of one source that no change removes, with a way on which none can be made."""
         (source,) = group.sources
         mine: dict[tuple[At, bool], list[Finding]] = defaultdict(list)
@@ -173,7 +173,7 @@ class _Work:
                 yield Kept(finding, ITSELF, (finding.source,))
             else:
                 mine[self._at(finding), finding.kind != DISCLOSURE].append(finding)
-        network = ways(self.net, [group], self.wanted)
+        network = cut_network(self.net, [group], self.wanted)
         for at, past, way in open_ends(network, uncut(options)):
             for finding in mine[at, past]:
                 yield Kept(finding, NOT_ALLOWED, self._shown(source, network, way))
@@ -181,7 +181,7 @@ class _Work:
     def _at(self, finding: Finding) -> At:
         return (self.vertex[finding.leak], self.number[finding.category])
 
-    def _shown(self, source: int, network: Ways, way: Iterable[Arc]) -> tuple[Element, ...]:
+    def _shown(self, source: int, network: CutNetwork, way: Iterable[Arc]) -> tuple[Element, ...]:
         shown = [self.elements[source]]
         for arc in way:
             element = self.elements[network.at[arc.head][0]] if arc.head in network.at else shown[-1]
@@ -201,7 +201,7 @@ class _Work:
             together[group.accepted, group.kept | leaks, group.others - others].append(source)
         return [Group(tuple(sources), *decided) for decided, sources in together.items()]
 
-    def _proven(self, plain: Proposal, chosen: Sequence[tuple[Change, frozenset[int]]]) -> Proposal:
+    def _proven(self, plain: Proposal, chosen: Sequence[tuple[Candidate, frozenset[int]]]) -> Proposal:
         """Apply the changes, analyse anew, and take the proposal only if nothing is left but what is kept."""
         steps = tuple(self._step(change, categories) for change, categories in chosen)
         after = self._analysed(steps)
@@ -213,20 +213,20 @@ class _Work:
         reviewed = self._analysed([step for step in steps if step.kind == REVIEW])
         return replace(plain, steps=steps, proven=True, verdict=after.verdict, affected=affected(reviewed, after))
 
-    def _step(self, change: Change, categories: frozenset[int]) -> Step:
+    def _step(self, change: Candidate, categories: frozenset[int]) -> ProposedStep:
         flows = [self.analysis.graph.flows[f] for f in sorted(change.flows)]
         if change.kind == DENY:
-            return Step(DENY, change.cost, grants=change.grants, readers=self._named(change.readers))
+            return ProposedStep(DENY, change.cost, grants=change.grants, readers=self._named(change.readers))
         names = tuple(self.analysis.spread.categories[i] for i in sorted(categories))
         if change.kind == REVIEW:
             part = self.elements[min(change.channels)]
-            return Step(REVIEW, change.cost, names, channel=replace(part, leg=""))
+            return ProposedStep(REVIEW, change.cost, names, channel=replace(part, leg=""))
         bits = sum(1 << i for i in categories)
         readers = {reader for f in change.flows for reader in self.places.readers(f, bits)}
         read = {f for flow in flows for f in self.places.out[flow.source] if self.elements[flow.source].is_channel}
         others = {reader for f in read - change.flows for reader in self.places.readers(f, bits)} - readers
         between = dict.fromkeys((self.elements[flow.source], self.elements[flow.target]) for flow in flows)
-        return Step(
+        return ProposedStep(
             FILTER, change.cost, names, tuple(between), readers=self._named(readers), spared=self._named(others),
             grants=tuple(dict.fromkeys(grant for flow in flows for grant in flow.grants)),
         )  # fmt: skip
@@ -234,16 +234,18 @@ class _Work:
     def _named(self, vertices: Iterable[int]) -> tuple[Element, ...]:
         return tuple(self.elements[vertex] for vertex in sorted(vertices))
 
-    def _analysed(self, steps: Iterable[Step]) -> Analysis:
+    def _analysed(self, steps: Iterable[ProposedStep]) -> Analysis:
         """Analyse the system with some steps applied."""
         steps = list(steps)
         grants = [grant for step in steps if step.kind == DENY for grant in step.grants]
         graph, bound = self.system.deny(grants) if grants else (self.system.graph, self.system.bound)
-        changed = applied(graph, bound, steps, self.system.open_ended(graph))
+        changed = with_changes(graph, bound, steps, self.system.open_ended(graph))
         return analyse(*changed, self.system.hierarchy, self.system.options)
 
 
-def _lean(network: Ways, chosen: Sequence[tuple[Change, frozenset[int]]]) -> list[tuple[Change, frozenset[int]]]:
+def _lean(
+    network: CutNetwork, chosen: Sequence[tuple[Candidate, frozenset[int]]]
+) -> list[tuple[Candidate, frozenset[int]]]:
     """The same changes, filters and reviews about no more categories than they have to be."""
     lean = list(chosen)
     for place, (change, categories) in enumerate(lean):

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rosprivacy.analysis.kernel.arrays import Network
+from rosprivacy.analysis.kernel.arrays import GraphArrays
 from rosprivacy.analysis.kernel.fixpoint import WORD, fixpoint
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ Bringer = dict[tuple[int, int], int]  # number in the border, bit -> unit
 
 
 @dataclass(frozen=True, slots=True)
-class Cut:
+class PartNetwork:
     """A part for the kernel.
 
     Attributes
@@ -47,15 +47,15 @@ class Cut:
         Shape (n, 3), by unit: vertex that hands data to the border, number in the border, unit.
     """
 
-    network: Network
+    network: GraphArrays
     border: Indices
     unit: Indices
     exits: Indices
 
     @classmethod
-    def of(cls, found: Spread, border: Sequence[int], unit: Sequence[int]) -> Cut:
+    def of(cls, found: Spread, border: Sequence[int], unit: Sequence[int]) -> PartNetwork:
         """Make the arrays; O(flows · log flows)."""
-        network = Network.of(found)
+        network = GraphArrays.of(found)
         number = {vertex: i for i, vertex in enumerate(border)}
         special = {index: network.count + i for i, index in enumerate(network.special)}
         exits = [
@@ -111,7 +111,7 @@ class Core:
         Vertices, in the order that all parts agree on: a gate, and the element that it leads to.
     """
 
-    network: Network
+    network: GraphArrays
     gates: Indices
     border: Indices
 
@@ -120,7 +120,7 @@ class Core:
         return _carried(self.network, self.gates, arrived)
 
 
-def _carried(network: Network, at: Indices, given: Bits) -> tuple[Bits, Bits]:
+def _carried(network: GraphArrays, at: Indices, given: Bits) -> tuple[Bits, Bits]:
     """The fixpoint, when some vertices emit what is given."""
     emitted = network.emitted.copy()
     emitted[at] = given

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rosprivacy.analysis.fleet.source_leak_pairs import Category, unpacked
+from rosprivacy.analysis.fleet.source_leak_pairs import CategoryRun, unpacked
 from rosprivacy.analysis.model import DISCLOSURE
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.kernel.spreading import Spread
     from rosprivacy.analysis.non_ros import Concern
-    from rosprivacy.analysis.parts.border import Cut
+    from rosprivacy.analysis.parts.border import PartNetwork
 
     Indices = NDArray[np.int64]
     Bits = NDArray[np.uint64]
@@ -44,23 +44,25 @@ class Crossing:
     Attributes
     ----------
     forms
-        Bits of the spread, as in ``Category``.
+        Bits of the spread, as in ``CategoryRun``.
     numbers
         Of the sources of ``category``, within their unit.
     ends
         By kind of finding: vertices of elements of the part, sorted.
     """
 
-    cut: Cut
-    category: Category
+    cut: PartNetwork
+    category: CategoryRun
     forms: tuple[int, ...]
     numbers: Indices
     ends: Mapping[str, Indices]
 
     @classmethod
-    def of(cls, found: Spread, cut: Cut, number: int, forms: tuple[int, ...], kinds: Sequence[Concern]) -> Crossing:
+    def of(
+        cls, found: Spread, cut: PartNetwork, number: int, forms: tuple[int, ...], kinds: Sequence[Concern]
+    ) -> Crossing:
         """Make ready what all rounds need."""
-        category = Category(found, cut.network, number, forms)
+        category = CategoryRun(found, cut.network, number, forms)
         return cls(cut, category, forms, _within(cut.unit[category.sources]), ends_of(found, number, kinds))
 
     def classes(self) -> dict[int, Class]:
@@ -158,7 +160,7 @@ def ends_of(found: Spread, number: int, kinds: Sequence[Concern]) -> dict[str, I
 
 
 def how(
-    category: Category,
+    category: CategoryRun,
     carried: Sequence[tuple[Bits, Bits]],
     ends: Mapping[str, Indices],
     n: int,

@@ -1,6 +1,6 @@
 """Facts about elements outside ROS <-> properties of the graph in Neo4j (rule S9).
 
-In: ``Outside``. Out: plain values for ``schema.py``'s properties; and back, also from what people wrote by hand.
+In: ``NonRosFacts``. Out: plain values for ``schema.py``'s properties; and back, also from what people wrote by hand.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.durations import ordered, parse
 from rosprivacy.analysis.model import Place
-from rosprivacy.analysis.non_ros import EVERY, RECIPIENTS, TRANSFERS, Outside
+from rosprivacy.analysis.non_ros import EVERY, RECIPIENTS, TRANSFERS, NonRosFacts
 from rosprivacy.ingest.labels.countries import countries
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.durations import Duration
 
 
-def properties_of(facts: Outside) -> dict[str, Any]:
+def properties_of(facts: NonRosFacts) -> dict[str, Any]:
     """Return the properties of an element outside ROS; absent where nothing is stated."""
     backups = facts.backups
     return {
@@ -35,7 +35,7 @@ def properties_of(facts: Outside) -> dict[str, Any]:
     }
 
 
-def facts_of(said: Mapping[str, Any], categories: Collection[str]) -> Outside:
+def facts_of(said: Mapping[str, Any], categories: Collection[str]) -> NonRosFacts:
     """Return the facts that properties state.
 
     Raises
@@ -53,7 +53,7 @@ def facts_of(said: Mapping[str, Any], categories: Collection[str]) -> Outside:
     encrypted = said.get("encrypted")
     if not (encrypted is None or isinstance(encrypted, bool)):
         raise ValueError("encrypted is not true or false")
-    return Outside(
+    return NonRosFacts(
         _durations(said, "retention", categories),
         _durations(said, "limits", categories),
         _backups(said.get("backups")),

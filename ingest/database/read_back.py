@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
     from neo4j import Driver, ManagedTransaction, Record
 
-    from rosprivacy.analysis.non_ros import Outside
+    from rosprivacy.analysis.non_ros import NonRosFacts
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 DATABASE = "the database"
@@ -163,7 +163,7 @@ class _Reader:
         self._flows: list[tuple[Element, Element, str, str, Mapping[str, Any]]] = []
         self._said: dict[str, list[tuple[str, str, Mapping[str, Any]]]] = defaultdict(list)
         self._profiles: list[Profile] = []
-        self._outside: dict[Element, Outside] = {}
+        self._outside: dict[Element, NonRosFacts] = {}
 
     def elements(self, records: Iterable[Record]) -> None:
         for record in records:

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.model import Analysis, Bound, Element, Flow, Grant, Statement
-    from rosprivacy.analysis.non_ros import Outside
+    from rosprivacy.analysis.non_ros import NonRosFacts
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 Row = dict[str, Any]
@@ -162,7 +162,7 @@ def _elements(
 
 
 def element_row(
-    robot: str, key: str, element: Element, properties: Row, labels: Iterable[str], facts: Outside | None
+    robot: str, key: str, element: Element, properties: Row, labels: Iterable[str], facts: NonRosFacts | None
 ) -> Row:
     """Return the row of an element with what the analysis says of it."""
     known = {

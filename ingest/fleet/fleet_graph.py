@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.model import Bound, FlowGraph, Place, Profile, Statement
-    from rosprivacy.analysis.non_ros import Outside
+    from rosprivacy.analysis.non_ros import NonRosFacts
     from rosprivacy.ingest.fleet.alike_robots import Alike
     from rosprivacy.ingest.fleet.dds_domains import Member
     from rosprivacy.ingest.fleet.fleet_file import Fleet
@@ -233,7 +233,7 @@ class _Placing:
         self._ends[""] = Ends(part.elements)
         return part
 
-    def _limited(self, element: Element, facts: Outside) -> Outside:
+    def _limited(self, element: Element, facts: NonRosFacts) -> NonRosFacts:
         """The facts with the limits that hold there: for what is shared, those of every robot."""
         limits: set[Limit] = {*facts.limits, *self._fleet.limits}
         if element.robot == self._fleet.name:

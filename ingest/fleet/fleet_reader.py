@@ -15,7 +15,7 @@ from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import Place
 from rosprivacy.ingest.labels.label_file import OURS
 from rosprivacy.ingest.labels.label_reader import LabelReader
-from rosprivacy.ingest.labels.non_ros_reader import is_outside
+from rosprivacy.ingest.labels.non_ros_reader import is_non_ros
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -54,7 +54,7 @@ class FleetReader(LabelReader):
     def name_on_flow(self, value: Value) -> str:
         """Return the name at the end of a flow, with the robots that it is on."""
         robots, colon, name = value.text.partition(":")
-        if value.kind == "text" and colon and robots and not is_outside(name):
+        if value.kind == "text" and colon and robots and not is_non_ros(name):
             return value.text
         return super().name_on_flow(value)
 

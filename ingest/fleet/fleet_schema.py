@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.ingest.fleet.fleet_reader import ID, NAMESPACE
-from rosprivacy.ingest.labels.label_schema import END, END_OF_KIND, label_schema, outside_sections
+from rosprivacy.ingest.labels.label_schema import END, END_OF_KIND, label_schema, non_ros_sections
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -47,7 +47,7 @@ def fleet_schema(categories: Iterable[Category]) -> dict[str, Any]:
             "robots": _section("robot", "Robots by id; what they name is added to their model's."),
             "infrastructure": _section("robot", "What has policies and is no robot, such as a base station."),
             "groups": {"type": ["array", "null"], "items": {"$ref": "#/$defs/group"}},
-            **outside_sections(),
+            **non_ros_sections(),
             "note": {"type": "string"},
         },
         "$defs": {**definitions, "flow": flow},

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
     from rosprivacy.analysis.model import Grant, Profile, Statement
-    from rosprivacy.analysis.non_ros import Outside
+    from rosprivacy.analysis.non_ros import NonRosFacts
 
 K = TypeVar("K")
 V = TypeVar("V")
@@ -47,7 +47,7 @@ class Part:
     denied: dict[Key, tuple[tuple[Grant, ...], tuple[Grant, ...]]] = field(default_factory=dict)
     said: dict[Key, tuple[Statement, ...]] = field(default_factory=dict)
     through: dict[tuple[Element, tuple[str, ...]], tuple[Key, ...]] = field(default_factory=dict)
-    outside: dict[Element, Outside] = field(default_factory=dict)
+    outside: dict[Element, NonRosFacts] = field(default_factory=dict)
 
     @classmethod
     def of(cls, graph: FlowGraph, bound: Bound) -> Part:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, shown
 from rosprivacy.analysis.model import STATED, Element, Flow, FlowGraph, Grant
 from rosprivacy.ingest.labels.entries import End
-from rosprivacy.ingest.labels.non_ros_reader import is_outside
+from rosprivacy.ingest.labels.non_ros_reader import is_non_ros
 from rosprivacy.ingest.policies.names import covers, is_pattern, matcher
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def extend(graph: FlowGraph, files: Sequence[Labels]) -> FlowGraph:
     flows: list[tuple[Element, Element, Place]] = []
     for file in files:
         for flow in file.flows:
-            if is_outside(flow.source) or is_outside(flow.target):
+            if is_non_ros(flow.source) or is_non_ros(flow.target):
                 flows += ends.between(*flow.ends, flow.place, problems)
     for entry in stated.values():
         for end in entry.between:
@@ -102,7 +102,7 @@ class Ends:
 
     def find(self, end: End) -> list[Element]:
         """The elements of a name or glob, of the kind that is said or of all."""
-        if is_outside(end.name):
+        if is_non_ros(end.name):
             return self._of("", end.name)
         found = [*self._of("node", end.name), *self._of("channel", end.name)]
         return [element for element in found if end.kind in ("", element.kind)]
@@ -132,9 +132,9 @@ def ambiguous(end: End, kinds: Iterable[str], place: Place, error: type[InputErr
 
 def missing(end: End, known: Iterable[str], place: Place, error: type[InputError] = LabelError) -> InputError:
     """Return the error for the end of a flow that is not there, with the nearest names."""
-    alike = [other for other in dict.fromkeys(known) if is_outside(other) == is_outside(end.name)]
+    alike = [other for other in dict.fromkeys(known) if is_non_ros(other) == is_non_ros(end.name)]
     close = get_close_matches(end.name, [other for other in alike if other != end.name], n=3, cutoff=0.5)
-    hint = "define it under elements" if is_outside(end.name) else "see the names with rosprivacy labels --init"
+    hint = "define it under elements" if is_non_ros(end.name) else "see the names with rosprivacy labels --init"
     hint = f"did you mean {' or '.join(map(shown, close))}?" if close else hint
     kind = f"the {end.kind} " if end.kind else ""
     return error(place.file, place.line, f"a flow names {kind}{shown(end.name)!r}, which is not there", hint)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.model import FlowGraph, Statement
-    from rosprivacy.analysis.non_ros import Outside
+    from rosprivacy.analysis.non_ros import NonRosFacts
     from rosprivacy.ingest.labels.entries import Entry, FlowEntry
     from rosprivacy.ingest.labels.label_file import Labels
 
@@ -92,7 +92,7 @@ def unused(graph: FlowGraph, labels: Iterable[Labels]) -> Iterator[Diagnostic]:
                 yield Diagnostic(entry.place, Severity.NOTICE, f"{error.problem}; {error.hint}")
 
 
-def _outside(graph: FlowGraph, labels: Iterable[Labels]) -> dict[int, Outside]:
+def _outside(graph: FlowGraph, labels: Iterable[Labels]) -> dict[int, NonRosFacts]:
     """What is stated about the elements outside ROS, and how long they may keep what they hold."""
     files = list(labels)
     ranked = sorted(files, key=lambda file: file.own)

@@ -15,7 +15,7 @@ from rosprivacy.analysis.errors import InputError, LabelError, shown
 from rosprivacy.analysis.kernel.ranks import NONE_OF
 from rosprivacy.analysis.model import GLOB, NAME, Diagnostic, Method, Place, Severity, Statement
 from rosprivacy.ingest.labels.entries import EXACT, SHIPPED, End, Entry, FlowEntry, naming, specificity
-from rosprivacy.ingest.labels.non_ros_reader import is_outside, read_element, read_limits
+from rosprivacy.ingest.labels.non_ros_reader import is_non_ros, read_element, read_limits
 from rosprivacy.ingest.policies.names import LONGEST_NAME
 from rosprivacy.ingest.reading.format_reader import FileReader
 
@@ -252,7 +252,7 @@ class LabelReader(FileReader):
 
     def states(self, ends: Iterable[str]) -> bool:
         """Return whether a line about a flow states it; flows between nodes and channels are in the policies."""
-        return any(map(is_outside, ends))
+        return any(map(is_non_ros, ends))
 
     def _six_lists(self, top: Value) -> None:
         """The paper's JSON: six lists of names, one kind of data; there a sanitizer ends it (rule S8)."""
@@ -310,7 +310,7 @@ class LabelReader(FileReader):
         """Return an end of a flow: a name or glob of ROS, with its kind where that is said, or a name outside ROS."""
         if value.kind == "map":
             return self._end_of_kind(value)
-        if value.kind == "text" and value.text and is_outside(value.text):
+        if value.kind == "text" and value.text and is_non_ros(value.text):
             return End(value.text)
         return End(self._name(value))
 

@@ -52,13 +52,13 @@ def label_schema(categories: Iterable[Category]) -> dict[str, Any]:
             "topics": _section("channel", "As channels, for topics only."),
             "services": _section("channel", "As channels, for services only."),
             "actions": _section("channel", "As channels, for actions only."),
-            **outside_sections(),
+            **non_ros_sections(),
         },
         "$defs": _definitions(list(categories)),
     }
 
 
-def outside_sections() -> dict[str, Any]:
+def non_ros_sections() -> dict[str, Any]:
     """Return the sections that fleet files have too."""
     return {
         "elements": {

@@ -13,7 +13,7 @@ from rosprivacy.analysis.durations import Duration, ordered
 from rosprivacy.analysis.durations import parse as parse_duration
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import NON_ROS, Place
-from rosprivacy.analysis.non_ros import EVERY, RECIPIENTS, TRANSFERS, Outside
+from rosprivacy.analysis.non_ros import EVERY, RECIPIENTS, TRANSFERS, NonRosFacts
 from rosprivacy.ingest.labels.countries import countries
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ class Stated:
 
     kind: str
     name: str
-    outside: Outside
+    outside: NonRosFacts
     between: tuple[End, ...] = ()
 
     @property
@@ -71,14 +71,14 @@ class Stated:
         return self.outside.place
 
 
-def is_outside(name: str) -> bool:
+def is_non_ros(name: str) -> bool:
     """Return whether a name is one of a non-ROS element; names of ROS begin with ``/``, or are globs."""
     return not name.startswith(("/", "*", "?", "["))
 
 
 def read_element(reader: Reader, name: str, line: int, value: Value, labels: tuple[str, ...]) -> Stated | None:
     """Read one element; ``labels`` are keys that say what it does, read elsewhere."""
-    if not is_outside(name) or ":" in name or len(name) > LONGEST or not name.isprintable() or name != name.strip():
+    if not is_non_ros(name) or ":" in name or len(name) > LONGEST or not name.isprintable() or name != name.strip():
         hint = f"a plain name of at most {LONGEST} characters, not beginning with / * ? [, and without a colon"
         reader.problem(line, f"{shown(name)!r} cannot name an element outside ROS", hint)
         return None
@@ -118,9 +118,9 @@ class _Facts:
         self._backups: Duration | bool | None = None
         self._encrypted: bool | None = None
 
-    def outside(self, place: Place) -> Outside:
+    def outside(self, place: Place) -> NonRosFacts:
         retention = ordered(self._retention)
-        return Outside(retention, (), self._backups, encrypted=self._encrypted, place=place, **self._texts)
+        return NonRosFacts(retention, (), self._backups, encrypted=self._encrypted, place=place, **self._texts)
 
     def take(self, key: str, line: int, value: Value) -> None:
         if key == "retention":
@@ -151,7 +151,7 @@ class _Facts:
 
     def _take_between(self, line: int, value: Value) -> None:
         ends = tuple(self._reader.end(item) for item in value.items)
-        if len(ends) < len(("one", "another")) or any(end.name and is_outside(end.name) for end in ends):
+        if len(ends) < len(("one", "another")) or any(end.name and is_non_ros(end.name) for end in ends):
             self._reader.problem(line, "between names at least two nodes", "write [/one, /another]")
         else:
             self.between = ends

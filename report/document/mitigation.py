@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.mitigation.affected import Affected, Shown
     from rosprivacy.analysis.mitigation.candidates import Limits
-    from rosprivacy.analysis.mitigation.proposals import Proposal, Step
+    from rosprivacy.analysis.mitigation.proposals import Proposal, ProposedStep
     from rosprivacy.analysis.model import Analysis, Element, Finding, Grant
 
 FORMAT = "rosprivacy.mitigation/1"
@@ -114,7 +114,7 @@ def _statement(finding: Finding) -> dict[str, Any]:
     }
 
 
-def _step(step: Step, element: Any) -> dict[str, Any]:
+def _step(step: ProposedStep, element: Any) -> dict[str, Any]:
     return {
         "kind": step.kind,
         "cost": step.cost,
@@ -128,7 +128,7 @@ def _step(step: Step, element: Any) -> dict[str, Any]:
     }
 
 
-def _label(step: Step) -> dict[str, Any] | None:
+def _label(step: ProposedStep) -> dict[str, Any] | None:
     """The label that a review ends in, if the channel carries none."""
     if step.channel is None:
         return None

@@ -12,7 +12,7 @@ from rosprivacy.analysis.non_ros import TAKEN, country_unknown, limited
 if TYPE_CHECKING:
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.model import Analysis, Element
-    from rosprivacy.analysis.non_ros import Outside
+    from rosprivacy.analysis.non_ros import NonRosFacts
 
 
 def inventory(analysis: Analysis, hierarchy: Hierarchy) -> list[dict[str, Any]]:
@@ -43,7 +43,7 @@ def without_backups(analysis: Analysis) -> list[Element]:
     return [e for e, facts in analysis.outside.items() if e.kind == "storage" and facts.backups is None]
 
 
-def _facts(facts: Outside) -> dict[str, Any]:
+def _facts(facts: NonRosFacts) -> dict[str, Any]:
     said = {
         "retention": _durations(facts.retention),
         "backups": facts.backups if facts.backups is None or isinstance(facts.backups, bool) else str(facts.backups),
@@ -61,7 +61,7 @@ def _durations(stated: tuple[tuple[str, Any], ...]) -> dict[str, str]:
     return {category or "every": str(duration) for category, duration in stated}
 
 
-def _not_known(element: Element, facts: Outside, holds: tuple[str, ...], hierarchy: Hierarchy) -> dict[str, Any]:
+def _not_known(element: Element, facts: NonRosFacts, holds: tuple[str, ...], hierarchy: Hierarchy) -> dict[str, Any]:
     """What the answer could not judge: the country, or a retention without a limit to hold it against."""
     found: dict[str, Any] = {}
     if country_unknown(element, facts):

@@ -13,7 +13,7 @@ from collections import defaultdict
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.findings.flows_to_leaks import Ways, ways
+from rosprivacy.analysis.findings.flows_to_leaks import FlowsToLeaks, flows_to_leaks
 from rosprivacy.analysis.kernel.search import Net
 from rosprivacy.analysis.model import DISCLOSURE, Verdict
 from rosprivacy.report.pictures.looks import ALLOWED, DATA, DENIED, MATCHES, SHORTEST, WAY
@@ -181,7 +181,7 @@ def privacy_view(analysis: Analysis, beside: Collection[str] = ()) -> Picture:
 
     Notes
     -----
-    Besides what the analysis took: per category with a finding O(flows), see ``ways``.
+    Besides what the analysis took: per category with a finding O(flows), see ``flows_to_leaks``.
     """
     reached = Reached(analysis)
     if not reached.sources():
@@ -213,9 +213,9 @@ def _ways_to_all(analysis: Analysis, net: Net, findings: Iterable[Finding]) -> I
             both = analysis.spread.both(finding.category)
             ends.setdefault(finding.category, {})[number[finding.leak]] = both
     for category in sorted({finding.category for finding in findings if finding.kind == DISCLOSURE}):
-        yield ways(net, category).flows
+        yield flows_to_leaks(net, category).flows
     for category, where in sorted(ends.items()):
-        yield ways(net, category, leaks=where, past_leaks=True, ends=where).flows
+        yield flows_to_leaks(net, category, leaks=where, past_leaks=True, ends=where).flows
 
 
 class FindingViews:
@@ -228,7 +228,7 @@ class FindingViews:
 
     Notes
     -----
-    O(flows) to begin with, and per finding what ``ways`` takes.
+    O(flows) to begin with, and per finding what ``flows_to_leaks`` takes.
     """
 
     def __init__(self, analysis: Analysis, say: Phrases | None = None) -> None:
@@ -252,11 +252,13 @@ class FindingViews:
             self._reached[category] = Reached(self._analysis, {category}, self._say)
         reached = self._reached[category]
         source, leak = self._number[finding.source], self._number[finding.leak]
-        found = Ways({})
+        found = FlowsToLeaks({})
         if finding.steps:
             ends = None if finding.kind == DISCLOSURE else {leak: self._analysis.spread.both(category)}
             past = finding.dismissed or ends is not None
-            found = ways(self._net, category, sources=[source], leaks=[leak], past_leaks=past, ends=ends, about=about)
+            found = flows_to_leaks(
+                self._net, category, sources=[source], leaks=[leak], past_leaks=past, ends=ends, about=about
+            )
         lengths = found.flows
         keys = {element.identity for element in finding.witness}
         for index in lengths:

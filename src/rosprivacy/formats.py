@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.decisions import Decision
     from rosprivacy.analysis.model import Analysis
-    from rosprivacy.analysis.non_ros import Outside
+    from rosprivacy.analysis.non_ros import NonRosFacts
     from rosprivacy.assembly import Result
 
     Stated = Mapping[tuple[str, str, str], Mapping[str, str]]
@@ -108,7 +108,7 @@ def stated_of(analysis: Analysis) -> dict[tuple[str, str, str], dict[str, str]]:
     return {element.identity: dict(_stated(facts)) for element, facts in analysis.outside.items()}
 
 
-def _stated(facts: Outside) -> Iterator[tuple[str, str]]:
+def _stated(facts: NonRosFacts) -> Iterator[tuple[str, str]]:
     kept = ", ".join(f"{category}: {duration}" if category else str(duration) for category, duration in facts.retention)
     backups = "in backups, nobody says for how long" if facts.backups is True else f"in backups {facts.backups} more"
     said = {

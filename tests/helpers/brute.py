@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterator
 
     from rosprivacy.analysis.hierarchy import Hierarchy
-    from rosprivacy.analysis.non_ros import Outside
+    from rosprivacy.analysis.non_ros import NonRosFacts
 
 Data = tuple[str, bool]  # category, pseudonymised
 
@@ -87,7 +87,7 @@ class Brute:
     said: dict[int, list[Statement]]
     hierarchy: Hierarchy
     never: dict[tuple[int, int], set[str]] = field(default_factory=dict)  # of flows
-    outside: dict[int, tuple[str, Outside]] = field(default_factory=dict)  # kind, facts
+    outside: dict[int, tuple[str, NonRosFacts]] = field(default_factory=dict)  # kind, facts
     names: dict[int, str] = field(default_factory=dict)  # of channels
     stated: set[tuple[int, int]] = field(default_factory=set)  # flows that a person states
     sides: dict[int, int] = field(default_factory=dict)  # what is read from a wildcard -> what is written to it

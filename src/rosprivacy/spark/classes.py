@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rosprivacy.analysis.fleet.source_leak_pairs import Category
+from rosprivacy.analysis.fleet.source_leak_pairs import CategoryRun
 from rosprivacy.analysis.kernel.fixpoint import WORD
 from rosprivacy.analysis.parts.part_pairs import STOPS, ends_of, how
 from rosprivacy.analysis.parts.part_patterns import CORE, End, Source
@@ -58,7 +58,7 @@ class Classes:
         self.leaving: dict[Run, Bits] = {}
         self._ours, self._piece, self._middle, self._ways = ours, piece, middle, ways
         self._kinds = workers.kinds_of(piece, ours, hierarchy)
-        self._categories = {i: Category(ours, middle.network, i, some) for i, some in ways.items()}
+        self._categories = {i: CategoryRun(ours, middle.network, i, some) for i, some in ways.items()}
         self._at: dict[Run, tuple[Bits, Bits]] = {}
         self._brought: dict[Run, Brought] = defaultdict(dict)
 

@@ -18,7 +18,7 @@ from rosprivacy.analysis.errors import FleetError, InputError, InputErrors
 from rosprivacy.analysis.fleet.counts import Counts, counted
 from rosprivacy.analysis.fleet.patterns import different
 from rosprivacy.analysis.fleet.source_leak_pairs import forms
-from rosprivacy.analysis.kernel.arrays import Network
+from rosprivacy.analysis.kernel.arrays import GraphArrays
 from rosprivacy.analysis.kernel.spreading import emitted, fill, meaning
 from rosprivacy.analysis.model import Verdict, unread
 from rosprivacy.analysis.non_ros import on_day
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.kernel.spreading import Spread
     from rosprivacy.analysis.model import Element
-    from rosprivacy.analysis.non_ros import Outside
+    from rosprivacy.analysis.non_ros import NonRosFacts
     from rosprivacy.ingest.fleet.alike_robots import Alike
     from rosprivacy.ingest.fleet.fleet_file import Fleet
     from rosprivacy.ingest.fleet.fleet_graph import Some
@@ -118,7 +118,7 @@ class Found:
     open: int
 
     @property
-    def shared(self) -> dict[Element, Outside]:
+    def shared(self) -> dict[Element, NonRosFacts]:
         """What is stated about the elements of the core, with the limits that hold there."""
         piece = self.core[0]
         return {piece.graph.elements[vertex]: facts for vertex, facts in piece.bound.outside.items()}
@@ -169,7 +169,7 @@ class _Run:
         piece = with_limits(piece, fleet, told.limits)
         piece = replace(piece, bound=replace(piece.bound, outside=on_day(piece.bound.outside, question.today)))
         ours = meaning(piece.graph, piece.bound, question.hierarchy, categories)
-        network = Network.of(ours)
+        network = GraphArrays.of(ours)
         middle = Core(network, np.array(gates, np.int64), np.array(piece.border, np.int64))
         ready = built.map(
             partial(

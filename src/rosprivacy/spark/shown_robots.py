@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.kernel.spreading import Spread
     from rosprivacy.analysis.model import Analysis, Bound, Element
-    from rosprivacy.analysis.non_ros import Concern, Outside
+    from rosprivacy.analysis.non_ros import Concern, NonRosFacts
     from rosprivacy.ingest.fleet.dds_domains import Member
     from rosprivacy.ingest.fleet.fleet_graph import Placed
     from rosprivacy.spark.distributed import Found, Question
@@ -78,7 +78,7 @@ def shown(question: Question, found: Found, paths: str, max_paths: int) -> Shown
     return Shown(analysis, view, placed, members)
 
 
-def limited(placed: Placed, shared: Mapping[Element, Outside]) -> Bound:
+def limited(placed: Placed, shared: Mapping[Element, NonRosFacts]) -> Bound:
     """Return what is said, where for what is shared the limits of every robot hold, also of those not placed."""
     elements = placed.graph.elements
     outside = {vertex: shared.get(elements[vertex], facts) for vertex, facts in placed.bound.outside.items()}

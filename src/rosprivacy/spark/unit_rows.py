@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.fleet.source_leak_pairs import Pairs
     from rosprivacy.analysis.kernel.spreading import Spread
     from rosprivacy.analysis.model import Analysis, Diagnostic, Element
-    from rosprivacy.analysis.non_ros import Concern, Outside
+    from rosprivacy.analysis.non_ros import Concern, NonRosFacts
     from rosprivacy.ingest.database.rows import RobotRows, Row
     from rosprivacy.ingest.fleet.alike_robots import Alike
     from rosprivacy.ingest.fleet.dds_domains import Member
@@ -67,7 +67,7 @@ class Plan:
     fleet: Fleet
     fixed: tuple[Alike, ...]
     examples: tuple[Unit, ...]
-    shared: Mapping[Element, Outside]
+    shared: Mapping[Element, NonRosFacts]
     leaking: frozenset[str]
     assumptions: Mapping[str, Any]
     settings: Settings

@@ -16,7 +16,7 @@ from rosprivacy.analysis.findings.open_questions import open_bits
 from rosprivacy.analysis.fleet.counts import Counts, counted
 from rosprivacy.analysis.kernel.spreading import Spread, fill, meaning
 from rosprivacy.analysis.non_ros import concerns, country_unknown, on_day
-from rosprivacy.analysis.parts.border import Bringer, Cut
+from rosprivacy.analysis.parts.border import Bringer, PartNetwork
 from rosprivacy.analysis.parts.part_pairs import Class, Crossing
 from rosprivacy.analysis.parts.part_patterns import End, Source, Within
 from rosprivacy.spark.building import Problem, problems_of
@@ -67,7 +67,7 @@ class Ready:
     names: tuple[str, ...]
     piece: Piece
     found: Spread | None
-    cut: Cut | None
+    cut: PartNetwork | None
     likeness: Likeness
     problems: tuple[Problem, ...] = ()
 
@@ -82,7 +82,7 @@ def ready(
         found = meaning(piece.graph, piece.bound, hierarchy, categories)
     except InputErrors as error:
         return Ready(part.names, piece, None, None, part.likeness, problems_of(error))
-    return Ready(part.names, piece, found, Cut.of(found, piece.border, piece.unit), part.likeness)
+    return Ready(part.names, piece, found, PartNetwork.of(found, piece.border, piece.unit), part.likeness)
 
 
 def steps(part: Ready) -> tuple[tuple[Problem, ...], frozenset[tuple[int, int]]]:
@@ -102,7 +102,7 @@ class Kernel:
     """
 
     names: tuple[str, ...]
-    cut: Cut
+    cut: PartNetwork
     categories: Mapping[int, Crossing]
 
 
@@ -119,7 +119,7 @@ def kinds_of(piece: Piece, found: Spread, hierarchy: Hierarchy) -> tuple[Concern
     return tuple(concerns(found, piece.bound, hierarchy))
 
 
-def _known(part: Ready) -> tuple[Spread, Cut]:
+def _known(part: Ready) -> tuple[Spread, PartNetwork]:
     assert part.found is not None
     assert part.cut is not None
     return part.found, part.cut

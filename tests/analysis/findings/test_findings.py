@@ -30,7 +30,7 @@ from rosprivacy.analysis.model import (
     Statement,
     Verdict,
 )
-from rosprivacy.analysis.non_ros import NOWHERE, Outside, by_kind
+from rosprivacy.analysis.non_ros import NOWHERE, NonRosFacts, by_kind
 from rosprivacy.ingest.labels.countries import countries
 from tests.helpers.brute import Brute
 
@@ -63,7 +63,7 @@ class System:
     said: dict[int, list[Statement]]
     never: dict[int, set[str]]
     hierarchy: Hierarchy = HIERARCHY
-    outside: list[tuple[str, Outside]] = field(default_factory=list)
+    outside: list[tuple[str, NonRosFacts]] = field(default_factory=list)
     wildcard: bool = False  # the last two channels are what is written to a wildcard and what is read from it
 
     @property
@@ -72,7 +72,7 @@ class System:
         return {end - 1: end - 2} if self.wildcard else {}
 
     @property
-    def facts(self) -> dict[int, tuple[str, Outside]]:
+    def facts(self) -> dict[int, tuple[str, NonRosFacts]]:
         return dict(enumerate(self.outside, self.nodes - len(self.outside)))
 
     def graph(self) -> FlowGraph:
@@ -116,13 +116,13 @@ class System:
 
 
 @st.composite
-def facts(draw: st.DrawFn, names: tuple[str, ...]) -> tuple[str, Outside]:
+def facts(draw: st.DrawFn, names: tuple[str, ...]) -> tuple[str, NonRosFacts]:
     """An element outside ROS; most are storages."""
     duration = st.sampled_from([parse(text) for text in ("P10D", "P30D", "P31D", "P1M", "P6M", "P1Y")])
     about = st.sampled_from(("", *names))
     stated = st.dictionaries(about, duration, max_size=2).map(lambda found: tuple(sorted(found.items())))
     country = draw(st.sampled_from(["", "DE", "JP", "US", "CN"]))
-    return draw(st.sampled_from(("storage", "storage", *NON_ROS))), Outside(
+    return draw(st.sampled_from(("storage", "storage", *NON_ROS))), NonRosFacts(
         draw(stated), draw(stated), draw(st.sampled_from([None, None, True, False, parse("P30D")])),
         transfer=draw(st.sampled_from(["", "", "standard-clauses"])), place=NOWHERE, encrypted=None,
         **(countries().place(country) if country else {}),

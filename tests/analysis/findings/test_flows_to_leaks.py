@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rosprivacy.analysis.findings.flows_to_leaks import ways
+from rosprivacy.analysis.findings.flows_to_leaks import flows_to_leaks
 from rosprivacy.analysis.kernel.search import Net
 from rosprivacy.analysis.model import DISCLOSURE
 from tests.analysis.findings.test_findings import System, analysed, index, statement, systems
@@ -76,7 +76,7 @@ def test_every_way_without_a_circle_is_in(system: System) -> None:
         other = finding.kind != DISCLOSURE  # such a finding ends where data are kept or leave, at no leak
         ends = {leak: found.spread.both(finding.category)} if other else None
         past = finding.dismissed or other
-        got = ways(net, finding.category, sources=[source], leaks=[leak], past_leaks=past, ends=ends)
+        got = flows_to_leaks(net, finding.category, sources=[source], leaks=[leak], past_leaks=past, ends=ends)
         flows = {system.edges[flow] for flow in got.flows}
         walks = Walks(brute, finding.category, leak, past_leaks=finding.dismissed)
         for way in islice(walks.simple(source), MOST_STEPS) if not other else ():
@@ -110,7 +110,7 @@ def test_every_flow_that_is_in_leads_from_a_source_to_a_leak(system: System) -> 
                 break
             good |= more
         expected = {(v, t) for v, _, _, t, d in edges if (t, d) in good}
-        assert {system.edges[flow] for flow in ways(net, category).flows} <= expected
+        assert {system.edges[flow] for flow in flows_to_leaks(net, category).flows} <= expected
 
 
 def test_detours_that_must_come_back_are_left_out() -> None:
@@ -119,7 +119,7 @@ def test_detours_that_must_come_back_are_left_out() -> None:
     labels = {0: [statement("source", "Face")], 1: [statement("leak", "Face")]}
     system = System(4, 3, sorted(edges), labels, {})
     found = system.analyse()
-    got = ways(Net.of(found.spread), "Face")
+    got = flows_to_leaks(Net.of(found.spread), "Face")
     assert {system.edges[flow]: length for flow, length in got.flows.items()} == {(0, 4): 2, (4, 1): 2}
 
 
@@ -128,7 +128,7 @@ def test_longer_ways_are_in_with_their_length() -> None:
     labels = {0: [statement("source", "Face")], 1: [statement("leak", "Face")]}
     system = System(4, 2, sorted(edges), labels, {})
     found = system.analyse()
-    got = ways(Net.of(found.spread), "Face")
+    got = flows_to_leaks(Net.of(found.spread), "Face")
     assert {system.edges[flow]: n for flow, n in got.flows.items()} == {
         (0, 4): 2,
         (4, 1): 2,
@@ -146,8 +146,10 @@ def test_the_shorter_ways_are_all_those_up_to_a_length(system: System, about: in
     net, number = Net.of(found.spread), index(system)
     for finding in [one for one in found.findings if one.kind == DISCLOSURE]:
         source, leak = number[finding.source], number[finding.leak]
-        whole = ways(net, finding.category, sources=[source], leaks=[leak], past_leaks=finding.dismissed)
-        part = ways(net, finding.category, sources=[source], leaks=[leak], past_leaks=finding.dismissed, about=about)
+        whole = flows_to_leaks(net, finding.category, sources=[source], leaks=[leak], past_leaks=finding.dismissed)
+        part = flows_to_leaks(
+            net, finding.category, sources=[source], leaks=[leak], past_leaks=finding.dismissed, about=about
+        )
         assert part.complete or len(part.flows) < len(whole.flows) or part.flows == whole.flows
         assert set(part.flows) <= set(whole.flows)
         longest = max(part.flows.values(), default=0)

@@ -26,7 +26,7 @@ from tests.helpers.brute import Brute
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.model import Analysis, Statement
-    from rosprivacy.analysis.non_ros import Outside
+    from rosprivacy.analysis.non_ros import NonRosFacts
     from rosprivacy.ingest.fleet.fleet_graph import Placed
 
 HERE = Place("fleet.yaml", 1)
@@ -48,7 +48,7 @@ class Case:
     """
 
     robots: dict[str, System]
-    shared: dict[str, tuple[str, Outside, list[Statement]]]
+    shared: dict[str, tuple[str, NonRosFacts, list[Statement]]]
     flows: list[tuple[str, str, frozenset[str]]]
 
     def model(self, robot: str) -> str:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from rosprivacy.analysis.decisions import Case
-    from rosprivacy.analysis.mitigation.proposals import Proposal, Step
+    from rosprivacy.analysis.mitigation.proposals import Proposal, ProposedStep
     from rosprivacy.analysis.model import Analysis, Bound, Element, Finding, FlowGraph
 
 
@@ -170,7 +170,7 @@ def test_an_accepted_finding_is_left_and_what_lies_behind_it_is_removed(random: 
         assert after == {key_of(kept.finding, number) for kept in proposal.kept}
 
 
-def flows_between(random: Random, number: dict[Element, int], step: Step) -> set[int]:
+def flows_between(random: Random, number: dict[Element, int], step: ProposedStep) -> set[int]:
     ends = {(number[source], number[target]) for source, target in step.between}
     return {i for i, edge in enumerate(random.edges) if edge in ends}
 

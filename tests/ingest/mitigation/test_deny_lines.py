@@ -22,7 +22,7 @@ from tests.analysis.findings.test_findings import HIERARCHY, statement
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator
 
-    from rosprivacy.analysis.mitigation.proposals import Step
+    from rosprivacy.analysis.mitigation.proposals import ProposedStep
     from rosprivacy.analysis.model import Analysis, FlowGraph
 
 ENCLAVES = ("/e1", "/e2")
@@ -151,7 +151,7 @@ def test_a_filter_that_is_really_built_removes_what_its_proposal_says(policy: Po
         assert left(after, proposal.categories) == {one.finding.id for one in proposal.kept}
 
 
-def install(policy: Policy, step: Step, number: int) -> Policy:
+def install(policy: Policy, step: ProposedStep, number: int) -> Policy:
     """Build a filter into a policy as an engineer would: a new node in a new enclave, and a new topic."""
     filter_, other, place = f"/filter_{number}", f"/unfiltered_data/{number}", Place("p", 1000 + number)
     moved = [replace(g, name=other, place=place) if g in step.grants else g for g in policy.grants]
