@@ -6,18 +6,21 @@ nobody stated about an element is taken by its kind: data passes what only holds
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.model import DISCLOSURE, STORAGE_LIMITATION, THIRD_COUNTRY, Place, Statement
+from rosprivacy.analysis.model import (
+    NOWHERE,
+    NonRosFacts,
+    Statement,
+)
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Mapping
 
     from rosprivacy.analysis.durations import Duration
     from rosprivacy.analysis.hierarchy import Hierarchy
-    from rosprivacy.analysis.kernel.spreading import Spread
-    from rosprivacy.analysis.model import Bound, Element
+    from rosprivacy.analysis.model import Element
 
 INSIDE, ADEQUATE, PARTLY, THIRD = "eea", "adequate", "partly", "third"  # where a country lies, GDPR chapter V
 ADEQUACY = "adequacy"
@@ -32,7 +35,6 @@ TRANSFERS = (  # bases of a transfer: GDPR Article 45, 46(2)(a) to (f), 46(3), 4
     "derogation",
 )
 RECIPIENTS = ("controller", "joint-controller", "processor", "third-party")
-NOWHERE = Place("", 0)
 BY_KIND = (-1, 0)  # the rank of what is taken by kind: below every label
 TAKEN = {  # what each kind does with every category unless a label says otherwise
     "storage": "conduit",
@@ -44,54 +46,6 @@ TAKEN = {  # what each kind does with every category unless a label says otherwi
 }
 PLACED = ("external-system", "storage")  # kinds whose country has to be known; others are where the robot is
 EVERY = ""  # in place of a category
-
-
-@dataclass(frozen=True, slots=True)
-class NonRosFacts:
-    """What is stated about a non-ROS element (rule S9).
-
-    Attributes
-    ----------
-    retention
-        (category, or ``EVERY``; how long it is kept), sorted.
-    limits
-        (category, or ``EVERY``; how long it may be kept), sorted; where several hold, the shortest counts.
-    backups
-        How long data stays in backups after it is deleted; True where that is not known, False without backups,
-        None where nothing is said.
-    country
-        ISO 3166-1 alpha-2 code.
-    area
-        Where that lies: ``INSIDE`` the EEA, outside with an adequacy decision (``ADEQUATE``), with one for some
-        recipients (``PARTLY``), or ``THIRD``.
-    adequacy
-        Whom a partial decision covers.
-    until
-        The last day of an adequacy decision that ends by itself, ``YYYY-MM-DD``.
-    encrypted
-        Whether it is at rest; None where nothing is said.
-    operator
-        Who runs it.
-    recipient
-        One of ``RECIPIENTS``.
-    transfer
-        Basis of a transfer out of the EEA, one of ``TRANSFERS``, as a person states it.
-    place
-        Where it is stated.
-    """
-
-    retention: tuple[tuple[str, Duration], ...] = ()
-    limits: tuple[tuple[str, Duration], ...] = ()
-    backups: Duration | bool | None = None
-    country: str = ""
-    area: str = ""
-    adequacy: str = ""
-    until: str = ""
-    encrypted: bool | None = None
-    operator: str = ""
-    recipient: str = ""
-    transfer: str = ""
-    place: Place = NOWHERE
 
 
 def by_kind(element: Element) -> tuple[Statement, ...]:
@@ -159,27 +113,3 @@ def transferred(facts: NonRosFacts) -> str:
     partly = f"whose adequacy decision covers {facts.adequacy}"
     what = f"for which {ended or 'no adequacy decision is known'}" if facts.area == THIRD else partly
     return f"in {facts.country}, {what}; no basis for the transfer is stated"
-
-
-@dataclass(frozen=True, slots=True)
-class Concern:
-    """A kind of finding: vertex -> bits that must not get there, and why."""
-
-    kind: str
-    bits: Mapping[int, int]
-    reasons: Mapping[tuple[int, str], str]
-
-
-def concerns(found: Spread, bound: Bound, hierarchy: Hierarchy) -> Iterator[Concern]:
-    """Return where each kind of finding can be (rule S10); disclosure first."""
-    yield Concern(DISCLOSURE, found.leaks, {})
-    elements = found.graph.elements
-    storages = {v: facts for v, facts in bound.outside.items() if elements[v].kind == "storage"}
-    too_long = {(v, c): kept_too_long(facts, c, hierarchy) for v, facts in storages.items() for c in found.categories}
-    abroad = {(v, c): transferred(facts) for v, facts in bound.outside.items() for c in found.categories}
-    for kind, reasons in ((STORAGE_LIMITATION, too_long), (THIRD_COUNTRY, abroad)):
-        bits: dict[int, int] = {}
-        for (vertex, category), why in reasons.items():
-            if why:
-                bits[vertex] = bits.get(vertex, 0) | found.both(category)
-        yield Concern(kind, bits, {key: why for key, why in reasons.items() if why})

@@ -93,7 +93,8 @@ def fleet(robots: int, seed: int = 1, labelled: int = LABELLED, deriving: int = 
 def _labels(
     random: np.random.Generator, count: int, split: int, labelled: int, deriving: int
 ) -> tuple[Bits, Bits, Indices]:
-    """What nodes emit, keep and derive, as ``analysis/kernel/spreading.py`` hands it over: bit i plain, bit i + k pseudonymised.
+    """What nodes emit, keep and derive, as ``analysis/kernel/spreading.py`` hands it over: bit i plain, bit i + k
+    pseudonymised.
 
     Every second sanitizer pseudonymises, the others end the kind of data in both planes.
     """

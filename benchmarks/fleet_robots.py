@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING
 from measure import Line, compared, corpus, per_robot, side_by_side
 from turtlebot import MANY, POLICY, STEP_5, chosen_categories, label_file, six_lists
 
+from rosprivacy.analysis.findings.concerns import concerns
 from rosprivacy.analysis.fleet.patterns_of_pairs import Groups
 from rosprivacy.analysis.kernel.spreading import spread
-from rosprivacy.analysis.non_ros import concerns
 from rosprivacy.fleets import analysed, read_all
 from rosprivacy.ingest.fleet.alike_robots import Alike
 from rosprivacy.ingest.fleet.fleet_graph import place
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from typing import Any
 
-    from rosprivacy.analysis.kernel.spreading import Spread
+    from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.ingest.fleet.fleet_graph import Placed
     from rosprivacy.ontology.vocabulary import Vocabulary
 

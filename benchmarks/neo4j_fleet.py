@@ -25,7 +25,7 @@ from rosprivacy.ontology.vocabulary import Vocabulary
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rosprivacy.analysis.model import Analysis
+    from rosprivacy.analysis.answer import Analysis
     from rosprivacy.ingest.database.rows import RobotRows
 
 ROBOTS, MODELS, NODES, TOPICS, FLOWS, KINDS = 1000, 10, 30, 50, 180, 24

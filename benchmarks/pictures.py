@@ -27,7 +27,7 @@ from rosprivacy.report.pictures.views import PER_BOX, FindingViews, bounded, pri
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from rosprivacy.analysis.model import Analysis, Finding
+    from rosprivacy.analysis.answer import Analysis, Finding
 
 MODULES = ("sensing", "perception", "localization", "map", "planning", "control", "vehicle", "system", "api", "tools")
 NODES, TOPICS, SERVICES, ACTIONS = 300, 1230, 340, 30

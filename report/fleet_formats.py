@@ -16,8 +16,9 @@ from rosprivacy.report.pictures.wording import counted
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.fleet.patterns import FleetView, Pattern
-    from rosprivacy.analysis.model import Analysis, FlowGraph
+    from rosprivacy.analysis.model import FlowGraph
     from rosprivacy.report.rdf.terms import Triple
 
 FINDING = "rosprivacyFinding/v1"  # fingerprint that is the finding's id

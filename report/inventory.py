@@ -15,8 +15,9 @@ from rosprivacy.analysis.model import ARTICLE_9_VERDICTS
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
+    from rosprivacy.analysis.answer import Analysis, Finding
     from rosprivacy.analysis.hierarchy import Hierarchy
-    from rosprivacy.analysis.model import Analysis, Category, Element, Finding, Legal
+    from rosprivacy.analysis.model import Category, Element, Legal
 
 _STRENGTH = {verdict: number for number, verdict in enumerate(ARTICLE_9_VERDICTS)}
 

@@ -15,8 +15,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
     from typing import Any
 
+    from rosprivacy.analysis.answer import Analysis, Finding, OpenQuestion, Step
     from rosprivacy.analysis.kernel.roles import Facts
-    from rosprivacy.analysis.model import Analysis, Element, Finding, OpenQuestion, Step
+    from rosprivacy.analysis.model import Element
 
     Shown = tuple[str, ...]
 

@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 import rosprivacy
+from tests.helpers.cases import CASES
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
     from pathlib import Path
 
 FLEETS = sorted(path.parent for path in (ROOT / "tests" / "cases").glob("*/fleet.json"))
-CASES = sorted(path.parent for path in (ROOT / "tests" / "cases").glob("*/case.json"))
 
 
 def name(element: dict[str, Any]) -> str:

@@ -19,7 +19,7 @@ import pytest
 import yaml
 
 from tests.helpers.paths import ROOT
-from tests.report.sarif.test_sarif import HOSTILE, checked
+from tests.helpers.sarif import HOSTILE, checked
 
 ACTION, HOOKS, CI = ROOT / "action.yml", ROOT / ".pre-commit-hooks.yaml", ROOT / "examples" / "ci"
 FACTORY = ROOT / "examples" / "factory"

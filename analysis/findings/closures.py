@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.kernel.backward import Backward
     from rosprivacy.analysis.kernel.roles import Facts
-    from rosprivacy.analysis.kernel.spreading import Spread
+    from rosprivacy.analysis.kernel.spread import Spread
 
 Line = Statement | Place
 DENY, STANDARD = "deny", "standard-channel"

@@ -14,7 +14,7 @@ from rosprivacy.analysis.kernel.search import START, Net, Search, path_to, searc
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rosprivacy.analysis.kernel.spreading import Spread
+    from rosprivacy.analysis.kernel.spread import Spread
 
 
 @dataclass(frozen=True, slots=True)

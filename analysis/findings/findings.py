@@ -14,35 +14,28 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.answer import Analysis, Carried, Finding, Step, Verdict
 from rosprivacy.analysis.decisions import Case
+from rosprivacy.analysis.findings.concerns import concerns
 from rosprivacy.analysis.findings.further_paths import WITNESS, Between, further
 from rosprivacy.analysis.findings.open_questions import open_questions
 from rosprivacy.analysis.findings.unknown_ends import unknown_ends
 from rosprivacy.analysis.kernel import standard_channels
 from rosprivacy.analysis.kernel.search import START, Net, Search, path_to, present, search
-from rosprivacy.analysis.kernel.spreading import Spread, bits_of, spread
-from rosprivacy.analysis.model import (
-    DISCLOSURE,
-    Analysis,
-    Carried,
-    Diagnostic,
-    Element,
-    Finding,
-    Place,
-    Severity,
-    Step,
-    Verdict,
-)
-from rosprivacy.analysis.non_ros import concerns, country_unknown, on_day
+from rosprivacy.analysis.kernel.spread import Spread, bits_of
+from rosprivacy.analysis.kernel.spreading import spread
+from rosprivacy.analysis.model import DISCLOSURE, Diagnostic, Element, Place, Severity
+from rosprivacy.analysis.non_ros import country_unknown, on_day
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
     from collections.abc import Set as AbstractSet
     from typing import Any
 
+    from rosprivacy.analysis.answer import OpenQuestion
+    from rosprivacy.analysis.findings.concerns import Concern
     from rosprivacy.analysis.hierarchy import Hierarchy
-    from rosprivacy.analysis.model import Bound, FlowGraph, OpenQuestion
-    from rosprivacy.analysis.non_ros import Concern
+    from rosprivacy.analysis.model import Bound, FlowGraph
 
 MAX_PATHS = 100
 Chosen = tuple[str, int, int, bool]  # kind, leak, number of the category, whether beside a pseudonymised one

@@ -1,8 +1,9 @@
 """The ways to leaks: along which flows data can come from a source to a leak of a category (rule S10).
 
 In: a spread. Out: flows. A finding shows one shortest way; a picture has to show where the data can go at all. What is
-asked of a flow is whether it lies on a walk from a source to a leak, over states (vertex, bit) as in ``further_paths.py``.
-Flows on detours that must come back to where they began are left out: no way without a circle uses them.
+asked of a flow is whether it lies on a walk from a source to a leak, over states (vertex, bit) as in
+``further_paths.py``. Flows on detours that must come back to where they began are left out: no way without a circle
+uses them.
 
 Source: the paper, section II-B, which colours the edges of vulnerable paths. To say of a flow exactly whether a path
 without circles uses it is NP-hard on directed graphs; dominators say no only where that is certain.
@@ -14,7 +15,7 @@ from collections import defaultdict, deque
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.kernel.spreading import bits_of
+from rosprivacy.analysis.kernel.spread import bits_of
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping

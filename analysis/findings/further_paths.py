@@ -10,7 +10,7 @@ from collections import defaultdict, deque
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.kernel.spreading import bits_of
+from rosprivacy.analysis.kernel.spread import bits_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -15,16 +15,18 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.findings.closures import PERHAPS, Closure, behind, closures, line_key
+from rosprivacy.analysis.findings.concerns import concerns
 from rosprivacy.analysis.kernel.roles import NOTHING_SAID
 from rosprivacy.analysis.model import Place, Statement
-from rosprivacy.analysis.non_ros import concerns, country_unknown
+from rosprivacy.analysis.non_ros import country_unknown
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
+    from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.hierarchy import Hierarchy
-    from rosprivacy.analysis.kernel.spreading import Spread
-    from rosprivacy.analysis.model import Analysis, Bound, Diagnostic, Element
+    from rosprivacy.analysis.kernel.spread import Spread
+    from rosprivacy.analysis.model import Bound, Diagnostic, Element
 
 OUTDONE, REVIEW, DECISION, RESTRICTION = "outdone", "review", "decision", "restriction"
 UNREAD, UNKNOWN_READER = "unread-file", "unknown-reader"

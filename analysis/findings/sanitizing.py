@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping, Sequence
 
-    from rosprivacy.analysis.kernel.spreading import Spread
+    from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Element
 
 

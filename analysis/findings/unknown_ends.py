@@ -14,7 +14,7 @@ from rosprivacy.analysis.model import NON_ROS, UnknownEnd
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
 
-    from rosprivacy.analysis.kernel.spreading import Spread
+    from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Element, FlowGraph
 
 

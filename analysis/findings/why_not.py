@@ -19,8 +19,9 @@ from rosprivacy.analysis.kernel.roles import NOTHING_SAID
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from rosprivacy.analysis.kernel.spreading import Spread
-    from rosprivacy.analysis.model import Analysis, Element, Finding, Place, Statement
+    from rosprivacy.analysis.answer import Analysis, Finding
+    from rosprivacy.analysis.kernel.spread import Spread
+    from rosprivacy.analysis.model import Element, Place, Statement
 
 NO_SOURCE, NO_LEAK, THROUGH = "no-source", "no-leak", "other-channels"
 

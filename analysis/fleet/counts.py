@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection
 
     from rosprivacy.analysis.fleet.patterns import Likeness
-    from rosprivacy.analysis.kernel.spreading import Spread
+    from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import FlowGraph
 
 

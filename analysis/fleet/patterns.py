@@ -15,7 +15,8 @@ from rosprivacy.analysis.findings.findings import finding_id
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
 
-    from rosprivacy.analysis.model import Analysis, Element, Finding, OpenQuestion
+    from rosprivacy.analysis.answer import Analysis, Finding, OpenQuestion
+    from rosprivacy.analysis.model import Element
 
 
 @dataclass(frozen=True, slots=True)

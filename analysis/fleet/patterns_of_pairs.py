@@ -20,11 +20,12 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.analysis.findings.concerns import Concern
     from rosprivacy.analysis.fleet.patterns import Likeness
     from rosprivacy.analysis.fleet.source_leak_pairs import Pairs
-    from rosprivacy.analysis.kernel.spreading import Spread
-    from rosprivacy.analysis.model import Analysis, Element
-    from rosprivacy.analysis.non_ros import Concern
+    from rosprivacy.analysis.kernel.spread import Spread
+    from rosprivacy.analysis.model import Element
 
     Indices = NDArray[np.int64]
     Flags = NDArray[np.bool_]

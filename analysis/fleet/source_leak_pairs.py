@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from rosprivacy.analysis.kernel.spreading import Spread
-    from rosprivacy.analysis.non_ros import Concern
+    from rosprivacy.analysis.findings.concerns import Concern
+    from rosprivacy.analysis.kernel.spread import Spread
 
     Indices = NDArray[np.int64]
     Bits = NDArray[np.uint64]

@@ -23,7 +23,7 @@ from rosprivacy.analysis.kernel.fixpoint import fixpoint
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
 
-    from rosprivacy.analysis.kernel.spreading import Spread
+    from rosprivacy.analysis.kernel.spread import Spread
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,7 @@ from rosprivacy.analysis.kernel.backward import NOTHING_OPENED, Opened
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from rosprivacy.analysis.kernel.spreading import Spread
+    from rosprivacy.analysis.kernel.spread import Spread
 
 FAR = 1 << 60  # further than any path is long
 

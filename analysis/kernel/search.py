@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from rosprivacy.analysis.kernel.spreading import Spread
+    from rosprivacy.analysis.kernel.spread import Spread
 
 START = -1
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.model import GLOB, STANDARD
 
 if TYPE_CHECKING:
-    from rosprivacy.analysis.kernel.spreading import Spread
+    from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Bound, Element
 
 SAYS_OTHERWISE = ("sensitive", "only")

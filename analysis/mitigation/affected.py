@@ -10,7 +10,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from rosprivacy.analysis.model import Analysis, Element
+    from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.analysis.model import Element
 
 Shown = tuple[str, str, str, str]  # robot, kind, name and leg, as a reader sees them
 

@@ -8,16 +8,16 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.kernel.spreading import bits_of
+from rosprivacy.analysis.kernel.spread import bits_of
 from rosprivacy.analysis.mitigation.changed_system import opens
 from rosprivacy.analysis.mitigation.cut_network import merged
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping
 
-    from rosprivacy.analysis.mitigation.candidates import Limits
+    from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.mitigation.cut_network import At
-    from rosprivacy.analysis.model import Analysis
+    from rosprivacy.analysis.mitigation.limits import Limits
 
 
 class ChangeSites:

@@ -1,7 +1,7 @@
 """The ways that have to be cut: from sources to open findings, as a network over (element, category) (rules S8, S10).
 
-In: a spread and, per group of sources, at which leaks their data may not arrive. Out: ``CutNetwork``: numbered states and
-arcs between them, each arc with the flow that it goes along or the channel that it passes. The two planes of a
+In: a spread and, per group of sources, at which leaks their data may not arrive. Out: ``CutNetwork``: numbered states
+and arcs between them, each arc with the flow that it goes along or the channel that it passes. The two planes of a
 category are one state: a sanitizer that pseudonymises lets it pass, one that ends it does not, in both planes alike.
 """
 
@@ -11,13 +11,13 @@ from collections import defaultdict, deque
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.kernel.spreading import bits_of
+from rosprivacy.analysis.kernel.spread import bits_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 
     from rosprivacy.analysis.kernel.search import Net
-    from rosprivacy.analysis.kernel.spreading import Spread
+    from rosprivacy.analysis.kernel.spread import Spread
 
 BEGIN, END = 0, 1  # the two states that every network has
 At = tuple[int, int]  # vertex, number of the category

@@ -1,9 +1,9 @@
 """The cheapest set of changes that cuts every way of a network, and how certain it is that none is cheaper.
 
-In: ``CutNetwork`` and ``Candidate``s. Out: ``ChangeSet``s. networkx's minimum cut gives a set of changes, and with the cost of a
-change shared among the arcs that it cuts a bound that no set undercuts. Where every change cuts one arc the two meet:
-the set is a minimum cut and exact. Where they do not meet (a change that cuts several arcs makes the problem NP-hard:
-minimum label cut), a search by hitting sets closes the gap as long as it stays within its budget of steps.
+In: ``CutNetwork`` and ``Candidate``s. Out: ``ChangeSet``s. networkx's minimum cut gives a set of changes, and with the
+cost of a change shared among the arcs that it cuts a bound that no set undercuts. Where every change cuts one arc the
+two meet: the set is a minimum cut and exact. Where they do not meet (a change that cuts several arcs makes the problem
+NP-hard: minimum label cut), a search by hitting sets closes the gap as long as it stays within its budget of steps.
 """
 
 from __future__ import annotations

@@ -9,8 +9,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from rosprivacy.analysis.answer import Finding, Verdict
     from rosprivacy.analysis.mitigation.affected import Affected
-    from rosprivacy.analysis.model import Element, Finding, Grant, Verdict
+    from rosprivacy.analysis.model import Element, Grant
 
 ITSELF, NOT_ALLOWED = "itself", "not-allowed"
 

@@ -15,12 +15,14 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.findings.findings import Options, analyse
 from rosprivacy.analysis.kernel.search import Net
-from rosprivacy.analysis.kernel.spreading import bits_of, spread
+from rosprivacy.analysis.kernel.spread import bits_of
+from rosprivacy.analysis.kernel.spreading import spread
 from rosprivacy.analysis.mitigation.affected import affected
-from rosprivacy.analysis.mitigation.candidates import DENY, FILTER, REVIEW, Limits, candidates, uncut
+from rosprivacy.analysis.mitigation.candidates import candidates, uncut
 from rosprivacy.analysis.mitigation.change_sites import ChangeSites
 from rosprivacy.analysis.mitigation.changed_system import opened, with_changes
 from rosprivacy.analysis.mitigation.cut_network import Group, a_way, cut_network, merged, open_ends
+from rosprivacy.analysis.mitigation.limits import DENY, FILTER, REVIEW, Limits
 from rosprivacy.analysis.mitigation.min_cut import BUDGET, cheapest
 from rosprivacy.analysis.mitigation.proposals import ITSELF, NOT_ALLOWED, Kept, Proposal, ProposedStep
 from rosprivacy.analysis.model import DISCLOSURE
@@ -28,11 +30,12 @@ from rosprivacy.analysis.model import DISCLOSURE
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 
+    from rosprivacy.analysis.answer import Analysis, Finding
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.mitigation.candidates import Candidate, Denial
     from rosprivacy.analysis.mitigation.cut_network import Arc, At, CutNetwork
     from rosprivacy.analysis.mitigation.min_cut import ChangeSet
-    from rosprivacy.analysis.model import Analysis, Bound, Element, Finding, FlowGraph, Grant
+    from rosprivacy.analysis.model import Bound, Element, FlowGraph, Grant
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,5 @@
-"""What the parts of a fleet say of sources and leaks -> patterns, as ``fleet/patterns_of_pairs.py`` makes them of one graph (rule S10).
+"""What the parts of a fleet say of sources and leaks -> patterns, as ``fleet/patterns_of_pairs.py`` makes them of one
+graph (rule S10).
 
 In: pairs within units; and between units, which class of sources gets how to which leak, so that pairs are counted and
 not made one by one. Out: groups with one pair each to show, and how each robot takes part.

@@ -17,10 +17,11 @@ from rosprivacy.analysis.legal import turned_special
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
+    from rosprivacy.analysis.answer import Analysis, Finding
     from rosprivacy.analysis.findings.derived_from import Origin
     from rosprivacy.analysis.fleet.patterns import Likeness
-    from rosprivacy.analysis.kernel.spreading import Spread
-    from rosprivacy.analysis.model import Analysis, Bound, Element, Finding, Statement
+    from rosprivacy.analysis.kernel.spread import Spread
+    from rosprivacy.analysis.model import Bound, Element, Statement
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 Row = dict[str, Any]

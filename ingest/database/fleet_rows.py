@@ -11,9 +11,9 @@ from collections import defaultdict
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.answer import Verdict
 from rosprivacy.analysis.findings.derived_from import origins
 from rosprivacy.analysis.fleet.patterns import pattern_id
-from rosprivacy.analysis.model import Verdict
 from rosprivacy.ingest.database.element_properties import (
     Names,
     Roles,
@@ -28,8 +28,9 @@ from rosprivacy.ingest.database.rows import add_roles, allowed, denied, element_
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
+    from rosprivacy.analysis.answer import Analysis, Finding
     from rosprivacy.analysis.fleet.patterns import Likeness
-    from rosprivacy.analysis.model import Analysis, Element, Finding, Flow
+    from rosprivacy.analysis.model import Element, Flow
     from rosprivacy.ingest.database.rows import RobotRows, Row
     from rosprivacy.ingest.fleet.fleet_graph import Placed
     from rosprivacy.ontology.vocabulary import Vocabulary

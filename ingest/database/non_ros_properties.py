@@ -8,8 +8,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.durations import ordered, parse
-from rosprivacy.analysis.model import Place
-from rosprivacy.analysis.non_ros import EVERY, RECIPIENTS, TRANSFERS, NonRosFacts
+from rosprivacy.analysis.model import NonRosFacts, Place
+from rosprivacy.analysis.non_ros import EVERY, RECIPIENTS, TRANSFERS
 from rosprivacy.ingest.labels.countries import countries
 
 if TYPE_CHECKING:

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
     from neo4j import Driver, ManagedTransaction, Record
 
-    from rosprivacy.analysis.non_ros import NonRosFacts
+    from rosprivacy.analysis.model import NonRosFacts
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 DATABASE = "the database"

@@ -28,8 +28,8 @@ from rosprivacy.ingest.database.schema import KIND_LABELS, LEG, WILDCARD
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-    from rosprivacy.analysis.model import Analysis, Bound, Element, Flow, Grant, Statement
-    from rosprivacy.analysis.non_ros import NonRosFacts
+    from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.analysis.model import Bound, Element, Flow, Grant, NonRosFacts, Statement
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 Row = dict[str, Any]

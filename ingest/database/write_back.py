@@ -9,8 +9,9 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.answer import Verdict
 from rosprivacy.analysis.errors import DatabaseError
-from rosprivacy.analysis.model import Verdict, unread
+from rosprivacy.analysis.model import unread
 from rosprivacy.ingest.database import cypher
 from rosprivacy.ingest.database.element_properties import (
     Names,
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
 
     from neo4j import Driver, ManagedTransaction
 
-    from rosprivacy.analysis.model import Analysis
+    from rosprivacy.analysis.answer import Analysis
     from rosprivacy.ingest.database.read_back import Stored
     from rosprivacy.ontology.vocabulary import Vocabulary
 

@@ -25,8 +25,7 @@ from rosprivacy.ingest.labels.entries import End
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-    from rosprivacy.analysis.model import Bound, FlowGraph, Place, Profile, Statement
-    from rosprivacy.analysis.non_ros import NonRosFacts
+    from rosprivacy.analysis.model import Bound, FlowGraph, NonRosFacts, Place, Profile, Statement
     from rosprivacy.ingest.fleet.alike_robots import Alike
     from rosprivacy.ingest.fleet.dds_domains import Member
     from rosprivacy.ingest.fleet.fleet_file import Fleet

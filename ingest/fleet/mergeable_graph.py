@@ -14,8 +14,7 @@ from rosprivacy.analysis.model import Bound, Element, Flow, FlowGraph
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
-    from rosprivacy.analysis.model import Grant, Profile, Statement
-    from rosprivacy.analysis.non_ros import NonRosFacts
+    from rosprivacy.analysis.model import Grant, NonRosFacts, Profile, Statement
 
 K = TypeVar("K")
 V = TypeVar("V")

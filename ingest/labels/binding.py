@@ -21,8 +21,7 @@ from rosprivacy.ingest.policies.names import covers, is_pattern, matcher
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-    from rosprivacy.analysis.model import FlowGraph, Statement
-    from rosprivacy.analysis.non_ros import NonRosFacts
+    from rosprivacy.analysis.model import FlowGraph, NonRosFacts, Statement
     from rosprivacy.ingest.labels.entries import Entry, FlowEntry
     from rosprivacy.ingest.labels.label_file import Labels
 

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Protocol
 from rosprivacy.analysis.durations import Duration, ordered
 from rosprivacy.analysis.durations import parse as parse_duration
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.model import NON_ROS, Place
-from rosprivacy.analysis.non_ros import EVERY, RECIPIENTS, TRANSFERS, NonRosFacts
+from rosprivacy.analysis.model import NON_ROS, NonRosFacts, Place
+from rosprivacy.analysis.non_ros import EVERY, RECIPIENTS, TRANSFERS
 from rosprivacy.ingest.labels.countries import countries
 
 if TYPE_CHECKING:

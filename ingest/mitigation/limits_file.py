@@ -12,7 +12,7 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors, LimitsError, shown
-from rosprivacy.analysis.mitigation.candidates import CHANGES, LARGEST_COST, Limits, Rule, Weights
+from rosprivacy.analysis.mitigation.limits import CHANGES, LARGEST_COST, Limits, Rule, Weights
 from rosprivacy.ingest.policies.names import covers, is_pattern, matcher
 from rosprivacy.ingest.reading import yaml_values
 from rosprivacy.ingest.reading.format_reader import FileReader

@@ -27,7 +27,8 @@ from rosprivacy.report.cnil.markup import (
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping
 
-    from rosprivacy.analysis.model import Analysis, Carried, Element, Finding
+    from rosprivacy.analysis.answer import Analysis, Carried, Finding
+    from rosprivacy.analysis.model import Element
     from rosprivacy.report.inventory import Cleaning, Kind
 
     Stated = Mapping[tuple[str, str, str], Mapping[str, str]]

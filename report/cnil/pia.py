@@ -23,8 +23,9 @@ from rosprivacy.report.inventory import kinds_of
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.hierarchy import Hierarchy
-    from rosprivacy.analysis.model import Analysis, Category, FlowGraph
+    from rosprivacy.analysis.model import Category, FlowGraph
     from rosprivacy.report.cnil.answers import Stated
     from rosprivacy.report.inventory import Cleaning
 

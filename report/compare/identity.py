@@ -1,7 +1,7 @@
 """What elements and findings of two documents are told apart by: the same for ``diff`` and for ``report --since``.
 
-In: a document of the contract. Out: keys of texts, for ``report/compare/matching.py``. Of a fleet, a robot that stands for
-others counts by its model, so that it does not matter which one is shown.
+In: a document of the contract. Out: keys of texts, for ``report/compare/matching.py``. Of a fleet, a robot that stands
+for others counts by its model, so that it does not matter which one is shown.
 """
 
 from __future__ import annotations

@@ -19,21 +19,11 @@ from rosprivacy.report.document.non_ros import inventory, taken_by_kind, without
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
 
+    from rosprivacy.analysis.answer import Analysis, Finding, Step
     from rosprivacy.analysis.findings.ledger import TakenAway
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.kernel.overruled import Overruled
-    from rosprivacy.analysis.model import (
-        Analysis,
-        Category,
-        Diagnostic,
-        Element,
-        Finding,
-        Flow,
-        FlowGraph,
-        Grant,
-        Legal,
-        Step,
-    )
+    from rosprivacy.analysis.model import Category, Diagnostic, Element, Flow, FlowGraph, Grant, Legal
 
 FORMAT = "rosprivacy.analysis/1"
 _KEYS = {"name": "provision"}  # what the contract calls otherwise than the model

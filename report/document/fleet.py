@@ -16,8 +16,8 @@ from rosprivacy.report.document.analysis import element_dict
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.fleet.patterns import Deviant, FleetView, Likeness, Pattern, Share
-    from rosprivacy.analysis.model import Analysis
 
 ROWS = ("subjects", "sanitizers", "derivations", "unreached")  # what the whole graph tells; the rest is shown already
 

@@ -14,10 +14,11 @@ from rosprivacy.report.document.analysis import element_dict
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
+    from rosprivacy.analysis.answer import Analysis, Finding
     from rosprivacy.analysis.mitigation.affected import Affected, Shown
-    from rosprivacy.analysis.mitigation.candidates import Limits
+    from rosprivacy.analysis.mitigation.limits import Limits
     from rosprivacy.analysis.mitigation.proposals import Proposal, ProposedStep
-    from rosprivacy.analysis.model import Analysis, Element, Finding, Grant
+    from rosprivacy.analysis.model import Element, Grant
 
 FORMAT = "rosprivacy.mitigation/1"
 SECTIONS = {"topic": "topics", "service": "services", "action": "actions"}

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.non_ros import TAKEN, country_unknown, limited
 
 if TYPE_CHECKING:
+    from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.hierarchy import Hierarchy
-    from rosprivacy.analysis.model import Analysis, Element
-    from rosprivacy.analysis.non_ros import NonRosFacts
+    from rosprivacy.analysis.model import Element, NonRosFacts
 
 
 def inventory(analysis: Analysis, hierarchy: Hierarchy) -> list[dict[str, Any]]:

@@ -18,7 +18,7 @@ from rosprivacy.report.pictures.wording import printable
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from rosprivacy.analysis.model import Analysis
+    from rosprivacy.analysis.answer import Analysis
     from rosprivacy.report.page.outline import Outline
     from rosprivacy.report.page.words import Words
     from rosprivacy.report.pictures.picture import Key

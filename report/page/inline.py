@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from markupsafe import Markup
 
-    from rosprivacy.analysis.model import Analysis, Finding
+    from rosprivacy.analysis.answer import Analysis, Finding
     from rosprivacy.report.pictures.phrases import Phrases
     from rosprivacy.report.pictures.picture import Picture
 

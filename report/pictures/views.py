@@ -13,9 +13,10 @@ from collections import defaultdict
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.answer import Verdict
 from rosprivacy.analysis.findings.flows_to_leaks import FlowsToLeaks, flows_to_leaks
 from rosprivacy.analysis.kernel.search import Net
-from rosprivacy.analysis.model import DISCLOSURE, Verdict
+from rosprivacy.analysis.model import DISCLOSURE
 from rosprivacy.report.pictures.looks import ALLOWED, DATA, DENIED, MATCHES, SHORTEST, WAY
 from rosprivacy.report.pictures.picture import PRIVACY, ROS, Box, Line, Picture, order, sorted_boxes, sorted_lines
 from rosprivacy.report.pictures.privacy import Reached
@@ -24,7 +25,8 @@ from rosprivacy.report.pictures.wording import counted, listed, shortened
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping
 
-    from rosprivacy.analysis.model import Analysis, Finding, Flow, FlowGraph, Grant, Place
+    from rosprivacy.analysis.answer import Analysis, Finding
+    from rosprivacy.analysis.model import Flow, FlowGraph, Grant, Place
     from rosprivacy.report.pictures.phrases import Phrases
     from rosprivacy.report.pictures.picture import Key
 

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
 
-    from rosprivacy.analysis.model import Analysis, Element, Finding, Legal
+    from rosprivacy.analysis.answer import Analysis, Finding
+    from rosprivacy.analysis.model import Element, Legal
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 

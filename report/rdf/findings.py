@@ -41,8 +41,9 @@ if TYPE_CHECKING:
     from rdflib import URIRef
     from rdflib.term import Node
 
+    from rosprivacy.analysis.answer import Analysis, Finding
     from rosprivacy.analysis.findings.ledger import TakenAway
-    from rosprivacy.analysis.model import Analysis, Diagnostic, Element, Finding
+    from rosprivacy.analysis.model import Diagnostic, Element
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.report.rdf.facts import Change
     from rosprivacy.report.rdf.things import Stated

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from rdflib import URIRef
 
-    from rosprivacy.analysis.model import Analysis, OpenQuestion
+    from rosprivacy.analysis.answer import Analysis, OpenQuestion
     from rosprivacy.report.rdf.things import Things
 
 NO_VERDICT = "Labels are a person's word, and a way can be lawful. This is no legal verdict."

@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 
     from rdflib.term import Node
 
-    from rosprivacy.analysis.model import Element, Finding, Grant
+    from rosprivacy.analysis.answer import Finding
+    from rosprivacy.analysis.model import Element, Grant
 
 Triple = tuple["Node", "Node", "Node"]
 

@@ -9,15 +9,17 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.answer import Step
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.model import Flow, Step
+from rosprivacy.analysis.model import Flow
 from rosprivacy.report.lines import one_line
 from rosprivacy.report.places import of_step
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
-    from rosprivacy.analysis.model import Analysis, Element, Finding, Place
+    from rosprivacy.analysis.answer import Analysis, Finding
+    from rosprivacy.analysis.model import Element, Place
     from rosprivacy.report.places import Places
 
     Physical = Callable[[Place], dict[str, Any]]

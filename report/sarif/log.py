@@ -31,7 +31,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
     from pathlib import Path
 
-    from rosprivacy.analysis.model import Analysis, Category, Diagnostic, Legal
+    from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.analysis.model import Category, Diagnostic, Legal
 
 SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 MAX_RESULTS = 25_000

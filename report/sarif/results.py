@@ -9,9 +9,9 @@ import hashlib
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.answer import Verdict
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.legal import MAY_REVEAL, turned_special
-from rosprivacy.analysis.model import Verdict
 from rosprivacy.report.places import NOWHERE, of_step, to_review
 from rosprivacy.report.sarif.artifacts import uri_of
 from rosprivacy.report.sarif.flows import flows_of, logical, named, prose, text
@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
-    from rosprivacy.analysis.model import Analysis, Category, Element, Finding, Flow, Legal, OpenQuestion, Place
+    from rosprivacy.analysis.answer import Analysis, Finding, OpenQuestion
+    from rosprivacy.analysis.model import Category, Element, Flow, Legal, Place
     from rosprivacy.report.places import Places
 
 ROOT = "%SRCROOT%"

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from rich.text import Text
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.mitigation.candidates import DENY, FILTER, REVIEW
+from rosprivacy.analysis.mitigation.limits import DENY, FILTER, REVIEW
 from rosprivacy.analysis.mitigation.proposals import ITSELF
 from rosprivacy.analysis.model import STORAGE_LIMITATION, THIRD_COUNTRY
 from rosprivacy.report.document.mitigation import SECTIONS

@@ -41,9 +41,10 @@ from rosprivacy.report.document.fleet import fleet_document
 if TYPE_CHECKING:
     from neo4j import Driver
 
+    from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.decisions import Decided
     from rosprivacy.analysis.findings.ledger import TakenAway
-    from rosprivacy.analysis.model import Analysis, Bound, Diagnostic, FlowGraph, Policy
+    from rosprivacy.analysis.model import Bound, Diagnostic, FlowGraph, Policy
     from rosprivacy.ingest.database.rows import RobotRows
     from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.ontology.vocabulary import Vocabulary

@@ -17,9 +17,9 @@ from rosprivacy.ontology.special import special_provision
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from rosprivacy.analysis.answer import Analysis, Finding
     from rosprivacy.analysis.decisions import Decided, Decisions
     from rosprivacy.analysis.fleet.patterns import Likeness
-    from rosprivacy.analysis.model import Analysis, Finding
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.settings import Settings
 

@@ -14,9 +14,9 @@ from rosprivacy.clock import source_date
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.decisions import Decision
-    from rosprivacy.analysis.model import Analysis
-    from rosprivacy.analysis.non_ros import NonRosFacts
+    from rosprivacy.analysis.model import NonRosFacts
     from rosprivacy.assembly import Result
 
     Stated = Mapping[tuple[str, str, str], Mapping[str, str]]

@@ -19,13 +19,12 @@ from rosprivacy.ingest.labels.label_file import read_labels, shipped_text
 from rosprivacy.ingest.policies.policy_files import read_policies
 from rosprivacy.ingest.policies.saved_graph import as_dict
 from rosprivacy.ontology.vocabulary import load
-from tests.helpers.command import Cli, refused, run
+from tests.helpers.command import XI, Cli, refused, run
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
 ESCAPE = "\x1b"
-XI = 'xmlns:xi="http://www.w3.org/2001/XInclude"'
 
 
 def document(cli: Cli, *arguments: str | Path, cwd: Path | None = None) -> Any:

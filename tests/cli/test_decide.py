@@ -18,8 +18,8 @@ from rosprivacy.analysis.model import Place
 from rosprivacy.ingest.decisions.decision_writer import with_decision
 from rosprivacy.ingest.decisions.decisions_file import parse_decisions
 from rosprivacy.ontology.vocabulary import load
-from tests.cli.test_mitigate import BEFORE, RUN3
 from tests.helpers.command import Cli, refused
+from tests.helpers.factory import BEFORE, RUN3
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -14,20 +14,18 @@ import yaml
 from jsonschema import Draft202012Validator
 
 import rosprivacy
-from rosprivacy.analysis.mitigation.candidates import Weights
+from rosprivacy.analysis.mitigation.limits import Weights
 from rosprivacy.ingest.policies.policy_xml import read_policy
-from tests.cli.test_cli import XI
-from tests.helpers.command import Cli, Done, refused, run
+from tests.helpers.command import XI, Cli, Done, refused, run
+from tests.helpers.factory import BEFORE, FACTORY, RUN3
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-FACTORY = ROOT / "examples" / "factory"
 SCHEMA = json.loads((ROOT / "docs" / "mitigation.schema.json").read_text("utf-8"))
 Draft202012Validator.check_schema(SCHEMA)
-BEFORE, RUN3 = FACTORY / "before.policy.xml", FACTORY / "run3.labels.yaml"
 
 
 def proposals(cli: Cli, *arguments: str | Path, cwd: Path | None = None) -> Any:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterator
 
     from rosprivacy.analysis.hierarchy import Hierarchy
-    from rosprivacy.analysis.non_ros import NonRosFacts
+    from rosprivacy.analysis.model import NonRosFacts
 
 Data = tuple[str, bool]  # category, pseudonymised
 

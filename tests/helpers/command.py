@@ -66,3 +66,6 @@ def refused(done: Done) -> list[str]:
     assert lines
     assert all(LINE.match(line) for line in lines), done.stderr
     return lines
+
+
+XI = 'xmlns:xi="http://www.w3.org/2001/XInclude"'

@@ -14,7 +14,7 @@ from tests.helpers.graphs import care_home, factory, hospital
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from rosprivacy.analysis.model import Analysis
+    from rosprivacy.analysis.answer import Analysis
     from rosprivacy.assembly import Result
     from rosprivacy.report.pictures.picture import Box, Picture
 

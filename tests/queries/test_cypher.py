@@ -10,21 +10,20 @@ from itertools import groupby
 from typing import TYPE_CHECKING
 
 import pytest
-from hypothesis import Phase, given, settings
 
 import rosprivacy
 from rosprivacy.analysis.errors import InputErrors
-from rosprivacy.analysis.model import DISCLOSURE, Category
+from rosprivacy.analysis.model import DISCLOSURE
 from rosprivacy.ingest.database.loading import load
 from rosprivacy.ingest.database.rows import robot_rows
 from rosprivacy.ingest.policies.policy_xml import NotAPolicyError, read_policy
-from rosprivacy.ontology.vocabulary import Vocabulary
 from rosprivacy.ontology.vocabulary import load as load_vocabulary
 from rosprivacy.private_neo4j import connection
 from rosprivacy.queries.library import find
 from rosprivacy.queries.run import run
-from tests.analysis.findings.test_findings import PARENTS, System, analysed, systems
-from tests.test_cases import CASES
+from tests.helpers.cases import CASES
+from tests.helpers.random_rows import VOCABULARY, random_systems
+from tests.helpers.systems import PARENTS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -32,13 +31,12 @@ if TYPE_CHECKING:
 
     from neo4j import Driver
 
-    from rosprivacy.analysis.model import Analysis
+    from rosprivacy.analysis.answer import Analysis
     from rosprivacy.ingest.database.rows import RobotRows
     from rosprivacy.private_neo4j.connection import Connection
 
 pytestmark = pytest.mark.database
 
-VOCABULARY = Vocabulary.of(Category(n, f"urn:test:{n}", f"Test{n}", n, n, up) for n, up in PARENTS.items())
 Way = tuple[str, str, str, str]
 
 
@@ -65,21 +63,6 @@ def found(driver: Driver, name: str, **values: str) -> dict[Way, list[str]]:
     assert len(set(keys)) == len(keys)
     assert keys == sorted(keys)
     return {row[:4]: row[4] for row in rows}
-
-
-def random_systems(count: int) -> list[System]:
-    """The same each time."""
-    some: list[System] = []
-
-    @settings(max_examples=2 * count, derandomize=True, database=None, phases=[Phase.generate], deadline=None)
-    @given(systems())
-    def take(system: System) -> None:
-        if analysed(system) is not None:
-            some.append(system)
-
-    take()
-    assert len(some) >= count
-    return some[:count]
 
 
 @pytest.mark.slow

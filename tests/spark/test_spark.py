@@ -25,13 +25,13 @@ from rosprivacy.settings import Settings
 from rosprivacy.spark import session as spark
 from rosprivacy.spark.fleet_on_spark import run_on_spark
 from rosprivacy.spark.parquet import check_new, read
-from tests.analysis.fleet.test_fleet_findings import Case, fleets
-from tests.analysis.parts.test_parts import FLEET, documents, fleet_file, same
-from tests.cli.test_cli import XI
+from tests.helpers.command import XI
+from tests.helpers.fleet_files import policy, write
+from tests.helpers.fleet_rows import rows as rows_in_memory
 from tests.helpers.graphs import dump
+from tests.helpers.parts import FLEET, documents, fleet_file, same
 from tests.helpers.paths import ROOT
-from tests.ingest.database.test_fleet_rows import rows as rows_in_memory
-from tests.ingest.fleet.test_fleet import policy, write
+from tests.helpers.random_fleets import Case, fleets
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

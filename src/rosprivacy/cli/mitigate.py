@@ -76,7 +76,7 @@ def mitigate(
 
     Ends with 1 if a finding stays that no change removes.
     """
-    from rosprivacy.analysis.mitigation.candidates import CHANGES
+    from rosprivacy.analysis.mitigation.limits import CHANGES
     from rosprivacy.assembly import run
     from rosprivacy.mitigation import run_mitigation
     from rosprivacy.report.document.analysis import as_text

@@ -142,7 +142,7 @@ def _result(
 
     if not from_database:
         return run(tuple(policies or ()), tuple(labels or ()), settings)
-    from rosprivacy.cli.query import driver_of
+    from rosprivacy.cli.driver import driver_of
 
     with driver_of(neo4j) as driver:
         return run_stored(driver, settings)

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.fleet.patterns_of_pairs import Group
     from rosprivacy.analysis.hierarchy import Hierarchy
-    from rosprivacy.analysis.kernel.spreading import Spread
+    from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Element
     from rosprivacy.analysis.parts.border import Core
     from rosprivacy.analysis.parts.part_pairs import Class

@@ -1,8 +1,8 @@
 """A fleet in parts: what each part says is put together here, and what leaves the border is handed out again.
 
-In: a fleet, and a cluster that does the same with each of its parts. Out: the answer of ``fleet_on_spark.py``. Only what is at
-the border travels between parts: sets of categories first; then, for each category, sets of classes of sources, from
-which pairs are counted. Ways are looked for in the end, among the robots that are shown.
+In: a fleet, and a cluster that does the same with each of its parts. Out: the answer of ``fleet_on_spark.py``. Only
+what is at the border travels between parts: sets of categories first; then, for each category, sets of classes of
+sources, from which pairs are counted. Ways are looked for in the end, among the robots that are shown.
 """
 
 from __future__ import annotations
@@ -14,13 +14,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rosprivacy.analysis.answer import Verdict
 from rosprivacy.analysis.errors import FleetError, InputError, InputErrors
 from rosprivacy.analysis.fleet.counts import Counts, counted
 from rosprivacy.analysis.fleet.patterns import different
 from rosprivacy.analysis.fleet.source_leak_pairs import forms
 from rosprivacy.analysis.kernel.arrays import GraphArrays
 from rosprivacy.analysis.kernel.spreading import emitted, fill, meaning
-from rosprivacy.analysis.model import Verdict, unread
+from rosprivacy.analysis.model import unread
 from rosprivacy.analysis.non_ros import on_day
 from rosprivacy.analysis.parts.border import Core
 from rosprivacy.analysis.parts.part_patterns import Crossed
@@ -38,9 +39,8 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.fleet.patterns import Deviant, Likeness
     from rosprivacy.analysis.fleet.patterns_of_pairs import Group
     from rosprivacy.analysis.hierarchy import Hierarchy
-    from rosprivacy.analysis.kernel.spreading import Spread
-    from rosprivacy.analysis.model import Element
-    from rosprivacy.analysis.non_ros import NonRosFacts
+    from rosprivacy.analysis.kernel.spread import Spread
+    from rosprivacy.analysis.model import Element, NonRosFacts
     from rosprivacy.ingest.fleet.alike_robots import Alike
     from rosprivacy.ingest.fleet.fleet_file import Fleet
     from rosprivacy.ingest.fleet.fleet_graph import Some

@@ -20,9 +20,10 @@ from rosprivacy.spark.units import split
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from rosprivacy.analysis.kernel.spreading import Spread
-    from rosprivacy.analysis.model import Analysis, Bound, Element
-    from rosprivacy.analysis.non_ros import Concern, NonRosFacts
+    from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.analysis.findings.concerns import Concern
+    from rosprivacy.analysis.kernel.spread import Spread
+    from rosprivacy.analysis.model import Bound, Element, NonRosFacts
     from rosprivacy.ingest.fleet.dds_domains import Member
     from rosprivacy.ingest.fleet.fleet_graph import Placed
     from rosprivacy.spark.distributed import Found, Question

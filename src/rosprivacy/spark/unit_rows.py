@@ -10,9 +10,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.answer import Verdict
 from rosprivacy.analysis.findings.findings import Options, analyse
 from rosprivacy.analysis.fleet.source_leak_pairs import pairs
-from rosprivacy.analysis.model import Verdict, unread
+from rosprivacy.analysis.model import unread
 from rosprivacy.assumptions import remembered, sources_of, what_it_rests_on
 from rosprivacy.ingest.database.fleet_rows import FleetRows, verdicts
 from rosprivacy.ingest.database.rows import rows_of
@@ -25,10 +26,11 @@ from rosprivacy.spark.units import unit_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 
+    from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.analysis.findings.concerns import Concern
     from rosprivacy.analysis.fleet.source_leak_pairs import Pairs
-    from rosprivacy.analysis.kernel.spreading import Spread
-    from rosprivacy.analysis.model import Analysis, Diagnostic, Element
-    from rosprivacy.analysis.non_ros import Concern, NonRosFacts
+    from rosprivacy.analysis.kernel.spread import Spread
+    from rosprivacy.analysis.model import Diagnostic, Element, NonRosFacts
     from rosprivacy.ingest.database.rows import RobotRows, Row
     from rosprivacy.ingest.fleet.alike_robots import Alike
     from rosprivacy.ingest.fleet.dds_domains import Member

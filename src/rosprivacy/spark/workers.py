@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 import numpy as np
 
 from rosprivacy.analysis.errors import InputErrors
+from rosprivacy.analysis.findings.concerns import concerns
 from rosprivacy.analysis.findings.open_questions import open_bits
 from rosprivacy.analysis.fleet.counts import Counts, counted
-from rosprivacy.analysis.kernel.spreading import Spread, fill, meaning
-from rosprivacy.analysis.non_ros import concerns, country_unknown, on_day
+from rosprivacy.analysis.kernel.spreading import fill, meaning
+from rosprivacy.analysis.non_ros import country_unknown, on_day
 from rosprivacy.analysis.parts.border import Bringer, PartNetwork
 from rosprivacy.analysis.parts.part_pairs import Class, Crossing
 from rosprivacy.analysis.parts.part_patterns import End, Source, Within
@@ -27,10 +28,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from rosprivacy.analysis.findings.concerns import Concern
     from rosprivacy.analysis.fleet.patterns import Likeness
     from rosprivacy.analysis.hierarchy import Hierarchy
+    from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Element
-    from rosprivacy.analysis.non_ros import Concern
     from rosprivacy.ingest.fleet.fleet_file import Fleet
     from rosprivacy.spark.building import Built
     from rosprivacy.spark.units import Border

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from rosprivacy.analysis.findings.flows_to_leaks import flows_to_leaks
 from rosprivacy.analysis.kernel.search import Net
 from rosprivacy.analysis.model import DISCLOSURE
-from tests.analysis.findings.test_findings import System, analysed, index, statement, systems
+from tests.helpers.systems import System, analysed, index, statement, systems
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -17,8 +17,8 @@ from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.findings.findings import analyse
 from rosprivacy.analysis.findings.ledger import ledger
 from rosprivacy.analysis.model import GLOB, Bound, Flow, FlowGraph, Grant, Place, Statement
-from tests.analysis.findings.test_findings import HIERARCHY, System, statement, systems
-from tests.analysis.fleet.test_fleet_findings import Case, fleets, found_in
+from tests.helpers.random_fleets import Case, fleets, found_in
+from tests.helpers.systems import HIERARCHY, System, statement, systems
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

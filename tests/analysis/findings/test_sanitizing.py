@@ -8,11 +8,11 @@ from hypothesis import assume, given
 
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.findings.sanitizing import cleanings, makings
-from tests.analysis.findings.test_findings import index, systems
 from tests.helpers.graphs import care_home, factory
+from tests.helpers.systems import index, systems
 
 if TYPE_CHECKING:
-    from tests.analysis.findings.test_findings import System
+    from tests.helpers.systems import System
 
 
 @given(systems())

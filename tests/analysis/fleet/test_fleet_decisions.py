@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from tests.ingest.fleet.test_fleet import MODELS, folder, write
+from tests.helpers.fleet_files import MODELS, folder, write
 
 if TYPE_CHECKING:
     from tests.helpers.command import Cli

@@ -9,10 +9,10 @@ import numpy as np
 from hypothesis import given
 
 from rosprivacy.analysis.errors import InputErrors
+from rosprivacy.analysis.findings.concerns import concerns
 from rosprivacy.analysis.findings.findings import analyse
 from rosprivacy.analysis.fleet.source_leak_pairs import pairs
-from rosprivacy.analysis.non_ros import concerns
-from tests.analysis.findings.test_findings import WIDE, WIDE_HIERARCHY, System, statement, systems
+from tests.helpers.systems import WIDE, WIDE_HIERARCHY, System, statement, systems
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.model import Bound

@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.model import GLOB, NAME, SEGMENT, Place, Statement
-from tests.analysis.findings.test_findings import PARENTS, System, index, statement, systems
+from tests.helpers.systems import PARENTS, System, index, statement, systems
 
 if TYPE_CHECKING:
-    from rosprivacy.analysis.model import Analysis
+    from rosprivacy.analysis.answer import Analysis
 
 EXACT = 1_000_000
 NAMINGS = [(EXACT, NAME), (EXACT, NAME), (4, SEGMENT), (4, GLOB), (7, GLOB), (7, SEGMENT)]

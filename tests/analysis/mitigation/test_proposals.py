@@ -12,18 +12,19 @@ from hypothesis import strategies as st
 
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.findings.findings import Options, analyse
-from rosprivacy.analysis.mitigation.candidates import FILTER, REVIEW, Limits, Weights
+from rosprivacy.analysis.mitigation.limits import FILTER, REVIEW, Limits, Weights
 from rosprivacy.analysis.mitigation.proposals import NOT_ALLOWED
 from rosprivacy.analysis.mitigation.propose import System, mitigate, open_findings
-from tests.analysis.findings.test_findings import HIERARCHY, PARENTS, statement, systems
-from tests.analysis.findings.test_findings import System as Random
+from tests.helpers.systems import HIERARCHY, PARENTS, statement, systems
+from tests.helpers.systems import System as Random
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
+    from rosprivacy.analysis.answer import Analysis, Finding
     from rosprivacy.analysis.decisions import Case
     from rosprivacy.analysis.mitigation.proposals import Proposal, ProposedStep
-    from rosprivacy.analysis.model import Analysis, Bound, Element, Finding, FlowGraph
+    from rosprivacy.analysis.model import Bound, Element, FlowGraph
 
 
 def no_denial(_: object) -> tuple[()]:

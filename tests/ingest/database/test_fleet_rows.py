@@ -9,19 +9,18 @@ import pytest
 
 import rosprivacy
 from rosprivacy.assembly import run_stored
-from rosprivacy.fleets import analysed, read_all, rows_of_fleet
 from rosprivacy.ingest.database import fleet_rows
 from rosprivacy.ingest.database.fleet_rows import FleetRows
 from rosprivacy.ingest.database.loading import load, unload
-from rosprivacy.ontology.vocabulary import load as load_vocabulary
 from rosprivacy.private_neo4j import connection
 from rosprivacy.queries.library import find
 from rosprivacy.queries.run import run
 from rosprivacy.settings import Settings
-from tests.analysis.fleet.test_fleet_findings import Case, fleets, found_in
+from tests.helpers.fleet_rows import VOCABULARY, rows
 from tests.helpers.graphs import dump
 from tests.helpers.paths import ROOT
-from tests.queries.test_cypher import VOCABULARY as SMALL
+from tests.helpers.random_fleets import Case, fleets, found_in
+from tests.helpers.random_rows import VOCABULARY as SMALL
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -32,13 +31,7 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.database.rows import RobotRows
     from rosprivacy.private_neo4j.connection import Connection
 
-VOCABULARY = load_vocabulary()
 FLEET = str((ROOT / "examples") / "fleet" / "fleet.yaml")
-
-
-def rows(file: str) -> FleetRows:
-    read = read_all(file, VOCABULARY, Settings())
-    return rows_of_fleet(read, analysed(read, VOCABULARY, Settings(), every=True), Settings())
 
 
 @pytest.fixture

@@ -18,10 +18,11 @@ from rosprivacy.ingest.database.write_back import write_back
 from rosprivacy.ontology.vocabulary import load as load_vocabulary
 from rosprivacy.private_neo4j import connection
 from rosprivacy.settings import Settings
+from tests.helpers.additions import ADD_STORAGE
+from tests.helpers.cases import CASES
 from tests.helpers.graphs import care_home, dump, factory, rows_of
-from tests.queries.test_cypher import VOCABULARY as SMALL
-from tests.queries.test_cypher import random_systems
-from tests.test_cases import CASES
+from tests.helpers.random_rows import VOCABULARY as SMALL
+from tests.helpers.random_rows import random_systems
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -83,13 +84,6 @@ def test_on_random_graphs_nothing_changes(driver: Driver) -> None:
     after = dump(driver, without=different)
     assert [set(x) ^ set(y) for x, y in zip(after, before, strict=True)] == [set(), set()]
     assert write_back(driver, read_stored(driver, SMALL), analysis, SMALL) == 0
-
-
-ADD_STORAGE = """
-MATCH (n:RosNode {name: '/recorder'}), (video:DataCategory {name: 'Video'})
-CREATE (bucket:Storage {name: 'footage bucket', retention: 'P30D', country: 'DE'}),
-       (n)-[:FLOWS_TO]->(bucket), (bucket)-[:LEAKS]->(video)
-"""
 
 
 VIDEO = ("PersonImage", "PersonalData", "Video")  # with the broader ones

@@ -15,8 +15,7 @@ from rosprivacy.analysis.model import Element, Place
 from rosprivacy.clock import today
 from rosprivacy.ingest.decisions.decisions_file import parse_decisions
 from rosprivacy.ontology.vocabulary import load
-from tests.cli.test_cli import XI
-from tests.helpers.command import Cli, refused, run
+from tests.helpers.command import XI, Cli, refused, run
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:

@@ -16,12 +16,12 @@ import rosprivacy
 from rosprivacy.analysis.errors import FleetError, InputErrors
 from rosprivacy.fleets import analysed, read_all, run_fleet
 from rosprivacy.ingest.fleet.alike_robots import alike
-from rosprivacy.ingest.fleet.fleet_file import Fleet, read_fleet
 from rosprivacy.ingest.fleet.fleet_schema import fleet_schema
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.settings import Settings
+from tests.helpers.fleet_files import MODELS, policy, read, write
 from tests.helpers.paths import ROOT
-from tests.ingest.labels.test_labels import places
+from tests.helpers.schema_places import places
 
 if TYPE_CHECKING:
     from rosprivacy.assembly import Result
@@ -29,51 +29,7 @@ if TYPE_CHECKING:
 EXAMPLES = ROOT / "examples"
 
 
-def policy(*profiles: str) -> str:
-    """Profiles as ``node>written<read``, names separated by commas; ``!`` before a name denies it."""
-    text = ""
-    for profile in profiles:
-        node, written, read = re.fullmatch(r"([^<>]+)(?:>([^<]*))?(?:<(.*))?", profile).groups()  # type: ignore[union-attr]
-        space, _, name = node.rpartition("/")
-        text += f'<profile ns="{space or "/"}" node="{name}">'
-        for role, names in (("publish", written), ("subscribe", read)):
-            for topic in (names or "").split(","):
-                rule = "DENY" if topic.startswith("!") else "ALLOW"
-                text += f'<topics {role}="{rule}"><topic>{topic.strip("!")}</topic></topics>' if topic else ""
-        text += "</profile>"
-    enclave = f'<enclave path="/e"><profiles>{text}</profiles></enclave>'
-    return f'<policy version="0.2.0"><enclaves>{enclave}</enclaves></policy>'
-
-
-@pytest.fixture(autouse=True)
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Two models: one sees, one shows."""
-    monkeypatch.chdir(tmp_path)
-    write("eye.xml", policy("/camera>/image", "/uplink</image"))
-    write(
-        "eye.yaml",
-        "labels: 1\nnodes:\n  /camera: {source: [Video]}\n  /uplink: conduit\nchannels: {/image: sensitive}\n",
-    )
-    write("wall.xml", policy("/receiver>/picture", "/screen</picture"))
-    write(
-        "wall.yaml",
-        "labels: 1\nnodes:\n  /receiver: conduit\n  /screen: {leak: [Video]}\nchannels: {/picture: sensitive}\n",
-    )
-    return tmp_path
-
-
-def write(name: str, text: str) -> None:
-    Path(name).parent.mkdir(parents=True, exist_ok=True)
-    Path(name).write_text(text, "utf-8")
-
-
 INCLUDE = '<xi:include xmlns:xi="http://www.w3.org/2001/XInclude" href="f.xml"><xi:fallback/></xi:include>'
-MODELS = "models: {eye: {policies: eye.xml, labels: eye.yaml}, wall: {policies: wall.xml, labels: wall.yaml}}\n"
-
-
-def read(text: str) -> Fleet:
-    write("f.yaml", text)
-    return read_fleet("f.yaml", load())
 
 
 def run(text: str, **options: Any) -> Result:

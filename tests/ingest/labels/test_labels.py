@@ -24,9 +24,9 @@ from rosprivacy.ingest.labels.entries import specificity
 from rosprivacy.ingest.labels.label_file import STANDARD, Labels, read_labels, shipped_text
 from rosprivacy.ingest.labels.label_schema import label_schema
 from rosprivacy.ontology.vocabulary import load
+from tests.helpers.schema_places import places
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from pathlib import Path
 
     from rosprivacy.analysis.model import Statement
@@ -497,14 +497,6 @@ OTHERS: tuple[Any, ...] = (
     [{"from": "Video", "to": "Voice"}], {"from": "/a", "to": "/b", "only": ["Video"]}, {"only": ["Video"]},
     {"leak": ["Video"]}, {"leak": []}, {"note": "x"},
 )  # fmt: skip
-
-
-def places(value: Any) -> Iterator[tuple[Any, ...]]:
-    """The ways to all values inside a value."""
-    inside = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
-    for key, child in inside:
-        yield (key,)
-        yield from ((key, *way) for way in places(child))
 
 
 def changed(way: tuple[Any, ...], other: Any) -> Any:

@@ -13,7 +13,7 @@ from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.ingest.labels.countries import countries
 
 if TYPE_CHECKING:
-    from rosprivacy.analysis.model import Finding
+    from rosprivacy.analysis.answer import Finding
 
 # /camera -> /image -> /recorder and /viewer, /microphone -> /sound -> /viewer; /trainer alone
 POLICY = """<policy version="0.2.0"><enclaves><enclave path="/e"><profiles>

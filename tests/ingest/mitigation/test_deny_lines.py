@@ -11,19 +11,20 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rosprivacy.analysis.findings.findings import Options, analyse
-from rosprivacy.analysis.mitigation.candidates import DENY, Limits, Weights
+from rosprivacy.analysis.mitigation.limits import DENY, Limits, Weights
 from rosprivacy.analysis.mitigation.propose import System, mitigate, open_findings
 from rosprivacy.analysis.model import Bound, Element, Grant, Method, Place, Policy, Profile, Statement
 from rosprivacy.ingest.mitigation.deny_lines import denials, with_denied
 from rosprivacy.ingest.mitigation.open_wildcards import open_ended
 from rosprivacy.ingest.policies.flow_graph import build
-from tests.analysis.findings.test_findings import HIERARCHY, statement
+from tests.helpers.systems import HIERARCHY, statement
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator
 
+    from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.mitigation.proposals import ProposedStep
-    from rosprivacy.analysis.model import Analysis, FlowGraph
+    from rosprivacy.analysis.model import FlowGraph
 
 ENCLAVES = ("/e1", "/e2")
 NODES = ("/n0", "/n1", "/n2", "/n3")

@@ -30,10 +30,10 @@ from rosprivacy.private_neo4j import connection
 from rosprivacy.report.cnil import answers as cnil_answers
 from rosprivacy.report.cnil.pia import cnil_pia
 from rosprivacy.settings import Settings
-from tests.analysis.findings.test_findings import HIERARCHY, PARENTS, System, analysed, systems
+from tests.helpers.additions import ADD_STORAGE
 from tests.helpers.paths import ROOT
-from tests.ingest.database.test_read_back import ADD_STORAGE
-from tests.report.sarif.test_sarif import HOSTILE, analyze, checked, log_of, physical, small_system, way
+from tests.helpers.sarif import HOSTILE, analyze, checked, log_of, physical, small_system, way
+from tests.helpers.systems import HIERARCHY, PARENTS, System, analysed, systems
 
 if TYPE_CHECKING:
     from pathlib import Path

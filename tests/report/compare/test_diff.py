@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from rosprivacy.report.compare.matching import compare, normalised
-from tests.ingest.fleet.test_fleet import policy, write
+from tests.helpers.fleet_files import policy, write
 
 if TYPE_CHECKING:
     from tests.helpers.command import Cli, Done

@@ -30,7 +30,7 @@ from tests.helpers.reports import care
 if TYPE_CHECKING:
     import pytest
 
-    from rosprivacy.analysis.model import Analysis
+    from rosprivacy.analysis.answer import Analysis
 
 SVG = "{http://www.w3.org/2000/svg}"
 ROOT = {"viewBox", "width", "height", "class", "font-family", "font-size", "role", "aria-label"}

@@ -15,10 +15,10 @@ from rosprivacy.analysis.errors import DrawingError
 from rosprivacy.analysis.model import Element, Flow, FlowGraph, Grant, Place
 from rosprivacy.report.pictures import narrow, views
 from rosprivacy.report.pictures.dot import dot
-from tests.analysis.findings.test_findings import System, analysed, index, statement, systems
 from tests.helpers.graphs import care_home, factory
 from tests.helpers.paths import TESTS
 from tests.helpers.pictures import hostile, names_of, pictures, ros
+from tests.helpers.systems import System, analysed, index, statement, systems
 
 if TYPE_CHECKING:
     from rosprivacy.report.pictures.picture import Picture

@@ -27,16 +27,16 @@ from rosprivacy.report.rdf.findings import rdf_graph
 from rosprivacy.report.rdf.serialise import SERIALISERS, as_turtle
 from rosprivacy.report.rdf.terms import DPV, DPV_CLASSES, DPV_PROPERTIES, RISK, RISKS, RP, element_iri, named
 from rosprivacy.report.rdf.things import STATED
-from tests.analysis.findings.test_findings import PARENTS, System, analysed, statement, systems
+from tests.helpers.cases import CASES
 from tests.helpers.paths import ROOT
-from tests.test_cases import CASES
+from tests.helpers.systems import PARENTS, System, analysed, statement, systems
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from rdflib.term import Node
 
-    from rosprivacy.analysis.model import Analysis
+    from rosprivacy.analysis.answer import Analysis
     from rosprivacy.assembly import Result
 
 SHAPES = Graph().parse(ROOT / "report" / "linked" / "findings.shapes.ttl")

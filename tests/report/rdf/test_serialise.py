@@ -23,13 +23,13 @@ from rosprivacy.ontology.vocabulary import Vocabulary
 from rosprivacy.report.rdf.findings import rdf_graph
 from rosprivacy.report.rdf.serialise import SERIALISERS
 from rosprivacy.report.rdf.terms import RP, element_iri, named
-from tests.analysis.findings.test_findings import statement
 from tests.helpers.paths import ROOT
+from tests.helpers.systems import statement
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from rosprivacy.analysis.model import Analysis
+    from rosprivacy.analysis.answer import Analysis
 
 CARE_HOME = ("examples/care-home/care-home.policy.xml", "-l", "examples/care-home/care-home.labels.yaml")
 SYNTAX = {"turtle": pyoxigraph.RdfFormat.TURTLE, "json-ld": pyoxigraph.RdfFormat.JSON_LD}
