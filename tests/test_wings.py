@@ -49,7 +49,7 @@ MAY: dict[str, dict[str, set[str]]] = {
         "terminal": {"", "document"},
         "pictures": {""},
         "compare": {"", "document"},
-        "page": {"", "pictures", "compare"},
+        "page": {"", "document", "pictures", "compare"},
         "sarif": {""},
         "cnil": {""},
         "rdf": {"", "document"},
@@ -70,8 +70,11 @@ SAME_PART = {
     "decisions": {"analysis", "report/document"},  # what they mean, and how the document tells them
     "findings": {"analysis/findings", "report/rdf"},  # findings, and findings as RDF
     "fleet": {"cli", "report/document", "report/terminal"},  # what is told of a fleet
+    "labels": {"cli", "report/terminal"},  # the command, and what was said of labels
+    "ledger": {"analysis/findings", "report/document", "report/terminal"},  # what was taken away, and how it is told
     "mitigation": {"", "report/document", "report/terminal"},  # what is told of proposals
     "non_ros": {"analysis", "report/document", "report/page"},  # what is told of non-ROS elements
+    "why_not": {"analysis/findings", "cli", "report/document", "report/terminal"},  # the question, and its answer
     "unknown_ends": {"analysis/findings", "report/terminal"},  # what nobody knows the end of, and how it is told
 }
 

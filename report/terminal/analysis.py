@@ -14,11 +14,11 @@ from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import CHANNELS
 from rosprivacy.report.document.analysis import files_not_read
 from rosprivacy.report.document.decisions import decision_lines
-from rosprivacy.report.terminal.asked import asked_at_verdict, asked_lines, may_be_asked
 from rosprivacy.report.terminal.denied import denied_lines
 from rosprivacy.report.terminal.fleet import fleet_lines, robots_of
 from rosprivacy.report.terminal.labels import overruled_lines, standard_lines
 from rosprivacy.report.terminal.ledger import counted, listed
+from rosprivacy.report.terminal.restriction import asked_at_verdict, asked_lines, may_be_asked
 from rosprivacy.report.terminal.unknown_ends import end_lines, ends_at_verdict
 
 if TYPE_CHECKING:

@@ -1,15 +1,14 @@
-"""Why data does not get from one element to another, for the terminal and as JSON.
+"""Why data does not get from one element to another, for the terminal.
 
-In: ``WhyNot`` facts. Out: lines, or plain dicts.
+In: ``WhyNot`` facts. Out: lines.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.findings.why_not import NO_LEAK, NO_SOURCE, THROUGH
-from rosprivacy.report.document.analysis import element_dict
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -17,7 +16,6 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.findings.why_not import Obstacle, WhyNot
     from rosprivacy.analysis.model import Element
 
-FORMAT = "rosprivacy.why-not/1"
 SILENT = {
     NO_SOURCE: "no label says that it brings in {category}",
     NO_LEAK: "no label says that it lets {category} out",
@@ -42,34 +40,6 @@ def lines(answers: Iterable[WhyNot]) -> Iterator[str]:
             yield f"   {_obstacle(obstacle)}"
         if not answer.finding:
             yield f"   as things are, {answer.category} gets to {answer.reached:,} elements"
-
-
-def document(answers: Iterable[WhyNot]) -> dict[str, Any]:
-    """Return the answers as one JSON object."""
-    return {
-        "format": FORMAT,
-        "answers": [
-            {
-                "category": answer.category,
-                "source": element_dict(answer.source),
-                "leak": element_dict(answer.leak),
-                "finding": answer.finding.id if answer.finding else None,
-                "path": [element_dict(element) for element in answer.path],
-                "obstacles": [
-                    {
-                        "by": obstacle.by,
-                        "element": element_dict(obstacle.element),
-                        "to": element_dict(obstacle.to) if obstacle.to else None,
-                        "category": obstacle.category,
-                        "places": [{"file": place.file, "line": place.line} for place in obstacle.places],
-                    }
-                    for obstacle in answer.obstacles
-                ],
-                "reached": answer.reached,
-            }
-            for answer in answers
-        ],
-    }
 
 
 def _obstacle(obstacle: Obstacle) -> str:

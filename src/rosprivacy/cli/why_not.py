@@ -59,7 +59,8 @@ def why_not(
 ) -> None:
     """Tell why data of one element does not get to another: where its way ends, and on whose word."""
     from rosprivacy.report.document.analysis import as_text
-    from rosprivacy.report.terminal.why_not import document, lines
+    from rosprivacy.report.document.why_not import document
+    from rosprivacy.report.terminal.why_not import lines
     from rosprivacy.settings import Settings
 
     settings = Settings(
