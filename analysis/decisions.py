@@ -18,8 +18,9 @@ from rosprivacy.analysis.model import Diagnostic, Place, Severity
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
 
+    from rosprivacy.analysis.answer import Finding
     from rosprivacy.analysis.hierarchy import Hierarchy
-    from rosprivacy.analysis.model import Element, Finding
+    from rosprivacy.analysis.model import Element
 
 FARTHEST = 1_000_000
 

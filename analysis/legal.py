@@ -14,8 +14,9 @@ from rosprivacy.analysis.model import ARTICLE_9
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
+    from rosprivacy.analysis.answer import Finding
     from rosprivacy.analysis.hierarchy import Hierarchy
-    from rosprivacy.analysis.model import Category, Element, Finding, Legal
+    from rosprivacy.analysis.model import Category, Element, Legal
 
 SPECIAL = ("always", "conditional")
 MAY_REVEAL = "may-reveal"

@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from rosprivacy.analysis.outside import Outside
-    from rosprivacy.analysis.spread import Spread
+    from rosprivacy.analysis.durations import Duration
 
 CHANNELS = ("action", "service", "topic")
 NON_ROS = ("device", "display", "external-system", "person", "shared-memory", "side-channel", "storage")  # rule S9
@@ -430,6 +429,57 @@ class Statement:
         return self.naming != NAME
 
 
+NOWHERE = Place("", 0)
+
+
+@dataclass(frozen=True, slots=True)
+class NonRosFacts:
+    """What is stated about a non-ROS element (rule S9).
+
+    Attributes
+    ----------
+    retention
+        (category, or ``EVERY``; how long it is kept), sorted.
+    limits
+        (category, or ``EVERY``; how long it may be kept), sorted; where several hold, the shortest counts.
+    backups
+        How long data stays in backups after it is deleted; True where that is not known, False without backups,
+        None where nothing is said.
+    country
+        ISO 3166-1 alpha-2 code.
+    area
+        Where that lies: ``INSIDE`` the EEA, outside with an adequacy decision (``ADEQUATE``), with one for some
+        recipients (``PARTLY``), or ``THIRD``.
+    adequacy
+        Whom a partial decision covers.
+    until
+        The last day of an adequacy decision that ends by itself, ``YYYY-MM-DD``.
+    encrypted
+        Whether it is at rest; None where nothing is said.
+    operator
+        Who runs it.
+    recipient
+        One of ``RECIPIENTS``.
+    transfer
+        Basis of a transfer out of the EEA, one of ``TRANSFERS``, as a person states it.
+    place
+        Where it is stated.
+    """
+
+    retention: tuple[tuple[str, Duration], ...] = ()
+    limits: tuple[tuple[str, Duration], ...] = ()
+    backups: Duration | bool | None = None
+    country: str = ""
+    area: str = ""
+    adequacy: str = ""
+    until: str = ""
+    encrypted: bool | None = None
+    operator: str = ""
+    recipient: str = ""
+    transfer: str = ""
+    place: Place = NOWHERE
+
+
 @dataclass(frozen=True, slots=True)
 class Bound:
     """Statements joined to a graph.
@@ -451,100 +501,8 @@ class Bound:
     elements: Mapping[int, tuple[Statement, ...]]
     flows: Mapping[int, tuple[Statement, ...]] = field(default_factory=dict)
     through: Mapping[tuple[int, tuple[str, ...]], tuple[int, ...]] = field(default_factory=dict)
-    outside: Mapping[int, Outside] = field(default_factory=dict)
+    outside: Mapping[int, NonRosFacts] = field(default_factory=dict)
     subjects: Mapping[int, tuple[str, ...]] = field(default_factory=dict)
-
-
-@dataclass(frozen=True, slots=True)
-class Step:
-    """One hop of a witness: what goes along it, and the policy lines that allow it."""
-
-    source: Element
-    target: Element
-    role: str
-    category: str
-    pseudonymised: bool
-    grants: tuple[Grant, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Finding:
-    """A category reaches a place that it should not, rule S10.
-
-    Attributes
-    ----------
-    id
-        16 hexadecimal digits made from category, source and leak, of other kinds than disclosure from the kind, and
-        from ``beside`` where it holds; stable as long as these are.
-    kind
-        ``DISCLOSURE``: it reaches a leak. ``STORAGE_LIMITATION``: a storage that keeps it without a stated end or
-        longer than allowed. ``THIRD_COUNTRY``: an element outside the EEA without a stated basis.
-    leak
-        The leak, the storage or the element abroad.
-    pseudonymised
-        Whether the data arrives in pseudonymised form only; data that arrives as it is through another leak only is
-        then a finding of its own, ``beside`` this one.
-    witness
-        One shortest path, source first.
-    steps
-        The flows of the witness, one fewer than its elements.
-    disjoint_paths
-        How many paths share no flow; 1 for a finding of one element.
-    through
-        Other leaks of the category on the witness; not empty only if dismissed.
-    dismissed
-        Whether every path goes through another leak of the category, which has a finding of its own, not accepted.
-    accepted
-        Whether a person has decided that this may be; it then hides nothing behind it.
-    beside
-        Whether a finding of the same ends stands beside it that is pseudonymised; this one is then dismissed.
-    paths
-        Further paths if asked for, each source first.
-    bounded
-        Whether ``paths`` was cut at the bound that the user set.
-    reason
-        Of other kinds than disclosure: what is wrong there.
-    """
-
-    id: str
-    kind: str
-    category: str
-    pseudonymised: bool
-    source: Element
-    leak: Element
-    witness: tuple[Element, ...]
-    steps: tuple[Step, ...]
-    disjoint_paths: int
-    through: tuple[Element, ...] = ()
-    dismissed: bool = False
-    paths: tuple[tuple[Element, ...], ...] = ()
-    bounded: bool = False
-    reason: str = ""
-    accepted: bool = False
-    beside: bool = False
-
-
-@dataclass(frozen=True, slots=True)
-class OpenQuestion:
-    """An element that a category reaches and that no label covers for it, rule S11.
-
-    Attributes
-    ----------
-    categories
-        Names, sorted.
-    distance
-        Flows from the nearest source.
-    frontier
-        Of a node: whether a category reaches it without another open node or a leak of it on the way.
-    missing
-        What has to be known of a non-ROS element and is not stated, such as ``country``.
-    """
-
-    element: Element
-    categories: tuple[str, ...]
-    distance: int
-    frontier: bool
-    missing: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -565,71 +523,3 @@ class UnknownEnd:
     element: Element
     what: str
     categories: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
-class Carried:
-    """What an element carries: emitted categories, sorted; ``pseudonymised`` is a plane of its own (rule S8)."""
-
-    element: Element
-    categories: tuple[str, ...]
-    pseudonymised: tuple[str, ...] = ()
-
-
-class Verdict(StrEnum):
-    """Rule S12. Never 'compliant' or 'safe': the labels are a person's word."""
-
-    LEAK = "leak"
-    UNDETERMINED = "undetermined"
-    NO_LEAK_FOUND = "no-leak-found"
-
-
-@dataclass(frozen=True, slots=True)
-class Analysis:
-    """The answer: what was found, what is open, what every element carries.
-
-    Attributes
-    ----------
-    graph
-        What was analysed.
-    emitted
-        Names of the categories that a source or a derivation emits, sorted.
-    findings
-        Sorted by category, source, leak; dismissed ones included.
-    open
-        Frontier first, then by distance and name.
-    carried
-        Every element that data arrives at or starts from, in the order of the graph.
-    roles
-        Per vertex and emitted category the roles of nodes that hold, sorted; what labels decided.
-    standard_channels
-        Channels taken as mundane by the shipped file (rule S13).
-    standard_reached
-        Of these, (channel, emitted categories that get to it and stop there).
-    standard_unchanged
-        Of these, those of which a glob of the user's says otherwise that does not count.
-    spread
-        The fixpoint itself: what is at every vertex and along every flow.
-    unstated
-        (element, category) of sanitizers whose method no label states.
-    outside
-        What is stated about non-ROS elements (rule S9).
-    unknown_ends
-        Channels with data that nobody known reads, elements outside ROS that no flow reaches; sorted (rule S11).
-    """
-
-    graph: FlowGraph
-    verdict: Verdict
-    emitted: tuple[str, ...]
-    findings: tuple[Finding, ...]
-    open: tuple[OpenQuestion, ...]
-    carried: tuple[Carried, ...]
-    roles: Mapping[Element, Mapping[str, tuple[str, ...]]]
-    standard_channels: int
-    spread: Spread
-    unstated: tuple[tuple[Element, str], ...] = ()
-    standard_reached: tuple[tuple[Element, tuple[str, ...]], ...] = ()
-    standard_unchanged: tuple[Element, ...] = ()
-    diagnostics: tuple[Diagnostic, ...] = ()
-    outside: Mapping[Element, Outside] = field(default_factory=dict)
-    unknown_ends: tuple[UnknownEnd, ...] = ()

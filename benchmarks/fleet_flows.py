@@ -15,8 +15,8 @@ from measure import Line, compared, side_by_side
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import breadth_first_order
 
-from rosprivacy.analysis.edges import Edges
-from rosprivacy.analysis.flow import WORD, fixpoint
+from rosprivacy.analysis.kernel.edges import Edges
+from rosprivacy.analysis.kernel.fixpoint import WORD, fixpoint
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -93,7 +93,8 @@ def fleet(robots: int, seed: int = 1, labelled: int = LABELLED, deriving: int = 
 def _labels(
     random: np.random.Generator, count: int, split: int, labelled: int, deriving: int
 ) -> tuple[Bits, Bits, Indices]:
-    """What nodes emit, keep and derive, as ``analysis/spread.py`` hands it over: bit i plain, bit i + k pseudonymised.
+    """What nodes emit, keep and derive, as ``analysis/kernel/spreading.py`` hands it over: bit i plain, bit i + k
+    pseudonymised.
 
     Every second sanitizer pseudonymises, the others end the kind of data in both planes.
     """

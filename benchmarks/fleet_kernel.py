@@ -16,13 +16,13 @@ from measure import Line, compared, per_robot, side_by_side
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import breadth_first_order
 
-from rosprivacy.analysis.edges import Edges
-from rosprivacy.analysis.flow import fixpoint
+from rosprivacy.analysis.findings.concerns import concerns
+from rosprivacy.analysis.fleet.source_leak_pairs import pairs
 from rosprivacy.analysis.hierarchy import Hierarchy
+from rosprivacy.analysis.kernel.edges import Edges
+from rosprivacy.analysis.kernel.fixpoint import fixpoint
+from rosprivacy.analysis.kernel.spreading import spread
 from rosprivacy.analysis.model import Bound, Element, Flow, FlowGraph, Method, Place, Statement
-from rosprivacy.analysis.outside import concerns
-from rosprivacy.analysis.pairs import pairs
-from rosprivacy.analysis.spread import spread
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -30,8 +30,8 @@ if TYPE_CHECKING:
     from fleet_flows import Fleet
     from numpy.typing import NDArray
 
-    from rosprivacy.analysis.outside import Concern
-    from rosprivacy.analysis.spread import Spread
+    from rosprivacy.analysis.findings.concerns import Concern
+    from rosprivacy.analysis.kernel.spread import Spread
 
     Indices = NDArray[np.int64]
 

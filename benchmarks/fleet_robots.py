@@ -15,12 +15,12 @@ from typing import TYPE_CHECKING
 from measure import Line, compared, corpus, per_robot, side_by_side
 from turtlebot import MANY, POLICY, STEP_5, chosen_categories, label_file, six_lists
 
-from rosprivacy.analysis.groups import Groups
-from rosprivacy.analysis.outside import concerns
-from rosprivacy.analysis.spread import spread
+from rosprivacy.analysis.findings.concerns import concerns
+from rosprivacy.analysis.fleet.patterns_of_pairs import Groups
+from rosprivacy.analysis.kernel.spreading import spread
 from rosprivacy.fleets import analysed, read_all
-from rosprivacy.ingest.alike import Alike
-from rosprivacy.ingest.placing import place
+from rosprivacy.ingest.fleet.alike_robots import Alike
+from rosprivacy.ingest.fleet.fleet_graph import place
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.settings import Settings
 
@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from typing import Any
 
-    from rosprivacy.analysis.spread import Spread
-    from rosprivacy.ingest.placing import Placed
+    from rosprivacy.analysis.kernel.spread import Spread
+    from rosprivacy.ingest.fleet.fleet_graph import Placed
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 ROBOTS = 1_000

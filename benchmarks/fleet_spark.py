@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 from fleet_robots import small_robots
 from measure import Line, compared, side_by_side
 
-from rosprivacy.cluster.fleets import run_on_spark
-from rosprivacy.cluster.session import session
 from rosprivacy.fleets import run_fleet
 from rosprivacy.settings import Settings
+from rosprivacy.spark.fleet_on_spark import run_on_spark
+from rosprivacy.spark.session import session
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

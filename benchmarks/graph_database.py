@@ -3,7 +3,7 @@
     python benchmarks/graph_database.py [--quick]
 
 Starts a private Neo4j in a folder of its own and ends with 1 if a bound is missed. ``--quick`` takes 100 robots in
-place of 1,000. (Not named ``neo4j.py``: as a script it would hide the driver of that name.)
+place of 1,000. (Not named ``ingest/database/loading.py``: as a script it would hide the driver of that name.)
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ import neo4j
 from measure import Line, compared, print_header, print_line
 from neo4j_fleet import NAMES, ROBOTS, VOCABULARY, fleet
 
-from rosprivacy import database
-from rosprivacy.ingest.neo4j import BATCH, load
-from rosprivacy.ingest.schema import ACROSS, DERIVES_FROM, FLOWS_TO, IN_ENCLAVE, ROLES
-from rosprivacy.ingest.statements import create_relationships
+from rosprivacy.ingest.database.cypher import create_relationships
+from rosprivacy.ingest.database.loading import BATCH, load
+from rosprivacy.ingest.database.schema import ACROSS, DERIVES_FROM, FLOWS_TO, IN_ENCLAVE, ROLES
+from rosprivacy.private_neo4j import connection
 from rosprivacy.queries.library import pack
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from neo4j import Driver
 
-    from rosprivacy.ingest.rows import RobotRows
+    from rosprivacy.ingest.database.rows import RobotRows
 
 ROUNDS = 2
 FEW = 100
@@ -171,11 +171,11 @@ def main() -> int:
     with TemporaryDirectory(ignore_cleanup_errors=True) as folder:
         os.environ["ROSPRIVACY_DATA"] = folder
         try:
-            with database.open_driver(database.start()) as driver:
+            with connection.open_driver(connection.start()) as driver:
                 print_header()
                 met = [print_line(line).met for part in (writing(driver, robots), asking(driver)) for line in part]
         finally:
-            database.stop()
+            connection.stop()
     return 0 if all(met) else 1
 
 

@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING
 from measure import compared, corpus, print_header, print_line, side_by_side
 from turtlebot import POLICY, STEP_5, label_file, six_lists
 
-from rosprivacy.analysis.findings import analyse
-from rosprivacy.analysis.ledger import ledger
+from rosprivacy.analysis.findings.findings import analyse
+from rosprivacy.analysis.findings.ledger import ledger
 from rosprivacy.assembly import run
 from rosprivacy.settings import Settings
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.findings import analyse
+from rosprivacy.analysis.findings.findings import analyse
 from rosprivacy.analysis.model import (
     Bound,
     Category,
@@ -19,14 +19,14 @@ from rosprivacy.analysis.model import (
     Profile,
     Statement,
 )
-from rosprivacy.ingest.rows import robot_rows
+from rosprivacy.ingest.database.rows import robot_rows
 from rosprivacy.ontology.vocabulary import Vocabulary
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rosprivacy.analysis.model import Analysis
-    from rosprivacy.ingest.rows import RobotRows
+    from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.ingest.database.rows import RobotRows
 
 ROBOTS, MODELS, NODES, TOPICS, FLOWS, KINDS = 1000, 10, 30, 50, 180, 24
 DERIVED = 8  # one in so many kinds is made into another somewhere

@@ -22,12 +22,12 @@ import rosprivacy
 from rosprivacy.report.page.inline import pictures_of
 from rosprivacy.report.pictures.layout import drawn
 from rosprivacy.report.pictures.narrow import folded
-from rosprivacy.report.views import PER_BOX, FindingViews, bounded, privacy_view, ros_view
+from rosprivacy.report.pictures.views import PER_BOX, FindingViews, bounded, privacy_view, ros_view
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from rosprivacy.analysis.model import Analysis, Finding
+    from rosprivacy.analysis.answer import Analysis, Finding
 
 MODULES = ("sensing", "perception", "localization", "map", "planning", "control", "vehicle", "system", "api", "tools")
 NODES, TOPICS, SERVICES, ACTIONS = 300, 1230, 340, 30

@@ -13,7 +13,7 @@ from lxml import etree
 from measure import compared, side_by_side
 
 from rosprivacy.analysis.errors import InputErrors
-from rosprivacy.ingest.policy import read_policy
+from rosprivacy.ingest.policies.policy_xml import read_policy
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -104,7 +104,7 @@ def lines(folder: Path, *, quick: bool) -> Iterator[Line]:
 def _opened(page: Path, profile: Path, rounds: int) -> list[float]:
     """Seconds that Chromium takes to open a page, after one round that does not count."""
     sys.path.insert(0, str(REPOSITORY))
-    from tests import browser as chrome
+    from tests.helpers import browser as chrome
 
     if chrome.missing():
         sys.exit(f"{', '.join(chrome.missing())} missing: apt-get install chromium chromium-driver")

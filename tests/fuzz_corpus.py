@@ -4,7 +4,8 @@
 
 The corpus (``$ROSPRIVACY_CORPUS``, or ``../shared/corpus``) is copied to a temporary folder while this runs. Work is
 done in a child process with bounds on time and memory, so that a hang or a crash of a C library ends one input only.
-The same seed gives the same inputs. ``test_fuzz.py`` and ``test_xinclude.py`` use the mutations and ``Guard``.
+The same seed gives the same inputs. ``test_fuzz.py`` and ``ingest/policies/test_xinclude.py`` use the mutations and
+``Guard``.
 
 Exit code: 0 if every input was accepted, or refused with one line per problem; 1 otherwise.
 """
@@ -307,7 +308,7 @@ class Corpus:
     def policy(self, number: int) -> str:
         """Read a mutated policy, or a policy with a mutated fragment; every fourth time analyse it too."""
         import rosprivacy
-        from rosprivacy.ingest.policy import read_policy
+        from rosprivacy.ingest.policies.policy_xml import read_policy
 
         random = Random(f"{self.seed} policy {number}")  # noqa: S311 - repeatable
         path = random.choice(self.policies)

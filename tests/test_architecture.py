@@ -5,11 +5,15 @@ from __future__ import annotations
 import ast
 import subprocess
 import sys
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 
-ROOT = Path(__file__).resolve().parent.parent
+from tests.helpers.paths import ROOT
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
 MAY = {
     "analysis": set(),
     "ontology": {"analysis"},
@@ -43,24 +47,24 @@ def test_data_flows_one_way(room: str) -> None:
 OPENERS = {"open", "fdopen", "read_bytes", "read_text"}
 WRITERS = {"write_bytes", "write_text", "mkstemp", "NamedTemporaryFile", "TemporaryFile", "rename", "truncate"}
 OF_ITS_OWN = {  # modules that touch files in another way, and why none of these is a user's
-    "ingest/regular.py": "notes what it reads",
+    "ingest/reading/bounded_file.py": "notes what it reads",
     "ontology/vocabulary.py": "notes what it reads; and what is shipped",
     "report/compare/earlier.py": "notes what it reads",
     "report/atomic.py": "the one writer",
-    "ingest/policy.py": "asks xinclude.py to open",
-    "ingest/patch.py": "copies in a folder of its own, gone at once",
-    "ingest/labels.py": "what is shipped",
+    "ingest/policies/policy_xml.py": "asks xinclude.py to open",
+    "ingest/mitigation/deny_patch.py": "copies in a folder of its own, gone at once",
+    "ingest/labels/label_file.py": "what is shipped",
     "ontology/own.py": "what is shipped",
     "queries/library.py": "what is shipped",
     "ontology/cache.py": "the cache of categories",
     "report/pictures/graphviz_worker.py": "a process that draws, with pipes only",
-    "src/rosprivacy/cli_diff.py": "looks how a file begins; what then reads it notes it",
-    "src/rosprivacy/cli_output.py": "the null device, when standard output is gone",
-    "src/rosprivacy/cluster/session.py": "settings of Spark in a folder of its own, gone at its end",
-    "src/rosprivacy/database.py": "the private Neo4j",
-    "src/rosprivacy/libraries.py": "the private Neo4j",
-    "src/rosprivacy/server.py": "the private Neo4j",
-    "src/rosprivacy/state.py": "the private Neo4j",
+    "src/rosprivacy/cli/diff.py": "looks how a file begins; what then reads it notes it",
+    "src/rosprivacy/cli/output.py": "the null device, when standard output is gone",
+    "src/rosprivacy/spark/session.py": "settings of Spark in a folder of its own, gone at its end",
+    "src/rosprivacy/private_neo4j/connection.py": "the private Neo4j",
+    "src/rosprivacy/private_neo4j/jars.py": "the private Neo4j",
+    "src/rosprivacy/private_neo4j/server.py": "the private Neo4j",
+    "src/rosprivacy/private_neo4j/state.py": "the private Neo4j",
 }
 
 
@@ -96,7 +100,7 @@ def test_the_rooms_ship_under_the_package() -> None:
 )
 def test_what_is_not_needed_is_not_imported(arguments: list[str], absent: list[str]) -> None:
     code = (
-        "import sys\nfrom rosprivacy.cli import app\n"
+        "import sys\nfrom rosprivacy.cli.app import app\n"
         f"try: app({arguments!r})\nexcept SystemExit: pass\n"
         f"print([m for m in {absent!r} if m in sys.modules])"
     )

@@ -7,16 +7,18 @@ questions and verdict, by name; of a fleet also on how many robots, and which di
 from __future__ import annotations
 
 import json
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
 import rosprivacy
+from tests.helpers.cases import CASES
+from tests.helpers.paths import ROOT
 
-ROOT = Path(__file__).resolve().parent.parent
+if TYPE_CHECKING:
+    from pathlib import Path
+
 FLEETS = sorted(path.parent for path in (ROOT / "tests" / "cases").glob("*/fleet.json"))
-CASES = sorted(path.parent for path in (ROOT / "tests" / "cases").glob("*/case.json"))
 
 
 def name(element: dict[str, Any]) -> str:

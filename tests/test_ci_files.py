@@ -18,9 +18,9 @@ from typing import Any
 import pytest
 import yaml
 
-from tests.test_sarif import HOSTILE, checked
+from tests.helpers.paths import ROOT
+from tests.helpers.sarif import HOSTILE, checked
 
-ROOT = Path(__file__).resolve().parent.parent
 ACTION, HOOKS, CI = ROOT / "action.yml", ROOT / ".pre-commit-hooks.yaml", ROOT / "examples" / "ci"
 FACTORY = ROOT / "examples" / "factory"
 GIT = ["git", "-c", "user.name=t", "-c", "user.email=t@example.org", "-c", "init.defaultBranch=main"]

@@ -8,8 +8,8 @@ import pytest
 
 import rosprivacy
 from rosprivacy.analysis.errors import InputErrors
-from rosprivacy.ingest.names import is_pattern
-from rosprivacy.ingest.policy import FRAGMENTS, NotAPolicyError, read_policy
+from rosprivacy.ingest.policies.names import is_pattern
+from rosprivacy.ingest.policies.policy_xml import FRAGMENTS, NotAPolicyError, read_policy
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -6,15 +6,14 @@ import os
 import re
 import shutil
 import subprocess
-from pathlib import Path
 from typing import Any
 
 import pytest
 import yaml
 
-from rosprivacy import libraries
+from rosprivacy.private_neo4j import jars
+from tests.helpers.paths import ROOT
 
-ROOT = Path(__file__).resolve().parent.parent
 COMPOSE = ROOT / "docker" / "compose.yml"
 DOCKERFILE = ROOT / "docker" / "Dockerfile"
 FROM_THE_ENVIRONMENT = re.compile(r"\$\{NEO4J_PASSWORD:\?[^}]+\}")
@@ -26,7 +25,7 @@ def services() -> Any:
 
 
 def test_the_image_is_the_version_that_we_start_ourselves(services: Any) -> None:
-    assert services["neo4j"]["image"] == f"neo4j:{libraries.VERSION}-community"
+    assert services["neo4j"]["image"] == f"neo4j:{jars.VERSION}-community"
 
 
 def test_the_password_comes_from_the_environment_only(services: Any) -> None:

@@ -9,20 +9,22 @@ import re
 import subprocess
 import sys
 from enum import StrEnum
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 import typer
 
-from rosprivacy.cli import app
-from rosprivacy.ingest.labels import read_labels
-from rosprivacy.ingest.schema import NODES, RELATIONSHIPS, Property
+from rosprivacy.cli.app import app
+from rosprivacy.ingest.database.schema import NODES, RELATIONSHIPS, Property
+from rosprivacy.ingest.labels.label_file import read_labels
 from rosprivacy.ontology.vocabulary import TOP, load
 from rosprivacy.queries.library import pack
-from rosprivacy.report import categories
+from rosprivacy.report.terminal import categories
+from tests.helpers.paths import ROOT
 
-ROOT = Path(__file__).resolve().parent.parent
+if TYPE_CHECKING:
+    from pathlib import Path
+
 COMMAND_LINE = ROOT / "docs" / "command-line.md"
 DATABASE = ROOT / "docs" / "database.md"
 CATEGORIES = ROOT / "docs" / "categories.md"

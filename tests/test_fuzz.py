@@ -19,17 +19,18 @@ from hypothesis import strategies as st
 
 import rosprivacy
 from rosprivacy.analysis.errors import InputErrors, LabelError
-from rosprivacy.ingest.labels import read_labels
-from rosprivacy.ingest.policy import read_policy
-from rosprivacy.ingest.saved import as_dict, read_saved
+from rosprivacy.ingest.labels.label_file import read_labels
+from rosprivacy.ingest.policies.policy_xml import read_policy
+from rosprivacy.ingest.policies.saved_graph import as_dict, read_saved
 from rosprivacy.ontology.vocabulary import load
+from tests.helpers.paths import ROOT, TESTS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from random import Random
 
-FUZZ = runpy.run_path(str(Path(__file__).with_name("fuzz_corpus.py")))
-FACTORY = Path(__file__).resolve().parent.parent / "examples" / "factory"
+FUZZ = runpy.run_path(str(TESTS / "fuzz_corpus.py"))
+FACTORY = ROOT / "examples" / "factory"
 
 POLICY = """<?xml version="1.0" encoding="UTF-8"?>
 <policy version="0.2.0" xmlns:xi="http://www.w3.org/2001/XInclude">

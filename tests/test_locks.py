@@ -14,7 +14,8 @@ import pytest
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
-ROOT = Path(__file__).resolve().parent.parent
+from tests.helpers.paths import ROOT
+
 LOCKS = {"requirements.lock": (), "docker/requirements.lock": ("neo4j-rust-ext",)}
 FACTORY = ROOT / "examples" / "factory"
 

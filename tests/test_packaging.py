@@ -9,11 +9,15 @@ import sys
 import tarfile
 import zipfile
 from importlib.resources import files
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 
-ROOT = Path(__file__).resolve().parent.parent
+from tests.helpers.paths import ROOT
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
 ROOMS = sorted(path.name for path in (ROOT / "src" / "rosprivacy").iterdir() if path.is_symlink())
 
 
@@ -21,10 +25,10 @@ def test_the_rooms_import_from_the_package_and_bring_their_data() -> None:
     assert ROOMS == ["analysis", "ingest", "ontology", "queries", "report"]
     assert files("rosprivacy.ontology").joinpath("categories.ttl").is_file()
     assert files("rosprivacy.ontology").joinpath("law.ttl").is_file()
-    assert files("rosprivacy.ingest").joinpath("standard.yaml").is_file()
+    assert files("rosprivacy.ingest.labels").joinpath("standard.yaml").is_file()
     assert files("rosprivacy.queries").joinpath("leak-paths.cypher").is_file()
     assert files("rosprivacy.report.page").joinpath("templates", "report.html.j2").is_file()
-    assert files("rosprivacy.report.linked").joinpath("findings.shapes.ttl").is_file()
+    assert files("rosprivacy.report.rdf").joinpath("findings.shapes.ttl").is_file()
 
 
 @pytest.fixture(scope="module")
@@ -67,6 +71,6 @@ def test_the_main_job_runs_in_a_fresh_environment(built: Path, tmp_path: Path) -
     done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 1, done.stderr
     assert json.loads(done.stdout)["verdict"] == "leak"
-    where = [str(python), "-c", "import rosprivacy.ingest.policy as p; print(p.__file__)"]
+    where = [str(python), "-c", "import rosprivacy.ingest.policies.policy_xml as p; print(p.__file__)"]
     file = subprocess.run(where, cwd=tmp_path, env=environment, capture_output=True, text=True, check=True).stdout
     assert str(tmp_path) in file

@@ -3,7 +3,7 @@
 In: the earlier document and the new one. Out: ``Changes``. A way that is gone because less was asked is no answer, so
 everything that was asked or assumed otherwise is named first. This is for a person who assessed the earlier report;
 ``difference.py`` is for CI, has grants and labels too, and says what is worse. What is the same in both is told apart
-alike, by ``identity.py`` and ``analysis/comparison.py``.
+alike, by ``identity.py`` and ``report/compare/matching.py``.
 """
 
 from __future__ import annotations
@@ -12,14 +12,14 @@ import json
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.comparison import paired, same
 from rosprivacy.report.compare.identity import Identity
-from rosprivacy.report.page.naming import printable
+from rosprivacy.report.compare.matching import paired, same
+from rosprivacy.report.naming import printable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from rosprivacy.analysis.comparison import Key
+    from rosprivacy.report.compare.matching import Key
 
 ASKED = (
     "view", "categories_asked", "data_types_asked", "article9_only", "standard_channels", "ontologies", "law_as_of",

@@ -7,14 +7,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.comparison import compare
 from rosprivacy.analysis.errors import shown
 from rosprivacy.report.compare.changes import scope
+from rosprivacy.report.compare.matching import compare
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from rosprivacy.analysis.comparison import Change, Changes
+    from rosprivacy.report.compare.matching import Change, Changes
     from rosprivacy.report.compare.snapshot import Snapshot
 
 FORMAT = "rosprivacy.diff/1"

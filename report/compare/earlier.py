@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import InputError, reason, shown
 from rosprivacy.analysis.files_read import noted
-from rosprivacy.report.document import FORMAT
+from rosprivacy.report.document.analysis import FORMAT
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

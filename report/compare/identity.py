@@ -1,7 +1,7 @@
 """What elements and findings of two documents are told apart by: the same for ``diff`` and for ``report --since``.
 
-In: a document of the contract. Out: keys of texts, for ``analysis/comparison.py``. Of a fleet, a robot that stands for
-others counts by its model, so that it does not matter which one is shown.
+In: a document of the contract. Out: keys of texts, for ``report/compare/matching.py``. Of a fleet, a robot that stands
+for others counts by its model, so that it does not matter which one is shown.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Self
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from rosprivacy.analysis.comparison import Key
+    from rosprivacy.report.compare.matching import Key
 
 
 @dataclass(frozen=True, slots=True)

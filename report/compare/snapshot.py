@@ -15,8 +15,8 @@ from rosprivacy.report.compare.identity import Identity
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from rosprivacy.analysis.comparison import Key, Record
     from rosprivacy.analysis.model import Policy
+    from rosprivacy.report.compare.matching import Key, Record
 
 Facts = dict["Key", "Record"]
 

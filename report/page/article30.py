@@ -12,11 +12,11 @@ from collections import defaultdict
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.report.naming import fit, key, name, whole
+from rosprivacy.report.page.entries_of_robots import grouped
 from rosprivacy.report.page.index import Index
 from rosprivacy.report.page.kinds import provision
-from rosprivacy.report.page.naming import fit, key, name, whole
-from rosprivacy.report.page.patterns import grouped
-from rosprivacy.report.page.storages import STORAGE, retention
+from rosprivacy.report.page.non_ros import STORAGE, retention
 from rosprivacy.report.page.tables import OUTSIDE, can_come_from
 from rosprivacy.report.page.words import Words
 from rosprivacy.report.spreadsheet import guarded
@@ -24,7 +24,7 @@ from rosprivacy.report.spreadsheet import guarded
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from rosprivacy.report.page.naming import Key
+    from rosprivacy.report.naming import Key
 
 SEPARATORS = {"en": ",", "de": ";"}  # as spreadsheets in that language expect
 BOM = "\ufeff"  # without it Excel takes UTF-8 for something else

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosprivacy.report.page.naming import fit, name, printable
+from rosprivacy.report.naming import fit, name, printable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -8,8 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.report.page.naming import fit
-from rosprivacy.report.page.patterns import grouped
+from rosprivacy.report.naming import fit
+from rosprivacy.report.page.entries_of_robots import grouped
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

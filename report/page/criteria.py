@@ -8,8 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosprivacy.report.page.entries_of_robots import weight
 from rosprivacy.report.page.index import CAN_BE_SPECIAL
-from rosprivacy.report.page.patterns import weight
 
 if TYPE_CHECKING:
     from rosprivacy.report.page.index import Index

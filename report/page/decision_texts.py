@@ -9,8 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.report.naming import printable
 from rosprivacy.report.page.index import CAN_BE_SPECIAL
-from rosprivacy.report.page.naming import printable
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping

@@ -8,8 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.report.page.naming import fit, key, name
-from rosprivacy.report.page.patterns import grouped, weight
+from rosprivacy.report.naming import fit, key, name
+from rosprivacy.report.page.entries_of_robots import grouped, weight
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.report.page.inline import Inline, Wishes, pictures_of
-from rosprivacy.report.page.renamed import renamed
+from rosprivacy.report.page.redacted_pictures import renamed
 from rosprivacy.report.pictures.graphviz import available
 from rosprivacy.report.pictures.looks import INK, LINE_LOOKS, ROLE_LOOKS, SHORTEST, WAY, Look
 from rosprivacy.report.pictures.phrases import TEXTS, Phrases
@@ -18,7 +18,7 @@ from rosprivacy.report.pictures.wording import printable
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from rosprivacy.analysis.model import Analysis
+    from rosprivacy.analysis.answer import Analysis
     from rosprivacy.report.page.outline import Outline
     from rosprivacy.report.page.words import Words
     from rosprivacy.report.pictures.picture import Key

@@ -10,13 +10,13 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.report.page.naming import fit, key, text
-from rosprivacy.report.page.patterns import names_of
+from rosprivacy.report.naming import fit, key, text
+from rosprivacy.report.page.entries_of_robots import names_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from rosprivacy.report.page.naming import Key
+    from rosprivacy.report.naming import Key
     from rosprivacy.report.page.words import Words
 
 SPECIAL = ("always", "conditional")  # what Article 9(1) says of a kind of data by itself

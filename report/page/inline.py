@@ -14,14 +14,14 @@ from rosprivacy.report.pictures.dot import dot
 from rosprivacy.report.pictures.graphviz import Graphviz, Job, TooLongError
 from rosprivacy.report.pictures.narrow import folded
 from rosprivacy.report.pictures.svg import alt_text
-from rosprivacy.report.views import LONGER, PER_BOX, FindingViews, bounded
+from rosprivacy.report.pictures.views import LONGER, PER_BOX, FindingViews, bounded
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
 
     from markupsafe import Markup
 
-    from rosprivacy.analysis.model import Analysis, Finding
+    from rosprivacy.analysis.answer import Analysis, Finding
     from rosprivacy.report.pictures.phrases import Phrases
     from rosprivacy.report.pictures.picture import Picture
 

@@ -8,13 +8,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.report.page.naming import fit, printable, text
+from rosprivacy.report.naming import fit, printable, text
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
+    from rosprivacy.report.page.finding_entries import Way
     from rosprivacy.report.page.index import Index
-    from rosprivacy.report.page.ways import Way
 
 NARROWER = "⊇ "  # how the ontology writes, in other languages than English: if the data are of one of these kinds
 

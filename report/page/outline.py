@@ -10,18 +10,18 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.report.compare.changes import ASKED, Changes, changes
-from rosprivacy.report.document import files_not_read
-from rosprivacy.report.page import assumed, cleaned, elements, tables
+from rosprivacy.report.document.analysis import files_not_read
+from rosprivacy.report.naming import fit, name
+from rosprivacy.report.page import assumed, elements, sanitizers, tables
 from rosprivacy.report.page.closed import Closed, closed
 from rosprivacy.report.page.criteria import Criterion, criteria
 from rosprivacy.report.page.decision_texts import Decision, orphans
-from rosprivacy.report.page.fleet_told import Fleet, fleet_told
+from rosprivacy.report.page.finding_entries import Way, ways
+from rosprivacy.report.page.fleet_section import Fleet, fleet_told
 from rosprivacy.report.page.index import CAN_BE_SPECIAL, Index
 from rosprivacy.report.page.kinds import Kind, kinds
-from rosprivacy.report.page.naming import fit, name
+from rosprivacy.report.page.non_ros import Outside, outside
 from rosprivacy.report.page.review import Group, review, unknown_ends
-from rosprivacy.report.page.storages import Outside, outside
-from rosprivacy.report.page.ways import Way, ways
 from rosprivacy.report.page.words import Words
 
 if TYPE_CHECKING:
@@ -105,8 +105,8 @@ class Outline:
     ways: tuple[Way, ...]
     orphans: tuple[Decision, ...]
     outside: tuple[Outside, ...]
-    cleanings: tuple[cleaned.Cleaning, ...]
-    makings: tuple[cleaned.Making, ...]
+    cleanings: tuple[sanitizers.Cleaning, ...]
+    makings: tuple[sanitizers.Making, ...]
     questions: tuple[Group, ...]
     ends: tuple[Group, ...]
     criteria: tuple[Criterion, ...]
@@ -178,8 +178,8 @@ def outline(
         ways=entries,
         orphans=orphans(index),
         outside=outside(index),
-        cleanings=cleaned.cleanings(index, entries),
-        makings=cleaned.makings(index),
+        cleanings=sanitizers.cleanings(index, entries),
+        makings=sanitizers.makings(index),
         questions=review(index),
         ends=unknown_ends(index),
         criteria=criteria(index),

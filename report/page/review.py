@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.model import CHANNELS
-from rosprivacy.report.page.patterns import grouped
+from rosprivacy.report.page.entries_of_robots import grouped
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -11,15 +11,15 @@ from collections import defaultdict
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.report.naming import fit, key
+from rosprivacy.report.page.entries_of_robots import grouped
 from rosprivacy.report.page.index import anchor, state
-from rosprivacy.report.page.naming import fit, key
-from rosprivacy.report.page.patterns import grouped
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
+    from rosprivacy.report.naming import Key
     from rosprivacy.report.page.index import Index
-    from rosprivacy.report.page.naming import Key
 
 COLUMNS = 6  # of one part, so that it fits a page upright
 OUTSIDE = ("storage", "external-system", "display", "person", "device")

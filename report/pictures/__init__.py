@@ -1,4 +1,4 @@
 """How views become files: ``picture.py`` is what is drawn, the rest how it looks and in which format.
 
-In: a ``Picture``, as ``report/views.py`` makes it. Out: DOT, SVG, PNG, GraphML, Mermaid.
+In: a ``Picture``, as ``report/pictures/views.py`` makes it. Out: DOT, SVG, PNG, GraphML, Mermaid.
 """

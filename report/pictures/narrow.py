@@ -18,7 +18,8 @@ from rosprivacy.report.pictures.wording import counted
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping
 
-    from rosprivacy.analysis.model import Analysis, Finding, Profile
+    from rosprivacy.analysis.answer import Analysis, Finding
+    from rosprivacy.analysis.model import Profile
     from rosprivacy.report.pictures.picture import Key
 
 SHORTEST_ID = 4  # characters of a finding's id

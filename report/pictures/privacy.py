@@ -16,7 +16,7 @@ from rosprivacy.report.pictures.wording import counted, listed
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
 
-    from rosprivacy.analysis.model import Analysis
+    from rosprivacy.analysis.answer import Analysis
     from rosprivacy.report.pictures.picture import Key
 
 MOST = 4  # categories that are named on a box

@@ -1,6 +1,6 @@
 """What Graphviz writes as SVG -> SVG for people: a title and a description, tips on boxes and lines, nothing external.
 
-In: SVG of a ``Picture``'s DOT. Out: SVG, a file of its own; ``page_svg.py`` makes what stands in a page.
+In: SVG of a ``Picture``'s DOT. Out: SVG, a file of its own; ``page/page_svg.py`` makes what stands in a page.
 """
 
 from __future__ import annotations

@@ -12,6 +12,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rosprivacy.version import __version__
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
     from typing import Any
@@ -19,7 +21,6 @@ if TYPE_CHECKING:
     from rosprivacy.assembly import Result
 
 __all__ = ["__version__", "analyze", "analyze_fleet"]
-__version__ = "0.1.0"
 
 
 def analyze(policies: Iterable[str], labels: Iterable[str] = (), **options: Any) -> Result:

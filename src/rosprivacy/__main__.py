@@ -1,5 +1,5 @@
 """``python -m rosprivacy``."""
 
-from rosprivacy.cli import main
+from rosprivacy.cli.app import main
 
 main()

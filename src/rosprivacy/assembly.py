@@ -10,10 +10,10 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import InputError, InputErrors
-from rosprivacy.analysis.findings import Options, analyse
-from rosprivacy.analysis.ledger import ledger
+from rosprivacy.analysis.findings.findings import Options, analyse
+from rosprivacy.analysis.findings.ledger import ledger
+from rosprivacy.analysis.fleet.patterns import FleetView
 from rosprivacy.analysis.model import unread
-from rosprivacy.analysis.patterns import FleetView
 from rosprivacy.asked import asked_for
 from rosprivacy.assumptions import (
     assumed_decisions,
@@ -25,27 +25,28 @@ from rosprivacy.assumptions import (
 )
 from rosprivacy.clock import judged_on
 from rosprivacy.decided import accepts, decisions_of, joined_to
-from rosprivacy.ingest.binding import bind, unused
-from rosprivacy.ingest.files import read_policies
-from rosprivacy.ingest.graph import build
-from rosprivacy.ingest.joint import joint_warnings
-from rosprivacy.ingest.labels import read_labels
-from rosprivacy.ingest.outside import extend
-from rosprivacy.ingest.said import diagnostics_of
-from rosprivacy.ingest.saved import read_saved
+from rosprivacy.ingest.database.robot_notices import diagnostics_of
+from rosprivacy.ingest.labels.add_non_ros import extend
+from rosprivacy.ingest.labels.binding import bind, unused
+from rosprivacy.ingest.labels.label_file import read_labels
+from rosprivacy.ingest.policies.flow_graph import build
+from rosprivacy.ingest.policies.joint_policies import joint_warnings
+from rosprivacy.ingest.policies.policy_files import read_policies
+from rosprivacy.ingest.policies.saved_graph import read_saved
 from rosprivacy.ontology.vocabulary import load
-from rosprivacy.report.decided import with_decisions
-from rosprivacy.report.document import document
-from rosprivacy.report.fleet import fleet_document
+from rosprivacy.report.document.analysis import document
+from rosprivacy.report.document.decisions import with_decisions
+from rosprivacy.report.document.fleet import fleet_document
 
 if TYPE_CHECKING:
     from neo4j import Driver
 
+    from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.decisions import Decided
-    from rosprivacy.analysis.ledger import TakenAway
-    from rosprivacy.analysis.model import Analysis, Bound, Diagnostic, FlowGraph, Policy
-    from rosprivacy.ingest.labels import Labels
-    from rosprivacy.ingest.rows import RobotRows
+    from rosprivacy.analysis.findings.ledger import TakenAway
+    from rosprivacy.analysis.model import Bound, Diagnostic, FlowGraph, Policy
+    from rosprivacy.ingest.database.rows import RobotRows
+    from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.settings import Settings
 
@@ -100,13 +101,13 @@ class Result:
 
     def linked_data(self, form: str, **more: Any) -> str:
         """Return the findings as RDF, in ``turtle`` or ``json-ld``; ``more`` as for ``rdf_graph``."""
-        from rosprivacy.report.linked.rdf import rdf_graph  # noqa: PLC0415 - rdflib, only where it is used
-        from rosprivacy.report.linked.serialise import SERIALISERS  # noqa: PLC0415
+        from rosprivacy.report.rdf.findings import rdf_graph  # noqa: PLC0415 - rdflib, only where it is used
+        from rosprivacy.report.rdf.serialise import SERIALISERS  # noqa: PLC0415
 
         more = {"taken": self.taken_away, **more}
         graph = rdf_graph(self.shown, self.vocabulary, self.diagnostics, self.assumptions, **more)
         if self.fleet:
-            from rosprivacy.report.exchange.fleet_formats import robot_triples  # noqa: PLC0415
+            from rosprivacy.report.fleet_formats import robot_triples  # noqa: PLC0415
 
             for triple in robot_triples(self.fleet):
                 graph.add(triple)
@@ -151,8 +152,8 @@ def run_stored(driver: Driver, settings: Settings) -> Result:
     DatabaseError
         If the server refuses, or a robot was loaded meanwhile.
     """
-    from rosprivacy.ingest.stored import read_stored  # noqa: PLC0415 - only where there is a database
-    from rosprivacy.ingest.writeback import write_back  # noqa: PLC0415
+    from rosprivacy.ingest.database.read_back import read_stored  # noqa: PLC0415 - only where there is a database
+    from rosprivacy.ingest.database.write_back import write_back  # noqa: PLC0415
 
     vocabulary = load(ontologies=settings.ontologies)
     asked = asked_for(vocabulary, settings)
@@ -179,7 +180,7 @@ def run_stored(driver: Driver, settings: Settings) -> Result:
 
 def robot_of(name: str, result: Result) -> RobotRows:
     """Return the rows of a robot for the database; what the answer rests on goes with it."""
-    from rosprivacy.ingest.rows import robot_rows  # noqa: PLC0415
+    from rosprivacy.ingest.database.rows import robot_rows  # noqa: PLC0415
 
     more = remembered(result.assumptions, result.diagnostics)
     return robot_rows(name, result.analysis, result.bound, result.vocabulary, more)

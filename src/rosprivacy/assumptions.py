@@ -8,18 +8,19 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any
 
-import rosprivacy
 from rosprivacy.analysis.model import Diagnostic, Place, Severity
 from rosprivacy.asked import may_be
-from rosprivacy.ingest.countries import countries
-from rosprivacy.ingest.said import diagnostics_of, diagnostics_text
+from rosprivacy.ingest.database.robot_notices import diagnostics_of, diagnostics_text
+from rosprivacy.ingest.labels.countries import countries
+from rosprivacy.version import __version__
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
+    from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.decisions import Decisions
-    from rosprivacy.analysis.model import Analysis, FlowGraph, Policy
-    from rosprivacy.ingest.labels import Labels
+    from rosprivacy.analysis.model import FlowGraph, Policy
+    from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.settings import Settings
 
@@ -36,7 +37,7 @@ def own_assumptions(
     """
     broader = may_be(vocabulary, settings, emitted)
     return {
-        "rosprivacy": rosprivacy.__version__,
+        "rosprivacy": __version__,
         "view": graph.view,
         "ontologies": [{"file": name, "sha256": digest} for name, digest in vocabulary.sources],
         "law_as_of": vocabulary.law_as_of,

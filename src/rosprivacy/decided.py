@@ -10,16 +10,16 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.decisions import Case, decided
-from rosprivacy.analysis.patterns import NO_ROBOTS, pattern_of
+from rosprivacy.analysis.fleet.patterns import NO_ROBOTS, pattern_of
 from rosprivacy.clock import judged_on, today
 from rosprivacy.ontology.special import special_provision
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from rosprivacy.analysis.answer import Analysis, Finding
     from rosprivacy.analysis.decisions import Decided, Decisions
-    from rosprivacy.analysis.model import Analysis, Finding
-    from rosprivacy.analysis.patterns import Likeness
+    from rosprivacy.analysis.fleet.patterns import Likeness
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.settings import Settings
 
@@ -28,7 +28,7 @@ def decisions_of(settings: Settings, vocabulary: Vocabulary) -> Decisions | None
     """Read the decisions file, if one is named."""
     if settings.decisions is None:
         return None
-    from rosprivacy.ingest.decisions import read_decisions  # noqa: PLC0415 - only where there are some
+    from rosprivacy.ingest.decisions.decisions_file import read_decisions  # noqa: PLC0415 - only where there are some
 
     found = read_decisions(settings.decisions, vocabulary, settings.today or today(os.environ))
     return found if settings.today else not_revived(found, judged_on(os.environ))

@@ -10,29 +10,29 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors
-from rosprivacy.analysis.findings import Options, analyse
-from rosprivacy.analysis.groups import Groups
+from rosprivacy.analysis.findings.findings import Options, analyse
+from rosprivacy.analysis.fleet.patterns import FleetView
+from rosprivacy.analysis.fleet.patterns_of_pairs import Groups
 from rosprivacy.analysis.model import unread
-from rosprivacy.analysis.patterns import FleetView
 from rosprivacy.asked import asked_for
 from rosprivacy.assembly import Result
 from rosprivacy.assumptions import assumed_decisions, remembered, sources_of, what_it_rests_on
 from rosprivacy.clock import judged_on
 from rosprivacy.decided import accepts, decisions_of, joined_to
-from rosprivacy.ingest.alike import Alike, alike
-from rosprivacy.ingest.binding import bind, unused
-from rosprivacy.ingest.domains import Member, stripped, with_grants
-from rosprivacy.ingest.files import read_policies
-from rosprivacy.ingest.fleet import Fleet, Robot, read_fleet
-from rosprivacy.ingest.fleetrows import FleetRows
-from rosprivacy.ingest.graph import build
-from rosprivacy.ingest.joins import joins_nothing
-from rosprivacy.ingest.joint import joint_warnings
-from rosprivacy.ingest.labels import Labels, read_labels
-from rosprivacy.ingest.namespaces import as_written, pushed, told
-from rosprivacy.ingest.outside import extend
-from rosprivacy.ingest.parts import Part
-from rosprivacy.ingest.placing import Placed, place
+from rosprivacy.ingest.database.fleet_rows import FleetRows
+from rosprivacy.ingest.fleet.alike_robots import Alike, alike
+from rosprivacy.ingest.fleet.dds_domains import Member, stripped, with_grants
+from rosprivacy.ingest.fleet.fleet_file import Fleet, Robot, read_fleet
+from rosprivacy.ingest.fleet.fleet_graph import Placed, place
+from rosprivacy.ingest.fleet.joins import joins_nothing
+from rosprivacy.ingest.fleet.mergeable_graph import Part
+from rosprivacy.ingest.labels.add_non_ros import extend
+from rosprivacy.ingest.labels.binding import bind, unused
+from rosprivacy.ingest.labels.label_file import Labels, read_labels
+from rosprivacy.ingest.policies.flow_graph import build
+from rosprivacy.ingest.policies.joint_policies import joint_warnings
+from rosprivacy.ingest.policies.namespaces import as_written, pushed, told
+from rosprivacy.ingest.policies.policy_files import read_policies
 from rosprivacy.ontology.vocabulary import load
 
 if TYPE_CHECKING:

@@ -14,9 +14,9 @@ from rosprivacy.clock import source_date
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.decisions import Decision
-    from rosprivacy.analysis.model import Analysis
-    from rosprivacy.analysis.outside import Outside
+    from rosprivacy.analysis.model import NonRosFacts
     from rosprivacy.assembly import Result
 
     Stated = Mapping[tuple[str, str, str], Mapping[str, str]]
@@ -30,8 +30,8 @@ def sarif_log(result: Result, accepted: Mapping[str, str] | None = None) -> dict
     accepted
         Id of a finding -> why a person accepted it; what the decisions of the result say by default.
     """
-    from rosprivacy.report.exchange.artifacts import repository_root  # noqa: PLC0415 - light start
-    from rosprivacy.report.exchange.sarif import sarif  # noqa: PLC0415
+    from rosprivacy.report.sarif.artifacts import repository_root  # noqa: PLC0415 - light start
+    from rosprivacy.report.sarif.log import sarif  # noqa: PLC0415
 
     assumptions = result.assumptions
     named = [entry["file"] for kind in ("policies", "labels") for entry in assumptions.get(kind) or ()]
@@ -46,7 +46,7 @@ def sarif_log(result: Result, accepted: Mapping[str, str] | None = None) -> dict
     )
     if not result.fleet:
         return log
-    from rosprivacy.report.exchange.fleet_formats import with_robots  # noqa: PLC0415
+    from rosprivacy.report.fleet_formats import with_robots  # noqa: PLC0415
 
     return with_robots(log, result.analysis, result.fleet)
 
@@ -70,11 +70,11 @@ def pia_file(
     InputError
         If ``SOURCE_DATE_EPOCH`` is no time; without it the file is dated now, since the tool wants a date (rule S14).
     """
-    from rosprivacy.report.exchange.cnil import cnil_pia  # noqa: PLC0415 - light start
+    from rosprivacy.report.cnil.pia import cnil_pia  # noqa: PLC0415 - light start
 
     vocabulary, analysis, about = result.vocabulary, result.analysis, ""
     if result.fleet:
-        from rosprivacy.report.exchange.fleet_formats import note, of_shown_robots  # noqa: PLC0415
+        from rosprivacy.report.fleet_formats import note, of_shown_robots  # noqa: PLC0415
 
         analysis, about = of_shown_robots(analysis, result.fleet), note(result.fleet)
     created = (source_date(os.environ) or datetime.now(UTC)).isoformat(timespec="milliseconds").replace("+00:00", "Z")
@@ -108,7 +108,7 @@ def stated_of(analysis: Analysis) -> dict[tuple[str, str, str], dict[str, str]]:
     return {element.identity: dict(_stated(facts)) for element, facts in analysis.outside.items()}
 
 
-def _stated(facts: Outside) -> Iterator[tuple[str, str]]:
+def _stated(facts: NonRosFacts) -> Iterator[tuple[str, str]]:
     kept = ", ".join(f"{category}: {duration}" if category else str(duration) for category, duration in facts.retention)
     backups = "in backups, nobody says for how long" if facts.backups is True else f"in backups {facts.backups} more"
     said = {

@@ -8,21 +8,21 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.changes import CHANGES, DENY, Limits
-from rosprivacy.analysis.mitigate import System, mitigate
-from rosprivacy.ingest.binding import join
-from rosprivacy.ingest.denials import denials, with_denied
-from rosprivacy.ingest.fresh import open_ended
-from rosprivacy.ingest.graph import build
-from rosprivacy.ingest.limits import read_limits
-from rosprivacy.ingest.patch import Patch, patch
-from rosprivacy.report.mitigation import mitigation_document
+from rosprivacy.analysis.mitigation.limits import CHANGES, DENY, Limits
+from rosprivacy.analysis.mitigation.propose import System, mitigate
+from rosprivacy.ingest.labels.binding import join
+from rosprivacy.ingest.mitigation.deny_lines import denials, with_denied
+from rosprivacy.ingest.mitigation.deny_patch import Patch, patch
+from rosprivacy.ingest.mitigation.limits_file import read_limits
+from rosprivacy.ingest.mitigation.open_wildcards import open_ended
+from rosprivacy.ingest.policies.flow_graph import build
+from rosprivacy.report.document.mitigation import mitigation_document
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable
 
+    from rosprivacy.analysis.mitigation.proposals import Proposal
     from rosprivacy.analysis.model import Bound, FlowGraph, Grant
-    from rosprivacy.analysis.proposals import Proposal
     from rosprivacy.assembly import Result
 
 

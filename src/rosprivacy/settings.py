@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.findings import MAX_PATHS
-from rosprivacy.analysis.paths import WITNESS
-from rosprivacy.ingest.graph import DECLARED
-from rosprivacy.ingest.labels import STANDARD
-from rosprivacy.ingest.xinclude import MAX_BYTES
+from rosprivacy.analysis.findings.findings import MAX_PATHS
+from rosprivacy.analysis.findings.further_paths import WITNESS
+from rosprivacy.ingest.labels.label_file import STANDARD
+from rosprivacy.ingest.policies.flow_graph import DECLARED
+from rosprivacy.ingest.policies.xinclude import MAX_BYTES
 from rosprivacy.ontology.vocabulary import TOP
 
 if TYPE_CHECKING:

@@ -1,0 +1,1 @@
+"""What is found: the fixpoint in, out come findings, open questions and a verdict (rules S10 to S12)."""

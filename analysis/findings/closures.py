@@ -1,0 +1,178 @@
+"""Where data ends on a label's or a DENY's word, and what lies behind.
+
+In: a ``Spread``. Out: ``Closure`` facts, and for each the nearest of some places that data would get to if what closes
+it were not there. Used by the ledger.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.kernel.backward import NOTHING_OPENED, Opened, backward
+from rosprivacy.analysis.kernel.nearest import Nearest
+from rosprivacy.analysis.model import Place, Statement
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from rosprivacy.analysis.kernel.backward import Backward
+    from rosprivacy.analysis.kernel.roles import Facts
+    from rosprivacy.analysis.kernel.spread import Spread
+
+Line = Statement | Place
+DENY, STANDARD = "deny", "standard-channel"
+ROUNDS = 64  # lines about several elements that are opened one by one; of others it is said that they may close a path
+PERHAPS = -2  # in place of a vertex, where it was not worked out
+
+
+@dataclass(frozen=True, slots=True)
+class Closure:
+    """Bits that get to an element or a flow and do not go on.
+
+    Attributes
+    ----------
+    by
+        Role of the statement, ``DENY`` or ``STANDARD``.
+    vertex, to
+        The element; or the start of a flow and its end (-1 otherwise).
+    bits
+        What gets there, in both planes.
+    lines
+        What closes it: statements, or the places of DENY lines.
+    itself
+        Whether nothing else answers for the element, so that it would be open.
+    """
+
+    by: str
+    vertex: int
+    to: int
+    bits: int
+    lines: tuple[Line, ...]
+    itself: bool = False
+
+
+def closures(found: Spread) -> list[Closure]:
+    """Return where data ends: elements, then flows, then denied flows, each in the order of the graph."""
+    return [*_elements(found), *_flows(found), *_denied(found)]
+
+
+def _elements(found: Spread) -> Iterator[Closure]:
+    for vertex, keeps in sorted(found.keeps.items()):
+        stopped = found.arrives.get(vertex, 0) & ~keeps
+        for lines, categories in _by_lines(found, found.facts[vertex], stopped).items():
+            bits = stopped & sum(map(found.both, categories))
+            itself = any(_alone(found.facts[vertex][category]) for category in categories)
+            yield Closure(_said_by(lines), vertex, -1, bits, lines, itself)
+
+
+def _flows(found: Spread) -> Iterator[Closure]:
+    for index, keeps in sorted(found.flow_keeps.items()):
+        flow = found.graph.flows[index]
+        stopped = (found.sent.get(flow.source, 0) | found.flow_emits.get(index, 0)) & ~keeps
+        for lines, categories in _by_lines(found, found.flow_facts[index], stopped).items():
+            yield Closure(_said_by(lines), flow.source, flow.target, stopped & sum(map(found.both, categories)), lines)
+
+
+def _denied(found: Spread) -> Iterator[Closure]:
+    """Flows that a DENY takes back, with data at their start (rule S5)."""
+    for flow in found.graph.taken_back:
+        bits = found.leaves.get(flow.source, 0)
+        if bits:
+            lines = {denial.place: None for denial in sorted(flow.denials, key=lambda denial: line_key(denial.place))}
+            yield Closure(DENY, flow.source, flow.target, bits, tuple(lines))
+
+
+def _by_lines(found: Spread, decided: Mapping[str, Facts], stopped: int) -> dict[tuple[Line, ...], list[str]]:
+    """What is stopped, by the statements that stop it."""
+    by_lines: dict[tuple[Line, ...], list[str]] = defaultdict(list)
+    for category in found.names(stopped) if stopped else ():
+        by_lines[decided[category].closers].append(category)
+    return by_lines
+
+
+def _alone(fact: Facts) -> bool:
+    return not fact.reviewers and not fact.leaks and not fact.emits
+
+
+def _said_by(lines: tuple[Line, ...]) -> str:
+    statements = [line for line in lines if isinstance(line, Statement)]
+    return STANDARD if all(line.shipped for line in statements) else statements[0].role
+
+
+def behind(found: Spread, closed: Sequence[Closure], places: Mapping[int, int]) -> dict[int, int]:
+    """Return what data would get to if it were not for a closure.
+
+    Parameters
+    ----------
+    places
+        Vertex -> bits that count there.
+
+    Returns
+    -------
+    dict
+        Number of the closure -> the nearest place, or ``PERHAPS``; those with nothing behind are absent. A search tells
+        for closures by themselves. A line that closes several elements in a row has to be opened as a whole.
+    """
+    if not closed or not any(places.values()):
+        return {}
+    plain = backward(found, places)
+    behind = {number: closure for number, closure in enumerate(closed) if _led(closure, plain)}
+    result = _nearest(found, behind, places, plain, NOTHING_OPENED)
+    left = {number: closure for number, closure in enumerate(closed) if number not in behind}
+    extents = _extents(found, {line for closure in left.values() for line in closure.lines})
+    if not extents:
+        return result
+    together = backward(found, places, Opened.of(extents.values()))
+    left = {number: closure for number, closure in left.items() if _led(closure, together)}
+    lines = [line for line in extents if any(line in closure.lines for closure in left.values())]
+    for line in lines[:ROUNDS]:
+        by = backward(found, places, extents[line])
+        behind = {n: c for n, c in left.items() if line in c.lines and n not in result and _led(c, by)}
+        result |= _nearest(found, behind, places, by, extents[line])
+    untold = set(lines[ROUNDS:])
+    return {number: PERHAPS for number, closure in left.items() if untold.intersection(closure.lines)} | result
+
+
+def _led(closure: Closure, by: Backward) -> int:
+    """The bits that would get to a place from here: from the element on, or by the end of the flow."""
+    ways = by.leaving.get(closure.vertex, 0) if closure.to < 0 else by.entering.get(closure.to, 0)
+    return closure.bits & ways
+
+
+def _nearest(
+    found: Spread, behind: Mapping[int, Closure], places: Mapping[int, int], by: Backward, opened: Opened
+) -> dict[int, int]:
+    if not behind:
+        return {}
+    near = Nearest.of(found, places, opened)
+    return {
+        number: near.after(c.vertex, _led(c, by)) if c.to < 0 else near.at(c.to, _led(c, by))
+        for number, c in behind.items()
+    }
+
+
+def _extents(found: Spread, lines: set[Line]) -> dict[Line, Opened]:
+    """All that each of some lines closes, reached or not; only lines that close more than one element or flow."""
+    elements: dict[Line, dict[int, int]] = defaultdict(lambda: defaultdict(int))
+    flows: dict[Line, dict[int, int]] = defaultdict(lambda: defaultdict(int))
+    more: dict[Line, set[tuple[int, int]]] = defaultdict(set)
+    for facts, closed in ((found.facts, elements), (found.flow_facts, flows)):
+        for number, decided in facts.items():
+            for category in found.categories:
+                for line in decided[category].closers if category in decided else ():
+                    closed[line][number] |= found.both(category)
+    for flow in found.graph.taken_back:
+        for denial in flow.denials:
+            more[denial.place].add((flow.source, flow.target))
+    extents = {line: Opened(elements[line], flows[line], tuple(sorted(more[line]))) for line in lines}
+    several = [(line, opened) for line, opened in extents.items() if opened.size > 1]
+    return dict(sorted(several, key=lambda pair: line_key(pair[0])))
+
+
+def line_key(line: Line) -> tuple[str, int, str]:
+    """Statements by their place and what they say; policy lines by their place."""
+    if isinstance(line, Place):
+        return (line.file, line.line, "")
+    return (line.place.file, line.place.line, repr(line))

@@ -1,0 +1,40 @@
+"""Where a category is kept too long or leaves the EEA, and why (rules S9, S10)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.model import DISCLOSURE, STORAGE_LIMITATION, THIRD_COUNTRY
+from rosprivacy.analysis.non_ros import kept_too_long, transferred
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from rosprivacy.analysis.hierarchy import Hierarchy
+    from rosprivacy.analysis.kernel.spread import Spread
+    from rosprivacy.analysis.model import Bound
+
+
+@dataclass(frozen=True, slots=True)
+class Concern:
+    """A kind of finding: vertex -> bits that must not get there, and why."""
+
+    kind: str
+    bits: Mapping[int, int]
+    reasons: Mapping[tuple[int, str], str]
+
+
+def concerns(found: Spread, bound: Bound, hierarchy: Hierarchy) -> Iterator[Concern]:
+    """Return where each kind of finding can be (rule S10); disclosure first."""
+    yield Concern(DISCLOSURE, found.leaks, {})
+    elements = found.graph.elements
+    storages = {v: facts for v, facts in bound.outside.items() if elements[v].kind == "storage"}
+    too_long = {(v, c): kept_too_long(facts, c, hierarchy) for v, facts in storages.items() for c in found.categories}
+    abroad = {(v, c): transferred(facts) for v, facts in bound.outside.items() for c in found.categories}
+    for kind, reasons in ((STORAGE_LIMITATION, too_long), (THIRD_COUNTRY, abroad)):
+        bits: dict[int, int] = {}
+        for (vertex, category), why in reasons.items():
+            if why:
+                bits[vertex] = bits.get(vertex, 0) | found.both(category)
+        yield Concern(kind, bits, {key: why for key, why in reasons.items() if why})

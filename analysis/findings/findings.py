@@ -1,0 +1,347 @@
+"""Graph + labels -> ``Analysis``: findings, witnesses, open questions, verdict (rules S10 to S12, S14).
+
+In: a flow graph, bound statements, the hierarchy. Out: one frozen ``Analysis``.
+
+Source: the paper, section II-B, for paths from source to leak and for the dismissal of those through another leak;
+what it counts on one undirected graph for one kind of data stands here per category on directed flows.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections import defaultdict
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.answer import Analysis, Carried, Finding, Step, Verdict
+from rosprivacy.analysis.decisions import Case
+from rosprivacy.analysis.findings.concerns import concerns
+from rosprivacy.analysis.findings.further_paths import WITNESS, Between, further
+from rosprivacy.analysis.findings.open_questions import open_questions
+from rosprivacy.analysis.findings.unknown_ends import unknown_ends
+from rosprivacy.analysis.kernel import standard_channels
+from rosprivacy.analysis.kernel.search import START, Net, Search, path_to, present, search
+from rosprivacy.analysis.kernel.spread import Spread, bits_of
+from rosprivacy.analysis.kernel.spreading import spread
+from rosprivacy.analysis.model import DISCLOSURE, Diagnostic, Element, Place, Severity
+from rosprivacy.analysis.non_ros import country_unknown, on_day
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Set as AbstractSet
+    from typing import Any
+
+    from rosprivacy.analysis.answer import OpenQuestion
+    from rosprivacy.analysis.findings.concerns import Concern
+    from rosprivacy.analysis.hierarchy import Hierarchy
+    from rosprivacy.analysis.model import Bound, FlowGraph
+
+MAX_PATHS = 100
+Chosen = tuple[str, int, int, bool]  # kind, leak, number of the category, whether beside a pseudonymised one
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """What is asked for.
+
+    Attributes
+    ----------
+    categories
+        Emitted categories that the answer is about; None for all.
+    paths
+        ``witness``: no further paths; ``disjoint``: paths that share no flow; ``all``: simple paths.
+    max_paths
+        Bound on further paths per finding.
+    accepts
+        Whether a person has accepted that a category of a source reaches a leak, in one form; such a leak hides
+        nothing that lies behind it (rule S10).
+    today
+        The day on which adequacy decisions hold or have ended, ``YYYY-MM-DD``; empty where none is taken to have.
+    choose
+        Of a spread, the kinds of findings and the bits of the categories: source -> ``Chosen`` of the findings to
+        make; None for all.
+    unread
+        Where grants stand that were not read: with any, nothing is said to have no leak (rule S11).
+    """
+
+    categories: Collection[str] | None = None
+    paths: str = WITNESS
+    max_paths: int = MAX_PATHS
+    accepts: Callable[[Case], bool] | None = None
+    choose: Callable[[Spread, Sequence[Concern], int], Mapping[int, AbstractSet[Chosen]]] | None = None
+    today: str = ""
+    unread: tuple[Place, ...] = ()
+
+
+def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Options | None = None) -> Analysis:
+    """Answer, for every category in one pass, whether it can get from a source to a leak.
+
+    Raises
+    ------
+    InputErrors
+        If labels contradict each other.
+
+    Notes
+    -----
+    The fixpoint says which leaks are reached; only where one is, searches say from which source and along which way:
+    one or two per source, O(flows) each for a fixed number of categories, and networkx's ``edge_disjoint_paths`` on
+    the part of the graph between the two.
+    """
+    options = options or Options()
+    bound = replace(bound, outside=on_day(bound.outside, options.today))
+    found = spread(graph, bound, hierarchy)
+    kinds = tuple(concerns(found, bound, hierarchy))
+    wanted = [c for c in found.categories if options.categories is None or c in options.categories]
+    mask = sum(found.both(category) for category in wanted)
+    net = Net.of(found)
+    findings = tuple(_findings(net, mask, kinds, options))
+    unknown = {v for v, facts in bound.outside.items() if country_unknown(graph.elements[v], facts)}
+    questions = open_questions(net, mask, unknown)
+    sources = any(found.begins(vertex) & mask for vertex in range(len(graph.elements)))
+    return Analysis(
+        graph=graph,
+        verdict=_verdict(findings, questions, known=sources and not options.unread),
+        emitted=tuple(wanted),
+        findings=findings,
+        open=questions,
+        carried=_carried(found, mask, hierarchy),
+        roles=_roles(found, mask),
+        standard_channels=_standard_channels(found),
+        standard_reached=standard_channels.reached(found, mask),
+        standard_unchanged=standard_channels.unchanged(found, bound),
+        spread=found,
+        unstated=tuple(_unstated(found)),
+        diagnostics=(*(one.diagnostic() for one in found.overruled), *(() if sources else (_no_source(options),))),
+        outside={graph.elements[vertex]: facts for vertex, facts in sorted(bound.outside.items())},
+        unknown_ends=unknown_ends(found, mask),
+    )
+
+
+def _verdict(findings: Iterable[Finding], questions: Iterable[OpenQuestion], *, known: bool) -> Verdict:
+    """Rule S12. Without any source nothing was asked, and with grants that were not read not all is known."""
+    if any(not finding.dismissed and not finding.accepted for finding in findings):
+        return Verdict.LEAK
+    return Verdict.UNDETERMINED if any(True for _ in questions) or not known else Verdict.NO_LEAK_FOUND
+
+
+def _no_source(options: Options) -> Diagnostic:
+    what = "no label names a source" if options.categories is None else "no source emits one of the chosen categories"
+    message = f"{what}: no data was followed, so this says nothing about the system"
+    return Diagnostic(Place("labels", 0), Severity.WARNING, message)
+
+
+def _findings(net: Net, mask: int, kinds: Sequence[Concern], options: Options) -> Iterator[Finding]:
+    """All findings, sorted by category, source, leak and kind."""
+    found = net.spread
+    ends = [(c, {v: b & mask for v, b in c.bits.items() if b & mask & found.present(v)}) for c in kinds]
+    reached = [(concern, leaks) for concern, leaks in ends if leaks]
+    results: list[tuple[int, int, int, str, bool, Finding]] = []
+    memory: dict[Any, Any] = {}
+    chosen = options.choose(found, kinds, mask) if options.choose and reached else None
+    sources = [v for v in found.facts if found.begins(v)] if chosen is None else chosen
+    for source in sorted(sources) if reached else ():
+        only = None if chosen is None else chosen[source]
+        whole = search(net, [source], found.all_bits, {})
+        for concern, leaks in reached:
+            for leak, category, finding in _findings_of(net, source, whole, concern, leaks, options, memory, only):
+                results.append((category, source, leak, finding.kind, finding.beside, finding))
+    yield from (finding for *_, finding in sorted(results, key=lambda row: row[:5]))
+
+
+def _findings_of(
+    net: Net, source: int, whole: Search, concern: Concern, leaks: dict[int, int], options: Options,
+    memory: dict[Any, Any], only: AbstractSet[Chosen] | None,
+) -> Iterator[tuple[int, int, Finding]]:  # fmt: skip
+    """(leak, number of the category, finding) of one source and kind.
+
+    Only disclosures are dismissed: no leak on the way cures a retention or a transfer (rule S10).
+    """
+    found, k = net.spread, len(net.spread.categories)
+    between: dict[tuple[int, bool], Between] = {}
+    reached = {v: bits & present(whole, v) for v, bits in leaks.items() if bits & present(whole, v)}
+    accepted = _accepted(found, source, concern.kind, reached, options)
+    free: dict[int, Search] = {}  # number of the category -> search that stops at other leaks of it
+    for leak, bits in reached.items():
+        for i in sorted({bit % k for bit in bits_of(bits)}):
+            if only is not None and not {(concern.kind, leak, i, False), (concern.kind, leak, i, True)} & only:
+                continue
+            if concern.kind != DISCLOSURE:
+                free[i] = whole
+            elif i not in free:
+                _search_free(net, source, i, accepted, free)
+            for beside, (chosen, bit) in enumerate(_shown_forms(free[i], whole, leak, i, k)):
+                if only is not None and (concern.kind, leak, i, bool(beside)) not in only:
+                    continue
+                anyway = chosen is whole
+                dismissed = anyway and concern.kind == DISCLOSURE
+                finding = _finding(net, chosen, source, leak, bit, concern, accepted, dismissed=dismissed)
+                finding = _beside(finding, options) if beside else finding
+                if len(finding.witness) > 1:
+                    if (i, anyway) not in between:
+                        stop = {} if anyway else _leaks_of(found, i, accepted)
+                        between[i, anyway] = Between(net, chosen, source, i, _relevant(found, i), stop)
+                    more = further(between[i, anyway], leak, memory, options.paths, options.max_paths)
+                    finding = replace(finding, disjoint_paths=more.disjoint, paths=more.paths, bounded=more.bounded)
+                yield leak, i, finding
+
+
+def _accepted(found: Spread, source: int, kind: str, reached: Mapping[int, int], options: Options) -> dict[int, int]:
+    """Leak -> the bits that a person has accepted there, of those that come from a source."""
+    if options.accepts is None:
+        return {}
+    k = len(found.categories)
+    from_, elements = found.graph.elements[source], found.graph.elements
+    accepted: dict[int, int] = defaultdict(int)
+    for leak, bits in reached.items():
+        for name in found.names(bits):
+            i, to = found.categories.index(name), elements[leak]
+            for plane in (False, True):
+                if options.accepts(Case(finding_id(name, from_, to, kind), kind, name, from_, to, plane)):
+                    accepted[leak] |= 1 << i + k * plane
+    return accepted
+
+
+def _search_free(net: Net, source: int, i: int, accepted: Mapping[int, int], free: dict[int, Search]) -> None:
+    """Search with the leaks of category i as ends; one search serves all categories that nothing is made into."""
+    found = net.spread
+    together = [i] if i in found.made else [j for j in range(len(found.categories)) if j not in found.made]
+    ends = sum(found.both(found.categories[j]) for j in together)
+    stop = {v: bits & ends & ~accepted.get(v, 0) for v, bits in found.leaks.items()}
+    result = search(net, [source], found.all_bits if i in found.made else ends, stop)
+    free.update(dict.fromkeys(together, result))
+
+
+def _relevant(found: Spread, i: int) -> int:
+    """Bits of what a category can be made of: its own, or for simplicity all."""
+    return found.all_bits if i in found.made else found.both(found.categories[i])
+
+
+def _leaks_of(found: Spread, i: int, accepted: Mapping[int, int]) -> dict[int, int]:
+    both = found.both(found.categories[i])
+    return {v: bits & both & ~accepted.get(v, 0) for v, bits in found.leaks.items() if bits & both}
+
+
+def _shown_forms(free: Search, whole: Search, leak: int, i: int, k: int) -> list[tuple[Search, int]]:
+    """The ways to show: not through another leak before through one, as it is before pseudonymised (rule S10).
+
+    Where only pseudonymised data gets there past no other leak, data as it is that gets there through one is shown too.
+    """
+    ways = [(way, bit) for way in (free, whole) for bit in (i, i + k) if present(way, leak) >> bit & 1]
+    first, *others = ways
+    hidden = first[0] is free and first[0] is not whole and first[1] == i + k
+    return [first, *(way for way in others if hidden and way[1] == i)]
+
+
+def _beside(finding: Finding, options: Options) -> Finding:
+    """Return a finding as one that stands beside a pseudonymised one; it is decided about by itself.
+
+    What is accepted here hides nothing in any case: all that lies behind it lies behind the other leak, too.
+    """
+    own = finding_id(finding.category, finding.source, finding.leak, finding.kind, beside=True)
+    told = replace(finding, id=own, beside=True)
+    return replace(told, accepted=bool(options.accepts and options.accepts(Case.of(told))))
+
+
+def _finding(
+    net: Net, way: Search, source: int, leak: int, bit: int, concern: Concern, accepted: Mapping[int, int], *,
+    dismissed: bool,
+) -> Finding:  # fmt: skip
+    found, k = net.spread, len(net.spread.categories)
+    elements = found.graph.elements
+    i = bit % k
+    own = leak == source and way.begun[source] >> bit & 1  # a finding by itself, of one element
+    path = [(START, source, bit)] if own else path_to(net, way, leak, bit)
+    through = _other_leaks(found, path, i, accepted)
+    category = found.categories[i]
+    shown, steps = _shown(net, path)
+    return Finding(
+        id=finding_id(category, elements[source], elements[leak], concern.kind),
+        kind=concern.kind,
+        category=category,
+        pseudonymised=bit >= k,
+        source=elements[source],
+        leak=elements[leak],
+        witness=shown,
+        steps=steps,
+        disjoint_paths=1,
+        through=tuple(elements[v] for v in dict.fromkeys(through)) if dismissed else (),
+        dismissed=dismissed,
+        reason=concern.reasons.get((leak, category), ""),
+        accepted=bool(accepted.get(leak, 0) >> bit & 1),
+    )
+
+
+def _other_leaks(found: Spread, path: list[tuple[int, int, int]], i: int, accepted: Mapping[int, int]) -> list[int]:
+    """Leaks of a category inside a path that are not accepted, where it arrives or is made."""
+    k = len(found.categories)
+    leaks = {v: found.leaks.get(v, 0) & ~accepted.get(v, 0) for _, v, _ in path}
+    inside = [(v, bits) for (_, v, arriving), (_, _, leaving) in pairwise(path[1:]) for bits in [{arriving, leaving}]]
+    return [v for v, bits in inside if any(b % k == i and leaks[v] >> b & 1 for b in bits)]
+
+
+def finding_id(category: str, source: Element, leak: Element, kind: str = DISCLOSURE, *, beside: bool = False) -> str:
+    """Return the stable id of a finding, made from category, source and leak, and the kind if several can be (S10).
+
+    Data as it is ``beside`` a pseudonymised finding has an id of its own, made with the word 'plain'.
+
+    >>> finding_id("Video", Element("node", "/camera"), Element("node", "/uplink"))
+    '72abf86b6fa9e2ae'
+    """
+    more = [*(["plain"] if beside else []), *([] if kind == DISCLOSURE else [kind])]
+    parts = [*more, category, *source.identity, *leak.identity]
+    return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:16]
+
+
+def _shown(net: Net, path: list[tuple[int, int, int]]) -> tuple[tuple[Element, ...], tuple[Step, ...]]:
+    """Elements and steps of a path; the two sides of one wildcard are one element to the reader."""
+    graph, categories = net.spread.graph, net.spread.categories
+    elements = [graph.elements[path[0][1]]]
+    steps: list[Step] = []
+    for index, vertex, bit in path[1:]:
+        flow, element = graph.flows[index], graph.elements[vertex]
+        if element.shown_as == elements[-1].shown_as:
+            continue
+        plane, i = divmod(bit, len(categories))
+        steps.append(Step(elements[-1], element, flow.role, categories[i], bool(plane), flow.grants))
+        elements.append(element)
+    return tuple(elements), tuple(steps)
+
+
+def _carried(found: Spread, mask: int, hierarchy: Hierarchy) -> tuple[Carried, ...]:
+    merged: dict[tuple[str, str, str, str], int] = defaultdict(int)
+    first: dict[tuple[str, str, str, str], Element] = {}
+    for vertex in sorted({*found.arrives, *found.leaves}):
+        bits = found.present(vertex) & mask
+        if bits:
+            element = found.graph.elements[vertex]
+            merged[element.shown_as] |= bits
+            first.setdefault(element.shown_as, element)
+    return tuple(
+        Carried(first[key], *(hierarchy.narrowest(names) for names in found.planes(bits)))
+        for key, bits in merged.items()
+    )
+
+
+def _roles(found: Spread, mask: int) -> dict[Element, dict[str, tuple[str, ...]]]:
+    roles: dict[Element, dict[str, tuple[str, ...]]] = {}
+    shown = set(found.names(mask))
+    for vertex, decided in sorted(found.facts.items()):
+        said = {c: fact.roles for c, fact in decided.items() if c in shown and fact.roles}
+        if said:
+            roles[found.graph.elements[vertex]] = said
+    return roles
+
+
+def _standard_channels(found: Spread) -> int:
+    """Channels taken as mundane on a shipped file's word alone (rule S13)."""
+    elements = found.graph.elements
+    return len({elements[v].identity for v in found.standard})
+
+
+def _unstated(found: Spread) -> Iterator[tuple[Element, str]]:
+    """Sanitizers whose method was taken as pseudonymise (rule S8)."""
+    for vertex, decided in sorted(found.facts.items()):
+        for category, fact in sorted(decided.items()):
+            if fact.unstated and category in found.categories:
+                yield found.graph.elements[vertex], category

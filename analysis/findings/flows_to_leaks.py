@@ -1,0 +1,240 @@
+"""The ways to leaks: along which flows data can come from a source to a leak of a category (rule S10).
+
+In: a spread. Out: flows. A finding shows one shortest way; a picture has to show where the data can go at all. What is
+asked of a flow is whether it lies on a walk from a source to a leak, over states (vertex, bit) as in
+``further_paths.py``. Flows on detours that must come back to where they began are left out: no way without a circle
+uses them.
+
+Source: the paper, section II-B, which colours the edges of vulnerable paths. To say of a flow exactly whether a path
+without circles uses it is NP-hard on directed graphs; dominators say no only where that is certain.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict, deque
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.kernel.spread import bits_of
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterator, Mapping
+
+    from rosprivacy.analysis.kernel.search import Net
+
+State = tuple[int, int, int]  # what (below), vertex or flow, bit
+ARRIVED, STARTED, SENT = 0, 1, 2  # data arrives at a vertex; starts there; starts there along one flow only
+BEGIN, END = (-1, 0, 0), (-2, 0, 0)
+NO_FLOW = -1
+Edge = tuple[State, State, int]  # before, after, flow or ``NO_FLOW``
+
+
+@dataclass(frozen=True, slots=True)
+class FlowsToLeaks:
+    """The flows on ways to leaks.
+
+    Attributes
+    ----------
+    flows
+        Flow -> number of flows of the shortest way through it; sorted.
+    complete
+        Whether these are all; if not, there are longer ways.
+    """
+
+    flows: dict[int, int]
+    complete: bool = True
+
+
+def flows_to_leaks(
+    net: Net,
+    category: str,
+    *,
+    sources: Collection[int] | None = None,
+    leaks: Collection[int] | None = None,
+    past_leaks: bool = False,
+    ends: Mapping[int, int] | None = None,
+    about: int | None = None,
+) -> FlowsToLeaks:
+    """Return the flows that lie on a way of data from a source to a leak of a category.
+
+    Parameters
+    ----------
+    net
+        Of a spread.
+    category
+        An emitted one: what arrives at the leaks. It may be made of others on the way.
+    sources, leaks
+        Vertices to begin and to end at; None for all.
+    past_leaks
+        Whether ways through other leaks of the category count, as for a dismissed finding.
+    ends
+        Vertex -> bits that end there; the leaks by default. Findings of other kinds end elsewhere, as at a storage.
+    about
+        Take only the shorter ways, those up to a length, so that about so many flows are on them; None for all.
+
+    Returns
+    -------
+    Ways
+        They hold every flow of every way (up to the length) that meets no state twice.
+
+    Notes
+    -----
+    Rounds of O(flows), for a fixed number of categories, with networkx's immediate dominators on the part between; two
+    rounds as a rule, never more than there are flows.
+    """
+    graph = _States(net, category, ends, past_leaks=past_leaks)
+    starts = [v for v in net.spread.facts if net.spread.begins(v)] if sources is None else sources
+    edges, before, complete = graph.edges(starts, leaks), -1, True
+    while len(edges) != before:  # what only a detour leads to is gone in the next round
+        first, before = before < 0, len(edges)
+        ahead, back = _distances(edges, BEGIN, forth=True), _distances(edges, END, forth=False)
+        edges = [edge for edge in edges if edge[0] in ahead and edge[1] in back]
+        if first and about is not None:
+            longest = _longest(_lengths(edges, ahead, back), about)
+            short = [e for e in edges if ahead[e[0]] + (e[2] != NO_FLOW) + back[e[1]] <= longest]
+            edges, complete = short, len(short) == len(edges)
+        edges = _without_detours(edges)
+    return FlowsToLeaks(dict(sorted(_lengths(edges, ahead, back).items())), complete)
+
+
+def _lengths(edges: list[Edge], ahead: Mapping[State, int], back: Mapping[State, int]) -> dict[int, int]:
+    """Flow -> number of flows of the shortest way through it."""
+    lengths: dict[int, int] = {}
+    for here, there, flow in edges:
+        if flow != NO_FLOW:
+            length = ahead[here] + 1 + back[there]
+            lengths[flow] = min(length, lengths.get(flow, length))
+    return lengths
+
+
+def _longest(lengths: Mapping[int, int], about: int) -> int:
+    """The length up to which there are no more flows than asked for; the shortest ways are always in."""
+    every = sorted(lengths.values())
+    if len(every) <= about:
+        return every[-1] if every else 0
+    shorter = [length for length in every if length < every[about]]
+    return shorter[-1] if shorter else every[0]
+
+
+class _States:
+    """How data of a category, or of what it is made of, goes from state to state."""
+
+    def __init__(self, net: Net, category: str, ends: Mapping[int, int] | None, *, past_leaks: bool) -> None:
+        self._net = net
+        found = net.spread
+        self._ends = found.leaks if ends is None else ends
+        number, self._both = found.categories.index(category), found.both(category)
+        self._relevant = found.all_bits if number in found.made else self._both
+        self._stop: Mapping[int, int] = {}
+        if not past_leaks:
+            self._stop = {v: bits & self._both for v, bits in found.leaks.items() if bits & self._both}
+        self._starts: set[State] = set()
+
+    def edges(self, starts: Collection[int], leaks: Collection[int] | None) -> list[Edge]:
+        """Return what can be reached from some vertices, to END where it comes to a leak."""
+        edges: list[Edge] = list(self._begin(starts, leaks))
+        waiting = deque(dict.fromkeys(after for _, after, _ in edges))
+        seen = set(waiting)
+        while waiting:
+            state = waiting.popleft()
+            if state[0] == ARRIVED and (leaks is None or state[1] in leaks) and self._leaks(*state[1:]):
+                edges.append((state, END, NO_FLOW))
+            for flow, after in self._onward(state):
+                edges.append((state, after, flow))
+                if after not in seen:
+                    seen.add(after)
+                    waiting.append(after)
+        return edges
+
+    def _begin(self, starts: Collection[int], leaks: Collection[int] | None) -> Iterator[Edge]:
+        """Where what comes back goes on again, or ends, it is one state with what starts: circles are seen as such."""
+        found = self._net.spread
+        for vertex in sorted(starts):
+            stop, keeps = self._stop.get(vertex, 0), found.keeps.get(vertex, found.all_bits)
+            alike = stop if leaks is None or vertex in leaks else 0
+            alike |= keeps & ~stop
+            for bit in bits_of(found.emits.get(vertex, 0) & self._relevant):
+                state = (ARRIVED if alike >> bit & 1 else STARTED, vertex, bit)
+                self._starts.add(state)
+                yield BEGIN, state, NO_FLOW
+            for flow, _, passing in self._net.flows.get(vertex, ()):
+                for bit in bits_of(found.flow_emits.get(flow, 0) & self._relevant & passing):
+                    yield BEGIN, (SENT, flow, bit), NO_FLOW
+
+    def _onward(self, state: State) -> Iterator[tuple[int, State]]:
+        what, where, bit = state
+        if what == SENT:
+            yield where, (ARRIVED, self._net.spread.graph.flows[where].target, bit)
+            return
+        leaving = self._leaving(where, bit) if what == ARRIVED else 0
+        leaving |= 1 << bit if state in self._starts else 0
+        for flow, target, passing in self._net.flows.get(where, ()) if leaving else ():
+            for moved in bits_of(leaving & passing):
+                yield flow, (ARRIVED, target, moved)
+
+    def _leaving(self, vertex: int, bit: int) -> int:
+        found, stop = self._net.spread, self._stop.get(vertex, 0)
+        if stop >> bit & 1:
+            return 0
+        kept = 1 << bit & found.keeps.get(vertex, found.all_bits)
+        return (kept | self._made(vertex, bit)) & self._relevant & ~stop
+
+    def _made(self, vertex: int, bit: int) -> int:
+        return sum(1 << after for before, after in self._net.spread.derives.get(vertex, ()) if before == bit)
+
+    def _leaks(self, vertex: int, bit: int) -> bool:
+        here = self._ends.get(vertex, 0) & self._both
+        return bool(here and here & (1 << bit | self._made(vertex, bit)))
+
+
+def _distances(edges: list[Edge], start: State, *, forth: bool) -> dict[State, int]:
+    """Flows from BEGIN to a state, or from a state to END."""
+    following: dict[State, list[tuple[State, int]]] = defaultdict(list)
+    for before, after, flow in edges:
+        here, there = (before, after) if forth else (after, before)
+        following[here].append((there, int(flow != NO_FLOW)))
+    distances = {start: 0}
+    waiting = deque([start])
+    while waiting:
+        here = waiting.popleft()
+        for there, step in following[here]:
+            if there not in distances:  # the steps of length 0 are the first and the last only: levels stay in order
+                distances[there] = distances[here] + step
+                waiting.append(there)
+    return distances
+
+
+def _without_detours(edges: list[Edge]) -> list[Edge]:
+    """Drop the edges from u to v where all that comes to u came through v, or all that leaves v comes back to u."""
+    if not edges:
+        return []
+    import networkx as nx  # noqa: PLC0415 - heavy
+
+    graph = nx.DiGraph((before, after) for before, after, _ in edges)
+    dominates = _above(nx.immediate_dominators(graph, BEGIN), BEGIN)
+    all_come_back = _above(nx.immediate_dominators(graph.reverse(copy=False), END), END)
+    return [
+        (before, after, flow)
+        for before, after, flow in edges
+        if not dominates(after, before) and not all_come_back(before, after)
+    ]
+
+
+def _above(parents: Mapping[State, State | None], root: State) -> Any:
+    """Return the test whether one state is another or above it in a tree."""
+    children: dict[State, list[State]] = defaultdict(list)
+    for state, parent in parents.items():
+        if state != root and parent is not None:
+            children[parent].append(state)
+    entered: dict[State, int] = {}
+    left: dict[State, int] = {}
+    waiting = [(root, False)]
+    while waiting:
+        state, done = waiting.pop()
+        if done:
+            left[state] = len(entered)
+            continue
+        entered[state] = len(entered)
+        waiting.append((state, True))
+        waiting.extend((child, False) for child in children[state])
+    return lambda upper, lower: entered[upper] <= entered[lower] < left[upper]

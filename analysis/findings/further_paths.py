@@ -1,0 +1,206 @@
+"""Further paths of a finding: how many share no flow, and which there are (the paper, section II-B).
+
+In: a search from a source. Out: counts and paths, by networkx, on the small part of the graph that lies between the
+source and the leak. A path is one over (element, category): where nothing is derived on the way, one over elements.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict, deque
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.kernel.spread import bits_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+    from typing import Any
+
+    from rosprivacy.analysis.kernel.search import Net, Search
+    from rosprivacy.analysis.model import Element
+
+State = tuple[int, int]  # vertex, number of the category with which data arrives there
+SOURCE, LEAK = -1, -2  # in place of the category's number: the source and the leak are one state each
+WITNESS, DISJOINT, ALL = "witness", "disjoint", "all"
+SEARCHED = 10  # times the bound: so many ways of data are looked at, of which many may be one to the reader
+
+
+@dataclass(frozen=True, slots=True)
+class FurtherPaths:
+    """Paths between a source and a leak.
+
+    Attributes
+    ----------
+    disjoint
+        How many share no flow.
+    paths
+        Those asked for, shortest first.
+    bounded
+        Whether there are more.
+    """
+
+    disjoint: int
+    paths: tuple[tuple[Element, ...], ...] = ()
+    bounded: bool = False
+
+
+class Between:
+    """The ways from one source, for one category that arrives at leaks.
+
+    Parameters
+    ----------
+    way
+        The search whose reach they lie in.
+    category
+        Its number.
+    relevant
+        Bits of the categories that it can be made of, its own included.
+    stop
+        Vertex -> bits that are not followed on from there.
+    """
+
+    def __init__(
+        self, net: Net, way: Search, source: int, category: int, relevant: int, stop: Mapping[int, int]
+    ) -> None:
+        self.net = net
+        self.source = source
+        self.category = category
+        self.relevant = relevant
+        self.k = len(net.spread.categories)
+        self.starts = way.begun.get(source, 0)
+        self.emits = self.starts & net.spread.emits.get(source, 0)
+        self.back: dict[State, set[State]] = defaultdict(set)
+        for before, after in self._edges(way, stop):
+            self.back[after].add(before)
+
+    def _edges(self, way: Search, stop: Mapping[int, int]) -> Iterable[tuple[State, State]]:
+        spread, everything = self.net.spread, self.net.spread.all_bits
+        for index, target, passing in self.net.flows.get(self.source, ()):
+            bits = (spread.emits.get(self.source, 0) | spread.flow_emits.get(index, 0)) & self.starts & passing
+            yield from (((self.source, SOURCE), state) for state in self._states(target, bits))
+        for vertex, seen in way.seen.items():
+            for here in self._states(vertex, seen & ~stop.get(vertex, 0)):
+                arriving = seen & ~stop.get(vertex, 0) & self._both(here[1]) if here[1] != SOURCE else 0
+                leaving = arriving & spread.keeps.get(vertex, everything)
+                for before, after in spread.derives.get(vertex, ()):
+                    leaving |= (arriving >> before & 1) << after
+                for index, target, passing in self.net.flows.get(vertex, ()) if leaving else ():
+                    moved = leaving & passing
+                    if vertex == self.source:  # what it emits along a flow does not go there a second time
+                        moved &= ~spread.flow_emits.get(index, 0)
+                    yield from ((here, state) for state in self._states(target, moved))
+
+    def _both(self, number: int) -> int:
+        return 1 << number | 1 << number + self.k
+
+    def _states(self, vertex: int, bits: int) -> Iterable[State]:
+        """The states that data with some bits is in at a vertex, its two planes put together."""
+        bits &= self.relevant
+        either = (bits | bits >> self.k) & ((1 << self.k) - 1)
+        for number in bits_of(either):
+            begun = vertex == self.source and self.emits >> number & 1
+            yield (vertex, SOURCE if begun else number)
+
+    def to(self, leak: int, memory: dict[Any, Any]) -> tuple[list[list[int]], list[tuple[State, State]]]:
+        """Return the paths to a leak that share no flow, as vertices, and the edges that they lie among.
+
+        Parameters
+        ----------
+        memory
+            Answers for equal graphs: kinds of data often go the same ways.
+        """
+        edges = self._leading_to(leak)
+        # one kind of data is like another where nothing is made into it
+        key = tuple(edges) if any(a[1] not in (SOURCE, self.category) for a, _ in edges) else _vertices(edges)
+        if key not in memory:
+            memory[key] = _disjoint(edges, (self.source, SOURCE), (leak, LEAK))
+        return memory[key], edges
+
+    def _leading_to(self, leak: int) -> list[tuple[State, State]]:
+        """The edges from which a leak can be reached, sorted."""
+        pairs = self.net.spread.derives.get(leak, ())
+        ends = {(leak, before % self.k) for before, after in pairs if after % self.k == self.category}
+        ends.add((leak, self.category))
+        edges: set[tuple[State, State]] = set()
+        reached, waiting = set(ends), list(ends)
+        while waiting:
+            after = waiting.pop()
+            for before in self.back.get(after, ()):
+                if before in ends:
+                    continue
+                edges.add((before, (leak, LEAK) if after in ends else after))
+                if before not in reached:
+                    reached.add(before)
+                    if before[1] != SOURCE:
+                        waiting.append(before)
+        return sorted(edges)
+
+
+def _vertices(edges: list[tuple[State, State]]) -> tuple[tuple[int, int], ...]:
+    return tuple((a[0], b[0]) for a, b in edges)
+
+
+def _disjoint(edges: list[tuple[State, State]], source: State, leak: State) -> list[list[int]]:
+    """The paths that share no flow, as vertices, shortest first."""
+    first, last = [b for a, b in edges if a == source], [a for a, b in edges if b == leak]
+    if len(first) == 1 or len(last) == 1:  # a flow that all paths share: the shortest is one of them
+        return [_shortest(edges, source, leak)]
+    import networkx as nx  # noqa: PLC0415 - heavy, and only needed where there may be several
+
+    paths = nx.edge_disjoint_paths(nx.DiGraph(edges), source, leak)
+    return sorted(([state[0] for state in path] for path in paths), key=lambda path: (len(path), path))
+
+
+def _shortest(edges: list[tuple[State, State]], source: State, leak: State) -> list[int]:
+    ahead: dict[State, list[State]] = defaultdict(list)
+    for before, after in edges:
+        ahead[before].append(after)
+    came: dict[State, State] = {}
+    waiting = deque([source])
+    while leak not in came:
+        here = waiting.popleft()
+        for after in ahead[here]:
+            if after not in came:
+                came[after] = here
+                waiting.append(after)
+    path = [leak]
+    while path[-1] != source:
+        path.append(came[path[-1]])
+    return [state[0] for state in reversed(path)]
+
+
+def further(between: Between, leak: int, memory: dict[Any, Any], asked: str, most: int) -> FurtherPaths:
+    """Count the paths that share no flow, and list those asked for.
+
+    Parameters
+    ----------
+    asked
+        ``witness`` (none), ``disjoint`` or ``all``.
+    most
+        Bound on the list.
+    """
+    disjoint, edges = between.to(leak, memory)
+    if asked == WITNESS:
+        return FurtherPaths(len(disjoint))
+    found: Iterable[list[int]] = disjoint
+    if asked == ALL:
+        import networkx as nx  # noqa: PLC0415 - as above
+
+        paths = nx.shortest_simple_paths(nx.DiGraph(edges), (between.source, SOURCE), (leak, LEAK))
+        found = ([state[0] for state in path] for path in paths)
+    shown: dict[tuple[Element, ...], None] = {}
+    for number, path in enumerate(found):  # two ways of data that differs may be one way to the reader
+        shown[_elements(between.net, path)] = None
+        if len(shown) > most or number >= SEARCHED * most:
+            return FurtherPaths(len(disjoint), tuple(shown)[:most], bounded=True)
+    return FurtherPaths(len(disjoint), tuple(shown))
+
+
+def _elements(net: Net, path: list[int]) -> tuple[Element, ...]:
+    """The elements of a path; the two sides of one wildcard are one to the reader."""
+    elements: list[Element] = []
+    for vertex in path:
+        element = net.spread.graph.elements[vertex]
+        if not elements or element.shown_as != elements[-1].shown_as:
+            elements.append(element)
+    return tuple(elements)

@@ -1,0 +1,97 @@
+"""What needs a person's judgement: elements that a category reaches and that no label covers (rule S11).
+
+In: a spread. Out: open questions in the order of review. The frontier is found by the same search as paths are, with
+open nodes and leaks of the category as ends.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.answer import OpenQuestion
+from rosprivacy.analysis.kernel.search import present, search
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Mapping
+
+    from rosprivacy.analysis.kernel.search import Net
+    from rosprivacy.analysis.kernel.spread import Spread
+
+
+def open_questions(net: Net, mask: int, unknown: Collection[int] = ()) -> tuple[OpenQuestion, ...]:
+    """Return the elements that a category reaches and no label covers, in the order of review.
+
+    Parameters
+    ----------
+    net
+        Of a spread.
+    mask
+        Bits of the categories that the answer is about.
+    unknown
+        Vertices whose country has to be known and is not: open for all that gets there.
+
+    Returns
+    -------
+    tuple of OpenQuestion
+        Nodes on the frontier first, then by distance and name; O(flows) for each category that others are made into,
+        and once for all the rest.
+    """
+    found, elements = net.spread, net.spread.graph.elements
+    uncovered = open_bits(found, unknown)
+    if not uncovered:
+        return ()
+    sources = [vertex for vertex in found.facts if found.begins(vertex)]
+    nearest = search(net, sources, found.all_bits, {})
+    first = _first(net, sources, uncovered)
+    merged: dict[tuple[str, str, str, str], OpenQuestion] = {}
+    for vertex, everything in sorted(uncovered.items()):
+        element, bits = elements[vertex], everything & mask
+        if not bits:
+            continue
+        frontier = not element.is_channel and bool(first.get(vertex, 0) & bits)
+        missing = ("country",) if vertex in unknown else ()
+        question = OpenQuestion(element, found.names(bits), nearest.level(vertex, bits) or 0, frontier, missing)
+        known = merged.get(element.shown_as)  # the other side of a wildcard
+        if known:
+            categories = tuple(sorted({*known.categories, *question.categories}))
+            question = replace(known, categories=categories, distance=min(known.distance, question.distance))
+        merged[element.shown_as] = question
+    return tuple(sorted(merged.values(), key=lambda q: (not q.frontier, q.distance, q.element.sort_key())))
+
+
+def open_bits(found: Spread, unknown: Collection[int]) -> dict[int, int]:
+    """Return what is at elements without a label that covers it, or where it is not known in which country it is."""
+    reached = {vertex: found.present(vertex) for vertex in {*found.arrives, *found.leaves}}
+    covered = {vertex: bits for vertex, bits in found.covered.items() if vertex not in unknown}
+    uncovered = {vertex: bits & ~covered.get(vertex, 0) for vertex, bits in reached.items()}
+    return {vertex: bits for vertex, bits in uncovered.items() if bits}
+
+
+def _first(net: Net, sources: Iterable[int], uncovered: Mapping[int, int]) -> dict[int, int]:
+    """Open node -> bits that get there past no other open node, and past no leak of their category.
+
+    One search does for all categories that nothing is made into; each of the others takes one, since what it is made
+    of passes its leaks.
+    """
+    found = net.spread
+    nodes = {v: _both_planes(b, found) for v, b in uncovered.items() if not found.graph.elements[v].is_channel}
+    asked = 0
+    for bits in nodes.values():
+        asked |= bits
+    made = sum(found.both(found.categories[i]) for i in found.made)
+    first: dict[int, int] = dict.fromkeys(nodes, 0)
+    for own in [asked & ~made, *(found.both(found.categories[i]) & asked for i in sorted(found.made))]:
+        if own:
+            ends = {v: nodes.get(v, 0) | found.leaks.get(v, 0) & own for v in {*nodes, *found.leaks}}
+            reached = search(net, sources, found.all_bits if own & made else own, ends)
+            for vertex in nodes:
+                first[vertex] |= present(reached, vertex) & own
+    return first
+
+
+def _both_planes(bits: int, found: Spread) -> int:
+    """A category that is open in one plane is so in the other."""
+    k = len(found.categories)
+    either = (bits | bits >> k) & ((1 << k) - 1)
+    return either | either << k

@@ -1,0 +1,136 @@
+"""What elements do to data: who cleans which kind and what passes beside it, who makes one kind of another (rule S8).
+
+In: a spread. Out: ``Cleaning`` and ``Making``, in the order of the graph, for those who report.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterator, Mapping, Sequence
+
+    from rosprivacy.analysis.kernel.spread import Spread
+    from rosprivacy.analysis.model import Element
+
+
+@dataclass(frozen=True, slots=True)
+class Cleaning:
+    """That an element cleans a category.
+
+    Attributes
+    ----------
+    method
+        As in ``Method``; ``stated`` says whether a label states it.
+    reached
+        Whether the category gets there at all.
+    leaves, pseudonymised
+        What leaves the element all the same, as it is and pseudonymised: sorted names.
+    beside
+        Elements that read the same channels and do not clean it: what the sanitizer takes out, they get.
+    """
+
+    element: Element
+    category: str
+    method: str
+    stated: bool
+    reached: bool
+    leaves: tuple[str, ...]
+    pseudonymised: tuple[str, ...]
+    beside: tuple[Element, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Making:
+    """That an element makes one category of another; ``reached`` says whether the other gets there."""
+
+    element: Element
+    made_of: str
+    made: str
+    reached: bool
+
+
+def cleanings(found: Spread, wanted: Collection[str]) -> tuple[Cleaning, ...]:
+    """Return what sanitizes any of the categories.
+
+    Complexity: O(flows) once, then the channels around each sanitizer.
+    """
+    around = _Around(found)
+    mask = sum(found.both(category) for category in wanted)
+    rows = []
+    for vertex, decided in sorted(found.facts.items()):
+        leaves = found.planes(found.leaves.get(vertex, 0) & mask)
+        for category in (name for name in wanted if "sanitizer" in decided[name].roles):
+            both = found.both(category)
+            rows.append(
+                Cleaning(
+                    element=found.graph.elements[vertex],
+                    category=category,
+                    method=decided[category].method,
+                    stated=not decided[category].unstated,
+                    reached=bool(found.arrives.get(vertex, 0) & both),
+                    leaves=leaves[0],
+                    pseudonymised=leaves[1],
+                    beside=tuple(around.beside(vertex, category, both)),
+                )
+            )
+    return tuple(rows)
+
+
+def makings(found: Spread, wanted: Collection[str]) -> tuple[Making, ...]:
+    """Return what makes any of the categories of another one; what is that kind already is not made."""
+    return tuple(
+        Making(found.graph.elements[vertex], category, made, bool(found.present(vertex) & found.both(category)))
+        for vertex, decided in sorted(found.facts.items())
+        for category in found.categories
+        for made in decided[category].derives
+        if made in wanted and made != category
+    )
+
+
+class _Around:
+    """The channels that an element reads, and who else reads them."""
+
+    def __init__(self, found: Spread) -> None:
+        self._found = found
+        self._into: Mapping[int, list[int]] | None = None
+        self._out: Mapping[int, list[int]] = {}
+
+    def beside(self, vertex: int, category: str, bits: int) -> Iterator[Element]:
+        """Elements that get the category from a channel from which the vertex gets it, sanitizers of it left out."""
+        elements = self._found.graph.elements
+        channels = self._walk([vertex], bits, back=True)
+        readers = {v for v in self._walk(sorted(channels), bits, back=False) if not elements[v].is_channel} - {vertex}
+        named = set()
+        for reader in sorted(readers):
+            fact = self._found.facts.get(reader, {}).get(category)
+            if (fact is None or "sanitizer" not in fact.roles) and elements[reader].shown_as not in named:
+                named.add(elements[reader].shown_as)
+                yield elements[reader]
+
+    def _walk(self, begin: Sequence[int], bits: int, *, back: bool) -> set[int]:
+        """Channels before an element, or what comes after channels: only other channels lie between (rule S4)."""
+        found, graph = self._found, self._found.graph
+        if self._into is None:
+            self._into, self._out = self._flows()
+        flows = self._into if back else self._out
+        seen: set[int] = set()
+        waiting = list(begin)
+        while waiting:
+            for index in flows.get(waiting.pop(), ()):
+                other = graph.flows[index].source if back else graph.flows[index].target
+                if other in seen or not found.along(index) & bits or (back and not graph.elements[other].is_channel):
+                    continue
+                seen.add(other)
+                if graph.elements[other].is_channel:
+                    waiting.append(other)
+        return seen
+
+    def _flows(self) -> tuple[dict[int, list[int]], dict[int, list[int]]]:
+        into, out = defaultdict(list), defaultdict(list)
+        for index, flow in enumerate(self._found.graph.flows):
+            into[flow.target].append(index)
+            out[flow.source].append(index)
+        return into, out

@@ -1,0 +1,237 @@
+"""Why data of one element does not get to another: the path with the fewest words in its way, and whose they are.
+
+In: an ``Analysis`` and two elements. Out: ``WhyNot`` per category. Each step that a policy denies, that a label closes,
+or that only a label's silence keeps from being a finding is an obstacle on the path; of all paths the one with the
+fewest obstacles is shown, then the shortest.
+
+Source: rules S5, S7, S8 and S11; the question is the other half of a finding (S10).
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass
+from heapq import heappop, heappush
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.kernel.roles import NOTHING_SAID
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from rosprivacy.analysis.answer import Analysis, Finding
+    from rosprivacy.analysis.kernel.spread import Spread
+    from rosprivacy.analysis.model import Element, Place, Statement
+
+NO_SOURCE, NO_LEAK, THROUGH = "no-source", "no-leak", "other-channels"
+
+
+@dataclass(frozen=True, slots=True)
+class Obstacle:
+    """What stands in the way at one element or along one flow.
+
+    Attributes
+    ----------
+    by
+        Role of a statement, ``deny``, or: nobody calls the start a source (``NO_SOURCE``), nobody calls the end a leak
+        (``NO_LEAK``), the source names other channels (``THROUGH``).
+    element, to
+        Where; of a flow its two ends.
+    category
+        What the data is there.
+    places
+        The lines that say so, sorted; empty where nobody says anything.
+    """
+
+    by: str
+    element: Element
+    to: Element | None
+    category: str
+    places: tuple[Place, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class WhyNot:
+    """What is between two elements for one category.
+
+    Attributes
+    ----------
+    category
+        What the source emits, or is asked about.
+    finding
+        The finding, if the data does get there.
+    path
+        Elements, source first; empty if no chain of policy lines leads there at all.
+    obstacles
+        On the path, in its order.
+    reached
+        How many elements the data gets to as things are.
+    """
+
+    category: str
+    source: Element
+    leak: Element
+    finding: Finding | None
+    path: tuple[Element, ...]
+    obstacles: tuple[Obstacle, ...]
+    reached: int
+
+
+State = tuple[int, int]  # vertex, number of the category with which data is about to leave
+
+
+def why_not(analysis: Analysis, source: Sequence[int], leak: Sequence[int], category: str) -> WhyNot:
+    """Return what is between two elements for one category.
+
+    Parameters
+    ----------
+    source, leak
+        Vertices of each (several for the legs of a channel).
+    category
+        One of ``analysis.spread.categories``.
+
+    Notes
+    -----
+    O(flows · categories · log), a shortest path by (obstacles, steps).
+    """
+    found = analysis.spread
+    elements = found.graph.elements
+    first, last = elements[source[0]], elements[leak[0]]
+    finding = next(
+        (
+            f for f in analysis.findings
+            if (f.source.identity, f.leak.identity) == (first.identity, last.identity) and category == f.category
+        ),
+        None,
+    )  # fmt: skip
+    path, obstacles = ((), ()) if finding else _easiest(found, source, leak, category)
+    return WhyNot(
+        category, first, last, finding, finding.witness if finding else path, obstacles,
+        sum(bool(found.present(v) & found.both(category)) for v in range(len(elements))),
+    )  # fmt: skip
+
+
+def _easiest(
+    found: Spread, source: Sequence[int], leak: Sequence[int], category: str
+) -> tuple[tuple[Element, ...], tuple[Obstacle, ...]]:
+    """The path with the fewest obstacles, then the shortest; ties fall to the lower vertex (rule S14)."""
+    steps = _Steps.of(found)
+    number = found.categories.index(category)
+    queue: list[tuple[int, int, State]] = []
+    best: dict[State, tuple[int, int]] = {}
+    came: dict[State, tuple[State | None, tuple[Obstacle, ...]]] = {}
+
+    def reach(state: State, cost: tuple[int, int], before: State | None, obstacles: tuple[Obstacle, ...]) -> None:
+        if state not in best or cost < best[state]:
+            best[state], came[state] = cost, (before, obstacles)
+            heappush(queue, (*cost, state))
+
+    for vertex in source:
+        obstacles = steps.begins(vertex, number)
+        reach((vertex, number), (len(obstacles), 0), None, obstacles)
+    ends = set(leak)
+    while queue:
+        closed, length, state = heappop(queue)
+        if (closed, length) != best[state]:
+            continue
+        if state[0] in ends and (state[0] not in source or length):
+            return _read_back(found, came, state)
+        for following, obstacles in steps.after(state, ends):
+            reach(following, (closed + len(obstacles), length + 1), state, obstacles)
+    return (), ()
+
+
+def _read_back(
+    found: Spread, came: Mapping[State, tuple[State | None, tuple[Obstacle, ...]]], state: State
+) -> tuple[tuple[Element, ...], tuple[Obstacle, ...]]:
+    path: list[Element] = []
+    obstacles: list[Obstacle] = []
+    at: State | None = state
+    while at is not None:
+        path.append(found.graph.elements[at[0]])
+        before, here = came[at]
+        obstacles = [*here, *obstacles]
+        at = before
+    path.reverse()
+    shown = [element for i, element in enumerate(path) if not i or element.shown_as != path[i - 1].shown_as]
+    return tuple(shown), tuple(obstacles)
+
+
+@dataclass(frozen=True, slots=True)
+class _Steps:
+    """Where data could go from a state, and what stands against it.
+
+    Attributes
+    ----------
+    flows
+        Vertex -> (target, index of the flow or -1, lines of the DENY).
+    """
+
+    found: Spread
+    flows: Mapping[int, list[tuple[int, int, tuple[Place, ...]]]]
+
+    @classmethod
+    def of(cls, found: Spread) -> _Steps:
+        flows: dict[int, list[tuple[int, int, tuple[Place, ...]]]] = defaultdict(list)
+        for index, flow in enumerate(found.graph.flows):
+            flows[flow.source].append((flow.target, index, ()))
+        for flow in found.graph.taken_back:
+            flows[flow.source].append((flow.target, -1, _sorted(denial.place for denial in flow.denials)))
+        return cls(found, flows)
+
+    def begins(self, vertex: int, number: int) -> tuple[Obstacle, ...]:
+        """What is missing for an element to be a source."""
+        if self.found.begins(vertex) >> number & 1:
+            return ()
+        name = self.found.categories[number]
+        return (Obstacle(NO_SOURCE, self.found.graph.elements[vertex], None, name),)
+
+    def after(self, state: State, ends: set[int]) -> Iterator[tuple[State, tuple[Obstacle, ...]]]:
+        """The states that follow, with the obstacles of the step and of the element where it ends."""
+        vertex, number = state
+        elements, name = self.found.graph.elements, self.found.categories[number]
+        for target, index, denials in self.flows.get(vertex, ()):
+            along: tuple[Obstacle, ...] = ()
+            if denials:
+                along = (Obstacle("deny", elements[vertex], elements[target], name, denials),)
+            elif not self.found.flow_keeps.get(index, -1) >> number & 1:
+                lines = self.found.flow_facts[index][name].closers
+                along = (self._closed(lines, vertex, target, name),)
+            elif self._elsewhere(vertex, number, index):
+                along = (Obstacle(THROUGH, elements[vertex], elements[target], name),)
+            for made, here in self._arriving(target, number, end=target in ends):
+                yield (target, made), (*along, *here)
+
+    def _elsewhere(self, vertex: int, number: int, index: int) -> bool:
+        """Whether a source names other channels than this one for what it emits."""
+        found = self.found
+        single = found.flow_begins.get(vertex, 0) >> number & 1
+        arrives = found.arrives.get(vertex, 0) | found.emits.get(vertex, 0)
+        return bool(single) and not arrives >> number & 1 and not found.flow_emits.get(index, 0) >> number & 1
+
+    def _arriving(self, vertex: int, number: int, *, end: bool) -> Iterator[tuple[int, tuple[Obstacle, ...]]]:
+        """What goes on from an element that data arrives at (or ends there): as it is, and as what is made of it."""
+        found = self.found
+        element, name = found.graph.elements[vertex], found.categories[number]
+        if end:
+            leaks = found.leaks.get(vertex, 0) >> number & 1
+            yield number, () if leaks else (Obstacle(NO_LEAK, element, None, name),)
+        elif found.keeps.get(vertex, -1) >> number & 1:
+            yield number, ()
+        else:
+            lines = found.facts[vertex].get(name, NOTHING_SAID).closers
+            yield number, (self._closed(lines, vertex, -1, name),)
+        k = len(found.categories)
+        for before, after in found.derives.get(vertex, ()):
+            if before == number and after < k:
+                leaks = not end or found.leaks.get(vertex, 0) >> after & 1
+                yield after, () if leaks else (Obstacle(NO_LEAK, element, None, found.categories[after]),)
+
+    def _closed(self, lines: tuple[Statement, ...], vertex: int, target: int, name: str) -> Obstacle:
+        elements = self.found.graph.elements
+        to = elements[target] if target >= 0 else None
+        return Obstacle(lines[0].role, elements[vertex], to, name, _sorted(line.place for line in lines))
+
+
+def _sorted(places: Iterator[Place]) -> tuple[Place, ...]:
+    return tuple(sorted(set(places), key=lambda place: (place.file, place.line)))

@@ -1,0 +1,166 @@
+"""Pairs of a fleet -> patterns, before any way is looked for: counted in arrays, one pair of each chosen to be shown.
+
+In: the pairs of the kernel, and which robot stands for which. Out: for ``analyse``, the findings to make; for the
+report, patterns and robots that differ. The same as ``patterns.py`` makes of all findings; a test holds this.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rosprivacy.analysis.fleet.patterns import FleetView, Pattern, Share, deviants_of, pattern_of
+from rosprivacy.analysis.fleet.source_leak_pairs import pairs
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+    from numpy.typing import NDArray
+
+    from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.analysis.findings.concerns import Concern
+    from rosprivacy.analysis.fleet.patterns import Likeness
+    from rosprivacy.analysis.fleet.source_leak_pairs import Pairs
+    from rosprivacy.analysis.kernel.spread import Spread
+    from rosprivacy.analysis.model import Element
+
+    Indices = NDArray[np.int64]
+    Flags = NDArray[np.bool_]
+
+Wanted = dict[int, set[tuple[str, int, int, bool]]]  # source -> as ``Chosen`` of the findings
+FIXED = -1
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """A pattern without its way."""
+
+    kind: str
+    category: str
+    source: Element
+    leak: Element
+    id: str
+    count: int
+    robots: tuple[str, ...]
+    across: bool
+    dismissed: int
+    pseudonymised: int
+    beside: bool = False
+
+
+class _Table:
+    """Elements of a graph as numbers: their robot, and what they are alike to."""
+
+    def __init__(self, elements: Sequence[Element], likeness: Likeness) -> None:
+        self.names = sorted({element.robot for element in elements})
+        number = {name: i for i, name in enumerate(self.names)}
+        self.robot = np.array([number[element.robot] for element in elements], np.int64)
+        self.is_robot = np.array([likeness.is_robot(name) for name in self.names], bool)
+        self.is_second = np.array([name in likeness.second for name in self.names], bool)
+        self.first = np.array([number[likeness.second.get(name, name)] for name in self.names], np.int64)
+        self.weight = np.array([likeness.weight(name) for name in self.names], np.int64)
+        kinds: dict[Element, int] = {}
+        self.alike = np.array([kinds.setdefault(likeness.alike(e), len(kinds)) for e in elements], np.int64)
+        self.kinds = len(kinds)
+
+    def counts(self, a: Indices, b: Indices) -> Indices:
+        """For how many findings of the fleet a pair of robots stands, as ``Likeness.count``."""
+        to_second = self.is_second[b]
+        to_other = np.where(a == b, 1, self.weight[b])
+        many = self.weight[a] * np.where(to_second, self.weight[a] - 1, to_other)
+        return np.where(self.is_second[a] | (to_second & (self.first[b] != a)), 0, many)
+
+
+class Groups:
+    """Puts the pairs of a fleet together.
+
+    Call it with a spread, the kinds of findings and the bits of the categories that the answer is about; it returns
+    the findings to make. Then ``view`` gives the rest.
+    """
+
+    def __init__(self, likeness: Likeness) -> None:
+        self._likeness = likeness
+        self._groups: list[Group] = []
+        self._shares: dict[str, set[Share]] = defaultdict(set)
+
+    def __call__(self, found: Spread, kinds: Sequence[Concern], mask: int) -> Wanted:
+        """Return the findings to make."""
+        table = _Table(found.graph.elements, self._likeness)
+        wanted: Wanted = defaultdict(set)
+        for part in pairs(found, kinds, mask):
+            for some, beside in ((part, False), (_plain_beside(part), True)):
+                for source, leak in self._take(found, some, table, beside=beside):
+                    wanted[source].add((part.kind, leak, part.category, beside))
+        return dict(wanted)
+
+    def _take(self, found: Spread, part: Pairs, table: _Table, *, beside: bool) -> Iterator[tuple[int, int]]:
+        """Group the pairs of one kind and category; return one of each."""
+        counts = table.counts(table.robot[part.sources], table.robot[part.leaks])
+        chosen = np.flatnonzero(counts)
+        sources, leaks, counts = part.sources[chosen], part.leaks[chosen], counts[chosen]
+        if not len(chosen):
+            return
+        hidden, dismissed = part.pseudonymised[chosen], part.dismissed[chosen]
+        a, b = table.robot[sources], table.robot[leaks]
+        across = table.is_robot[a] & table.is_robot[b] & (a != b)
+        keys = (table.alike[sources] * table.kinds + table.alike[leaks]) * 2 + across
+        order = np.lexsort((np.arange(len(keys)), hidden, dismissed, keys))
+        ids: dict[int, str] = {}
+        starts = np.flatnonzero(np.diff(keys[order], prepend=-1))
+        ends = [*starts[1:].tolist(), len(order)]
+        elements, category = found.graph.elements, found.categories[part.category]
+        for start, end in zip(starts.tolist(), ends, strict=True):
+            rows = order[start:end]
+            source, leak = int(sources[rows[0]]), int(leaks[rows[0]])
+            shown = elements[source], elements[leak]
+            ids[int(keys[rows[0]])] = key = pattern_of(part.kind, category, *shown, self._likeness, beside=beside)
+            where = np.unique(np.where(table.is_robot[a[rows]], a[rows], table.first[b[rows]]))
+            robots = (self._likeness.members.get(table.names[robot], ()) for robot in where.tolist())
+            group = Group(
+                part.kind, category, *shown, key, int(counts[rows].sum()),
+                tuple(sorted({robot for some in robots for robot in some})), bool(across[rows[0]]),
+                int(counts[rows][dismissed[rows]].sum()), int(counts[rows][hidden[rows]].sum()), beside,
+            )  # fmt: skip
+            self._groups.append(group)
+            yield source, leak
+        no = np.zeros(len(keys), bool)
+        for robots_at, ends_here in ((a, no), (table.first[b], across)):
+            rows = np.unique(np.column_stack([robots_at, keys, ends_here, dismissed, hidden]), axis=0)
+            for robot, pattern, *flags in rows.tolist():
+                self._shares[table.names[robot]].add(Share(ids[pattern], *map(bool, flags)))
+
+    def view(self, analysis: Analysis) -> FleetView:
+        """Return patterns and deviants, when the findings are made."""
+        deviants = deviants_of(self._shares, analysis.open, self._likeness)
+        return FleetView(self._likeness, patterns_of(self._groups, analysis), deviants)
+
+
+def _plain_beside(part: Pairs) -> Pairs:
+    """The findings of data as it is that stand beside pseudonymised ones: pairs of their own, dismissed (rule S10)."""
+    at = np.flatnonzero(part.beside)
+    no = np.zeros(len(at), bool)
+    return replace(
+        part, sources=part.sources[at], leaks=part.leaks[at], pseudonymised=no, dismissed=~no, beside=no
+    )  # fmt: skip
+
+
+def patterns_of(groups: Iterable[Group], analysis: Analysis) -> tuple[Pattern, ...]:
+    """Return the patterns, each with the finding that was made of what it shows."""
+    found = {(f.kind, f.category, f.source, f.leak, f.beside): f for f in analysis.findings}
+    order = {finding.id: number for number, finding in enumerate(analysis.findings)}
+    made = [
+        Pattern(
+            group.id,
+            found[group.kind, group.category, group.source, group.leak, group.beside],
+            group.count,
+            group.robots,
+            group.across,
+            group.dismissed,
+            group.pseudonymised,
+        )
+        for group in groups
+    ]
+    return tuple(sorted(made, key=lambda pattern: order[pattern.finding.id]))

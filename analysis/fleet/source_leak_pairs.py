@@ -1,0 +1,293 @@
+"""Which sources reach which leaks, for all sources at once: the kernel with one bit per source (rules S8, S10).
+
+In: a spread, and where each kind of finding can be. Out: pairs, as arrays. A word has 64 bits, so one pass of the
+kernel does 64 sources of a category; where the category is made of others, or pseudonymised on the way, a source takes
+a bit for each form in which its data can be. No way is looked for: that is done for the pairs that are shown.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rosprivacy.analysis.kernel.arrays import GraphArrays, as_bits
+from rosprivacy.analysis.kernel.fixpoint import WORD, fixpoint
+from rosprivacy.analysis.model import DISCLOSURE
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterator, Sequence
+
+    from numpy.typing import NDArray
+
+    from rosprivacy.analysis.findings.concerns import Concern
+    from rosprivacy.analysis.kernel.spread import Spread
+
+    Indices = NDArray[np.int64]
+    Bits = NDArray[np.uint64]
+    Flags = NDArray[np.bool_]
+
+MOST_WORDS = 16  # in one run of the kernel, which then folds channels once for all of them
+MOST_BITS = 2**28  # of all vertices in one run: 32 MB for each of the few arrays that a run takes
+
+
+@dataclass(frozen=True, slots=True)
+class Pairs:
+    """The pairs of one kind and category: what a finding is without its way.
+
+    Attributes
+    ----------
+    category
+        Its number.
+    sources, leaks
+        Vertices, shape (n,), sorted by source and leak.
+    pseudonymised, dismissed
+        Shape (n,).
+    beside
+        Whether data as it is arrives there, too, through another leak only: a finding of its own, dismissed.
+    """
+
+    kind: str
+    category: int
+    sources: Indices
+    leaks: Indices
+    pseudonymised: Flags
+    dismissed: Flags
+    beside: Flags
+
+
+def pairs(found: Spread, kinds: Sequence[Concern], mask: int) -> Iterator[Pairs]:
+    """Return all pairs, by kind and category.
+
+    Parameters
+    ----------
+    mask
+        Bits of the categories that the answer is about.
+
+    Notes
+    -----
+    Two runs of the kernel per category and so many sources: one that stops at leaks of the category, one that does not.
+    So many are ``MOST_WORDS`` times 64 for each form, fewer in a large graph.
+    """
+    k = len(found.categories)
+    ends = [as_bits(found, len(found.graph.elements), concern.bits, 0) for concern in kinds]
+    network: GraphArrays | None = None
+    for i in range(k):
+        leaks = [np.flatnonzero(_has(bits, i)) for bits in ends]
+        if not mask >> i & 1 or not any(len(some) for some in leaks):
+            continue
+        network = network or GraphArrays.of(found)
+        yield from _pairs_of(found, network, i, kinds, leaks)
+
+
+def _has(bits: Bits, bit: int) -> Flags:
+    """Whether a bit is set, by row."""
+    return (bits[:, bit // WORD] >> np.uint64(bit % WORD) & np.uint64(1)).astype(bool)
+
+
+def forms(category: int, k: int, steps: Collection[tuple[int, int]]) -> tuple[int, ...]:
+    """Return the forms in which data can be on the way to a category: bits of the spread, sorted.
+
+    Parameters
+    ----------
+    category, k
+        Its number, and how many there are.
+    steps
+        (bit that arrives, bit that leaves for it), wherever data is made into other data.
+    """
+    back = _closure({category, category + k}, {(after, before) for before, after in steps})
+    ahead = _closure({form for form in back if form < k}, steps)  # a form that nothing turns into is none
+    return tuple(sorted(back & ahead))
+
+
+class CategoryRun:
+    """One category: from whom it can come, and in which forms its data can be on the way.
+
+    Sources are followed by number: bit ``n * at + number`` of n sources is the form at place ``at`` of this one.
+
+    Parameters
+    ----------
+    forms
+        Of ``forms``, for all of the graph, or for all of what the graph is a part of.
+
+    Attributes
+    ----------
+    sources
+        Vertices that bring it in, in any of its forms; sorted.
+    """
+
+    def __init__(self, found: Spread, network: GraphArrays, category: int, forms: tuple[int, ...]) -> None:
+        self._network = network
+        k = len(found.categories)
+        self._own = (category, category + k)
+        self._forms = forms
+        both = sum(1 << form for form in forms)
+        self.sources = np.array(sorted(v for v in found.facts if found.begins(v) & both), np.int64)
+        self._is_leak = _has(as_bits(found, len(network.keep), found.leaks, 0), category)
+        self._passes = {form: _has(network.keep, form) for form in forms}
+        self._derivations = network.derivations[np.isin(network.derivations[:, 1:], forms).all(axis=1)]
+        self._begins = {source: found.begins(source) for source in self.sources.tolist()}
+        flows: dict[int, list[int]] = {vertex: [] for vertex in self.sources.tolist()}
+        for number, index in enumerate(network.special):
+            source = found.graph.flows[index].source
+            if source in flows and found.flow_emits.get(index, 0) & both:
+                flows[source].append(network.count + number)
+        self._flows = flows
+
+    def at_once(self) -> int:
+        """Return how many sources one run of the kernel takes."""
+        words = max(1, min(MOST_WORDS, MOST_BITS // WORD // len(self._network.keep)))
+        return max(1, words * WORD // len(self._forms))
+
+    def nothing(self, n: int) -> Bits:
+        """Return that none of n sources emits anything anywhere: shape (vertices, words)."""
+        return np.zeros((-(-n * len(self._forms) // WORD), len(self._network.keep)), np.uint64).T
+
+    def begun(self, sources: Indices, numbers: Indices, n: int) -> Bits:
+        """Return what sources emit, each under its number."""
+        emitted = self.nothing(n)
+        for at, form in enumerate(self._forms):
+            begins = _has(self._network.emitted, form)
+            for source, number in zip(sources.tolist(), numbers.tolist(), strict=True):
+                word, place = divmod(n * at + number, WORD)
+                starts = [vertex for vertex in (source, *self._flows[source]) if begins[vertex]]
+                emitted[starts, word] |= np.uint64(1 << place)
+        return emitted
+
+    def carried(self, emitted: Bits, n: int, *, stop: bool) -> tuple[Bits, Bits]:
+        """Return what arrives at and what leaves each vertex; ``stop`` lets nothing pass a leak of the category."""
+        keep = self.nothing(n)
+        for at, form in enumerate(self._forms):
+            passes = self._passes[form]
+            if stop and form in self._own:
+                passes = passes & ~self._is_leak
+            for word, bits in _split(((1 << n) - 1) << n * at):
+                np.bitwise_or(keep[:, word], bits, out=keep[:, word], where=passes)
+        return fixpoint(self._network.edges, emitted, keep, self._derived(n, stop=stop)[0])
+
+    def there(self, arrives: Bits, leaves: Bits, at: Indices, n: int, *, stop: bool) -> tuple[Flags, Flags]:
+        """(as it is, pseudonymised): shape (len(at), n), which data gets to some vertices.
+
+        Parameters
+        ----------
+        at
+            Sorted; with ``stop`` all leaks of the category are among them.
+        """
+        there = arrives[at] | leaves[at]
+        vertices, before, after = self._derived(n, stop=stop)[1].T  # what is made at a leak ends there, but gets there
+        fired = arrives[vertices, before // WORD] >> (before % WORD).astype(np.uint64) & np.uint64(1)
+        rows = np.searchsorted(at, vertices)
+        np.bitwise_or.at(there, (rows, after // WORD), fired << (after % WORD).astype(np.uint64))
+        return self._at(there, 0, n), self._at(there, 1, n)
+
+    def brought(
+        self, there: tuple[Flags, Flags], at: Indices, sources: Indices, numbers: Indices
+    ) -> tuple[Flags, Flags]:
+        """The same with what sources bring in themselves, also if it leaves along single flows only."""
+        rows = {vertex: row for row, vertex in enumerate(at.tolist())}
+        for source, number in zip(sources.tolist(), numbers.tolist(), strict=True):
+            if source in rows:
+                for flags, form in zip(there, self._own, strict=True):
+                    flags[rows[source], number] |= bool(self._begins[source] >> form & 1)
+        return there
+
+    def _derived(self, n: int, *, stop: bool) -> tuple[Indices, Indices]:
+        """Derivations for each source: those that go on, and those that stop at a leak once they are made."""
+        rows = self._derivations
+        made = np.zeros(len(rows), bool)
+        if stop:
+            at_leak = self._is_leak[rows[:, 0]]
+            rows = rows[~(at_leak & np.isin(rows[:, 1], self._own))]
+            made = self._is_leak[rows[:, 0]] & np.isin(rows[:, 2], self._own)
+        place = np.searchsorted(self._forms, rows[:, 1:]) * n
+        number = np.tile(np.arange(n), len(rows))[:, None]
+        each = np.column_stack([np.repeat(rows[:, 0], n), np.repeat(place, n, axis=0) + number]).astype(np.int64)
+        ends = np.repeat(made, n)
+        return each[~ends], each[ends]
+
+    def _at(self, there: Bits, plane: int, n: int) -> Flags:
+        if self._own[plane] not in self._forms:
+            return np.zeros((len(there), n), bool)
+        return unpacked(there, n * self._forms.index(self._own[plane]), n)
+
+
+def unpacked(rows: Bits, first: int, n: int) -> Flags:
+    """Return n bits of each row, from one on: shape (rows, n)."""
+    low = first // WORD
+    some = np.ascontiguousarray(rows[:, low : -(-(first + n) // WORD)], "<u8")  # the lowest byte of a word first
+    bits = np.unpackbits(some.view(np.uint8), axis=1, bitorder="little")
+    return bits[:, first - low * WORD : first - low * WORD + n].astype(bool)
+
+
+def _pairs_of(
+    found: Spread, network: GraphArrays, number: int, kinds: Sequence[Concern], leaks: Sequence[Indices]
+) -> Iterator[Pairs]:
+    """The pairs of each kind, of one category."""
+    steps = {(before, after) for pairs in found.derives.values() for before, after in pairs}
+    category = CategoryRun(found, network, number, forms(number, len(found.categories), steps))
+    rows: list[list[tuple[Indices, Indices, Flags, Flags, Flags]]] = [[] for _ in kinds]
+    disclosed = next(number for number, concern in enumerate(kinds) if concern.kind == DISCLOSURE)
+    everywhere = np.unique(np.concatenate(leaks))
+    for start in range(0, len(category.sources), category.at_once()):
+        sources = category.sources[start : start + category.at_once()]
+        through = _reached(category, sources, everywhere, stop=False)
+        free = _reached(category, sources, leaks[disclosed], stop=True) if len(leaks[disclosed]) else through
+        for at, concern in enumerate(kinds):
+            if len(leaks[at]):
+                ways = (free, through) if concern.kind == DISCLOSURE else (through, through)
+                rows[at].append(_rows(sources, leaks[at], *ways))
+    for concern, some in zip(kinds, rows, strict=True):
+        if some:
+            columns = [np.concatenate(column) for column in zip(*some, strict=True)]
+            if len(columns[0]):
+                yield Pairs(concern.kind, number, *columns)
+
+
+def _reached(category: CategoryRun, sources: Indices, leaks: Indices, *, stop: bool) -> tuple[Flags, Flags, Indices]:
+    """(as it is, pseudonymised): shape (leaks, sources), whether data is there; and the leaks."""
+    numbers, n = np.arange(len(sources)), len(sources)
+    arrives, leaves = category.carried(category.begun(sources, numbers, n), n, stop=stop)
+    there = category.there(arrives, leaves, leaks, n, stop=stop)
+    return *category.brought(there, leaks, sources, numbers), leaks
+
+
+def _split(bits: int) -> Iterator[tuple[int, np.uint64]]:
+    """A number of any length -> (number of the word, word), where there is something in it."""
+    word = 0
+    while bits:
+        if part := bits & ((1 << WORD) - 1):
+            yield word, np.uint64(part)
+        bits >>= WORD
+        word += 1
+
+
+def _closure(start: set[int], steps: Collection[tuple[int, int]]) -> set[int]:
+    """What can be got to by some steps."""
+    found: set[int] = set()
+    new = start
+    while new:
+        found |= new
+        new = {after for before, after in steps if before in new} - found
+    return found
+
+
+def _rows(
+    sources: Indices,
+    leaks: Indices,
+    free: tuple[Flags, Flags, Indices],
+    through: tuple[Flags, Flags, Indices],
+) -> tuple[Indices, Indices, Flags, Flags, Flags]:
+    """The pairs, as a finding would be shown: not through another leak before through one, as it is before hidden."""
+    clear, hidden = (_of(free, plane, leaks) for plane in (0, 1))
+    plain = _of(through, 0, leaks)
+    source, leak = np.nonzero((plain | _of(through, 1, leaks)).T)
+    dismissed = ~(clear | hidden)
+    shown_clear = clear | (dismissed & plain)
+    at, beside = (leak, source), hidden & ~clear & plain
+    return sources[source], leaks[leak], ~shown_clear[at], dismissed[at], beside[at]
+
+
+def _of(reached: tuple[Flags, Flags, Indices], plane: int, leaks: Indices) -> Flags:
+    flags: Flags = (reached[0], reached[1])[plane]
+    return flags[np.searchsorted(reached[2], leaks)]

@@ -1,0 +1,1 @@
+"""What labels mean on a graph: a graph and statements in, out comes what arrives where (rules S7, S8)."""

@@ -1,0 +1,108 @@
+"""What labels mean for a graph, as arrays for the kernel: a flow that emits or blocks something is a vertex of its own.
+
+In: a spread before its fixpoint. Out: edges, and per vertex what it emits, keeps and derives.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rosprivacy.analysis.kernel.edges import Edges
+from rosprivacy.analysis.kernel.fixpoint import WORD
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+    from rosprivacy.analysis.kernel.spread import Spread
+
+    Indices = NDArray[np.int64]
+    Bits = NDArray[np.uint64]
+
+
+@dataclass(frozen=True, slots=True)
+class GraphArrays:
+    """A labelled graph for the kernel.
+
+    Attributes
+    ----------
+    count
+        Number of elements; vertices from it on are flows.
+    edges
+        Between elements and such flows.
+    special
+        Index of the flow of each vertex from ``count`` on.
+    emitted, keep
+        Shape (vertices, words).
+    derivations
+        Shape (m, 3): vertex, bit that arrives, bit that leaves for it.
+    """
+
+    count: int
+    edges: Edges
+    special: tuple[int, ...]
+    emitted: Bits
+    keep: Bits
+    derivations: Indices
+
+    @classmethod
+    def of(cls, found: Spread) -> GraphArrays:
+        """Make the arrays of a spread; O(flows · log flows)."""
+        graph = found.graph
+        count = len(graph.elements)
+        special = sorted({*found.flow_emits, *found.flow_keeps})
+        sources = [flow.source for flow in graph.flows]
+        targets = [flow.target for flow in graph.flows]
+        for number, index in enumerate(special):
+            sources.append(count + number)
+            targets.append(targets[index])
+            targets[index] = count + number
+        vertices = count + len(special)
+        emitted = as_bits(found, vertices, found.emits, 0)
+        keep = as_bits(found, vertices, found.keeps, found.all_bits)
+        for number, index in enumerate(special):
+            passing = found.flow_keeps.get(
+                index, found.all_bits
+            )  # what never goes along it is not emitted there either
+            emitted[count + number] = _words(found.flow_emits.get(index, 0) & passing, emitted.shape[1])
+            keep[count + number] = _words(passing, keep.shape[1])
+        derivations = [(vertex, *pair) for vertex, pairs in found.derives.items() for pair in pairs]
+        nodes = bisect_left(graph.elements, True, key=lambda element: element.is_channel)  # these are last
+        edges = Edges.of(vertices, np.array(sources, np.int64), np.array(targets, np.int64), nodes)
+        return cls(count, edges, tuple(special), emitted, keep, np.array(derivations, np.int64).reshape(-1, 3))
+
+    def closed(self, vertices: Indices) -> GraphArrays:
+        """Return the same where some vertices emit nothing and pass nothing on: there the graph is cut."""
+        emitted, keep = self.emitted.copy(), self.keep.copy()
+        emitted[vertices] = keep[vertices] = 0
+        return replace(
+            self, emitted=emitted, keep=keep, derivations=self.derivations[~np.isin(self.derivations[:, 0], vertices)]
+        )
+
+
+def as_bits(found: Spread, count: int, numbers: Mapping[int, int], otherwise: int) -> Bits:
+    """Return sets of bits by vertex as rows of words; those that are not given are all alike."""
+    words = max(1, -(-2 * len(found.categories) // WORD))
+    rows = np.empty((count, words), np.uint64)
+    rows[:] = np.array(_words(otherwise, words), np.uint64)
+    for vertex, bits in numbers.items():
+        rows[vertex] = _words(bits, words)
+    return rows
+
+
+def as_numbers(bits: Bits) -> dict[int, int]:
+    """Return rows that are not empty, as numbers of any length."""
+    numbers = {}
+    for vertex in np.flatnonzero(bits.any(axis=1)).tolist():
+        numbers[vertex] = sum(word << WORD * i for i, word in enumerate(bits[vertex].tolist()))
+    return numbers
+
+
+def _words(bits: int, words: int) -> list[int]:
+    mask = (1 << WORD) - 1
+    return [bits >> WORD * word & mask for word in range(words)]

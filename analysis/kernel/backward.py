@@ -1,0 +1,128 @@
+"""From where data would get to some places: the fixpoint of rule S8, run against the flows.
+
+In: a ``Spread`` and, per vertex, the bits that count there. Out: ``Backward``: per vertex the bits that, if they
+arrived there or left from there, would get to such a place. One run of the kernel, whatever the number of places.
+Which place is the nearest is told by ``nearest.py``.
+
+A part of what labels close can be opened for one run: then it says what that part keeps shut.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from collections import defaultdict
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rosprivacy.analysis.kernel.arrays import as_bits, as_numbers
+from rosprivacy.analysis.kernel.edges import Edges
+from rosprivacy.analysis.kernel.fixpoint import fixpoint
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Mapping
+
+    from rosprivacy.analysis.kernel.spread import Spread
+
+
+@dataclass(frozen=True, slots=True)
+class Opened:
+    """What is opened for one run.
+
+    Attributes
+    ----------
+    elements, flows
+        Vertex, or index of a flow -> bits that pass it although labels close it for them.
+    more
+        (source, target) of flows that are not in the graph, such as denied ones.
+    """
+
+    elements: Mapping[int, int] = field(default_factory=dict)
+    flows: Mapping[int, int] = field(default_factory=dict)
+    more: Collection[tuple[int, int]] = ()
+
+    @classmethod
+    def of(cls, parts: Iterable[Opened]) -> Opened:
+        """Return all that some open, together."""
+        elements: dict[int, int] = defaultdict(int)
+        flows: dict[int, int] = defaultdict(int)
+        more: set[tuple[int, int]] = set()
+        for part in parts:
+            for opened, bits in part.elements.items():
+                elements[opened] |= bits
+            for opened, bits in part.flows.items():
+                flows[opened] |= bits
+            more.update(part.more)
+        return cls(elements, flows, tuple(sorted(more)))
+
+    @property
+    def size(self) -> int:
+        """How many elements and flows it is about."""
+        return len(self.elements) + len(self.flows) + len(self.more)
+
+
+NOTHING_OPENED = Opened()
+
+
+@dataclass(frozen=True, slots=True)
+class Backward:
+    """What leads to the places that count.
+
+    Attributes
+    ----------
+    entering
+        Vertex -> bits that get to one if they arrive there; of a channel, if it takes them up.
+    leaving
+        Vertex -> bits that get to one if they leave there along all of its flows.
+    """
+
+    entering: Mapping[int, int]
+    leaving: Mapping[int, int]
+
+
+def backward(found: Spread, places: Mapping[int, int], opened: Opened = NOTHING_OPENED) -> Backward:
+    """Return from where data would get to some places.
+
+    Parameters
+    ----------
+    places
+        Vertex -> bits that count there: when they arrive, are made there, or are carried by a channel.
+
+    Notes
+    -----
+    O(levels · vertices + flows visited), like the fixpoint itself.
+    """
+    graph, everything = found.graph, found.all_bits
+    count = len(graph.elements)
+    keeps = {v: bits | opened.elements.get(v, 0) for v, bits in found.keeps.items()}
+    restricted = sorted(found.flow_keeps)
+    sources = [flow.source for flow in graph.flows] + [source for source, _ in opened.more]
+    targets = [flow.target for flow in graph.flows] + [target for _, target in opened.more]
+    for number, index in enumerate(restricted, count):
+        sources.append(number)
+        targets.append(targets[index])
+        targets[index] = number
+    vertices = count + len(restricted)
+    begins = {v: bits & _taken_up(found, v, keeps) for v, bits in places.items()}
+    turned = []  # what is made there of what arrives
+    for vertex, pairs in found.derives.items():
+        for before, after in pairs:
+            turned.append((vertex, after, before))
+            if places.get(vertex, 0) >> after & 1:
+                begins[vertex] = begins.get(vertex, 0) | 1 << before
+    passing = {n: found.flow_keeps[i] | opened.flows.get(i, 0) for n, i in enumerate(restricted, count)}
+    nodes = bisect_left(graph.elements, True, key=lambda element: element.is_channel)  # channels are last
+    edges = Edges.of(vertices, np.array(targets, np.int64), np.array(sources, np.int64), nodes)
+    leaving, entering = fixpoint(
+        edges,
+        as_bits(found, vertices, begins, 0),
+        as_bits(found, vertices, keeps | passing, everything),
+        np.array(turned, np.int64).reshape(-1, 3),
+    )
+    return Backward(as_numbers(entering[:count]), as_numbers(leaving[:count]))
+
+
+def _taken_up(found: Spread, vertex: int, keeps: Mapping[int, int]) -> int:
+    """A node is reached by all that arrives; a channel takes up only what it carries."""
+    return keeps.get(vertex, found.all_bits) if found.graph.elements[vertex].is_channel else found.all_bits

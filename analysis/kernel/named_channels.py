@@ -1,0 +1,92 @@
+"""Channels that a source names: nothing but a user's full name takes away what it sends through them (rules S7, S8).
+
+In: what statements mean for elements and flows, before they are carried. Out: the same, where statements that would
+close a channel to what a source names it for do not count there; and an error where a user's full name says so.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.errors import LabelError, shown
+from rosprivacy.analysis.kernel.ranks import closes, in_words
+from rosprivacy.analysis.kernel.roles import facts
+from rosprivacy.analysis.model import CHANGED, STATED
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from rosprivacy.analysis.errors import InputError
+    from rosprivacy.analysis.hierarchy import Hierarchy
+    from rosprivacy.analysis.kernel.roles import Facts
+    from rosprivacy.analysis.model import Bound, FlowGraph, Place, Statement
+
+    Meaning = dict[int, dict[str, Facts]]  # vertex or flow -> category -> what it does with it
+
+
+def stated_flows(graph: FlowGraph) -> dict[int, list[int]]:
+    """Return vertex -> the flows out of it that a person states: channels that a source names do not restrict these."""
+    found: dict[int, list[int]] = defaultdict(list)
+    for index, flow in enumerate(graph.flows):
+        if flow.role == STATED:
+            found[flow.source].append(index)
+    return dict(found)
+
+
+def keep_named(
+    elements: Meaning, flows: Meaning, graph: FlowGraph, bound: Bound, hierarchy: Hierarchy
+) -> Iterator[InputError]:
+    """Let pass what sources name channels for, in place; yield where a user's full name closes one.
+
+    Parameters
+    ----------
+    elements, flows
+        What statements mean for each.
+    """
+    told: set[tuple[Place, Place]] = set()
+    for category, source, vertex, index in named(elements, graph, bound):
+        for meaning, of, at in ((elements, bound.elements, vertex), (flows, bound.flows, index)):
+            decided = meaning.get(at, {}).get(category)
+            if decided is None or decided.passes:
+                continue
+            kept = [s for s in of[at] if s.by_name or not closes(s, category, hierarchy)]
+            name = graph.elements[vertex].name
+            meaning[at][category] = now = facts(name, kept, category, hierarchy)
+            for closer in now.closers:
+                if closer.rank[0] < CHANGED and (closer.place, source.place) not in told:
+                    told.add((closer.place, source.place))
+                    yield _contradiction(name, category, closer, source)
+
+
+def named(
+    elements: Mapping[int, Mapping[str, Facts]], graph: FlowGraph, bound: Bound
+) -> list[tuple[str, Statement, int, int]]:
+    """Return (category, statement of a source, channel that it names, flow to it), with what wildcards match there."""
+    found: list[tuple[str, Statement, int, int]] = []
+    matches: dict[int, list[int]] = defaultdict(list)
+    for index, flow in enumerate(graph.flows if bound.through else ()):
+        if flow.role == "matches":
+            matches[flow.source].append(index)
+    for vertex, decided in elements.items():
+        for category, fact in decided.items():
+            for source in fact.by_role("source")[:1] if fact.through else ():
+                indices = bound.through.get((vertex, fact.through), ())
+                found += [(category, source, graph.flows[i].target, i) for i in _with_matches(indices, graph, matches)]
+    return found
+
+
+def _with_matches(indices: Iterable[int], graph: FlowGraph, matches: Mapping[int, list[int]]) -> list[int]:
+    """Flows, and those from the wildcards at their ends to the channels that these match."""
+    found = list(indices)
+    seen = set(found)
+    for index in found:
+        new = [after for after in matches.get(graph.flows[index].target, ()) if after not in seen]
+        seen.update(new)
+        found += new
+    return found
+
+
+def _contradiction(name: str, category: str, closer: Statement, source: Statement) -> LabelError:
+    what = f"{shown(name)} is {in_words(closer)} here, and the source at {source.place} names it for {category}"
+    return LabelError(closer.place.file, closer.place.line, what, "keep one of them")

@@ -1,0 +1,131 @@
+"""Statements -> what one element does with one category (rules S7, S8).
+
+In: the statements about an element, an emitted category, the hierarchy. Out: ``Facts``.
+
+A source names what it emits. A leak, a derivation and ``only`` apply if they name the same, a broader or a narrower
+category (*may*: what is emitted may be any narrower kind); a sanitizer, a conduit, ``mundane``, ``sensitive`` and
+``never`` if they name the same or a broader one (*must*). Which of them hold is decided in ``ranks.py``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.kernel.ranks import by_line, closes, decided
+from rosprivacy.analysis.model import Method
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rosprivacy.analysis.hierarchy import Hierarchy
+    from rosprivacy.analysis.kernel.ranks import Decided
+    from rosprivacy.analysis.model import Statement
+
+TAKE_BACK = ("no-source", "no-leak")  # they hold, but review nothing
+ADDS = frozenset({"source", "leak", *TAKE_BACK})  # what they say takes no data's way away
+
+
+@dataclass(frozen=True, slots=True)
+class Facts:
+    """What an element or a flow does with one category.
+
+    Attributes
+    ----------
+    emits
+        Whether it is a source; ``through`` are then name expressions of the channels, empty for all.
+    leaks
+        Whether it lets the category out.
+    passes
+        Whether data of the category that comes in goes out again as it is.
+    pseudonymises
+        Whether what comes in goes out pseudonymised.
+    derives
+        Categories that it makes of this one, sorted.
+    covered
+        Whether a label covers the category here (rule S11).
+    method
+        Of a sanitizer, as in ``Method``; empty for others.
+    accepted
+        The statements that hold, the highest rank first.
+    closers
+        Those of them that keep the category from going on as it is, in the order of files and lines.
+    outdone
+        (A source or leak statement, the one that outdid it): what was said and does not hold.
+    reviewers
+        The other statements that answer for the category here: without them it is open, if nothing else covers it.
+    unstated
+        Whether it is a sanitizer whose method is taken, not stated.
+    standard
+        Whether only a shipped file says that it carries nothing.
+    roles
+        Names of the roles that hold, sorted.
+    """
+
+    emits: bool = False
+    through: tuple[str, ...] = ()
+    leaks: bool = False
+    passes: bool = True
+    pseudonymises: bool = False
+    derives: tuple[str, ...] = ()
+    covered: bool = False
+    unstated: bool = False
+    standard: bool = False
+    roles: tuple[str, ...] = ()
+    method: str = ""
+    accepted: tuple[Statement, ...] = ()
+    closers: tuple[Statement, ...] = ()
+    outdone: tuple[tuple[Statement, Statement], ...] = ()
+    reviewers: tuple[Statement, ...] = ()
+
+    def by_role(self, role: str) -> tuple[Statement, ...]:
+        """Return the statements of a role that hold, the highest rank first."""
+        return tuple(statement for statement in self.accepted if statement.role == role)
+
+
+NOTHING_SAID = Facts()
+
+
+def facts(name: str, said: Sequence[Statement], category: str, hierarchy: Hierarchy) -> Facts:
+    """Decide what holds of an element or flow for one category.
+
+    Parameters
+    ----------
+    name
+        Of the element, for messages.
+    said
+        All statements about it.
+
+    Raises
+    ------
+    LabelError
+        If two statements of equal rank contradict each other; the message names both lines.
+    """
+    return _sum_up(decided(name, said, category, hierarchy), category, hierarchy)
+
+
+def _sum_up(found: Decided, category: str, hierarchy: Hierarchy) -> Facts:
+    accepted = found.accepted
+    by_role = {role: [s for s in accepted if s.role == role] for role in {s.role for s in accepted}}
+    sanitizers = by_role.get("sanitizer", [])
+    mundane = by_role.get("mundane", [])
+    closers = [*sanitizers, *(s for s in accepted if closes(s, category, hierarchy))]
+    sources = by_role.get("source", [])
+    roles = sorted(role for role in by_role if role not in TAKE_BACK)
+    return Facts(
+        emits=bool(sources),
+        through=sources[0].through if sources else (),
+        leaks="leak" in by_role,
+        passes=not closers,
+        pseudonymises=any(s.method is Method.PSEUDONYMISE for s in sanitizers),
+        derives=tuple(sorted({s.to for s in by_role.get("derivation", [])})),
+        covered=bool(roles),
+        unstated=any(not s.stated for s in sanitizers),
+        standard=bool(mundane) and all(s.shipped for s in mundane),
+        roles=tuple(roles),
+        method=str(sanitizers[0].method) if sanitizers else "",
+        accepted=accepted,
+        closers=tuple(sorted(closers, key=by_line)),
+        outdone=found.outdone,
+        reviewers=tuple(sorted((s for s in accepted if s not in closers and s.role not in ADDS), key=by_line)),
+    )

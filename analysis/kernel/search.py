@@ -1,0 +1,233 @@
+"""Breadth-first search over (vertex, bit): where data goes from some vertices, how far, and along which flows.
+
+In: a ``Spread``. Out: a ``Search``, from which shortest paths are read. All bits are searched together, level by
+level, so that a vertex is expanded once per level in which bits are new to it. Ties fall to the lower vertex, and
+vertices are sorted: the same input gives the same paths (rule S14).
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from rosprivacy.analysis.kernel.spread import Spread
+
+START = -1
+
+
+@dataclass(frozen=True, slots=True)
+class Net:
+    """The flows of a spread, by the vertex that they leave: (index, target, bits that pass it).
+
+    Attributes
+    ----------
+    flows
+        All.
+    inner
+        Those from what is written to a wildcard to what is read from it: one element to the reader, and so no step.
+    """
+
+    spread: Spread
+    flows: Mapping[int, list[tuple[int, int, int]]]
+    inner: Mapping[int, list[tuple[int, int, int]]]
+
+    @classmethod
+    def of(cls, spread: Spread) -> Net:
+        """Index the flows that anything leaves along."""
+        graph, everything = spread.graph, spread.all_bits
+        flows: dict[int, list[tuple[int, int, int]]] = defaultdict(list)
+        inner: dict[int, list[tuple[int, int, int]]] = defaultdict(list)
+        for index, flow in enumerate(graph.flows):
+            if spread.leaves.get(flow.source):
+                passing = spread.flow_keeps.get(index, everything)
+                if graph.elements[flow.target].is_channel:  # a channel takes up only what it carries
+                    passing &= spread.keeps.get(flow.target, everything)
+                flows[flow.source].append((index, flow.target, passing))
+                written, read = graph.elements[flow.source], graph.elements[flow.target]
+                if written.pattern and written.shown_as == read.shown_as:
+                    inner[flow.source].append((index, flow.target, passing))
+        return cls(spread, flows, inner)
+
+
+@dataclass(slots=True)
+class Search:
+    """What one search found.
+
+    Attributes
+    ----------
+    arrived
+        Vertex -> (level, bits new at that level, flow that brought them), in order. The two sides of a wildcard are
+        at one level.
+    left
+        Vertex -> (bits, the bit that they were made from, or None if they just passed, or ``START``), in order.
+    seen, gone
+        Vertex -> all bits that arrived, all that left.
+    begun
+        Start -> all bits that it emits, also those that leave along single flows only.
+    """
+
+    arrived: dict[int, list[tuple[int, int, int]]] = field(default_factory=lambda: defaultdict(list))
+    left: dict[int, list[tuple[int, int | None]]] = field(default_factory=lambda: defaultdict(list))
+    seen: dict[int, int] = field(default_factory=dict)
+    gone: dict[int, int] = field(default_factory=dict)
+    begun: dict[int, int] = field(default_factory=dict)
+
+    def level(self, vertex: int, bits: int) -> int | None:
+        """Flows from a start to the nearest arrival of one of some bits; 0 if they start there."""
+        starting = [0] if self.begun.get(vertex, 0) & bits else []
+        levels = [level for level, new, _ in self.arrived.get(vertex, ()) if new & bits]
+        made = [
+            level
+            for bits_out, origin in self.left.get(vertex, ())
+            if bits_out & bits and origin is not None and origin != START
+            for level, new, _ in self.arrived.get(vertex, ())
+            if new >> origin & 1
+        ]
+        return min(starting + levels + made, default=None)
+
+    def arrives_first(self, vertex: int, bit: int) -> bool:
+        """Whether a bit arrives at a vertex no later than it is made there."""
+        arrival = next((level for level, new, _ in self.arrived.get(vertex, ()) if new >> bit & 1), None)
+        return arrival is not None and arrival == self.level(vertex, 1 << bit)
+
+
+def search(net: Net, starts: Iterable[int], allowed: int, stop: Mapping[int, int]) -> Search:
+    """Search from what some vertices emit.
+
+    Parameters
+    ----------
+    starts
+        Vertices.
+    allowed
+        Bits to follow.
+    stop
+        Vertex -> bits that are not followed on from there (but from a start they are).
+
+    Notes
+    -----
+    O(flows · levels at which bits are new to their source).
+    """
+    spread = net.spread
+    found = Search()
+    level = 0
+    leaving: dict[int, int] = defaultdict(int)
+    first = {vertex: spread.emits.get(vertex, 0) & allowed for vertex in sorted(starts)}
+    found.begun.update({vertex: spread.begins(vertex) & allowed for vertex in first})
+    for vertex, bits in first.items():
+        _leave(found, vertex, bits, START, leaving)
+    single = _through_flows(net, first, allowed)
+    while leaving or single:
+        level += 1
+        arriving: dict[int, int] = defaultdict(int)
+        for index, target, bits in single:
+            _arrive(found, target, bits, level, index, arriving)
+        single = []
+        for vertex in sorted(leaving):
+            bits = leaving[vertex]
+            for index, target, passing in net.flows.get(vertex, ()):
+                if bits & passing:
+                    _arrive(found, target, bits & passing, level, index, arriving)
+        leaving = defaultdict(int)
+        for vertex in sorted(arriving):
+            _pass_on(spread, found, vertex, arriving[vertex], allowed, stop.get(vertex, 0), leaving)
+        read = _across_sides(net, found, level, leaving)
+        for vertex in sorted(read):
+            _pass_on(spread, found, vertex, read[vertex], allowed, stop.get(vertex, 0), leaving)
+    return found
+
+
+def _across_sides(net: Net, found: Search, level: int, leaving: Mapping[int, int]) -> dict[int, int]:
+    """What gets from one side of a wildcard to the other within a level."""
+    read: dict[int, int] = defaultdict(int)
+    for vertex in sorted(leaving.keys() & net.inner.keys()):
+        for index, target, passing in net.inner[vertex]:
+            if leaving[vertex] & passing:
+                _arrive(found, target, leaving[vertex] & passing, level, index, read)
+    return read
+
+
+def _through_flows(net: Net, first: Mapping[int, int], allowed: int) -> list[tuple[int, int, int]]:
+    """What sources emit through single flows only: flow, its target, bits."""
+    single = []
+    for vertex in first:
+        for index, target, passing in net.flows.get(vertex, ()):
+            bits = net.spread.flow_emits.get(index, 0) & allowed & passing
+            if bits:
+                single.append((index, target, bits))
+    return single
+
+
+def _arrive(found: Search, target: int, bits: int, level: int, flow: int, arriving: dict[int, int]) -> None:
+    new = bits & ~found.seen.get(target, 0)
+    if new:
+        found.seen[target] = found.seen.get(target, 0) | new
+        found.arrived[target].append((level, new, flow))
+        arriving[target] |= new
+
+
+def _pass_on(
+    spread: Spread, found: Search, vertex: int, bits: int, allowed: int, stop: int, leaving: dict[int, int]
+) -> None:
+    """What arrives leaves again: as it is, or as what is made of it; not what stops here."""
+    bits &= ~stop
+    kept = bits & spread.keeps.get(vertex, spread.all_bits)
+    _leave(found, vertex, kept, None, leaving)
+    for before, after in spread.derives.get(vertex, ()):
+        if bits >> before & 1:
+            made = 1 << after & allowed
+            if made & stop:
+                found.left[vertex].append((made, before))  # it gets here, and ends here
+            else:
+                _leave(found, vertex, made, before, leaving)
+
+
+def _leave(found: Search, vertex: int, bits: int, origin: int | None, leaving: dict[int, int]) -> None:
+    new = bits & ~found.gone.get(vertex, 0)
+    if new:
+        found.gone[vertex] = found.gone.get(vertex, 0) | new
+        found.left[vertex].append((new, origin))
+        leaving[vertex] |= new
+
+
+def present(found: Search, vertex: int) -> int:
+    """Bits that arrive at a vertex, start there, or are made there."""
+    made = 0
+    for bits, origin in found.left.get(vertex, ()):
+        if origin is not None:
+            made |= bits
+    return found.seen.get(vertex, 0) | found.begun.get(vertex, 0) | made
+
+
+def path_to(net: Net, found: Search, vertex: int, bit: int) -> list[tuple[int, int, int]]:
+    """Read a shortest path back from a vertex where a bit is.
+
+    Returns
+    -------
+    steps
+        (flow, or ``START`` for the first; vertex; bit with which data is there), source first.
+    """
+    graph, single = net.spread.graph, net.spread.flow_emits
+    steps: list[tuple[int, int, int]] = []
+    came = _flow_of(found, vertex, bit) if found.arrives_first(vertex, bit) else START
+    while True:
+        if came == START:  # it was made here, or starts here
+            origin = next((o for bits, o in found.left.get(vertex, ()) if bits >> bit & 1 and o is not None), START)
+            if origin == START:
+                return [(START, vertex, bit), *steps[::-1]]
+            bit = origin
+            came = _flow_of(found, vertex, bit)
+        steps.append((came, vertex, bit))
+        vertex = graph.flows[came].source
+        if vertex in found.begun and single.get(came, 0) >> bit & 1:
+            return [(START, vertex, bit), *steps[::-1]]
+        passed = any(bits >> bit & 1 and origin is None for bits, origin in found.left[vertex])
+        came = _flow_of(found, vertex, bit) if passed else START
+
+
+def _flow_of(found: Search, vertex: int, bit: int) -> int:
+    """The flow along which a bit first arrived."""
+    return next(flow for _, new, flow in found.arrived[vertex] if new >> bit & 1)

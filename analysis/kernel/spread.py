@@ -1,0 +1,124 @@
+"""What labels mean for a graph, and what arrives where: sets of bits per vertex, as Python integers (rules S7, S8)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rosprivacy.analysis.kernel.overruled import Overruled
+    from rosprivacy.analysis.kernel.roles import Facts
+    from rosprivacy.analysis.model import FlowGraph
+
+
+@dataclass(slots=True)
+class Spread:
+    """What labels mean for a graph, and the fixpoint of it. Made by ``spread``, then only read.
+
+    Attributes
+    ----------
+    categories
+        Emitted ones, sorted; they give the bits their numbers.
+    facts
+        Vertex -> category -> what it does with it; labelled vertices only.
+    flow_facts
+        The same of single flows, by index; labelled flows only.
+    emits, leaks, covered
+        Vertex -> bits; 0 where absent. A leak and a cover hold in both planes.
+    keeps
+        Vertex -> bits that pass it as they are; all where absent.
+    derives
+        Vertex -> (bit that arrives, bit that leaves for it); pseudonymising is one of these.
+    flow_emits, flow_keeps
+        The same for single flows.
+    flow_begins
+        Vertex -> bits that it emits along single flows only.
+    named
+        Channel -> bits that a source names it for.
+    standard
+        Channels taken as mundane on a shipped file's word alone (rule S13).
+    overruled
+        Sources and leaks that a statement says and another takes away.
+    made
+        Numbers of the categories that others are made into.
+    arrives, leaves
+        Vertex -> bits, where there are any.
+    sent
+        Vertex -> bits that leave along all of its flows.
+    """
+
+    graph: FlowGraph
+    categories: tuple[str, ...]
+    facts: dict[int, dict[str, Facts]] = field(default_factory=dict)
+    flow_facts: dict[int, dict[str, Facts]] = field(default_factory=dict)
+    emits: dict[int, int] = field(default_factory=dict)
+    leaks: dict[int, int] = field(default_factory=dict)
+    covered: dict[int, int] = field(default_factory=dict)
+    keeps: dict[int, int] = field(default_factory=dict)
+    derives: dict[int, tuple[tuple[int, int], ...]] = field(default_factory=dict)
+    flow_emits: dict[int, int] = field(default_factory=dict)
+    flow_keeps: dict[int, int] = field(default_factory=dict)
+    flow_begins: dict[int, int] = field(default_factory=dict)
+    named: dict[int, int] = field(default_factory=dict)
+    standard: set[int] = field(default_factory=set)
+    overruled: tuple[Overruled, ...] = ()
+    made: set[int] = field(default_factory=set)
+    arrives: dict[int, int] = field(default_factory=dict)
+    leaves: dict[int, int] = field(default_factory=dict)
+    sent: dict[int, int] = field(default_factory=dict)
+
+    @property
+    def all_bits(self) -> int:
+        """Every bit of both planes."""
+        return (1 << 2 * len(self.categories)) - 1
+
+    def begins(self, vertex: int) -> int:
+        """Bits that a vertex emits, along all of its flows or single ones."""
+        return self.emits.get(vertex, 0) | self.flow_begins.get(vertex, 0)
+
+    def both(self, category: str) -> int:
+        """The two bits of a category, as it is and pseudonymised."""
+        i = self.categories.index(category)
+        return 1 << i | 1 << i + len(self.categories)
+
+    def present(self, vertex: int) -> int:
+        """What arrives at or starts from an element, or is carried by a channel."""
+        arrives, leaves = self.arrives.get(vertex, 0), self.leaves.get(vertex, 0)
+        return leaves if self.graph.elements[vertex].is_channel else arrives | leaves
+
+    def sends(self, index: int) -> int:
+        """What is sent along a flow, whether its end takes it up or not."""
+        bits = self.sent.get(self.graph.flows[index].source, 0) | self.flow_emits.get(index, 0)
+        return bits & self.flow_keeps.get(index, self.all_bits)
+
+    def along(self, index: int) -> int:
+        """What goes along a flow and is taken up at its end."""
+        flow, bits = self.graph.flows[index], self.sends(index)
+        if self.graph.elements[flow.target].is_channel:
+            bits &= self.keeps.get(flow.target, self.all_bits)
+        return bits
+
+    def names(self, bits: int) -> tuple[str, ...]:
+        """The categories of some bits, planes put together, in order."""
+        k = len(self.categories)
+        either = (bits | bits >> k) & ((1 << k) - 1)
+        return tuple(self.categories[i] for i in bits_of(either))
+
+    def planes(self, bits: int) -> tuple[tuple[str, ...], tuple[str, ...]]:
+        """The categories of some bits, as they are and pseudonymised."""
+        k = len(self.categories)
+        return self.names(bits & ((1 << k) - 1)), self.names(bits >> k)
+
+
+def bits_of(number: int) -> Iterator[int]:
+    """The positions of the bits that are set, lowest first.
+
+    >>> list(bits_of(0b10010))
+    [1, 4]
+    """
+    while number:
+        lowest = number & -number
+        yield lowest.bit_length() - 1
+        number ^= lowest

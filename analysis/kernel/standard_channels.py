@@ -1,0 +1,46 @@
+"""Standard ROS channels that are taken as mundane on a shipped file's word (rule S13): who would be reached, and globs.
+
+In: a spread at its fixpoint. Out: the channels at which data stops for this alone, and those of which a glob of the
+user's says otherwise, and does not count.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.model import GLOB, STANDARD
+
+if TYPE_CHECKING:
+    from rosprivacy.analysis.kernel.spread import Spread
+    from rosprivacy.analysis.model import Bound, Element
+
+SAYS_OTHERWISE = ("sensitive", "only")
+
+
+def reached(found: Spread, mask: int) -> tuple[tuple[Element, tuple[str, ...]], ...]:
+    """Return (channel, categories that get to it and stop there), one for both legs and sides of a channel."""
+    elements = found.graph.elements
+    bits: dict[tuple[str, str, str], int] = defaultdict(int)
+    first: dict[tuple[str, str, str], Element] = {}
+    for index, flow in enumerate(found.graph.flows if found.standard else ()):
+        if flow.target in found.standard:
+            stopped = found.sends(index) & mask & ~found.keeps.get(flow.target, found.all_bits)
+            standard = [c for c in found.names(stopped) if found.facts[flow.target][c].standard]
+            if standard:
+                element = elements[flow.target]
+                bits[element.identity] |= sum(found.both(name) for name in standard)
+                first.setdefault(element.identity, element)
+    return tuple((first[key], found.names(bits[key])) for key in sorted(bits))
+
+
+def unchanged(found: Spread, bound: Bound) -> tuple[Element, ...]:
+    """Return the channels of which a glob with an open end says that they may carry data, and does not count."""
+    elements = found.graph.elements
+    globs = {
+        elements[vertex].identity: elements[vertex]
+        for vertex in sorted(found.standard, reverse=True)
+        for said in bound.elements[vertex]
+        if said.naming == GLOB and said.rank[0] > STANDARD and said.role in SAYS_OTHERWISE
+    }
+    return tuple(globs[key] for key in sorted(globs))

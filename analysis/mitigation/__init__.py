@@ -1,0 +1,1 @@
+"""What to change: an analysis and limits in, out come proposals, each proven by a new analysis."""

@@ -1,0 +1,86 @@
+"""What changes break: which elements get less than before, and which may no longer read or write a channel.
+
+In: two analyses, without the changes and with them. Out: ``Affected``, in the order of the graph.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.analysis.model import Element
+
+Shown = tuple[str, str, str, str]  # robot, kind, name and leg, as a reader sees them
+
+
+@dataclass(frozen=True, slots=True)
+class Affected:
+    """An element that gets less than before.
+
+    Attributes
+    ----------
+    filtered
+        (where from, categories that no longer come from there), sorted; what else comes from there still does.
+    unread, unwritten
+        What it may no longer read from or write to, sorted.
+    narrowed
+        Wildcards that no longer give it all names that they gave, sorted.
+    """
+
+    element: Element
+    filtered: tuple[tuple[Shown, tuple[str, ...]], ...] = ()
+    unread: tuple[Shown, ...] = ()
+    unwritten: tuple[Shown, ...] = ()
+    narrowed: tuple[Shown, ...] = ()
+
+
+@dataclass(slots=True)
+class _Rights:
+    """What one element reads and writes."""
+
+    reads: dict[Shown, set[str]]
+    writes: set[Shown]
+    without: dict[Shown, set[str]]
+
+    @classmethod
+    def none(cls) -> _Rights:
+        return cls(defaultdict(set), set(), defaultdict(set))
+
+
+def affected(before: Analysis, after: Analysis) -> tuple[Affected, ...]:
+    """Return who gets less after than before; O(flows)."""
+    was, becomes = _rights(before), _rights(after)
+    found = []
+    for element in sorted(was, key=lambda e: e.sort_key()):
+        old, new = was[element], becomes.get(element, _Rights.none())
+        lost = {at: names - new.reads[at] for at, names in old.reads.items() if at in new.reads}
+        less = Affected(
+            element,
+            tuple(sorted((at, tuple(sorted(names))) for at, names in lost.items() if names)),
+            tuple(sorted(old.reads.keys() - new.reads.keys())),
+            tuple(sorted(old.writes - new.writes)),
+            tuple(sorted(at for at, names in new.without.items() if at in old.without and names - old.without[at])),
+        )
+        if less != Affected(element):
+            found.append(less)
+    return tuple(found)
+
+
+def _rights(analysis: Analysis) -> dict[Element, _Rights]:
+    graph, found = analysis.graph, analysis.spread
+    rights: dict[Element, _Rights] = defaultdict(_Rights.none)
+    for index, flow in enumerate(graph.flows):
+        source, target = graph.elements[flow.source], graph.elements[flow.target]
+        for reads, mine, other in ((True, target, source), (False, source, target)):
+            if mine.is_channel:
+                continue
+            if reads:
+                rights[mine].reads[other.shown_as].update(found.names(found.along(index)))
+            else:
+                rights[mine].writes.add(other.shown_as)
+            if other.pattern:
+                rights[mine].without[other.shown_as].update(other.without)
+    return dict(rights)

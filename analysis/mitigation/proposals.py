@@ -1,0 +1,106 @@
+"""What is proposed to remove findings: steps, what they leave, whom they reach.
+
+Made by ``propose.py``; nothing here decides anything.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rosprivacy.analysis.answer import Finding, Verdict
+    from rosprivacy.analysis.mitigation.affected import Affected
+    from rosprivacy.analysis.model import Element, Grant
+
+ITSELF, NOT_ALLOWED = "itself", "not-allowed"
+
+
+@dataclass(frozen=True, slots=True)
+class ProposedStep:
+    """One change of a proposal.
+
+    Attributes
+    ----------
+    kind
+        ``review``, ``filter`` or ``deny``.
+    cost
+        By the limits.
+    categories
+        That a filter has to end, or that a review has to find are not carried; empty for a DENY, which ends all.
+    between
+        (from, to) of a filter; several under the enforced view, where a right is the enclave's.
+    channel
+        To review.
+    grants
+        The lines behind the flows that are filtered, or to be set to DENY.
+    readers
+        Who gets filtered data, or loses data, directly.
+    spared
+        Of a filter behind a channel: who else reads the channel, and would get filtered data from a filter before it.
+    """
+
+    kind: str
+    cost: int
+    categories: tuple[str, ...] = ()
+    between: tuple[tuple[Element, Element], ...] = ()
+    channel: Element | None = None
+    grants: tuple[Grant, ...] = ()
+    readers: tuple[Element, ...] = ()
+    spared: tuple[Element, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """A finding that no allowed change removes.
+
+    Attributes
+    ----------
+    reason
+        ``itself``: the source is the leak, only another role helps. ``not-allowed``: a way has no place for a change.
+    way
+        That way.
+    """
+
+    finding: Finding
+    reason: str
+    way: tuple[Element, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Proposal:
+    """The cheapest changes that remove the open findings of some categories.
+
+    Attributes
+    ----------
+    categories
+        Names.
+    removed
+        Findings that the steps remove.
+    kept
+        Findings that stay.
+    steps
+        Reviews, filters, DENY lines; empty if nothing can be removed, or if no proposal could be proven.
+    lower
+        No set of such changes that removes them costs less; the steps are the cheapest if they cost as much.
+    proven
+        Whether a new analysis with the steps applied has no open finding of the categories but those kept.
+    verdict
+        Of that analysis, which is about all categories that were asked for.
+    affected
+        Who gets less than before, once the reviews are done.
+    """
+
+    categories: tuple[str, ...]
+    removed: tuple[Finding, ...]
+    kept: tuple[Kept, ...]
+    steps: tuple[ProposedStep, ...]
+    lower: int
+    proven: bool
+    verdict: Verdict
+    affected: tuple[Affected, ...] = ()
+
+    @property
+    def cost(self) -> int:
+        """The costs of all steps."""
+        return sum(step.cost for step in self.steps)

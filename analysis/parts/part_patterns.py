@@ -1,0 +1,192 @@
+"""What the parts of a fleet say of sources and leaks -> patterns, as ``fleet/patterns_of_pairs.py`` makes them of one
+graph (rule S10).
+
+In: pairs within units; and between units, which class of sources gets how to which leak, so that pairs are counted and
+not made one by one. Out: groups with one pair each to show, and how each robot takes part.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.fleet.patterns import Share, pattern_of
+from rosprivacy.analysis.fleet.patterns_of_pairs import Group
+from rosprivacy.analysis.parts.part_pairs import forms_of
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Iterator
+
+    from rosprivacy.analysis.fleet.patterns import Likeness
+    from rosprivacy.analysis.model import Element
+
+Form = tuple[bool, bool, bool]  # dismissed, pseudonymised, beside
+CORE = ""  # in place of the name of a unit
+
+
+@dataclass(frozen=True, slots=True)
+class Within:
+    """A pair of one unit; ``how`` is a code of ``crossing``, of one finding or of two that stand beside each other."""
+
+    kind: str
+    category: str
+    source: Element
+    leak: Element
+    how: int
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """A source with its unit, and the number of its class among those of the category."""
+
+    category: str
+    element: Element
+    unit: str
+    number: int
+
+
+@dataclass(frozen=True, slots=True)
+class End:
+    """A leak or the like with its unit, and how each class of the category gets there from the border."""
+
+    kind: str
+    category: str
+    element: Element
+    unit: str
+    how: bytes
+
+
+@dataclass(slots=True)
+class _Many:
+    """Elements of one name on many robots, in order."""
+
+    elements: list[tuple[Element, str]] = field(default_factory=list)
+    weights: Counter[str] = field(default_factory=Counter)  # by unit
+
+    def add(self, element: Element, unit: str, weight: int) -> None:
+        self.elements.append((element, unit))
+        self.weights[unit] += weight
+
+    def beside(self, other: _Many) -> Iterator[tuple[Element, str]]:
+        """Those that have one of another unit in ``other``; the core is beside itself."""
+        units = set(other.weights)
+        return ((e, unit) for e, unit in self.elements if unit == CORE or units - {unit})
+
+
+@dataclass(slots=True)
+class _Tally:
+    best: tuple[bool, bool, tuple[object, ...], tuple[object, ...]]
+    shown: tuple[str, str, Element, Element]
+    across: bool
+    beside: bool
+    count: int = 0
+    dismissed: int = 0
+    hidden: int = 0
+    robots: set[str] = field(default_factory=set)
+
+
+class Crossed:
+    """Puts together what parts say.
+
+    Attributes
+    ----------
+    examples
+        Units: for each class of sources and all leaks of one name the first two, so that each source has one of them
+        beside its own.
+    shares
+        How each robot takes part in patterns.
+    """
+
+    def __init__(self, likeness: Likeness) -> None:
+        self._likeness = likeness
+        self._tallies: dict[str, _Tally] = {}
+        self.examples: set[str] = set()
+        self.shares: dict[str, set[Share]] = defaultdict(set)
+
+    def within(self, pairs: Iterable[Within]) -> None:
+        """Take the pairs of units."""
+        likeness = self._likeness
+        for pair in pairs:
+            a, b = pair.source.robot, pair.leak.robot
+            if count := likeness.between(a, b):
+                across = a != b and likeness.is_robot(a) and likeness.is_robot(b)
+                for form in forms_of(pair.how):
+                    key = self._add(pair.kind, pair.category, pair.source, pair.leak, form, count, across=across)
+                    self._share(key, (a,), (b,), form, across=across)
+
+    def between(self, sources: Iterable[Source], ends: Iterable[End]) -> None:
+        """Take all sources and ends, and count the pairs of different units, and those of the core."""
+        likeness = self._likeness
+        by_class: dict[tuple[str, int], dict[Element, _Many]] = defaultdict(lambda: defaultdict(_Many))
+        for source in sorted(sources, key=lambda source: source.element.sort_key()):
+            if weight := likeness.weight(source.element.robot):
+                many = by_class[source.category, source.number][likeness.alike(source.element)]
+                many.add(source.element, source.unit, weight)
+        by_way: dict[tuple[str, str, Element, bytes], _Many] = defaultdict(_Many)
+        for end in sorted(ends, key=lambda end: end.element.sort_key()):
+            if weight := likeness.weight(end.element.robot):
+                by_way[end.kind, end.category, likeness.alike(end.element), end.how].add(end.element, end.unit, weight)
+        for (kind, category, _, ways), leaks in by_way.items():
+            for number, how in enumerate(ways):
+                for some in by_class.get((category, number), {}).values() if how else ():
+                    for form in forms_of(how):
+                        self._between(kind, category, form, some, leaks)
+
+    def groups(self) -> tuple[Group, ...]:
+        """Return the patterns without their ways."""
+        return tuple(
+            Group(
+                *tally.shown,
+                key,
+                tally.count,
+                tuple(sorted(tally.robots)),
+                tally.across,
+                tally.dismissed,
+                tally.hidden,
+                tally.beside,
+            )
+            for key, tally in self._tallies.items()
+        )
+
+    def _between(self, kind: str, category: str, form: Form, sources: _Many, leaks: _Many) -> None:
+        both = sum(weight * leaks.weights[unit] for unit, weight in sources.weights.items() if unit != CORE)
+        count = sources.weights.total() * leaks.weights.total() - both
+        if not count:
+            return
+        begin, end = list(sources.beside(leaks)), list(leaks.beside(sources))
+        self.examples |= {*list(dict.fromkeys(unit for _, unit in end))[:2]} - {CORE}
+        source, unit = begin[0]
+        leak = next(element for element, other in end if other != unit or unit == CORE)
+        across = self._likeness.is_robot(source.robot) and self._likeness.is_robot(leak.robot)
+        key = self._add(kind, category, source, leak, form, count, across=across)
+        where = begin if self._likeness.is_robot(source.robot) else end
+        self._tallies[key].robots |= self._members(element.robot for element, _ in where)
+        self._share(key, {e.robot for e, _ in begin}, {e.robot for e, _ in end}, form, across=across)
+
+    def _add(
+        self, kind: str, category: str, source: Element, leak: Element, form: Form, count: int, *, across: bool
+    ) -> str:
+        likeness = self._likeness
+        dismissed, hidden, beside = form
+        key = pattern_of(kind, category, source, leak, likeness, beside=beside)
+        order = (dismissed, hidden, source.sort_key(), leak.sort_key())
+        tally = self._tallies.setdefault(key, _Tally(order, (kind, category, source, leak), across, beside))
+        if order < tally.best:
+            tally.best, tally.shown = order, (kind, category, source, leak)
+        tally.count += count
+        tally.dismissed += count * dismissed
+        tally.hidden += count * hidden
+        tally.robots |= self._members([source.robot if likeness.is_robot(source.robot) else leak.robot])
+        return key
+
+    def _members(self, robots: Iterable[str]) -> set[str]:
+        likeness = self._likeness
+        return {name for r in robots for name in likeness.members.get(likeness.second.get(r, r), ())}
+
+    def _share(self, key: str, begin: Collection[str], end: Collection[str], form: Form, *, across: bool) -> None:
+        flags = form[:2]
+        for robot in begin:
+            self.shares[robot].add(Share(key, False, *flags))
+        for robot in end:
+            self.shares[self._likeness.second.get(robot, robot)].add(Share(key, across, *flags))

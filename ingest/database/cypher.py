@@ -1,0 +1,122 @@
+"""The Cypher that writes rows, made from the schema: ``UNWIND … MERGE`` for nodes, ``UNWIND … CREATE`` for the rest.
+
+In: kinds of ``schema.py``. Out: statements with the parameter ``$rows``; identifiers are quoted, values are parameters.
+What was written before is deleted first, so relationships are created, not merged: two grants of one line are two.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosprivacy.ingest.database.schema import (
+    ACROSS,
+    CATEGORY,
+    ELEMENT,
+    ENCLAVE,
+    FALLS_UNDER,
+    FINDING,
+    NODES,
+    PROVISION,
+    ROBOT,
+    quoted,
+)
+
+if TYPE_CHECKING:
+    from rosprivacy.ingest.database.schema import NodeKind, RelationshipKind
+
+_BY_LABEL = {kind.label: kind for kind in NODES}
+
+
+def merge_nodes(kind: NodeKind) -> str:
+    """Return the statement for rows of ``id`` and ``properties``; others' properties stay as they are.
+
+    >>> from rosprivacy.ingest.database.schema import ENCLAVE
+    >>> merge_nodes(ENCLAVE)
+    'UNWIND $rows AS row MERGE (n:`Enclave` {`id`: row.id}) SET n += row.properties'
+    """
+    return f"UNWIND $rows AS row MERGE {_node('n', kind, 'row.id')} SET n += row.properties"
+
+
+def create_relationships(kind: RelationshipKind) -> str:
+    """Return the statement for rows of ``source``, ``target`` (keys) and ``properties``."""
+    source, target = _BY_LABEL[kind.source], _BY_LABEL[kind.target]
+    return (
+        f"UNWIND $rows AS row MATCH {_node('a', source, 'row.source')} MATCH {_node('b', target, 'row.target')} "
+        f"CREATE (a)-[r:{quoted(kind.type)}]->(b) SET r = row.properties"
+    )
+
+
+def merge_relationships(kind: RelationshipKind) -> str:
+    """Return the same for what may be there already."""
+    return create_relationships(kind).replace(" CREATE ", " MERGE ")
+
+
+def _node(variable: str, kind: NodeKind, value: str) -> str:
+    return f"({variable}:{quoted(kind.label)} {{{quoted(kind.key)}: {value}}})"
+
+
+# Elements of a robot that was not there: no label can be stale.
+CREATE_ELEMENTS = (
+    f"UNWIND $rows AS row MATCH {_node('r', ROBOT, 'row.properties.robot')} "
+    f"MERGE {_node('n', ELEMENT, 'row.id')} SET n += row.properties SET n:$(row.labels) "
+    "CREATE (n)-[:`OF_ROBOT` {`robot`: row.properties.robot}]->(r)"
+)
+# Elements that may be there: labels of ours that no longer hold go, others stay.
+REPLACE_ELEMENTS = (
+    f"UNWIND $rows AS row MATCH {_node('r', ROBOT, 'row.properties.robot')} "
+    f"MERGE {_node('n', ELEMENT, 'row.id')} SET n += row.properties "
+    "WITH n, r, row, [label IN labels(n) WHERE label IN $labels AND NOT label IN row.labels] AS stale "
+    "REMOVE n:$(stale) SET n:$(row.labels) "
+    "MERGE (n)-[of:`OF_ROBOT`]->(r) SET of.`robot` = r.`name`"
+)
+# Elements of other robots at which flows end: they may be loaded later, then with all that is said of them.
+MERGE_FOREIGN = (
+    f"UNWIND $rows AS row OPTIONAL MATCH {_node('n', ELEMENT, 'row.id')} WITH row WHERE n IS NULL "
+    f"CREATE {_node('n', ELEMENT, 'row.id')} SET n += row.properties SET n:$(row.labels)"
+)
+CREATE_FINDINGS = (
+    f"UNWIND $rows AS row MATCH {_node('a', ELEMENT, 'row.source')} MATCH {_node('b', ELEMENT, 'row.target')} "
+    f"MATCH {_node('c', CATEGORY, 'row.category')} "
+    f"MERGE {_node('f', FINDING, 'row.id')} SET f += row.properties "
+    "CREATE (f)-[:`FROM`]->(a) CREATE (f)-[:`TO`]->(b) CREATE (f)-[:`OF_CATEGORY`]->(c)"
+)
+CREATE_ACROSS = create_relationships(ACROSS)
+MERGE_CATEGORIES = merge_nodes(CATEGORY)
+MERGE_PROVISIONS = merge_nodes(PROVISION)
+MERGE_ENCLAVES = merge_nodes(ENCLAVE)
+# The ontology says it anew: what it no longer says goes.
+DROP_CATEGORY_LINKS = (
+    f"MATCH (c:{quoted(CATEGORY.label)})-[r:`BROADER`|{quoted(FALLS_UNDER.type)}]->() WHERE c.`iri` IN $iris DELETE r"
+)
+
+# The first write of a robot's transaction: whoever else writes it waits here.
+LOCK_ROBOTS = (
+    f"UNWIND $names AS name MERGE {_node('r', ROBOT, 'name')} ON CREATE SET r.`version` = 0 "
+    "SET r.`lock` = true REMOVE r.`lock`"
+)
+LOCK_KNOWN_ROBOTS = f"UNWIND $names AS name MATCH {_node('r', ROBOT, 'name')} SET r.`lock` = true REMOVE r.`lock`"
+READ_ROBOTS = (
+    f"UNWIND $names AS name MATCH {_node('r', ROBOT, 'name')} RETURN name, r.`version` AS version, "
+    f"r.`version` > 0 OR EXISTS {{ MATCH (:{quoted(ELEMENT.label)} {{`robot`: name}}) }} AS known"
+)
+READ_DIGESTS = (
+    f"UNWIND $names AS name MATCH {_node('r', ROBOT, 'name')} RETURN name, r.`digest` AS digest, "
+    "r.`elements` = COUNT { (r)<-[:`OF_ROBOT` {`robot`: name}]-() } AND "
+    "r.`flows` = COUNT { (r)<-[:`OF_ROBOT`]-()-[f:`FLOWS_TO` {`robot`: name}]->() } AND "
+    "r.`roles` = COUNT { (r)<-[:`OF_ROBOT`]-()-[o {`robot`: name}]->(:`DataCategory`) } AS whole"
+)
+WRITE_ROBOTS = (
+    f"UNWIND $rows AS row MATCH {_node('r', ROBOT, 'row.robot')} SET r += row.properties, r.`version` = r.`version` + 1"
+)
+READ_ELEMENTS = (
+    "MATCH (r:`Robot`)<-[:`OF_ROBOT` {`robot`: r.`name`}]-(n:`Element`) WHERE r.`name` IN $names RETURN n.`id` AS id"
+)
+DELETE_ELEMENTS = f"UNWIND $rows AS id MATCH {_node('n', ELEMENT, 'id')} DETACH DELETE n"
+DELETE_OURS = (
+    "MATCH (n:`Element`)-[o]->() WHERE n.`robot` IN $names AND o.`robot` = n.`robot` AND type(o) <> 'OF_ROBOT' DELETE o"
+)
+DELETE_FINDINGS = "MATCH (f:`Finding`) WHERE f.`robot` IN $names DETACH DELETE f"
+DELETE_EMPTY_ENCLAVES = (
+    "MATCH (e:`Enclave`) WHERE e.`robot` IN $names AND NOT EXISTS { (e)<-[:`IN_ENCLAVE`]-() } DETACH DELETE e"
+)
+DELETE_ROBOTS = "MATCH (r:`Robot`) WHERE r.`name` IN $names DETACH DELETE r"

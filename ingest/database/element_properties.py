@@ -1,0 +1,261 @@
+"""Analysis -> what it says of each element and flow, and its findings, as properties and labels of the graph.
+
+In: an analysis. Out: plain values for ``schema.py``'s properties. Used when a robot is loaded, and when the answer to
+what is in the database is written back.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.errors import LabelError
+from rosprivacy.analysis.findings.derived_from import origins
+from rosprivacy.analysis.fleet.patterns import NO_ROBOTS, pattern_id
+from rosprivacy.analysis.kernel.roles import facts
+from rosprivacy.analysis.legal import turned_special
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from rosprivacy.analysis.answer import Analysis, Finding
+    from rosprivacy.analysis.findings.derived_from import Origin
+    from rosprivacy.analysis.fleet.patterns import Likeness
+    from rosprivacy.analysis.kernel.spread import Spread
+    from rosprivacy.analysis.model import Bound, Element, Statement
+    from rosprivacy.ontology.vocabulary import Vocabulary
+
+Row = dict[str, Any]
+
+
+class Names:
+    """Sets of bits -> names, as lists that are shared by all that have the same.
+
+    Parameters
+    ----------
+    labels
+        Of ``category_labels``.
+    """
+
+    def __init__(self, found: Spread, vocabulary: Vocabulary, labels: Mapping[str, str]) -> None:
+        self.vocabulary = vocabulary
+        self._found = found
+        self._hierarchy = vocabulary.hierarchy
+        self._labels = labels
+        self._exact: dict[int, list[str]] = {}
+        self._broad: dict[int, list[str]] = {}
+        self._as_labels: dict[tuple[int, str], list[str]] = {}
+
+    def exact(self, bits: int) -> list[str]:
+        """The kinds of some bits, planes put together."""
+        if bits not in self._exact:
+            self._exact[bits] = list(self._found.names(bits))
+        return self._exact[bits]
+
+    def broad(self, bits: int) -> list[str]:
+        """The same with all broader kinds."""
+        if bits not in self._broad:
+            self._broad[bits] = sorted({up for name in self.exact(bits) for up in self._hierarchy.ancestors[name]})
+        return self._broad[bits]
+
+    def labels(self, bits: int, suffix: str) -> list[str]:
+        """The labels of these, such as ``BiometricLeak``."""
+        key = bits, suffix
+        if key not in self._as_labels:
+            self._as_labels[key] = [self._labels[name] + suffix for name in self.broad(bits)]
+        return self._as_labels[key]
+
+
+class Roles:
+    """Statements about an element -> the kinds that it lets out, cleans, and makes of others, if they come (rule S7).
+
+    All kinds of the vocabulary are asked for, not only those that a source brings in: who looks for leaks of a kind
+    finds them whatever else was loaded.
+    """
+
+    def __init__(self, vocabulary: Vocabulary, labels: Mapping[str, str]) -> None:
+        self._hierarchy = vocabulary.hierarchy
+        self._labels = labels
+        self._known: dict[tuple[Statement, ...], tuple[list[str], list[str], list[str]]] = {}
+
+    def of(self, said: tuple[Statement, ...]) -> tuple[list[str], list[str], list[str]]:
+        """(kinds that leak, kinds that are cleaned, labels for these and for what is made)."""
+        if said not in self._known:
+            leaks, cleans = self._decided(said, "leak"), self._decided(said, "sanitizer")
+            made = sorted({s.to for s in said if s.role == "derivation"})
+            labels = [
+                *self._as_labels(made, "Source"),
+                *self._as_labels(leaks, "Leak"),
+                *self._as_labels(cleans, "Sanitizer"),
+            ]
+            self._known[said] = leaks, cleans, labels
+        return self._known[said]
+
+    def _decided(self, said: tuple[Statement, ...], role: str) -> list[str]:
+        if not any(statement.role == role for statement in said):
+            return []
+        return [category for category in sorted(self._hierarchy.ancestors) if self._holds(said, role, category)]
+
+    def _holds(self, said: tuple[Statement, ...], role: str, category: str) -> bool:
+        try:
+            return role in facts("", said, category, self._hierarchy).roles
+        except LabelError:  # two labels contradict each other about a kind that nobody brings in: the worse one counts
+            return role == "leak"
+
+    def _as_labels(self, names: list[str], suffix: str) -> list[str]:
+        return sorted({self._labels[up] + suffix for name in names for up in self._hierarchy.ancestors[name]})
+
+
+def element_results(analysis: Analysis, bound: Bound, names: Names, roles: Roles) -> Iterator[tuple[Row, list[str]]]:
+    """Return properties and category labels of each element, in the order of the graph."""
+    found = analysis.spread
+    questions = {question.element.shown_as: question for question in analysis.open}
+    for vertex, element in enumerate(analysis.graph.elements):
+        question = questions.get(element.shown_as)
+        present = found.present(vertex)
+        leaks, cleans, labelled = roles.of(bound.elements.get(vertex, ()))
+        properties = {
+            "carries": names.broad(present),
+            "pseudonymised": names.broad(present >> len(found.categories)),
+            "begins": names.exact(found.begins(vertex)),
+            "leaks": leaks,
+            "sanitizes": cleans,
+            "stops": names.exact(_stopped(found, found.keeps.get(vertex, found.all_bits))),
+            "subjects": list(bound.subjects.get(vertex, ())),
+            "open": list(question.categories) if question else [],
+            "frontier": question.frontier if question else None,
+            "distance": question.distance if question else None,
+        }
+        labels = [
+            *names.labels(present, ""),
+            *names.labels(found.begins(vertex), "Source"),
+            *labelled,
+        ]
+        yield properties, list(dict.fromkeys(labels))
+
+
+def _stopped(found: Spread, kept: int) -> int:
+    """Kinds that go on neither as they are nor pseudonymised."""
+    k = len(found.categories)
+    return ((1 << k) - 1) & ~(kept | kept >> k)
+
+
+def flow_results(analysis: Analysis, names: Names) -> Iterator[Row]:
+    """Return the properties of each allowed flow, in the order of the graph."""
+    found = analysis.spread
+    made: dict[int, tuple[int, int]] = {}
+    for index, flow in enumerate(analysis.graph.flows):
+        if flow.source not in made:
+            made[flow.source] = _passed_and_made(found, flow.source)
+        moving = found.flow_keeps.get(index, found.all_bits)
+        if analysis.graph.elements[flow.target].is_channel:
+            moving &= found.keeps.get(flow.target, found.all_bits)
+        passed, makes = made[flow.source]
+        begun = found.emits.get(flow.source, 0) | found.flow_emits.get(index, 0)
+        yield {
+            "carries": names.broad(found.along(index)),
+            "passes": names.exact(passed & moving) or None,
+            "begins": names.exact(begun & moving) or None,
+            "made": names.exact(makes & moving) or None,
+            "stops": names.exact(_stopped(found, moving)) or None,
+        }
+
+
+def _passed_and_made(found: Spread, vertex: int) -> tuple[int, int]:
+    """What comes to an element and goes on, pseudonymised or not; and what it makes of what comes."""
+    k = len(found.categories)
+    arrives = found.arrives.get(vertex, 0)
+    passed, made = arrives & found.keeps.get(vertex, found.all_bits), 0
+    for before, after in found.derives.get(vertex, ()):
+        if arrives >> before & 1:
+            made |= 1 << after if (before - after) % k else 0
+            passed |= 0 if (before - after) % k else 1 << after
+    return passed, made
+
+
+def origin_rows(analysis: Analysis, ids: Sequence[str], robots: Sequence[str]) -> Iterator[Row]:
+    """Return the rows of ``DERIVES_FROM``.
+
+    Parameters
+    ----------
+    ids, robots
+        By vertex.
+    """
+    for origin in origins(analysis.spread):
+        properties = origin_properties(analysis, origin, robots[origin.maker])
+        yield {"source": ids[origin.maker], "target": ids[origin.source], "properties": properties}
+
+
+def origin_properties(analysis: Analysis, origin: Origin, robot: str) -> Row:
+    """Return the properties of one ``DERIVES_FROM``."""
+    elements, flows = analysis.graph.elements, analysis.graph.flows
+    lines = [flows[index].grants[0].place if flows[index].grants else "" for index in origin.flows]
+    return {
+        "category": origin.category,
+        "way": [elements[vertex].name for vertex in origin.way],
+        "policy": [str(line) for line in lines],
+        "past_leak": origin.past_leak,
+        "robot": robot,
+    }
+
+
+def finding_rows(
+    analysis: Analysis,
+    vocabulary: Vocabulary,
+    ids: Mapping[Element, str],
+    robots: Mapping[Element, str],
+    likeness: Likeness = NO_ROBOTS,
+) -> tuple[list[Row], list[Row]]:
+    """Return the rows of findings, and those of the elements that they go across.
+
+    Parameters
+    ----------
+    likeness
+        Which names are those of robots.
+    """
+    rows, across = [], []
+    for finding in analysis.findings:
+        row, steps = finding_row(finding, pattern_id(finding, likeness), vocabulary, ids, robots)
+        rows.append(row)
+        across += steps
+    return rows, across
+
+
+def finding_row(
+    finding: Finding, pattern: str, vocabulary: Vocabulary, ids: Mapping[Element, str], robots: Mapping[Element, str]
+) -> tuple[Row, list[Row]]:
+    """Return the row of a finding, and those of the elements that it goes across."""
+    robot = robots[finding.source]
+    key = f"{robot}|{pattern}" if robots[finding.leak] == robot else f"{robot}|{pattern}|{ids[finding.leak]}"
+    row = {
+        "id": key,
+        "source": ids[finding.source],
+        "target": ids[finding.leak],
+        "category": vocabulary.categories[finding.category].iri,
+        "properties": {
+            "pattern": pattern,
+            "robot": robot,
+            "kind": finding.kind,
+            "reason": finding.reason or None,
+            "category": finding.category,
+            "source": finding.source.name,
+            "leak": finding.leak.name,
+            "pseudonymised": finding.pseudonymised,
+            "dismissed": finding.dismissed,
+            "disjoint_paths": finding.disjoint_paths,
+            "special_from": turned.name if (turned := turned_special(finding, vocabulary.categories)) else None,
+        },
+    }
+    return row, [{"source": key, "target": ids[element], "properties": step} for element, step in _steps(finding)]
+
+
+def _steps(finding: Finding) -> Iterator[tuple[Element, Row]]:
+    first = finding.steps[0] if finding.steps else None
+    category = first.category if first else finding.category
+    start = {"step": 0, "category": category, "pseudonymised": first.pseudonymised if first else finding.pseudonymised}
+    yield finding.witness[0], start
+    for number, step in enumerate(finding.steps, 1):
+        place = step.grants[0].place if step.grants else None
+        properties: Row = {"step": number, "category": step.category, "pseudonymised": step.pseudonymised}
+        if place:
+            properties |= {"file": place.file, "line": place.line}
+        yield step.target, properties

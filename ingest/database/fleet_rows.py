@@ -1,0 +1,302 @@
+"""Analysis of a fleet -> the rows that Neo4j takes, robot by robot, also of those for which another one stands.
+
+In: the analysis of the graph in which a robot stands for all that are alike. Out: ``RobotRows`` of every robot, and of
+what is shared, which is filed under names of its own. Each robot's rows name the elements of others at which its flows
+and findings end.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.answer import Verdict
+from rosprivacy.analysis.findings.derived_from import origins
+from rosprivacy.analysis.fleet.patterns import pattern_id
+from rosprivacy.ingest.database.element_properties import (
+    Names,
+    Roles,
+    element_results,
+    finding_row,
+    flow_results,
+    origin_properties,
+)
+from rosprivacy.ingest.database.ids import category_labels, element_id, enclave_id
+from rosprivacy.ingest.database.rows import add_roles, allowed, denied, element_row, flow_row, rows_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from rosprivacy.analysis.answer import Analysis, Finding
+    from rosprivacy.analysis.fleet.patterns import Likeness
+    from rosprivacy.analysis.model import Element, Flow
+    from rosprivacy.ingest.database.rows import RobotRows, Row
+    from rosprivacy.ingest.fleet.fleet_graph import Placed
+    from rosprivacy.ontology.vocabulary import Vocabulary
+
+MOST_ACROSS = 10_000  # findings of one pattern that go from robot to robot and are written one by one
+
+
+class FleetRows:
+    """Makes the rows of robots.
+
+    Parameters
+    ----------
+    analysis
+        Of all categories, not of a choice.
+    more
+        Further properties of each ``Robot``, by the robot of the graph.
+    most_across
+        See ``left_out``.
+    not_read
+        Robots of the graph of which grants were not read (rule S11).
+
+    Attributes
+    ----------
+    left_out
+        How many findings from one robot to another are not written: of a pattern with more than ``most_across`` one
+        is written for each robot from which data comes.
+    """
+
+    def __init__(
+        self,
+        placed: Placed,
+        analysis: Analysis,
+        vocabulary: Vocabulary,
+        more: Mapping[str, Mapping[str, Any]],
+        most_across: int | None = None,
+        not_read: Iterable[str] = (),
+    ) -> None:
+        most_across = MOST_ACROSS if most_across is None else most_across
+        self._more = more
+        self._not_read = frozenset(not_read)
+        self._placed = placed
+        self._analysis = analysis
+        self._vocabulary = vocabulary
+        self._likeness = placed.likeness
+        self._graph = analysis.graph
+        self._origins = origins(analysis.spread)
+        counts: dict[str, int] = defaultdict(int)
+        for finding in analysis.findings:
+            if self._likeness.across(finding):
+                counts[pattern_id(finding, self._likeness)] += self._likeness.count(finding)
+        self._too_many = {pattern for pattern, count in counts.items() if count > most_across}
+        self.left_out = sum(
+            self._likeness.count(finding) - self._likeness.weight(finding.source.robot)
+            for finding in analysis.findings
+            if self._likeness.count(finding) and self._across_too_often(finding)
+        )
+
+    def __iter__(self) -> Iterator[RobotRows]:
+        """Return the rows of every robot and of what is shared."""
+        for owner in sorted(self._owned):
+            yield from self.of(owner)
+
+    def of(self, owner: str) -> Iterator[RobotRows]:
+        """Return the rows of all robots for which one of the graph stands."""
+        if owner in self._owned and owner not in self._likeness.second:
+            for name in self._likeness.members.get(owner, (owner,)):
+                yield self._rows(owner, name)
+
+    def _rows(self, owner: str, name: str) -> RobotRows:
+        ids = _Ids(owner, name, self._likeness)
+        own = self._owned[owner]
+        elements, results = self._graph.elements, self._results
+        profiles = self._placed.profiles.get(owner, ())
+        roles: dict[str, list[Row]] = {}
+        for vertex in own:
+            said = self._placed.bound.elements.get(vertex, ())
+            add_roles(roles, name, ids.of(elements[vertex], name), said, self._vocabulary)
+        found, across = self._findings(owner, name, ids)
+        parts: dict[str, Any] = {
+            "elements": [
+                element_row(
+                    name, ids.of(elements[v], name), elements[v], *results[v], self._analysis.outside.get(elements[v])
+                )
+                for v in own
+            ],
+            "enclaves": [
+                {"id": enclave_id(name, path), "properties": {"path": path, "robot": name}}
+                for path in sorted({profile.enclave for profile in profiles})
+            ],
+            "memberships": list(self._memberships(owner, name, ids)),
+            "flows": list(self._flows(owner, name, ids)),
+            "roles": roles,
+            "derived": list(self._derived(owner, name, ids)),
+            "findings": found,
+            "across": across,
+            "foreign": [],
+        }
+        parts["foreign"] = [
+            element_row(robot, key, element, {}, (), None) for key, (element, robot) in sorted(ids.foreign.items())
+        ]
+        model = self._likeness.models.get(owner)
+        properties = {
+            "verdict": self._verdicts.get(owner, str(Verdict.UNDETERMINED)),
+            "view": self._graph.view,
+            "model": model or None,
+            "shared": None if self._likeness.is_robot(owner) else True,
+            **self._more.get(owner, {}),
+        }
+        return rows_of(name, {key: value for key, value in properties.items() if value is not None}, parts)
+
+    @cached_property
+    def _owned(self) -> dict[str, list[int]]:
+        """Vertices by robot."""
+        owned: dict[str, list[int]] = defaultdict(list)
+        for vertex, element in enumerate(self._graph.elements):
+            owned[element.robot].append(vertex)
+        return dict(owned)
+
+    @cached_property
+    def _results(self) -> list[tuple[Row, list[str]]]:
+        labels = category_labels(self._vocabulary)
+        names, roles = Names(self._analysis.spread, self._vocabulary, labels), Roles(self._vocabulary, labels)
+        return list(element_results(self._analysis, self._placed.bound, names, roles))
+
+    @cached_property
+    def _leaving(self) -> dict[str, list[tuple[Flow, Row]]]:
+        """Flows by the robot that they leave, with their properties."""
+        names = Names(self._analysis.spread, self._vocabulary, category_labels(self._vocabulary))
+        leaving: dict[str, list[tuple[Flow, Row]]] = defaultdict(list)
+        for index, (flow, result) in enumerate(
+            zip(self._graph.flows, flow_results(self._analysis, names), strict=True)
+        ):
+            properties = allowed(result, self._placed.bound.flows.get(index, ()), self._vocabulary)
+            leaving[self._graph.elements[flow.source].robot].append((flow, properties))
+        for flow in self._graph.denied:
+            leaving[self._graph.elements[flow.source].robot].append((flow, denied(flow)))
+        return dict(leaving)
+
+    def _flows(self, owner: str, name: str, ids: _Ids) -> Iterator[Row]:
+        elements = self._graph.elements
+        for flow, properties in self._leaving.get(owner, ()):
+            source, target = elements[flow.source], elements[flow.target]
+            for robot in ids.expanded(target.robot):
+                yield flow_row(name, flow, ids.of(source, name), ids.of(target, robot), properties)
+
+    def _memberships(self, owner: str, name: str, ids: _Ids) -> Iterator[Row]:
+        """A node in an enclave, once; the first of its profiles there is named."""
+        nodes = {
+            self._graph.elements[v].name: self._graph.elements[v]
+            for v in self._owned[owner]
+            if self._graph.elements[v].is_node
+        }
+        seen = set()
+        for profile in self._placed.profiles.get(owner, ()):
+            if (profile.enclave, profile.node) not in seen:
+                seen.add((profile.enclave, profile.node))
+                place = {"file": profile.place.file, "line": profile.place.line, "robot": name}
+                key = ids.of(nodes[profile.node], name)
+                yield {"source": key, "target": enclave_id(name, profile.enclave), "properties": place}
+
+    def _derived(self, owner: str, name: str, ids: _Ids) -> Iterator[Row]:
+        elements = self._graph.elements
+        for origin in self._origins:
+            maker, source = elements[origin.maker], elements[origin.source]
+            if maker.robot == owner:
+                properties = origin_properties(self._analysis, origin, name)
+                for robot in ids.expanded(source.robot):
+                    yield {"source": ids.of(maker, name), "target": ids.of(source, robot), "properties": properties}
+
+    def _findings(self, owner: str, name: str, ids: _Ids) -> tuple[list[Row], list[Row]]:
+        rows: list[Row] = []
+        across: list[Row] = []
+        for finding in self._analysis.findings:
+            if finding.source.robot != owner or not self._likeness.count(finding):
+                continue
+            pattern = pattern_id(finding, self._likeness)
+            leaks = ids.expanded(finding.leak.robot)
+            for robot in leaks[:1] if self._across_too_often(finding) else leaks:
+                placed = _Moved(finding, name, robot, self._likeness)
+                keys = {element: ids.of(element, placed.robot(element)) for element in placed.elements}
+                robots = {element: placed.robot(element) for element in placed.elements}
+                row, steps = finding_row(finding, pattern, self._vocabulary, keys, robots)
+                rows.append(row)
+                across += steps
+        return rows, across
+
+    def _across_too_often(self, finding: Finding) -> bool:
+        return bool(self._too_many) and pattern_id(finding, self._likeness) in self._too_many
+
+    @cached_property
+    def _verdicts(self) -> dict[str, str]:
+        analysis, first = self._analysis, self._likeness.second
+        return verdicts(
+            (finding for finding in analysis.findings),
+            (question.element for question in analysis.open),
+            (carried.element for carried in analysis.carried),
+            lambda element: first.get(element.robot, element.robot),
+            self._not_read,
+        )
+
+
+def verdicts(
+    findings: Iterable[Finding],
+    open_at: Iterable[Element],
+    reached: Iterable[Element],
+    robot_of: Any,
+    not_read: Iterable[str] = (),
+) -> dict[str, str]:
+    """Return the verdict on each robot that data reached (rule S12): what comes from it or gets out at it counts.
+
+    Parameters
+    ----------
+    robot_of
+        Element -> name of its robot.
+    not_read
+        Robots of which grants were not read.
+    """
+    leaking = {robot_of(e) for finding in findings if not finding.dismissed for e in (finding.source, finding.leak)}
+    unsettled = {robot_of(element) for element in open_at} | set(not_read)
+    settled = {robot_of(element) for element in reached} - unsettled
+    found = dict.fromkeys(unsettled, str(Verdict.UNDETERMINED)) | dict.fromkeys(settled, str(Verdict.NO_LEAK_FOUND))
+    return found | dict.fromkeys(leaking, str(Verdict.LEAK))
+
+
+class _Ids:
+    """Ids of elements for one robot of the fleet, for which ``owner`` stands in the graph."""
+
+    def __init__(self, owner: str, name: str, likeness: Likeness) -> None:
+        self.foreign: dict[str, tuple[Element, str]] = {}
+        self._owner = owner
+        self._name = name
+        self._likeness = likeness
+
+    def of(self, element: Element, robot: str) -> str:
+        """The id of an element on a robot of the fleet."""
+        key = element_id(robot, element)
+        if robot != self._name:
+            self.foreign[key] = (element, robot)
+        return key
+
+    def expanded(self, robot: str) -> list[str]:
+        """The robots of the fleet for which a robot of the graph stands, at the end of what begins here."""
+        likeness = self._likeness
+        if robot == self._owner:
+            return [self._name]
+        if robot in likeness.second:
+            first = likeness.second[robot]
+            return [other for other in likeness.members[first] if other != self._name] if first == self._owner else []
+        return list(likeness.members.get(robot, (robot,)))
+
+
+class _Moved:
+    """A finding of the graph on robots of the fleet: those of its ends, and on the way any that there are."""
+
+    def __init__(self, finding: Finding, source: str, leak: str, likeness: Likeness) -> None:
+        self.elements = [*finding.witness, finding.source, finding.leak]
+        self._names = {finding.source.robot: source, finding.leak.robot: leak}
+        for element in finding.witness:
+            if element.robot not in self._names:
+                self._names[element.robot] = self._other(element.robot, likeness)
+
+    def _other(self, robot: str, likeness: Likeness) -> str:
+        taken = set(self._names.values())
+        group = likeness.members.get(likeness.second.get(robot, robot), (robot,))
+        return next((name for name in group if name not in taken), robot)
+
+    def robot(self, element: Element) -> str:
+        """The robot of the fleet."""
+        return self._names[element.robot]

@@ -1,0 +1,69 @@
+"""What identifies things in the database: ids of elements and enclaves, labels of categories.
+
+In: elements, enclave paths, a vocabulary. Out: strings that are the same for no two, checked where Cypher needs an
+identifier.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.errors import InputErrors, OntologyError, shown
+from rosprivacy.ingest.database.schema import RESERVED, SUFFIXES, quoted
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rosprivacy.analysis.model import Element
+    from rosprivacy.ontology.vocabulary import Vocabulary
+
+LONGEST_ID = 1000  # characters; an index key has room for 8 kB
+
+
+def element_id(robot: str, element: Element) -> str:
+    r"""Return what identifies an element in the database, the same for no two.
+
+    >>> from rosprivacy.analysis.model import Element
+    >>> element_id("r1", Element("service", "/add", leg="request"))
+    'r1|service|/add|request'
+    """
+    parts = [robot, element.kind, element.name, element.leg, element.side, *element.without]
+    return _joined(parts)
+
+
+def _joined(parts: Iterable[str]) -> str:
+    text = "|".join(part.replace("\\", "\\\\").replace("|", "\\|") for part in parts).rstrip("|")
+    return text if len(text) <= LONGEST_ID else f"sha256:{hashlib.sha256(text.encode()).hexdigest()}"
+
+
+def enclave_id(robot: str, path: str) -> str:
+    """Return what identifies an enclave in the database."""
+    return _joined([robot, path])
+
+
+def category_labels(vocabulary: Vocabulary) -> dict[str, str]:
+    """Return the label of each category by its name.
+
+    Raises
+    ------
+    InputErrors
+        If one is not an identifier, or stands for something else in the graph already.
+    """
+    problems = []
+    taken = dict.fromkeys(RESERVED, "the graph's own")
+    for category in vocabulary.categories.values():
+        try:
+            quoted(category.label)
+        except ValueError:
+            what = f"<{category.iri}> has the label {shown(category.label)!r}, which is not an identifier"
+            problems.append(OntologyError("ontology", 0, what, "use letters, digits and _"))
+            continue
+        for suffix in SUFFIXES:
+            other = taken.setdefault(category.label + suffix, category.name)
+            if other != category.name:
+                what = f"the label {category.label + suffix!r} of {category.name!r} is that of {other!r} too"
+                problems.append(OntologyError("ontology", 0, what, "rename it"))
+    if problems:
+        raise InputErrors(problems)
+    return {category.name: category.label for category in vocabulary.categories.values()}

@@ -1,0 +1,256 @@
+"""Rows -> Neo4j: each robot replaced in one transaction, in batches, idempotent. Takes a driver.
+
+In: ``RobotRows``, as many as there are, and the vocabulary. Out: the graph of ``schema.py``. A robot whose digest and
+counts are those in the database is left alone. Whoever reads sees a robot as it was or as it is, never half; what
+people added by hand (without our mark ``robot``) stays, as do other robots.
+"""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.errors import DatabaseError, InputError, shown
+from rosprivacy.ingest.database import cypher
+from rosprivacy.ingest.database.ids import category_labels
+from rosprivacy.ingest.database.schema import (
+    DERIVES_FROM,
+    FALLS_UNDER,
+    FLOWS_TO,
+    IN_ENCLAVE,
+    RELATIONSHIPS,
+    ROLES,
+    SUFFIXES,
+)
+from rosprivacy.ingest.database.schema import constraints as schema_statements
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Sequence
+
+    from neo4j import Driver, ManagedTransaction
+
+    from rosprivacy.ingest.database.rows import RobotRows, Row
+    from rosprivacy.ontology.vocabulary import Vocabulary
+
+BATCH = 10_000  # rows per statement and, for robots smaller than that, about so many per transaction
+LONGEST_NAME = 200
+_BROADER = next(kind for kind in RELATIONSHIPS if kind.type == "BROADER")
+
+
+@dataclass(frozen=True, slots=True)
+class Loaded:
+    """How many robots were written, and how many were there already as they are."""
+
+    written: int
+    unchanged: int
+
+
+def load(
+    driver: Driver,
+    robots: Iterable[RobotRows],
+    vocabulary: Vocabulary,
+    progress: Callable[[int], None] = lambda _: None,
+) -> Loaded:
+    """Write robots and categories.
+
+    Parameters
+    ----------
+    progress
+        Called with the number of rows after each transaction.
+
+    Raises
+    ------
+    InputErrors
+        If a category's label cannot be one.
+    DatabaseError
+        If the server refuses or is lost; what was written until then is whole, and a later load goes on.
+
+    Notes
+    -----
+    Linear in the rows. The driver repeats a transaction that failed for a passing reason, such as a deadlock.
+    """
+    labels = sorted(label + suffix for label in category_labels(vocabulary).values() for suffix in SUFFIXES)
+    written = unchanged = 0
+    with refusals(), driver.session() as session:
+        for statement in schema_statements():
+            session.run(statement).consume()
+        session.execute_write(_write_vocabulary, vocabulary)
+        for batch in _batches(robots):
+            changed = _changed(session.execute_read(_read_digests, [rows.robot for rows in batch]), batch)
+            if changed:
+                session.execute_write(_write_robots, changed, labels)
+            written += len(changed)
+            unchanged += len(batch) - len(changed)
+            progress(sum(rows.size for rows in batch))
+    return Loaded(written, unchanged)
+
+
+def unload(driver: Driver, names: Sequence[str]) -> list[str]:
+    """Remove robots; return the names of those that were there, sorted.
+
+    What people added stays, but for what hangs on an element that goes.
+    """
+
+    def work(transaction: ManagedTransaction) -> list[str]:
+        known = [record["name"] for record in transaction.run(cypher.READ_ROBOTS, names=sorted(set(names)))]
+        run(transaction, cypher.LOCK_ROBOTS, names=known)
+        run(transaction, cypher.DELETE_FINDINGS, names=known)
+        run(transaction, cypher.DELETE_OURS, names=known)
+        _delete_elements(transaction, _element_ids(transaction, known))
+        run(transaction, cypher.DELETE_EMPTY_ENCLAVES, names=known)
+        run(transaction, cypher.DELETE_ROBOTS, names=known)
+        return sorted(known)
+
+    with refusals(), driver.session() as session:
+        return session.execute_write(work)
+
+
+def check_robot_name(name: str) -> str:
+    """Return a name that a robot can have in the database.
+
+    Raises
+    ------
+    InputError
+        If it is empty, endless, or holds what cannot be seen.
+    """
+    if not name or len(name) > LONGEST_NAME or not name.isprintable():
+        hint = f"use 1 to {LONGEST_NAME} printable characters"
+        raise InputError("--robot", 0, f"{shown(name)!r} cannot name a robot", hint)
+    return name
+
+
+@contextmanager
+def refusals() -> Iterator[None]:
+    """What the server refuses, in one line; that it is lost is said by whoever opened the driver."""
+    from neo4j.exceptions import Neo4jError  # noqa: PLC0415 - light start
+
+    try:
+        yield
+    except Neo4jError as error:
+        if error.is_retryable():
+            raise
+        what = shown((error.message or str(error)).partition("\n")[0])
+        raise DatabaseError(f"the server refuses to write: {what}; check its log and your user's rights") from error
+
+
+def _batches(robots: Iterable[RobotRows]) -> Iterator[list[RobotRows]]:
+    """Robots, several small ones together."""
+    batch: list[RobotRows] = []
+    size = 0
+    for rows in robots:
+        if batch and (size + rows.size > BATCH or rows.robot in {other.robot for other in batch}):
+            yield batch
+            batch, size = [], 0
+        batch.append(rows)
+        size += rows.size
+    if batch:
+        yield batch
+
+
+def _read_digests(transaction: ManagedTransaction, names: list[str]) -> dict[str, str]:
+    """The digests of robots whose counts are still those that were loaded."""
+    found = transaction.run(cypher.READ_DIGESTS, names=names)
+    return {record["name"]: record["digest"] for record in found if record["whole"]}
+
+
+def _changed(digests: dict[str, str], batch: list[RobotRows]) -> list[RobotRows]:
+    return [rows for rows in sorted(batch, key=lambda rows: rows.robot) if digests.get(rows.robot) != rows.digest]
+
+
+def _write_vocabulary(transaction: ManagedTransaction, vocabulary: Vocabulary) -> None:
+    categories = vocabulary.categories
+    rows = [
+        {
+            "id": c.iri,
+            "properties": {
+                "name": c.name,
+                "label": c.label,
+                "title": c.title,
+                "definition": c.definition,
+                "article9": c.article9,
+                "data_types": list(c.data_types),
+                "gdpr": c.gdpr or None,
+            },
+        }
+        for c in categories.values()
+    ]
+    broader = [
+        {"source": c.iri, "target": categories[up].iri, "properties": {}}
+        for c in categories.values()
+        for up in c.broader
+    ]
+    run(transaction, cypher.MERGE_CATEGORIES, rows=rows)
+    run(transaction, cypher.DROP_CATEGORY_LINKS, iris=[row["id"] for row in rows])
+    run(transaction, cypher.create_relationships(_BROADER), rows=broader)
+    law = [(c.iri, legal) for c in categories.values() for legal in c.law]
+    provisions = {legal.iri: {"name": legal.name, "title": legal.meaning, "as_of": legal.as_of} for _, legal in law}
+    run(transaction, cypher.MERGE_PROVISIONS, rows=[{"id": i, "properties": p} for i, p in sorted(provisions.items())])
+    under = [
+        {
+            "source": iri,
+            "target": legal.iri,
+            "properties": {
+                "verdict": legal.verdict,
+                "condition": legal.condition or None,
+                "stated_of": legal.stated_of,
+                "sources": list(legal.sources),
+            },
+        }
+        for iri, legal in law
+    ]
+    run(transaction, cypher.create_relationships(FALLS_UNDER), rows=under)
+
+
+def _write_robots(transaction: ManagedTransaction, robots: list[RobotRows], labels: list[str]) -> None:
+    """Replace some robots, sorted by name, so that two loads do not wait for each other in a ring."""
+    names = [rows.robot for rows in robots]
+    run(transaction, cypher.LOCK_ROBOTS, names=names)
+    known = [record["name"] for record in transaction.run(cypher.READ_ROBOTS, names=names) if record["known"]]
+    if known:
+        run(transaction, cypher.DELETE_FINDINGS, names=known)
+        run(transaction, cypher.DELETE_OURS, names=known)
+        new = {row["id"] for rows in robots for row in rows.elements}
+        _delete_elements(transaction, [key for key in _element_ids(transaction, known) if key not in new])
+    fresh = [row for rows in robots for row in rows.elements if rows.robot not in known]
+    old = [row for rows in robots for row in rows.elements if rows.robot in known]
+    write(transaction, cypher.CREATE_ELEMENTS, fresh)
+    write(transaction, cypher.REPLACE_ELEMENTS, old, labels=labels)
+    write(transaction, cypher.MERGE_FOREIGN, _foreign(robots))
+    write(transaction, cypher.MERGE_ENCLAVES, [row for rows in robots for row in rows.enclaves])
+    for kind, part in ((IN_ENCLAVE, "memberships"), (FLOWS_TO, "flows"), (DERIVES_FROM, "derived")):
+        statement = cypher.create_relationships(kind)
+        write(transaction, statement, [row for rows in robots for row in getattr(rows, part)])
+    for role, kind in ROLES.items():
+        statement = cypher.create_relationships(kind)
+        write(transaction, statement, [row for rows in robots for row in rows.roles.get(role, ())])
+    write(transaction, cypher.CREATE_FINDINGS, [row for rows in robots for row in rows.findings])
+    write(transaction, cypher.CREATE_ACROSS, [row for rows in robots for row in rows.across])
+    if known:
+        run(transaction, cypher.DELETE_EMPTY_ENCLAVES, names=known)
+    run(transaction, cypher.WRITE_ROBOTS, rows=[{"robot": r.robot, "properties": r.properties} for r in robots])
+
+
+def _foreign(robots: list[RobotRows]) -> list[Row]:
+    """Elements that these robots name and that belong to others, each once."""
+    return list({row["id"]: row for rows in robots for row in rows.foreign}.values())
+
+
+def _element_ids(transaction: ManagedTransaction, names: list[str]) -> list[str]:
+    return [record["id"] for record in transaction.run(cypher.READ_ELEMENTS, names=names)]
+
+
+def _delete_elements(transaction: ManagedTransaction, ids: list[str]) -> None:
+    for start in range(0, len(ids), BATCH):
+        run(transaction, cypher.DELETE_ELEMENTS, rows=ids[start : start + BATCH])
+
+
+def write(transaction: ManagedTransaction, statement: str, rows: list[Row], **more: Any) -> None:
+    """Run a statement over rows, ``BATCH`` at a time."""
+    for start in range(0, len(rows), BATCH):
+        run(transaction, statement, rows=rows[start : start + BATCH], **more)
+
+
+def run(transaction: ManagedTransaction, statement: str, **parameters: Any) -> None:
+    """Run a statement and wait for its end."""
+    transaction.run(statement, **parameters).consume()

@@ -1,0 +1,393 @@
+"""Neo4j -> ``FlowGraph`` and ``Bound``: what is in the database, with what people added to it. Takes a driver.
+
+In: elements, flows and roles of the graph, ours or written by hand. Out: ``Stored``, to be analysed like what comes
+from files, and what is needed to write the answer back (``write_back.py``). What a person adds needs little: a label
+that says the kind, a name, a ``FLOWS_TO``. A role without ``tier`` is a person's later word and outranks every file.
+"""
+
+from __future__ import annotations
+
+import json
+from collections import defaultdict
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.errors import GraphError, InputError, InputErrors, shown
+from rosprivacy.analysis.fleet.patterns import NO_ROBOTS, Likeness
+from rosprivacy.analysis.model import (
+    GLOB,
+    NAME,
+    NON_ROS,
+    SEGMENT,
+    STANDARD,
+    Bound,
+    Element,
+    Flow,
+    FlowGraph,
+    Grant,
+    Method,
+    Place,
+    Profile,
+    Statement,
+)
+from rosprivacy.analysis.non_ros import by_kind
+from rosprivacy.ingest.database.non_ros_properties import facts_of
+from rosprivacy.ingest.database.schema import KIND_LABELS, ROLES
+from rosprivacy.ingest.labels.entries import EXACT, as_ranked_now
+from rosprivacy.ingest.policies.names import covers
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from neo4j import Driver, ManagedTransaction, Record
+
+    from rosprivacy.analysis.model import NonRosFacts
+    from rosprivacy.ontology.vocabulary import Vocabulary
+
+DATABASE = "the database"
+ADDED = "flow"  # the role of a flow that a person added
+HAND = 2  # the tier of a role that a person added: above every file
+_FLOW_ROLES = {"publish", "subscribe", "request", "reply", "call", "execute", "matches"}
+_KIND_OF = {label: kind for kind, label in KIND_LABELS.items()}
+_ROLE_OF = {kind.type: role for role, kind in ROLES.items()}
+
+ROBOTS = "MATCH (r:Robot) RETURN properties(r) AS robot ORDER BY r.name"
+ELEMENTS = (
+    "MATCH (n) WHERE n:Element OR EXISTS { (n)-[:FLOWS_TO]-() } "
+    "RETURN elementId(n) AS key, labels(n) AS labels, properties(n) AS properties"
+)
+FLOWS = (
+    "MATCH (a)-[f:FLOWS_TO]->(b) "
+    "RETURN elementId(f) AS key, elementId(a) AS source, elementId(b) AS target, properties(f) AS properties"
+)
+SAID = (
+    f"MATCH (n)-[r:{'|'.join(sorted(_ROLE_OF))}]->(c:DataCategory) WHERE n:Element OR EXISTS {{ (n)-[:FLOWS_TO]-() }} "
+    "RETURN elementId(n) AS key, type(r) AS type, c.name AS category, properties(r) AS properties"
+)
+PROFILES = (
+    "MATCH (n:Element)-[i:IN_ENCLAVE]->(e:Enclave) "
+    "RETURN n.robot AS robot, n.name AS node, e.path AS enclave, i.file AS file, i.line AS line"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Stored:
+    """A graph with the database's own keys.
+
+    Attributes
+    ----------
+    robots
+        Properties of each ``Robot``, by name. With one robot only, elements carry no robot's name, as when its files
+        are analysed.
+    keys
+        By vertex: the database's key of the element.
+    labels, properties
+        By vertex, as they are stored.
+    flow_keys, flow_properties
+        By index of an allowed flow.
+    """
+
+    graph: FlowGraph
+    bound: Bound
+    robots: Mapping[str, Mapping[str, Any]]
+    keys: tuple[str, ...]
+    labels: tuple[frozenset[str], ...]
+    properties: tuple[Mapping[str, Any], ...]
+    flow_keys: tuple[str, ...]
+    flow_properties: tuple[Mapping[str, Any], ...]
+
+    def robot_of(self, vertex: int) -> str:
+        """Name of an element's robot in the database; empty for what belongs to none."""
+        return str(self.properties[vertex].get("robot") or "")
+
+    @property
+    def likeness(self) -> Likeness:
+        """Which names are those of robots: all but what is shared; none where there is only one."""
+        if len(self.robots) == 1:
+            return NO_ROBOTS
+        robots = {name: said for name, said in self.robots.items() if not said.get("shared")}
+        models = {name: str(said.get("model") or "") for name, said in robots.items()}
+        return Likeness({name: (name,) for name in robots}, {}, models)
+
+
+def read_stored(driver: Driver, vocabulary: Vocabulary) -> Stored:
+    """Read everything.
+
+    Raises
+    ------
+    InputErrors
+        With every element, flow or role that cannot be understood.
+    """
+    with driver.session() as session:
+        return session.execute_read(_read, vocabulary)
+
+
+def _read(transaction: ManagedTransaction, vocabulary: Vocabulary) -> Stored:
+    robots = {record["robot"]["name"]: record["robot"] for record in transaction.run(ROBOTS)}
+    if not robots:
+        raise InputErrors([_problem("there is no robot in it", "load one with rosprivacy load")])
+    reader = _Reader(vocabulary, alone=len(robots) == 1)
+    reader.elements(transaction.run(ELEMENTS))
+    reader.flows(transaction.run(FLOWS))
+    reader.said(transaction.run(SAID))
+    reader.profiles(transaction.run(PROFILES))
+    views = sorted({str(robot.get("view", "declared")) for robot in robots.values()})
+    if len(views) > 1:
+        hint = "load all robots with the same --view"
+        reader.problems.append(_problem(f"robots were loaded in the views {' and '.join(views)}", hint))
+    if reader.problems:
+        raise InputErrors(reader.problems)
+    return reader.stored(robots, views[0])
+
+
+def _problem(problem: str, hint: str) -> InputError:
+    return GraphError(DATABASE, 0, problem, hint)
+
+
+@dataclass(frozen=True, slots=True)
+class _Vertex:
+    key: str
+    labels: frozenset[str]
+    properties: Mapping[str, Any]
+
+
+class _Reader:
+    """Rows -> facts; problems are gathered."""
+
+    def __init__(self, vocabulary: Vocabulary, *, alone: bool) -> None:
+        self.problems: list[InputError] = []
+        self._vocabulary = vocabulary
+        self._alone = alone
+        self._vertices: dict[Element, _Vertex] = {}
+        self._by_key: dict[str, Element] = {}
+        self._flows: list[tuple[Element, Element, str, str, Mapping[str, Any]]] = []
+        self._said: dict[str, list[tuple[str, str, Mapping[str, Any]]]] = defaultdict(list)
+        self._profiles: list[Profile] = []
+        self._outside: dict[Element, NonRosFacts] = {}
+
+    def elements(self, records: Iterable[Record]) -> None:
+        for record in records:
+            labels, properties = frozenset(record["labels"]), record["properties"]
+            name, robot = properties.get("name"), properties.get("robot") or ""
+            kinds = {properties.get("kind")} & set(KIND_LABELS) or {_KIND_OF[label] for label in labels & set(_KIND_OF)}
+            if not isinstance(name, str) or not name or not isinstance(robot, str):
+                what = f"an element with the labels {', '.join(sorted(labels))} has no name"
+                self.problems.append(_problem(shown(what), "SET n.name = '…' (and n.robot, if it has one, to text)"))
+                continue
+            if len(kinds) != 1:
+                hint = f"give it one of the labels {', '.join(KIND_LABELS.values())}"
+                self.problems.append(_problem(f"what is {shown(name)!r}? its labels do not say its kind", hint))
+                continue
+            try:
+                _subjects(properties)
+            except TypeError as error:
+                self.problems.append(_problem(f"{shown(name)!r}: {error}", "SET n.subjects = ['residents', 'staff']"))
+                continue
+            parts = {key: str(properties.get(key) or "") for key in ("leg", "side")}
+            shown_robot = "" if self._alone and robot else robot
+            element = Element(
+                str(kinds.pop()), name, shown_robot, parts["leg"], parts["side"], tuple(properties.get("without") or ())
+            )
+            if element in self._vertices:
+                hint = "rename one, or remove it"
+                self.problems.append(_problem(f"there are two elements {element.kind} {shown(name)!r}", hint))
+            if element.kind in NON_ROS:
+                self._take_facts(element, properties)
+            self._vertices[element] = _Vertex(record["key"], labels, properties)
+            self._by_key[record["key"]] = element
+
+    def _take_facts(self, element: Element, properties: Mapping[str, Any]) -> None:
+        """What is stated about an element outside ROS; where nothing is, the facts are empty (rule S9)."""
+        try:
+            self._outside[element] = facts_of(properties, self._vocabulary.categories)
+        except ValueError as error:
+            what = f"{element.kind} {shown(element.name)!r} cannot be understood: {shown(str(error))}"
+            self.problems.append(_problem(what, "see docs/database.md for what it has"))
+
+    def flows(self, records: Iterable[Record]) -> None:
+        for record in records:
+            ends = self._by_key.get(record["source"]), self._by_key.get(record["target"])
+            if not ends[0] or not ends[1]:  # one of them is a problem of its own
+                continue
+            said = record["properties"]
+            try:
+                _grants(said, ADDED, ends[0])
+                unknown = {name for role in ("only", "never") for name in _names(said, role)} - set(
+                    self._vocabulary.categories
+                )
+            except (KeyError, TypeError, ValueError, AttributeError) as error:
+                way = f"{shown(ends[0].name)} -> {shown(ends[1].name)}"
+                what = f"a flow cannot be understood: {way}: {shown(str(error))}"
+                self.problems.append(_problem(what, "see docs/database.md for what a flow has"))
+                continue
+            for name in sorted(unknown):
+                self.problems.append(_problem(f"a flow names the unknown category {shown(name)!r}", "correct it"))
+            role = said.get("role")
+            self._flows.append((ends[0], ends[1], role if role in _FLOW_ROLES else ADDED, record["key"], said))
+
+    def said(self, records: Iterable[Record]) -> None:
+        for record in records:
+            if record["category"] not in self._vocabulary.categories:
+                hint = "use one that rosprivacy load wrote"
+                self.problems.append(_problem(f"unknown category {shown(str(record['category']))!r}", hint))
+                continue
+            self._said[record["key"]].append((_ROLE_OF[record["type"]], record["category"], record["properties"]))
+
+    def profiles(self, records: Iterable[Record]) -> None:
+        for record in records:
+            place = Place(str(record["file"] or DATABASE), int(record["line"] or 0))
+            self._profiles.append(Profile(str(record["enclave"]), str(record["node"]), place))
+
+    def stored(self, robots: Mapping[str, Mapping[str, Any]], view: str) -> Stored:
+        """Number everything, sorted (rule S14)."""
+        elements = tuple(sorted(self._vertices, key=Element.sort_key))
+        number = {element: i for i, element in enumerate(elements)}
+        vertices = [self._vertices[element] for element in elements]
+        rows = [(number[a], number[b], role, key, said) for a, b, role, key, said in self._flows]
+        rows.sort(key=lambda row: (*row[:3], str(row[4].get("file")), str(row[4].get("line")), row[3]))
+        allowed = [row for row in rows if row[4].get("decision") != "deny"]
+        denied = [row for row in rows if row[4].get("decision") == "deny"]
+        graph = FlowGraph(
+            elements,
+            tuple(_flow(row, elements) for row in allowed),
+            tuple(_flow(row, elements) for row in denied),
+            tuple(sorted(set(self._profiles), key=lambda p: (p.enclave, p.node, p.place.file, p.place.line))),
+            view,
+        )
+        statements = {v: tuple(self._statements(vertices[v].key)) for v in range(len(elements))}
+        statements = {v: said for v, said in statements.items() if said}
+        outside = {v: facts for v, e in enumerate(elements) if (facts := self._outside.get(e)) is not None}
+        for vertex in outside:
+            statements[vertex] = (*statements.get(vertex, ()), *by_kind(elements[vertex]))
+        statements = dict(sorted(statements.items()))
+        restrictions = {i: tuple(_restrictions(row[4])) for i, row in enumerate(allowed)}
+        return Stored(
+            graph,
+            Bound(
+                {v: said for v, said in statements.items() if said},
+                {i: said for i, said in restrictions.items() if said},
+                _through(graph, statements),
+                outside,
+                subjects={v: groups for v, vertex in enumerate(vertices) if (groups := _subjects(vertex.properties))},
+            ),
+            robots,
+            tuple(vertex.key for vertex in vertices),
+            tuple(vertex.labels for vertex in vertices),
+            tuple(vertex.properties for vertex in vertices),
+            tuple(row[3] for row in allowed),
+            tuple(row[4] for row in allowed),
+        )
+
+    def _statements(self, key: str) -> Iterator[Statement]:
+        """What is said of an element; the categories that one label of a channel names stand together again."""
+        together: dict[tuple[Any, ...], list[str]] = defaultdict(list)
+        for role, category, said in self._said.get(key, ()):
+            try:
+                facts = _facts(role, category, said)
+            except (TypeError, ValueError) as error:
+                what = (
+                    f"{ROLES[role].type} of {shown(self._by_key[key].name)!r} cannot be understood: {shown(str(error))}"
+                )
+                raise InputErrors([_problem(what, "see docs/database.md for what a role has")]) from None
+            alone = () if role in ("only", "never") or said.get("every") else (category,)
+            together[(*facts, *alone)].append(category)
+        for (role, rank, place, method, stated, to, through, every, naming, *_), categories in sorted(
+            together.items(), key=lambda item: str(item[0])
+        ):
+            names = () if every else tuple(sorted(categories))
+            if role == "derivation":
+                names = (to,)
+                to = categories[0]  # noqa: PLW2901 - it is stored the other way round: the target is what is made
+            shipped = role == "mundane" and rank[0] <= STANDARD
+            yield Statement(role, names, rank, place, method, stated, to, through, shipped, naming)
+
+
+def _flow(row: tuple[int, int, str, str, Mapping[str, Any]], elements: tuple[Element, ...]) -> Flow:
+    source, target, role, _, said = row
+    return Flow(source, target, role, _grants(said, role, elements[target if elements[target].is_channel else source]))
+
+
+def _grants(said: Mapping[str, Any], role: str, channel: Element) -> tuple[Grant, ...]:
+    """The policy lines behind a flow."""
+    lines = [said] if said.get("file") else []
+    lines += [json.loads(line) for line in said.get("further") or ()]
+    return tuple(
+        Grant(
+            allow=True,
+            role=role,
+            kind=channel.kind,
+            name=channel.name,
+            enclave=str(line.get("enclave") or ""),
+            node=str(line.get("profile") or ""),
+            place=Place(str(line["file"]), int(line.get("line") or 0)),
+        )
+        for line in lines
+    )
+
+
+def _names(said: Mapping[str, Any], role: str) -> tuple[str, ...]:
+    names = said.get(role) or []
+    if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
+        raise TypeError(f"{role} is not a list of names")
+    return tuple(sorted(names))
+
+
+def _subjects(properties: Mapping[str, Any]) -> tuple[str, ...]:
+    """Whom the data of a source are about."""
+    groups = properties.get("subjects") or []
+    if not isinstance(groups, list) or not all(isinstance(group, str) for group in groups):
+        raise TypeError("subjects is not a list of texts")
+    return tuple(sorted(set(groups)))
+
+
+def _restrictions(said: Mapping[str, Any]) -> Iterator[Statement]:
+    """``only`` and ``never`` of a flow."""
+    for role in ("only", "never"):
+        if names := _names(said, role):
+            naming = GLOB if said.get("naming") == GLOB else NAME
+            yield Statement(role, names, (HAND, EXACT), Place(DATABASE, 0), naming=naming)
+
+
+def _facts(role: str, category: str, said: Mapping[str, Any]) -> tuple[Any, ...]:
+    """(role, rank, place, method, stated, category that it is made of, through, every) of a relationship."""
+    tier, specificity = said.get("tier", HAND), said.get("specificity", EXACT)
+    place = Place(str(said.get("file") or DATABASE), int(said.get("line") or 0))
+    method, stated = None, True
+    if role == "sanitizer":
+        method = Method(said["method"]) if said.get("method") else Method.PSEUDONYMISE
+        stated = bool(said.get("stated", bool(said.get("method"))))
+    made_of = str(said.get("of") or "")
+    if role == "derivation" and not made_of:
+        raise ValueError(f"it does not say of what it makes {category}: SET r.of = 'Video'")
+    through = tuple(str(name) for name in said.get("through") or ())
+    return (
+        role,
+        (int(tier), as_ranked_now(int(specificity))),
+        place,
+        method,
+        stated,
+        made_of,
+        through,
+        bool(said.get("every")),
+        str(said.get("naming") or (NAME if int(specificity) >= EXACT else SEGMENT)),  # absent in earlier versions
+    )
+
+
+def _through(
+    graph: FlowGraph, statements: Mapping[int, tuple[Statement, ...]]
+) -> dict[tuple[int, tuple[str, ...]], tuple[int, ...]]:
+    """The flows of sources that are sources only through some channels."""
+    wanted = {(vertex, s.through) for vertex, said in statements.items() for s in said if s.through}
+    vertices = {vertex for vertex, _ in wanted}
+    leaving: dict[int, list[int]] = defaultdict(list)
+    for index, flow in enumerate(graph.flows):
+        if flow.source in vertices:
+            leaving[flow.source].append(index)
+    return {
+        (vertex, names): tuple(
+            index
+            for index in leaving[vertex]
+            if any(covers(name, graph.elements[graph.flows[index].target].name) for name in names)
+        )
+        for vertex, names in sorted(wanted)
+    }

@@ -1,0 +1,281 @@
+"""Analysis -> the rows that Neo4j takes: one robot's elements, flows, roles and findings, as plain values.
+
+In: the analysis of one robot and the statements that it rests on. Out: ``RobotRows``, whose digest says whether
+anything differs from what was loaded before. The properties are those of ``schema.py``; a test holds this.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.model import GLOB
+from rosprivacy.analysis.non_ros import BY_KIND
+from rosprivacy.ingest.database.element_properties import (
+    Names,
+    Roles,
+    element_results,
+    finding_rows,
+    flow_results,
+    origin_rows,
+)
+from rosprivacy.ingest.database.ids import category_labels, element_id, enclave_id
+from rosprivacy.ingest.database.non_ros_properties import properties_of
+from rosprivacy.ingest.database.schema import KIND_LABELS, LEG, WILDCARD
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+    from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.analysis.model import Bound, Element, Flow, Grant, NonRosFacts, Statement
+    from rosprivacy.ontology.vocabulary import Vocabulary
+
+Row = dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class RobotRows:
+    """What is written of one robot.
+
+    Attributes
+    ----------
+    robot
+        Its name.
+    properties
+        Of the ``Robot``, its digest and counts among them.
+    elements
+        ``id``, ``labels``, ``properties``.
+    enclaves
+        ``id``, ``properties``.
+    memberships, flows, derived
+        ``source``, ``target`` (ids), ``properties``.
+    roles
+        By role: ``source`` (id), ``target`` (IRI), ``properties``.
+    findings
+        ``id``, ``source``, ``target`` (ids), ``category`` (IRI), ``properties``.
+    across
+        ``source`` (id of the finding), ``target`` (id of the element), ``properties``.
+    foreign
+        Elements of other robots at which flows and findings of this one end: as ``elements``, without what is said
+        of them.
+    """
+
+    robot: str
+    properties: Row
+    elements: list[Row]
+    enclaves: list[Row]
+    memberships: list[Row]
+    flows: list[Row]
+    roles: dict[str, list[Row]]
+    derived: list[Row]
+    findings: list[Row]
+    across: list[Row]
+    foreign: list[Row] = field(default_factory=list)
+
+    @property
+    def digest(self) -> str:
+        """SHA-256 of everything else."""
+        return str(self.properties["digest"])
+
+    @property
+    def size(self) -> int:
+        """Number of rows, for batches and progress."""
+        lists = (self.elements, self.memberships, self.flows, self.derived, self.findings, self.across)
+        return sum(map(len, (*lists, *self.roles.values())))
+
+
+def robot_rows(
+    robot: str, analysis: Analysis, bound: Bound, vocabulary: Vocabulary, more: Mapping[str, Any] | None = None
+) -> RobotRows:
+    """Return the rows of one robot.
+
+    Parameters
+    ----------
+    robot
+        Name in the database.
+    analysis
+        Of all categories, not of a choice.
+    bound
+        The statements that it rests on.
+    more
+        Further properties of the ``Robot``.
+
+    Raises
+    ------
+    InputErrors
+        If a category's label cannot be one.
+    """
+    graph = analysis.graph
+    labels = category_labels(vocabulary)
+    names, roles = Names(analysis.spread, vocabulary, labels), Roles(vocabulary, labels)
+    ids = [element_id(robot, element) for element in graph.elements]
+    by_element = dict(zip(graph.elements, ids, strict=True))
+    enclaves = sorted({profile.enclave for profile in graph.profiles})
+    found, across = finding_rows(analysis, vocabulary, by_element, dict.fromkeys(graph.elements, robot))
+    parts: dict[str, Any] = {
+        "elements": list(_elements(robot, ids, element_results(analysis, bound, names, roles), analysis)),
+        "enclaves": [{"id": enclave_id(robot, e), "properties": {"path": e, "robot": robot}} for e in enclaves],
+        "memberships": list(_memberships(robot, analysis)),
+        "flows": list(_flows(robot, analysis, bound, names, ids)),
+        "roles": _roles(robot, bound, vocabulary, ids),
+        "derived": list(origin_rows(analysis, ids, [robot] * len(ids))),
+        "findings": found,
+        "across": across,
+    }
+    properties: Row = {
+        "verdict": str(analysis.verdict),
+        "view": graph.view,
+        **(more or {}),
+    }
+    return rows_of(robot, properties, parts)
+
+
+def rows_of(robot: str, properties: Row, parts: Mapping[str, Any]) -> RobotRows:
+    """Return the rows of a robot with their digest and counts."""
+    counts = {
+        "elements": len(parts["elements"]),
+        "flows": len(parts["flows"]),
+        "roles": sum(map(len, parts["roles"].values())),
+    }
+    known = {**counts, **properties}
+    text = json.dumps([robot, known, parts], sort_keys=True)
+    return RobotRows(robot, {**known, "digest": hashlib.sha256(text.encode()).hexdigest()}, **parts)
+
+
+def kind_labels(element: Element) -> list[str]:
+    """Return the labels that say what an element is.
+
+    >>> from rosprivacy.analysis.model import Element
+    >>> kind_labels(Element("service", "/add", leg="request"))
+    ['Service', 'Leg']
+    """
+    return [KIND_LABELS[element.kind], *([LEG] if element.leg else ()), *([WILDCARD] if element.pattern else ())]
+
+
+def _elements(
+    robot: str, ids: Sequence[str], results: Iterable[tuple[Row, list[str]]], analysis: Analysis
+) -> Iterator[Row]:
+    for element, key, (properties, labels) in zip(analysis.graph.elements, ids, results, strict=True):
+        yield element_row(robot, key, element, properties, labels, analysis.outside.get(element))
+
+
+def element_row(
+    robot: str, key: str, element: Element, properties: Row, labels: Iterable[str], facts: NonRosFacts | None
+) -> Row:
+    """Return the row of an element with what the analysis says of it."""
+    known = {
+        "name": element.name,
+        "robot": robot,
+        "kind": element.kind,
+        "leg": element.leg or None,
+        "side": element.side or None,
+        "without": list(element.without) or None,
+        **(properties_of(facts) if facts else {}),
+    }
+    return {"id": key, "labels": [*kind_labels(element), *labels], "properties": {**known, **properties}}
+
+
+def _memberships(robot: str, analysis: Analysis) -> Iterator[Row]:
+    """A node in an enclave, once; the first of its profiles there is named."""
+    seen = set()
+    nodes = {element.name: element_id(robot, element) for element in analysis.graph.elements if element.is_node}
+    for profile in analysis.graph.profiles:
+        if (profile.enclave, profile.node) not in seen:
+            seen.add((profile.enclave, profile.node))
+            place = {"file": profile.place.file, "line": profile.place.line, "robot": robot}
+            yield {"source": nodes[profile.node], "target": enclave_id(robot, profile.enclave), "properties": place}
+
+
+def _flows(robot: str, analysis: Analysis, bound: Bound, names: Names, ids: Sequence[str]) -> Iterator[Row]:
+    results = flow_results(analysis, names)
+    for index, (flow, result) in enumerate(zip(analysis.graph.flows, results, strict=True)):
+        said = bound.flows.get(index, ())
+        yield flow_row(robot, flow, ids[flow.source], ids[flow.target], allowed(result, said, names.vocabulary))
+    for flow in analysis.graph.denied:
+        yield flow_row(robot, flow, ids[flow.source], ids[flow.target], denied(flow))
+
+
+def allowed(result: Row, said: Sequence[Statement], vocabulary: Vocabulary) -> Row:
+    """Return the properties of an allowed flow."""
+    return {"decision": "allow", **result, **_restrictions(said, vocabulary)}
+
+
+def denied(flow: Flow) -> Row:
+    """Return the properties of a denied flow."""
+    return {"decision": "deny", "carries": [], "denied_by": [str(grant.place) for grant in flow.denials]}
+
+
+def flow_row(robot: str, flow: Flow, source: str, target: str, properties: Row) -> Row:
+    """Return the row of a flow between two ids."""
+    known: Row = {"role": flow.role, "robot": robot}
+    if flow.grants:
+        known |= _grant(flow.grants[0])
+        further = [json.dumps(_grant(grant), sort_keys=True) for grant in flow.grants[1:]]
+        known["further"] = further or None
+    return {"source": source, "target": target, "properties": known | properties}
+
+
+def _grant(grant: Grant) -> Row:
+    place = grant.place
+    return {"file": place.file, "line": place.line, "enclave": grant.enclave, "profile": grant.node}
+
+
+def _restrictions(said: Sequence[Statement], vocabulary: Vocabulary) -> Row:
+    """What labels say of a flow, in two lists of one rank that mean the same (rule S7).
+
+    ``never`` of a lower rank than ``only`` says nothing that this does not say; of a higher rank it takes names out of
+    it, and where none is left nothing goes along the flow.
+    """
+    ranked = [statement for statement in said if statement.role == "only"]
+    only = max(ranked, key=lambda statement: statement.rank, default=None)
+    nevers = [s for s in said if s.role == "never" and (only is None or s.rank >= only.rank)]
+    never = {name for statement in nevers for name in statement.categories}
+    globs = {s.naming for s in (*nevers, *([only] if only else ()))} == {GLOB}
+    row: Row = {"never": sorted(never) or None, "only": None, "naming": GLOB if globs else None}
+    if only is None:
+        return row
+    above = {name for s in nevers if s.rank > only.rank for name in s.categories}
+    left = [name for name in only.categories if not above & set(vocabulary.hierarchy.ancestors[name])]
+    never |= set() if left else {name for name, category in vocabulary.categories.items() if not category.broader}
+    return {**row, "never": sorted(never) or None, "only": sorted(left) or None}
+
+
+def _roles(robot: str, bound: Bound, vocabulary: Vocabulary, ids: Sequence[str]) -> dict[str, list[Row]]:
+    rows: dict[str, list[Row]] = {}
+    for vertex, said in bound.elements.items():
+        add_roles(rows, robot, ids[vertex], said, vocabulary)
+    return rows
+
+
+def add_roles(
+    rows: dict[str, list[Row]], robot: str, key: str, said: Iterable[Statement], vocabulary: Vocabulary
+) -> None:
+    """Add one relationship per category that a statement names; one about every category goes to those at the top."""
+    for statement in said:
+        if statement.rank == BY_KIND:  # nobody said it; whoever reads the graph takes it so too
+            continue
+        properties: Row = {
+            "file": statement.place.file,
+            "line": statement.place.line,
+            "tier": statement.rank[0],
+            "specificity": statement.rank[1],
+            "naming": statement.naming,
+            "every": None if statement.categories else True,
+            "robot": robot,
+            **_particulars(statement),
+        }
+        top = [category.name for category in vocabulary.categories.values() if not category.broader]
+        named = [statement.to] if statement.role == "derivation" else statement.categories or top
+        for name in named:
+            iri = vocabulary.categories[name].iri
+            rows.setdefault(statement.role, []).append({"source": key, "target": iri, "properties": properties})
+
+
+def _particulars(statement: Statement) -> Row:
+    if statement.role == "source":
+        return {"through": list(statement.through) or None}
+    if statement.role == "sanitizer":
+        return {"method": str(statement.method) if statement.method else None, "stated": statement.stated}
+    return {"of": statement.categories[0]} if statement.role == "derivation" else {}

@@ -1,0 +1,166 @@
+"""Analysis of what is stored -> the database: only what changed is written. Takes a driver.
+
+In: ``Stored`` and its analysis. Out: properties and labels of elements, what flows carry, findings. Labels, policies
+and what people added are not touched. If a robot was loaded since it was read, nothing of its batch is written.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.answer import Verdict
+from rosprivacy.analysis.errors import DatabaseError
+from rosprivacy.analysis.model import unread
+from rosprivacy.ingest.database import cypher
+from rosprivacy.ingest.database.element_properties import (
+    Names,
+    Roles,
+    element_results,
+    finding_rows,
+    flow_results,
+    origin_rows,
+)
+from rosprivacy.ingest.database.ids import category_labels, element_id
+from rosprivacy.ingest.database.loading import refusals, run, write
+from rosprivacy.ingest.database.robot_notices import diagnostics_of
+from rosprivacy.ingest.database.rows import kind_labels
+from rosprivacy.ingest.database.schema import DERIVES_FROM, ELEMENT, KIND_LABELS, SUFFIXES
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from neo4j import Driver, ManagedTransaction
+
+    from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.ingest.database.read_back import Stored
+    from rosprivacy.ontology.vocabulary import Vocabulary
+
+Row = dict[str, Any]
+ROBOTS = 200  # whose changes are written in one transaction
+
+WRITE_ELEMENTS = (
+    "UNWIND $rows AS row MATCH (n) WHERE elementId(n) = row.key "
+    "SET n += row.properties REMOVE n:$(row.stale) SET n:$(row.labels)"
+)
+WRITE_FLOWS = "UNWIND $rows AS row MATCH ()-[f]->() WHERE elementId(f) = row.key SET f += row.properties"
+DELETE_ORIGINS = "MATCH ()-[d:DERIVES_FROM]->() WHERE d.robot IN $names DELETE d"
+VERDICTS = (
+    "UNWIND $rows AS row MATCH (r:Robot {name: row.robot}) "
+    "SET r.verdict = row.verdict, r.version = r.version + 1 REMOVE r.digest"
+)
+
+
+def write_back(driver: Driver, stored: Stored, analysis: Analysis, vocabulary: Vocabulary) -> int:
+    """Write the answer; return how many elements and flows changed.
+
+    Raises
+    ------
+    DatabaseError
+        If the server refuses, or a robot was written since ``stored`` was read.
+    """
+    rows = _Changes(stored, analysis, vocabulary)
+    with refusals(), driver.session() as session:
+        for start in range(0, len(rows.robots), ROBOTS):
+            session.execute_write(rows.write, rows.robots[start : start + ROBOTS])
+    return rows.changed
+
+
+class _Changes:
+    """What differs, by robot; what belongs to no robot stands under the empty name and comes first."""
+
+    def __init__(self, stored: Stored, analysis: Analysis, vocabulary: Vocabulary) -> None:
+        self._stored = stored
+        self._analysis = analysis
+        labels = category_labels(vocabulary)
+        self._ours = {label + suffix for label in labels.values() for suffix in SUFFIXES}
+        names = Names(analysis.spread, vocabulary, labels)
+        elements = analysis.graph.elements
+        robots = [stored.robot_of(vertex) for vertex in range(len(elements))]
+        ids = [
+            str(p.get("id") or element_id(r, e)) for p, r, e in zip(stored.properties, robots, elements, strict=True)
+        ]
+        self._elements = self._changed_elements(
+            element_results(analysis, stored.bound, names, Roles(vocabulary, labels)), ids, robots
+        )
+        self._flows = self._changed_flows(names, robots)
+        self.changed = sum(map(len, self._elements.values())) + sum(map(len, self._flows.values()))
+        by_element = dict(zip(elements, ids, strict=True))
+        of_robot = dict(zip(elements, robots, strict=True))
+        findings, across = finding_rows(analysis, vocabulary, by_element, of_robot, stored.likeness)
+        self._findings = _by(findings, {row["id"]: row["properties"]["robot"] for row in findings}, "id")
+        self._across = _by(across, {row["id"]: row["properties"]["robot"] for row in findings}, "source")
+        origins = list(origin_rows(analysis, ids, robots))
+        self._origins = _by(origins, dict(zip(ids, robots, strict=True)), "source")
+        self._leaking = {of_robot[e] for f in analysis.findings if not f.dismissed for e in (f.source, f.leak)}
+        self._open = {of_robot[question.element] for question in analysis.open}
+        self._reached = {of_robot[carried.element] for carried in analysis.carried}
+        self.robots = sorted({*robots, *stored.robots})
+
+    def _changed_elements(
+        self, results: Iterable[tuple[Row, list[str]]], ids: list[str], robots: list[str]
+    ) -> dict[str, list[Row]]:
+        rows: dict[str, list[Row]] = defaultdict(list)
+        stored, elements = self._stored, self._analysis.graph.elements
+        for vertex, (properties, labels) in enumerate(results):
+            known = {"id": ids[vertex], "kind": elements[vertex].kind, **properties}
+            new = {ELEMENT.label, *kind_labels(elements[vertex]), *labels}
+            old = stored.labels[vertex]
+            stale = (old & (self._ours | set(KIND_LABELS.values()))) - new
+            changes = {key: value for key, value in known.items() if stored.properties[vertex].get(key) != value}
+            if changes or stale or new - old:
+                row = {
+                    "key": stored.keys[vertex],
+                    "properties": changes,
+                    "stale": sorted(stale),
+                    "labels": sorted(new - old),
+                }
+                rows[robots[vertex]].append(row)
+        return rows
+
+    def _changed_flows(self, names: Names, robots: list[str]) -> dict[str, list[Row]]:
+        rows: dict[str, list[Row]] = defaultdict(list)
+        stored = self._stored
+        for index, properties in enumerate(flow_results(self._analysis, names)):
+            flow, old = self._analysis.graph.flows[index], stored.flow_properties[index]
+            known = {"role": flow.role, "decision": "allow", **properties}
+            changes = {key: value for key, value in known.items() if old.get(key) != value}
+            if changes:
+                rows[robots[flow.source]].append({"key": stored.flow_keys[index], "properties": changes})
+        return rows
+
+    def write(self, transaction: ManagedTransaction, robots: list[str]) -> None:
+        """Write some robots, if they are still as they were read."""
+        names = [name for name in robots if name]
+        run(transaction, cypher.LOCK_KNOWN_ROBOTS, names=names)
+        versions = {r["name"]: r["version"] for r in transaction.run(cypher.READ_ROBOTS, names=names)}
+        for name in names:
+            if versions.get(name) != self._stored.robots[name].get("version"):
+                raise DatabaseError(f"robot {name!r} was loaded meanwhile; analyse the database again")
+        write(transaction, WRITE_ELEMENTS, _rows(self._elements, robots))
+        write(transaction, WRITE_FLOWS, _rows(self._flows, robots))
+        run(transaction, DELETE_ORIGINS, names=robots)
+        run(transaction, cypher.DELETE_FINDINGS, names=robots)
+        write(transaction, cypher.create_relationships(DERIVES_FROM), _rows(self._origins, robots))
+        write(transaction, cypher.CREATE_FINDINGS, _rows(self._findings, robots))
+        write(transaction, cypher.CREATE_ACROSS, _rows(self._across, robots))
+        write(transaction, VERDICTS, [{"robot": name, "verdict": self._verdict(name)} for name in names])
+
+    def _verdict(self, robot: str) -> str:
+        """Rule S12 for one robot: what comes from it or gets out at it, what is open there, whether any data came."""
+        if robot in self._leaking:
+            return str(Verdict.LEAK)
+        not_read = unread(diagnostics_of(self._stored.robots.get(robot, {})))
+        settled = robot in self._reached and robot not in self._open and not not_read
+        return str(Verdict.NO_LEAK_FOUND if settled else Verdict.UNDETERMINED)
+
+
+def _by(rows: list[Row], robots: Mapping[str, str], key: str) -> dict[str, list[Row]]:
+    grouped: dict[str, list[Row]] = defaultdict(list)
+    for row in rows:
+        grouped[robots[row[key]]].append(row)
+    return grouped
+
+
+def _rows(grouped: Mapping[str, list[Row]], robots: list[str]) -> list[Row]:
+    return [row for robot in robots for row in grouped.get(robot, ())]

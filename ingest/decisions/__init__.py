@@ -1,0 +1,1 @@
+"""Decisions files in, out come decisions; a new decision in, out comes the file with it."""

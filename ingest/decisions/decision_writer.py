@@ -1,0 +1,121 @@
+"""A decision into the text of a decisions file: what people wrote there, comments and order included, stays.
+
+In: the text, or none, and an entry. Out: the new text. ruamel.yaml changes the one entry and writes the rest back; what
+comes out is read anew, and given out only if every other decision and every comment is still there.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from contextlib import suppress
+from dataclasses import replace
+from io import StringIO
+from typing import TYPE_CHECKING, Any
+
+from ruamel.yaml import YAML
+from ruamel.yaml.comments import CommentedMap, CommentedSeq
+from ruamel.yaml.error import YAMLError
+from ruamel.yaml.util import load_yaml_guess_indent
+
+from rosprivacy.analysis.errors import DecisionError, InputError, shown
+from rosprivacy.analysis.model import Place
+from rosprivacy.ingest.decisions.decisions_file import TARGET, parse_decisions
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from rosprivacy.analysis.decisions import Decision
+    from rosprivacy.ontology.vocabulary import Vocabulary
+
+NEW = """\
+# What was decided about findings of rosprivacy: accept, mitigate, delegate or avoid.
+decisions: 1
+findings: []
+"""
+_COMMENT = re.compile(r"(?:^|(?<=\s))#.*$", re.MULTILINE)
+_NOWHERE = Place("", 0)
+
+
+def with_decision(file: str, text: str | None, entry: Mapping[str, Any], remark: str, vocabulary: Vocabulary) -> str:
+    """Return the text of a decisions file with an entry added, or changed where there is one with the same target.
+
+    Of an entry that is there, what the new one does not say stays.
+
+    Parameters
+    ----------
+    file
+        For messages.
+    text
+        Of the file as it is; None if there is none.
+    entry
+        Key -> value; dates as ``datetime.date``.
+    remark
+        For people, as a comment beside the id; empty for none.
+
+    Raises
+    ------
+    InputErrors
+        If the file is not a decisions file, or the entry is not a decision.
+    DecisionError
+        If it cannot be written without losing something.
+    """
+    old = NEW if text is None else text
+    before = parse_decisions(file, old, vocabulary, "").entries
+    try:
+        new, place = _written(old, entry, remark)
+    except (YAMLError, ValueError, TypeError, AttributeError, LookupError) as error:
+        raise _by_hand(file, f"cannot be changed: {shown(str(error).splitlines()[0])}") from None
+    after = parse_decisions(file, new, vocabulary, "").entries
+    others = [*before[:place], *before[place + 1 :]]
+    if _facts([*after[:place], *after[place + 1 :]]) != _facts(others) or len(after) != max(len(before), place + 1):
+        raise _by_hand(file, "cannot be changed without changing another decision")
+    if Counter(_COMMENT.findall(old)) - Counter(_COMMENT.findall(new)):
+        raise _by_hand(file, "cannot be changed without losing a comment")
+    return new
+
+
+def _by_hand(file: str, problem: str) -> InputError:
+    return DecisionError(file, 0, problem, "add the entry by hand")
+
+
+def _facts(entries: Iterable[Decision]) -> list[Decision]:
+    return [replace(entry, place=_NOWHERE) for entry in entries]
+
+
+def _written(text: str, entry: Mapping[str, Any], remark: str) -> tuple[str, int]:
+    """The new text, and the number of the entry in it."""
+    unix = text.replace("\r\n", "\n")
+    yaml = YAML()
+    yaml.preserve_quotes = True
+    top, indent, offset = load_yaml_guess_indent(unix, yaml=yaml)
+    entries = _entries(top)
+    place = next((i for i, there in enumerate(entries) if _same_target(there, entry)), len(entries))
+    if place == len(entries):
+        entries.append(CommentedMap(entry))
+        if remark and "id" in entry and not (entries.fa.flow_style() or top.fa.flow_style()):
+            entries[place].yaml_add_eol_comment(shown(remark), "id")
+    else:
+        entries[place].update(entry)
+    yaml.width = 1_000_000  # lines are people's
+    yaml.explicit_start = unix.lstrip("\ufeff").startswith("---")
+    yaml.indent(mapping=2, sequence=indent or 2, offset=offset or 0)
+    out = StringIO()
+    yaml.dump(top, out)
+    written = out.getvalue()
+    return written.replace("\n", "\r\n") if "\r\n" in text else written, place
+
+
+def _entries(top: Any) -> Any:
+    """The list of entries; a new one where there is none yet."""
+    entries = top.get("findings")
+    if not entries:
+        fresh = CommentedSeq()
+        with suppress(KeyError):  # comments that stand after an empty list go with the key
+            fresh.ca.comment = entries.ca.comment if entries is not None else None
+        top["findings"] = fresh
+    return top["findings"]
+
+
+def _same_target(there: Mapping[str, Any], entry: Mapping[str, Any]) -> bool:
+    return {k: str(there[k]) for k in TARGET if k in there} == {k: str(entry[k]) for k in TARGET if k in entry}

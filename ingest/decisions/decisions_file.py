@@ -1,0 +1,203 @@
+"""Decisions files -> ``Decisions``: what people have decided about findings, on whose word, until when.
+
+In: YAML or JSON in the format of ``docs/decisions.md``. Out: entries in the order of the file, each with its line. All
+problems of a file are raised at once. What an entry means for findings is ``analysis/decisions.py``.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from dataclasses import dataclass, field
+from datetime import date
+from difflib import get_close_matches
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.decisions import Choice, Decision, Decisions
+from rosprivacy.analysis.errors import DecisionError, InputError, InputErrors, shown
+from rosprivacy.analysis.model import Place
+from rosprivacy.ingest.reading import yaml_values
+from rosprivacy.ingest.reading.format_reader import FileReader
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rosprivacy.ingest.reading.yaml_values import Value
+    from rosprivacy.ontology.vocabulary import Vocabulary
+
+TOP = ("decisions", "findings", "note")
+TARGET = ("id", "category", "source", "leak", "robot", "from_robot", "kind", "pseudonymised")
+TEXTS = ("reason", "owner", "ticket")
+KEYS = (*TARGET, "decision", *TEXTS, "legal_basis", "date", "expires", "note")
+LONGEST = 10_000  # characters of a text
+_ID = re.compile(r"[0-9a-f]{16}")
+_DATE = re.compile(r"\d{4}-\d\d-\d\d", re.ASCII)
+_BASIS = re.compile(r"(?:art(?:icle|\.)?\s*)?(6\(1\)\([a-f]\)|9\(2\)\([a-j]\)|10)(?:\s*gdpr)?", re.IGNORECASE)
+_DPV = re.compile(r"(?:eu-gdpr:)?A(\d+)-(\d)-([a-j])")
+
+
+def read_decisions(file: str, vocabulary: Vocabulary, day: str) -> Decisions:
+    """Read one decisions file.
+
+    Parameters
+    ----------
+    day
+        ISO date on which decisions are valid or expired.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the file, each a ``DecisionError`` of one line.
+    """
+
+    def fail(line: int, problem: str, hint: str) -> InputError:
+        return DecisionError(file, line, problem, hint.replace("labels: 1", "decisions: 1"))
+
+    try:
+        top, data = yaml_values.read(file, fail)
+    except InputError as error:
+        raise InputErrors([error]) from None
+    return _decisions(file, top, data, vocabulary, day)
+
+
+def parse_decisions(file: str, text: str, vocabulary: Vocabulary, day: str) -> Decisions:
+    """Read the text of a decisions file; see ``read_decisions``."""
+
+    def fail(line: int, problem: str, hint: str) -> InputError:
+        return DecisionError(file, line, problem, hint)
+
+    return _decisions(file, yaml_values.parse(text, fail), text.encode(), vocabulary, day)
+
+
+def _decisions(file: str, top: Value, data: bytes, vocabulary: Vocabulary, day: str) -> Decisions:
+    reader = _Reader(file, vocabulary)
+    entries = tuple(reader.document(top))
+    if reader.problems:
+        raise InputErrors(reader.problems)
+    return Decisions(file, hashlib.sha256(data).hexdigest(), day, entries, vocabulary.hierarchy)
+
+
+def legal_basis(written: str) -> str | None:
+    """Return a legal basis as ``6(1)(f)`` or ``9(2)(h)``, however it is written; None if it is none.
+
+    >>> legal_basis("Article 6(1)(f)"), legal_basis("eu-gdpr:A9-2-h"), legal_basis("consent")
+    ('6(1)(f)', '9(2)(h)', None)
+    """
+    dpv = _DPV.fullmatch(written.strip())
+    found = _BASIS.fullmatch(f"{dpv[1]}({dpv[2]})({dpv[3]})" if dpv else written.strip())
+    return found[1].lower() if found else None
+
+
+def is_date(written: str) -> bool:
+    """Whether a text is an ISO date, ``YYYY-MM-DD``."""
+    try:
+        return bool(_DATE.fullmatch(written)) and bool(date.fromisoformat(written))
+    except ValueError:
+        return False
+
+
+@dataclass
+class _Reader(FileReader):
+    """One decisions file."""
+
+    vocabulary: Vocabulary
+    error: type[InputError] = field(default=DecisionError, kw_only=True)
+    ids: dict[tuple[str, str], int] = field(default_factory=dict)
+
+    def document(self, top: Value) -> Iterator[Decision]:
+        if top.kind != "map":
+            self.problem(top.line, f"a decisions file is a map, not a {top.kind}", "begin with 'decisions: 1'")
+            return
+        self.version(top, "decisions", "decisions")
+        findings = {key: value for key, _, value in self.entries_of(top, TOP)}.get("findings")
+        for item in self.list_of(findings, "findings", "write '- id: …' lines") if findings else ():
+            if item.kind != "map":
+                self.problem(item.line, f"a decision is a map, not a {item.kind}", "write id: … and decision: …")
+            else:
+                yield self._decision(item)
+
+    def _decision(self, item: Value) -> Decision:
+        before = len(self.problems)
+        said = {key: value for key, _, value in self.entries_of(item, KEYS)}
+        texts: dict[str, Any] = {key: self._text(said[key], key) for key in (*TARGET[:-1], *TEXTS) if key in said}
+        choice = self._choice(item, said.get("decision"))
+        self._target(item, said, texts)
+        for key in ("date", "expires"):
+            if key in said:
+                texts[key] = self._date(said[key], key)
+        if "pseudonymised" in said:
+            texts["pseudonymised"] = self._flag(said["pseudonymised"])
+        if choice is Choice.ACCEPT and len(self.problems) == before:
+            for key in ("reason", "owner"):
+                if not texts.get(key, "").strip():
+                    self.problem(item.line, f"an acceptance without {key}", f"add {key}: it is what a person signs")
+        basis = tuple(self._basis(said["legal_basis"])) if "legal_basis" in said else ()
+        return Decision(choice, Place(self.file, item.line), legal_basis=basis, **texts)
+
+    def _choice(self, item: Value, value: Value | None) -> Choice:
+        choices = ", ".join(Choice)
+        if value is None:
+            self.problem(item.line, "no decision", f"add decision: one of {choices}")
+        elif value.kind == "text" and value.text in set(Choice):
+            return Choice(value.text)
+        else:
+            close = get_close_matches(value.text, list(Choice), n=1)
+            hint = f"did you mean {close[0]}?" if close else f"one of {choices}"
+            self.problem(value.line, f"decision {shown(value.text or value.kind)!r}", hint)
+        return Choice.MITIGATE
+
+    def _target(self, item: Value, said: dict[str, Value], texts: dict[str, Any]) -> None:
+        if not any(texts.get(key) for key in ("id", "category", "source", "leak")):
+            self.problem(item.line, "a decision about everything", "name an id, a category, a source or a leak")
+        if texts.get("id"):
+            line = said["id"].line
+            if not _ID.fullmatch(texts["id"]):
+                self.problem(line, f"id {shown(texts['id'])!r}", "copy the 16 digits and letters of a finding")
+            form = said["pseudonymised"].text if "pseudonymised" in said else ""
+            first = self.ids.setdefault((texts["id"], form), line)
+            if first != line:
+                self.problem(line, f"{texts['id']} again, first in line {first}", "keep one")
+        if texts.get("category"):
+            texts["category"] = self._category(texts["category"], said["category"].line)
+
+    def _category(self, written: str, line: int) -> str:
+        category = self.vocabulary.find(written)
+        if category is None:
+            nearest = ", ".join(self.vocabulary.nearest(written))
+            self.problem(line, f"unknown category {shown(written)!r}", f"did you mean one of: {nearest}?")
+            return ""
+        return category.name
+
+    def _text(self, value: Value, key: str) -> str:
+        if value.kind == "number" and key in ("id", "ticket"):  # 1234567812345678 is an id too
+            return value.text
+        if value.kind != "text" or not value.text.strip():
+            self.problem(value.line, f"{key} takes text, not {_a(value)}", "write it, or remove the key")
+        elif len(value.text) > LONGEST:
+            self.problem(value.line, f"{key} of {len(value.text)} characters", f"no more than {LONGEST} are read")
+            return ""
+        return value.text
+
+    def _date(self, value: Value, key: str) -> str:
+        if not is_date(value.text):
+            self.problem(value.line, f"{key} {shown(value.text or value.kind)!r} is no date", "write YYYY-MM-DD")
+            return ""
+        return value.text
+
+    def _flag(self, value: Value) -> bool:
+        if value.text.lower() not in ("true", "false"):
+            self.problem(value.line, f"pseudonymised takes true or false, not {_a(value)}", "write one of the two")
+        return value.text.lower() == "true"
+
+    def _basis(self, value: Value) -> Iterator[str]:
+        for item in value.items if value.kind == "list" else (value,):
+            found = legal_basis(item.text)
+            if found:
+                yield found
+            else:
+                what = f"legal basis {shown(item.text or item.kind)!r}"
+                self.problem(item.line, what, "write such as 6(1)(f), and 9(2)(h) for special categories")
+
+
+def _a(value: Value) -> str:
+    return {"empty": "nothing", "text": "empty text"}.get(value.kind, f"a {value.kind}")

@@ -1,0 +1,315 @@
+"""Fleet files -> ``Fleet``: which robots there are, what they run, what they share (rules S1, S9).
+
+In: YAML or JSON, with the fleet files that it includes. Out: robots with their policies and label files, and the
+elements outside ROS that belong to none of them, with the flows between all these. All problems are raised at once.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+from dataclasses import dataclass, replace
+from glob import glob, has_magic
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.errors import FleetError, InputError, InputErrors, shown
+from rosprivacy.ingest.fleet.fleet_reader import GROUP_KEYS, ID, ID_HINT, ROBOT_KEYS, SECTIONS, SPEC, FleetReader, Spec
+from rosprivacy.ingest.labels.entries import OWN
+from rosprivacy.ingest.labels.label_file import OURS
+from rosprivacy.ingest.reading import yaml_values
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from rosprivacy.analysis.model import Place
+    from rosprivacy.ingest.labels.entries import Entry, FlowEntry
+    from rosprivacy.ingest.labels.non_ros_reader import Limit, Stated
+    from rosprivacy.ingest.reading.yaml_values import Value
+    from rosprivacy.ontology.vocabulary import Vocabulary
+
+MOST = 1_000_000  # robots of a group
+STAR = "*"  # in a group: the robot's id
+SHARED = "shared"
+
+
+@dataclass(frozen=True, slots=True)
+class Robot:
+    """A robot, or a part of the infrastructure that has policies as robots have.
+
+    Attributes
+    ----------
+    model
+        Name; empty without one.
+    policies
+        Files, folders and globs.
+    labels, own
+        Label files of its model and of itself; the latter outrank the former.
+    domain
+        Name of the DDS domain that it shares with others; empty for one of its own (rule S1).
+    strip, add
+        Namespace that its policies have and names are shown without, or lack and run under; empty for none.
+    """
+
+    id: str
+    place: Place
+    model: str = ""
+    policies: tuple[str, ...] = ()
+    labels: tuple[str, ...] = ()
+    own: tuple[str, ...] = ()
+    domain: str = ""
+    strip: str = ""
+    add: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Fleet:
+    """What a fleet file says, with its includes.
+
+    Attributes
+    ----------
+    name
+        What is shared is filed under it.
+    sources
+        (file, SHA-256), sorted.
+    robots, infrastructure
+        By id, sorted.
+    elements, entries, limits, flows
+        As in ``Labels``; the ends of flows name robots too (``ROBOTS:/name``).
+    """
+
+    name: str
+    sources: tuple[tuple[str, str], ...]
+    robots: tuple[Robot, ...]
+    infrastructure: tuple[Robot, ...]
+    elements: tuple[Stated, ...]
+    entries: tuple[Entry, ...]
+    limits: tuple[Limit, ...]
+    flows: tuple[FlowEntry, ...]
+
+
+def read_fleet(file: str, vocabulary: Vocabulary) -> Fleet:
+    """Read a fleet file.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of it and of the files that it includes, each a ``FleetError`` of one line.
+
+    Notes
+    -----
+    Linear in the number of robots.
+    """
+    reader = _Fleet(vocabulary)
+    reader.read(file, ())
+    fleet = reader.fleet(file)
+    if reader.problems:
+        raise InputErrors(reader.problems)
+    return fleet
+
+
+class _Fleet:
+    """Gathers what fleet files say, and puts robots together at the end."""
+
+    def __init__(self, vocabulary: Vocabulary) -> None:
+        self.problems: list[InputError] = []
+        self._vocabulary = vocabulary
+        self._name = ""
+        self._sources: dict[str, str] = {}
+        self._read: set[str] = set()
+        self._models: dict[str, Spec] = {}
+        self._robots: dict[str, Robot] = {}
+        self._infrastructure: dict[str, Robot] = {}
+        self._drafts: list[tuple[str, Spec, bool]] = []  # id, what is said, whether it is infrastructure
+        self._groups: list[tuple[FleetReader, Spec, Value]] = []
+        self._parts: list[FleetReader] = []
+
+    def read(self, file: str, within: tuple[str, ...]) -> None:
+        """Read one file with all that it includes; ``within`` are the files that are being read."""
+        path = os.path.realpath(file)
+        if path in self._read:
+            return
+        self._read.add(path)
+
+        def fail(line: int, problem: str, hint: str) -> InputError:
+            return FleetError(file, line, problem, "write at least 'fleet: 1'" if "empty" in problem else hint)
+
+        try:
+            top, data = yaml_values.read(file, fail)
+        except InputError as error:
+            self.problems.append(error)
+            return
+        self._sources[file] = hashlib.sha256(data).hexdigest()
+        part = FleetReader(file, self._vocabulary, "", OWN, error=FleetError, problems=self.problems)
+        self._parts.append(part)
+        part.version(top, "fleet", "fleet")
+        for key, line, value in part.entries_of(top, ("fleet", *SECTIONS)) if top.kind == "map" else ():
+            self._section(part, key, line, value, (*within, path))
+
+    def _section(self, part: FleetReader, key: str, line: int, value: Value, within: tuple[str, ...]) -> None:
+        if key == "name":
+            self._name = part.text_of(value, "the name of a fleet")
+        elif key == "include":
+            for item in value.items if value.kind == "list" else (value,):
+                self._include(part, item, within)
+        elif key in ("elements", "limits", "flows"):
+            part.outside(key, line, value)
+        elif key == "groups":
+            for item in value.items:
+                self._groups.append((part, part.spec("a group", item.line, item, GROUP_KEYS), item))
+            if value.kind not in ("list", "empty"):
+                part.problem(line, f"groups is a list, not a {value.kind}", "write [{robots: 10, model: …}]")
+        elif key in ("models", "robots", "infrastructure"):
+            if value.kind not in ("map", "empty"):
+                part.problem(line, f"{key} is a map, not a {value.kind}", "write 'name: {policies: […]}'")
+            for name, at, said in value.entries:
+                self._entry(
+                    part, key, name, at, part.spec(shown(name), at, said, SPEC if key == "models" else ROBOT_KEYS)
+                )
+
+    def _entry(self, part: FleetReader, section: str, name: str, line: int, spec: Spec) -> None:
+        if not ID.fullmatch(name):
+            part.problem(line, f"{shown(name)!r} cannot name a robot or model", ID_HINT)
+        elif section != "models":
+            self._drafts.append((name, spec, section == "infrastructure"))
+        elif name in self._models:
+            part.problem(line, f"model {shown(name)!r} again, first at {self._models[name].place}", "define it once")
+        else:
+            self._models[name] = spec
+
+    def _include(self, part: FleetReader, item: Value, within: tuple[str, ...]) -> None:
+        if item.kind != "text":
+            part.problem(item.line, f"include: a {item.kind}", "name fleet files, relative to this one")
+            return
+        file = str(Path(part.file).parent / item.text)
+        if os.path.realpath(file) in within:
+            part.problem(item.line, f"{shown(item.text)} includes itself, on a ring", "remove one of the includes")
+        elif not Path(file).is_file():
+            part.problem(item.line, f"{shown(item.text)}: file not found", "correct the path")
+        else:
+            self.read(file, within)
+
+    def fleet(self, file: str) -> Fleet:
+        """Put everything together."""
+        for name, spec, shared in self._drafts:
+            self._add(name, spec, shared=shared)
+        for part, spec, item in self._groups:
+            for name, one in self._members(part, spec, item):
+                self._add(name, one, shared=False)
+        if not self._robots and not self.problems:
+            self.problems.append(FleetError(file, 1, "a fleet without robots", "name some under robots or groups"))
+        name = self._name or SHARED
+        taken = self._robots.get(name) or self._infrastructure.get(name)
+        if taken:
+            self._problem(taken.place, f"robot {shown(name)!r} has the name of what is shared", "rename one")
+        robots = tuple(robot for _, robot in sorted(self._robots.items()))
+        self._check_files([*robots, *self._infrastructure.values()])
+        return Fleet(
+            name,
+            tuple(sorted(self._sources.items())),
+            robots,
+            tuple(robot for _, robot in sorted(self._infrastructure.items())),
+            tuple(stated for part in self._parts for stated in part.elements),
+            tuple(entry for part in self._parts for entry in part.entries),
+            tuple(limit for part in self._parts for limit in part.limits),
+            tuple(flow for part in self._parts for flow in part.flows),
+        )
+
+    def _add(self, name: str, spec: Spec, *, shared: bool) -> None:
+        known = self._robots.get(name) or self._infrastructure.get(name)
+        if known:
+            self._problem(spec.place, f"robot {shown(name)!r} again, first at {known.place}", "rename one")
+            return
+        model = self._models.get(spec.model, Spec(spec.place))
+        if spec.model and spec.model not in self._models:
+            known_models = ", ".join(sorted(self._models)) or "there is none"
+            self._problem(self._line(spec, "model"), f"unknown model {shown(spec.model)!r}", f"models: {known_models}")
+            return
+        if not (model.policies or spec.policies):
+            self._problem(spec.place, f"robot {shown(name)!r} has no policies", "name some, or a model that has some")
+            return
+        own = bool(spec.strip or spec.add)
+        namespace = (spec.strip, spec.add) if own else (model.strip, model.add)
+        robot = Robot(
+            name,
+            spec.place,
+            spec.model,
+            (*model.policies, *spec.policies),
+            model.labels,
+            spec.labels,
+            spec.domain or model.domain,
+            *(text.replace(STAR, name) for text in namespace),
+        )
+        (self._infrastructure if shared else self._robots)[name] = robot
+
+    def _members(self, part: FleetReader, spec: Spec, item: Value) -> Iterator[tuple[str, Spec]]:
+        """The robots of a group: so many, or one for each file that a glob matches."""
+        count, pattern = item.get("robots"), [file for file in spec.policies if STAR in file]
+        if (count is None) != bool(pattern):
+            what = "a group takes either a number of robots or policies with a *"
+            part.problem(item.line, what, "write {robots: 10, model: …} or {policies: robots/*.policy.xml}")
+        elif count is None:
+            yield from self._matched(part, spec, pattern[0])
+        elif count.kind != "number" or not re.fullmatch(r"[0-9]{1,7}", count.text) or not 0 < int(count.text) <= MOST:
+            part.problem(count.line, f"robots: {shown(count.text or count.kind)!r}", f"write a number up to {MOST:,}")
+        else:
+            yield from self._counted(part, spec, item, int(count.text))
+
+    def _counted(self, part: FleetReader, spec: Spec, item: Value, count: int) -> Iterator[tuple[str, Spec]]:
+        said = item.get("id")
+        pattern = said.text if said else f"{spec.model}_{STAR}"
+        if pattern.count(STAR) != 1 or not ID.fullmatch(pattern.replace(STAR, "0")):
+            hint = "write one with a * for the number, such as carrier_*"
+            part.problem(said.line if said else item.line, f"{shown(pattern)!r} cannot be the ids of a group", hint)
+            return
+        width = len(str(count))
+        for number in range(1, count + 1):
+            name = pattern.replace(STAR, f"{number:0{width}}")
+            yield name, _of_robot(spec, name)
+
+    def _matched(self, part: FleetReader, spec: Spec, pattern: str) -> Iterator[tuple[str, Spec]]:
+        line = self._line(spec, "policies")
+        if pattern.count(STAR) != 1 or has_magic(pattern.replace(STAR, "")):
+            part.problem(line.line, f"{shown(pattern)!r} has more than one *", "write one *, for the robot's id")
+            return
+        before, after = pattern.split(STAR)
+        found = sorted(glob(pattern))  # noqa: PTH207 - absolute patterns too
+        if not found:
+            part.problem(line.line, f"{shown(pattern)!r} matches no file", "correct the pattern")
+        for file in found:
+            name = file[len(before) : len(file) - len(after)]
+            if ID.fullmatch(name):
+                yield name, _of_robot(spec, name)
+            else:
+                part.problem(line.line, f"{shown(file)!r}: {shown(name)!r} cannot name a robot", ID_HINT)
+
+    def _check_files(self, robots: Iterable[Robot]) -> None:
+        """Files that are named and are not there, at the line that names them first."""
+        seen: set[str] = set()
+        for robot in robots:
+            for key, files in (("policies", robot.policies), ("labels", (*robot.labels, *robot.own))):
+                for file in [file for file in files if file not in seen]:
+                    seen.add(file)
+                    there = Path(file).exists() or (key == "policies" and has_magic(file)) or file.startswith(OURS)
+                    if not there:
+                        self._problem(self._place_of(key, file, robot), f"{shown(file)}: file not found", "correct it")
+
+    def _place_of(self, key: str, file: str, robot: Robot) -> Place:
+        model = self._models.get(robot.model)
+        if model and file in getattr(model, key):
+            return self._line(model, key)
+        return robot.place
+
+    def _line(self, spec: Spec, key: str) -> Place:
+        return replace(spec.place, line=spec.lines.get(key, spec.place.line))
+
+    def _problem(self, place: Place, problem: str, hint: str) -> None:
+        self.problems.append(FleetError(place.file, place.line, problem, hint))
+
+
+def _of_robot(spec: Spec, name: str) -> Spec:
+    """What a group says of one of its robots: the star is its id."""
+    policies = tuple(file.replace(STAR, name) for file in spec.policies)
+    labels = tuple(file.replace(STAR, name) for file in spec.labels)
+    return replace(spec, policies=policies, labels=labels)

@@ -1,0 +1,139 @@
+"""Flow graphs with what is said about them, by element and not by number, so that many become one.
+
+In: graphs and bound statements. Out: ``Part``, which can be renamed and put together; and numbers again.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from operator import itemgetter
+from typing import TYPE_CHECKING, TypeVar
+
+from rosprivacy.analysis.model import Bound, Element, Flow, FlowGraph
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping
+
+    from rosprivacy.analysis.model import Grant, NonRosFacts, Profile, Statement
+
+K = TypeVar("K")
+V = TypeVar("V")
+Key = tuple[Element, Element, str]  # source, target, role of a flow
+
+
+@dataclass(slots=True)
+class Part:
+    """A part of a graph.
+
+    Attributes
+    ----------
+    elements
+        With the statements about each.
+    flows
+        Allowed ones, with their grants.
+    denied
+        With grants and denials; matches that DENYs take out too.
+    said
+        Statements about flows.
+    through
+        (source, name expressions) -> the flows that these mean.
+    outside
+        What is stated about elements outside ROS.
+    """
+
+    elements: dict[Element, tuple[Statement, ...]] = field(default_factory=dict)
+    flows: dict[Key, tuple[Grant, ...]] = field(default_factory=dict)
+    denied: dict[Key, tuple[tuple[Grant, ...], tuple[Grant, ...]]] = field(default_factory=dict)
+    said: dict[Key, tuple[Statement, ...]] = field(default_factory=dict)
+    through: dict[tuple[Element, tuple[str, ...]], tuple[Key, ...]] = field(default_factory=dict)
+    outside: dict[Element, NonRosFacts] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, graph: FlowGraph, bound: Bound) -> Part:
+        """Take the numbers out of a graph and its statements."""
+        elements = graph.elements
+        keys = [(elements[flow.source], elements[flow.target], flow.role) for flow in graph.flows]
+        return cls(
+            {element: bound.elements.get(vertex, ()) for vertex, element in enumerate(elements)},
+            {key: flow.grants for key, flow in zip(keys, graph.flows, strict=True)},
+            {(elements[f.source], elements[f.target], f.role): (f.grants, f.denials) for f in graph.taken_back},
+            {keys[index]: said for index, said in bound.flows.items()},
+            {(elements[v], names): tuple(keys[i] for i in flows) for (v, names), flows in bound.through.items()},
+            {elements[vertex]: facts for vertex, facts in bound.outside.items()},
+        )
+
+    def renamed(self, name: Callable[[Element], Element]) -> Part:
+        """Return the part with other names; two elements may become one."""
+        new = {element: name(element) for element in self.elements}
+
+        def key_of(key: Key) -> Key:
+            return (new[key[0]], new[key[1]], key[2])
+
+        return Part(
+            _joined((new[element], said) for element, said in self.elements.items()),
+            _joined((key_of(key), grants) for key, grants in self.flows.items()),
+            {key_of(key): both for key, both in self.denied.items()},
+            _joined((key_of(key), said) for key, said in self.said.items()),
+            {(new[v], names): tuple(map(key_of, keys)) for (v, names), keys in self.through.items()},
+            {new[element]: facts for element, facts in self.outside.items()},
+        )
+
+
+def together(parts: Iterable[Part]) -> Part:
+    """Put parts together: what they have in common is one, with all that any of them says of it."""
+    parts = list(parts)
+    return Part(
+        _joined(pair for part in parts for pair in part.elements.items()),
+        _joined(pair for part in parts for pair in part.flows.items()),
+        {key: both for part in parts for key, both in part.denied.items()},
+        _joined(pair for part in parts for pair in part.said.items()),
+        _joined(pair for part in parts for pair in part.through.items()),
+        {element: facts for part in parts for element, facts in part.outside.items()},
+    )
+
+
+def numbered(part: Part, profiles: Mapping[str, tuple[Profile, ...]], view: str) -> tuple[FlowGraph, Bound]:
+    """Number the elements and sort everything (rule S14); a flow that one part allows is not denied.
+
+    Parameters
+    ----------
+    profiles
+        By robot; what several have is there once.
+    """
+    everything = {profile for some in profiles.values() for profile in some}
+    sorted_profiles = sorted(everything, key=lambda p: (p.enclave, p.node, p.place.file, p.place.line))
+    elements = tuple(sorted(part.elements, key=Element.sort_key))
+    number = {element: i for i, element in enumerate(elements)}
+    rows = sorted(((number[a], number[b], role, (a, b, role)) for a, b, role in part.flows), key=itemgetter(0, 1, 2))
+    index = {key: i for i, (*_, key) in enumerate(rows)}
+    flows = tuple(Flow(a, b, role, part.flows[key]) for a, b, role, key in rows)
+    refused = [(number[a], number[b], r, both) for (a, b, r), both in part.denied.items() if (a, b, r) not in index]
+    denied = [Flow(a, b, role, *both) for a, b, role, both in sorted(refused, key=itemgetter(0, 1, 2))]
+    graph = FlowGraph(
+        elements,
+        flows,
+        tuple(flow for flow in denied if flow.role != "matches"),
+        tuple(sorted_profiles),
+        view,
+        tuple(flow for flow in denied if flow.role == "matches"),
+    )
+    bound = Bound(
+        {number[element]: said for element, said in part.elements.items() if said},
+        {index[key]: said for key, said in part.said.items() if said},
+        {(number[v], names): tuple(sorted(map(index.__getitem__, keys))) for (v, names), keys in part.through.items()},
+        {number[element]: facts for element, facts in part.outside.items()},
+    )
+    return graph, _sorted(bound)
+
+
+def _sorted(bound: Bound) -> Bound:
+    outside = dict(sorted(bound.outside.items()))
+    return Bound(dict(sorted(bound.elements.items())), dict(sorted(bound.flows.items())), bound.through, outside)
+
+
+def _joined(pairs: Iterable[tuple[K, tuple[V, ...]]]) -> dict[K, tuple[V, ...]]:
+    """Tuples of one key put together, each value once."""
+    found: dict[K, tuple[V, ...]] = {}
+    for key, values in pairs:
+        found[key] = tuple(dict.fromkeys((*found[key], *values))) if key in found else values
+    return found

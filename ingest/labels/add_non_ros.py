@@ -1,0 +1,169 @@
+"""Graph + what files state about elements outside ROS -> the graph with these and their flows (rule S9).
+
+In: the flow graph of policies and label files. Out: a graph in which non-ROS elements take part like nodes; each of
+their flows keeps the line that states it. A name that is not there is an error with the nearest (rule S11).
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from difflib import get_close_matches
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, shown
+from rosprivacy.analysis.model import STATED, Element, Flow, FlowGraph, Grant
+from rosprivacy.ingest.labels.entries import End
+from rosprivacy.ingest.labels.non_ros_reader import is_non_ros
+from rosprivacy.ingest.policies.names import covers, is_pattern, matcher
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+    from rosprivacy.analysis.model import Place
+    from rosprivacy.ingest.labels.label_file import Labels
+    from rosprivacy.ingest.labels.non_ros_reader import Stated
+
+FLOW = STATED
+
+
+def extend(graph: FlowGraph, files: Sequence[Labels]) -> FlowGraph:
+    """Add the non-ROS elements of label files, and the flows that begin or end at them.
+
+    Raises
+    ------
+    InputErrors
+        With every element that is defined twice with different facts, and every end of a flow that is not there.
+    """
+    if not any(file.elements or file.flows for file in files):
+        return graph
+    problems: list[InputError] = []
+    stated: dict[str, Stated] = {}
+    for own in (False, True):  # what one robot's file states takes the place of its model's
+        stated |= merged((entry for file in files if file.own == own for entry in file.elements), problems)
+    added = [Element(entry.kind, entry.name) for entry in stated.values()]
+    ends = Ends([*graph.elements, *added])
+    flows: list[tuple[Element, Element, Place]] = []
+    for file in files:
+        for flow in file.flows:
+            if is_non_ros(flow.source) or is_non_ros(flow.target):
+                flows += ends.between(*flow.ends, flow.place, problems)
+    for entry in stated.values():
+        for end in entry.between:
+            both = list(ends.between(end, End(entry.name), entry.place, problems))
+            flows += [*both, *((b, a, place) for a, b, place in both)]
+    if problems:
+        raise InputErrors(problems)
+    return with_flows(graph, added, flows)
+
+
+def merged(
+    entries: Iterable[Stated], problems: list[InputError], error: type[InputError] = LabelError
+) -> dict[str, Stated]:
+    """Return elements by name; one that is defined twice with different facts is a problem."""
+    found: dict[str, Stated] = {}
+    for entry in entries:
+        known = found.setdefault(entry.name, entry)
+        if _facts(known) != _facts(entry):
+            what = f"element {shown(entry.name)!r} again, with other facts than at {known.place}"
+            problems.append(error(entry.place.file, entry.place.line, what, "define it once"))
+    return found
+
+
+def _facts(entry: Stated) -> tuple[object, ...]:
+    said = entry.outside
+    more = (said.encrypted, said.country, said.operator, said.recipient, said.transfer)
+    return (entry.kind, said.retention, said.backups, *more, entry.between)
+
+
+class Ends:
+    """The elements that the ends of stated flows name.
+
+    A name or glob of ROS means nodes or channels, whichever have it; where both do, the kind has to be said.
+    """
+
+    def __init__(self, elements: Iterable[Element]) -> None:
+        self.names: dict[str, dict[str, list[Element]]] = {kind: defaultdict(list) for kind in ("", "node", "channel")}
+        for element in elements:
+            kind = "channel" if element.is_channel else "node" if element.is_node else ""
+            self.names[kind][element.name].append(element)
+
+    def between(
+        self, source: End, target: End, place: Place, problems: list[InputError]
+    ) -> Iterator[tuple[Element, Element, Place]]:
+        """The flows from each element of one name to each of another."""
+        sources, targets = self.find(source), self.find(target)
+        for end, found in ((source, sources), (target, targets)):
+            if not found:
+                known = [other for kind in self.names for other in self.names[kind]]
+                problems.append(missing(end, known, place))
+            elif kinds := two_meanings(end, found):
+                problems.append(ambiguous(end, kinds, place))
+        yield from ((a, b, place) for a in sources for b in targets)
+
+    def find(self, end: End) -> list[Element]:
+        """The elements of a name or glob, of the kind that is said or of all."""
+        if is_non_ros(end.name):
+            return self._of("", end.name)
+        found = [*self._of("node", end.name), *self._of("channel", end.name)]
+        return [element for element in found if end.kind in ("", element.kind)]
+
+    def _of(self, kind: str, name: str) -> list[Element]:
+        known = self.names[kind]
+        if not kind or not is_pattern(name):
+            return known.get(name, [])
+        plain = matcher(name)
+        covered = [n for n in known if (covers(name, n) if is_pattern(n) else plain(n))]
+        return [element for other in covered for element in known[other]]
+
+
+def two_meanings(end: End, found: Iterable[Element]) -> tuple[str, ...]:
+    """Return the kinds of what an end means if nodes and channels are among it, and which is not said (rule S9)."""
+    kinds = {element.kind for element in found}
+    return () if end.kind or "node" not in kinds or kinds == {"node"} else ("node", *sorted(kinds - {"node"}))
+
+
+def ambiguous(end: End, kinds: Iterable[str], place: Place, error: type[InputError] = LabelError) -> InputError:
+    """Return the error for the end of a flow that names a node and a channel."""
+    written = f"'{end.name}'" if ":" in end.name or not end.name.startswith("/") else end.name
+    named = " and ".join(f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}" for kind in kinds)
+    hint = " or ".join(f"{{{kind}: {shown(written)}}}" for kind in kinds)
+    return error(place.file, place.line, f"a flow names {shown(end.name)!r}, which is {named}", f"write {hint}")
+
+
+def missing(end: End, known: Iterable[str], place: Place, error: type[InputError] = LabelError) -> InputError:
+    """Return the error for the end of a flow that is not there, with the nearest names."""
+    alike = [other for other in dict.fromkeys(known) if is_non_ros(other) == is_non_ros(end.name)]
+    close = get_close_matches(end.name, [other for other in alike if other != end.name], n=3, cutoff=0.5)
+    hint = "define it under elements" if is_non_ros(end.name) else "see the names with rosprivacy labels --init"
+    hint = f"did you mean {' or '.join(map(shown, close))}?" if close else hint
+    kind = f"the {end.kind} " if end.kind else ""
+    return error(place.file, place.line, f"a flow names {kind}{shown(end.name)!r}, which is not there", hint)
+
+
+def with_flows(
+    graph: FlowGraph, elements: Iterable[Element], flows: Iterable[tuple[Element, Element, Place]]
+) -> FlowGraph:
+    """Return a graph with more elements and flows, numbered anew and sorted (rule S14)."""
+    known = sorted({*graph.elements, *elements}, key=Element.sort_key)
+    number = {element: i for i, element in enumerate(known)}
+    moved = [number[element] for element in graph.elements]
+    lines: dict[tuple[int, int], list[Place]] = defaultdict(list)
+    for source, target, place in flows:
+        lines[number[source], number[target]].append(place)
+    added = [Flow(*ends, FLOW, tuple(line_of(place) for place in _sorted(places))) for ends, places in lines.items()]
+
+    def renumbered(old: tuple[Flow, ...], new: Sequence[Flow] = ()) -> tuple[Flow, ...]:
+        kept = [Flow(moved[f.source], moved[f.target], f.role, f.grants, f.denials) for f in old]
+        return tuple(sorted([*kept, *new], key=lambda f: (f.source, f.target, f.role)))
+
+    allowed, denied = renumbered(graph.flows, added), renumbered(graph.denied)
+    return FlowGraph(tuple(known), allowed, denied, graph.profiles, graph.view, renumbered(graph.denied_matches))
+
+
+def _sorted(places: Iterable[Place]) -> list[Place]:
+    return sorted(set(places), key=lambda place: (place.file, place.line))
+
+
+def line_of(place: Place) -> Grant:
+    """Return the line that states a flow, in the form of the lines that grant others."""
+    return Grant(True, FLOW, FLOW, "", "", "", place)

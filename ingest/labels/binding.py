@@ -1,0 +1,192 @@
+"""Labels + graph -> ``Bound``: which statement is about which vertex or flow.
+
+In: label files and a flow graph. Out: statements by index. A name that matches nothing is an error with the nearest
+names that exist, never silence (rule S11).
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import replace
+from difflib import get_close_matches
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.durations import ordered
+from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, shown
+from rosprivacy.analysis.model import Bound, Diagnostic, Severity
+from rosprivacy.analysis.non_ros import by_kind
+from rosprivacy.ingest.labels.label_file import OURS
+from rosprivacy.ingest.policies.names import covers, is_pattern, matcher
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+    from rosprivacy.analysis.model import FlowGraph, NonRosFacts, Statement
+    from rosprivacy.ingest.labels.entries import Entry, FlowEntry
+    from rosprivacy.ingest.labels.label_file import Labels
+
+NEAREST = 3
+COMPARISONS = 50_000  # of names, in the search for the nearest; a label file of another system is refused soon
+
+
+def bind(graph: FlowGraph, labels: Sequence[Labels]) -> Bound:
+    """Join label files to a graph.
+
+    Raises
+    ------
+    InputErrors
+        With every name that matches nothing, but for shipped files.
+    """
+    bound, problems = join(graph, labels)
+    if problems:
+        raise InputErrors(problems)
+    return bound
+
+
+def join(graph: FlowGraph, labels: Sequence[Labels]) -> tuple[Bound, list[InputError]]:
+    """Join label files to a graph as far as its names go; return also what matches nothing."""
+    names = _Names(graph)
+    elements: dict[int, list[Statement]] = defaultdict(list)
+    flows: dict[int, list[Statement]] = defaultdict(list)
+    through: dict[tuple[int, tuple[str, ...]], tuple[int, ...]] = {}
+    subjects: dict[int, set[str]] = defaultdict(set)
+    leaving = _leaving(graph)
+    problems: list[InputError] = []
+    for file in labels:
+        for entry in file.entries:
+            vertices = names.matching(entry.name, entry.kinds)
+            if not vertices and not file.shipped:
+                problems.append(names.unmatched(entry))
+            for vertex in vertices:
+                elements[vertex] += entry.statements
+                if entry.subjects:
+                    subjects[vertex].update(entry.subjects)
+            problems += _through(graph, leaving, entry, vertices, through)
+        for flow in file.flows:
+            indices = _flows(graph, leaving, names, flow)
+            if not indices:
+                problems.append(names.no_flow(flow))
+            for index in indices if flow.statements else ():
+                flows[index] += flow.statements
+    outside = _outside(graph, labels)
+    for vertex in outside:
+        elements[vertex] += by_kind(graph.elements[vertex])
+    bound = Bound(
+        {vertex: tuple(said) for vertex, said in sorted(elements.items())},
+        {index: tuple(said) for index, said in sorted(flows.items())},
+        through,
+        outside,
+        subjects={vertex: tuple(sorted(groups)) for vertex, groups in sorted(subjects.items())},
+    )
+    return bound, problems
+
+
+def unused(graph: FlowGraph, labels: Iterable[Labels]) -> Iterator[Diagnostic]:
+    """Yield a notice for each name of a user's own file of standard channels that matches nothing (rule S13)."""
+    names = _Names(graph)
+    for file in labels:
+        for entry in file.entries if file.shipped and not file.file.startswith(OURS) else ():
+            if not names.matching(entry.name, entry.kinds):
+                error = names.unmatched(entry)
+                yield Diagnostic(entry.place, Severity.NOTICE, f"{error.problem}; {error.hint}")
+
+
+def _outside(graph: FlowGraph, labels: Iterable[Labels]) -> dict[int, NonRosFacts]:
+    """What is stated about the elements outside ROS, and how long they may keep what they hold."""
+    files = list(labels)
+    ranked = sorted(files, key=lambda file: file.own)
+    stated = {(entry.kind, entry.name): entry.outside for file in ranked for entry in file.elements}
+    limits = ordered({limit for file in files for limit in file.limits})
+    return {
+        vertex: replace(stated[element.kind, element.name], limits=limits)
+        for vertex, element in enumerate(graph.elements)
+        if (element.kind, element.name) in stated
+    }
+
+
+class _Names:
+    """The vertices of a graph by kind and name."""
+
+    def __init__(self, graph: FlowGraph) -> None:
+        self.comparisons = 0
+        self.by_kind: dict[str, dict[str, list[int]]] = defaultdict(lambda: defaultdict(list))
+        for vertex, element in enumerate(graph.elements):
+            self.by_kind[element.kind][element.name].append(vertex)
+
+    def matching(self, name: str, kinds: Iterable[str] | None = None) -> list[int]:
+        """The vertices of some kinds (of all by default) that a name or glob covers wholly."""
+        found = []
+        for kind in self.by_kind if kinds is None else kinds:
+            known = self.by_kind.get(kind, {})
+            if not is_pattern(name):
+                found += known.get(name, [])
+                continue
+            plain = matcher(name)
+            for other, vertices in known.items():
+                if covers(name, other) if is_pattern(other) else plain(other):
+                    found += vertices
+        return sorted(found)
+
+    def unmatched(self, entry: Entry) -> LabelError:
+        """The error for a name that matches nothing, with the nearest names."""
+        close = self._close(entry.name, entry.kinds)
+        what = f"{shown(entry.name)!r} matches no {' or '.join(entry.kinds)} of the policies"
+        elsewhere = [kind for kind in self.by_kind if kind not in entry.kinds and entry.name in self.by_kind[kind]]
+        if elsewhere:
+            hint = f"there is a {elsewhere[0]} of that name: move it to the section for it"
+        elif close:
+            hint = f"did you mean {' or '.join(map(shown, close))}?"
+        else:
+            hint = "see the names with rosprivacy labels --init"
+        return LabelError(entry.place.file, entry.place.line, what, hint)
+
+    def no_flow(self, entry: FlowEntry) -> LabelError:
+        """The error for a flow that is not there."""
+        hints = []
+        for end in (entry.source, entry.target):
+            close = [] if self.matching(end) else self._close(end, self.by_kind)
+            hints += [f"instead of {shown(end)} did you mean {' or '.join(map(shown, close))}?"] if close else []
+        what = f"no flow goes from {shown(entry.source)!r} to {shown(entry.target)!r}"
+        hint = " ".join(hints) or "name two elements with a flow between them, in its direction"
+        return LabelError(entry.place.file, entry.place.line, what, hint)
+
+    def _close(self, name: str, kinds: Iterable[str]) -> list[str]:
+        """The nearest names, as long as looking for them does not take too long."""
+        known = [other for kind in kinds for other in self.by_kind.get(kind, {})]
+        self.comparisons += len(known)
+        return get_close_matches(name, known, n=NEAREST, cutoff=0.5) if self.comparisons <= COMPARISONS else []
+
+
+def _flows(graph: FlowGraph, leaving: Mapping[int, Sequence[int]], names: _Names, entry: FlowEntry) -> list[int]:
+    sources, targets = (names.matching(end.name, (end.kind,) if end.kind else None) for end in entry.ends)
+    wanted = set(targets)
+    return [index for source in sources for index in leaving.get(source, ()) if graph.flows[index].target in wanted]
+
+
+def _leaving(graph: FlowGraph) -> dict[int, list[int]]:
+    leaving: dict[int, list[int]] = defaultdict(list)
+    for index, flow in enumerate(graph.flows):
+        leaving[flow.source].append(index)
+    return leaving
+
+
+def _through(
+    graph: FlowGraph, leaving: Mapping[int, Sequence[int]], entry: Entry, vertices: Sequence[int],
+    through: dict[tuple[int, tuple[str, ...]], tuple[int, ...]],
+) -> Iterable[InputError]:  # fmt: skip
+    """Find the flows of a source that is one only through some channels; a channel it does not write is an error."""
+    for expressions in {statement.through for statement in entry.statements if statement.through}:
+        written: set[str] = set()
+        for vertex in vertices:
+            flows = {index: graph.elements[graph.flows[index].target].name for index in leaving.get(vertex, ())}
+            written.update(flows.values())
+            chosen = [index for index, name in flows.items() if any(covers(e, name) for e in expressions)]
+            through[vertex, expressions] = tuple(chosen)
+        for name in expressions:
+            if vertices and not any(covers(name, channel) for channel in written):
+                close = get_close_matches(name, sorted(written), n=NEAREST, cutoff=0.5)
+                hint = (
+                    f"did you mean {' or '.join(map(shown, close))}?" if close else "name a channel that it writes to"
+                )
+                what = f"{shown(entry.name)!r} writes to no channel {shown(name)!r}"
+                yield LabelError(entry.place.file, entry.place.line, what, hint)

@@ -1,0 +1,99 @@
+"""What label files say, before it is joined to a graph: entries about elements and flows, and which of two outranks.
+
+Made by ``label_reader.py``; ``binding.py`` joins it to the graph.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.model import GLOB, NAME, SEGMENT, STANDARD
+from rosprivacy.ingest.policies.names import is_pattern, literals
+
+if TYPE_CHECKING:
+    from rosprivacy.analysis.model import Place, Statement
+
+EXACT = 1_000_000  # a name outranks every glob
+PROPOSED, SHIPPED, OWN = -1, STANDARD, 1  # tiers: infrastructure, standard channels, a person's own word (rule S13)
+ROBOT = EXACT // 2  # added for a robot of a fleet, which outranks its model between names or between globs (rule S7)
+FORMER_ROBOT = 2 * EXACT  # what databases of earlier versions have added: there a robot's glob outranked a model's name
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """What is said of the elements of some kinds that a name or glob covers.
+
+    Attributes
+    ----------
+    subjects
+        Of a source: whom its data are about, in a person's words.
+    """
+
+    kinds: tuple[str, ...]
+    name: str
+    place: Place
+    statements: tuple[Statement, ...]
+    subjects: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class End:
+    """An end of a flow: a name or a glob, and which kind of element it means, where that is said (rule S9)."""
+
+    name: str
+    kind: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class FlowEntry:
+    """What is said of the flows from one element to another, by names or globs.
+
+    One with an end outside ROS is stated by it; others are in the policies.
+
+    Attributes
+    ----------
+    kinds
+        Of source and target, where the line says it; else empty.
+    """
+
+    source: str
+    target: str
+    place: Place
+    statements: tuple[Statement, ...]
+    kinds: tuple[str, str] = ("", "")
+
+    @property
+    def ends(self) -> tuple[End, End]:
+        """Source and target."""
+        return End(self.source, self.kinds[0]), End(self.target, self.kinds[1])
+
+
+def specificity(name: str) -> int:
+    """Return the rank of a name among those that cover an element: the more that is spelt out, the higher.
+
+    >>> specificity("/robot/*") < specificity("/robot/cam*") < specificity("/a")
+    True
+    """
+    return literals(name) if is_pattern(name) else EXACT
+
+
+def as_ranked_now(stored: int) -> int:
+    """Return the rank of a name as a database has it, which an earlier version may have written.
+
+    >>> as_ranked_now(FORMER_ROBOT + 4) == ROBOT + 4, as_ranked_now(EXACT)
+    (True, 1000000)
+    """
+    return stored - FORMER_ROBOT + ROBOT if stored >= FORMER_ROBOT else stored
+
+
+def naming(name: str) -> str:
+    """Return how a label names elements: by a full name, a glob with its last segment written out, or another glob.
+
+    >>> naming("/camera/rosout"), naming("*/rosout"), naming("/camera/*"), naming("*rosout")
+    ('name', 'segment', 'glob', 'glob')
+    """
+    if not is_pattern(name):
+        return NAME
+    _, slash, last = name.rpartition("/")
+    return SEGMENT if slash and last and not is_pattern(last) else GLOB

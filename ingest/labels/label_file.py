@@ -1,0 +1,117 @@
+"""Label files -> ``Labels``: what a person says of elements, flows and kinds of data.
+
+In: YAML or JSON in the format of the documentation, or the paper's JSON with its six lists. Out: statements, each
+with its line and rank, not yet joined to a graph (``binding.py`` does that). All problems of a file are raised at
+once.
+
+Source: the paper, section II-A, for the roles; rules S7, S8 and S13 for what they mean.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.errors import InputError, InputErrors, LabelError
+from rosprivacy.ingest.labels.entries import OWN, PROPOSED, ROBOT, SHIPPED
+from rosprivacy.ingest.labels.label_reader import LabelReader, check_mundane
+from rosprivacy.ingest.reading import yaml_values
+
+if TYPE_CHECKING:
+    from rosprivacy.analysis.model import Diagnostic
+    from rosprivacy.ingest.labels.entries import Entry, FlowEntry
+    from rosprivacy.ingest.labels.non_ros_reader import Limit, Stated
+    from rosprivacy.ontology.vocabulary import Vocabulary
+
+OURS, SHIPPED_FILES = "rosprivacy:", ("standard", "infrastructure")
+STANDARD, INFRASTRUCTURE = (f"{OURS}{name}" for name in SHIPPED_FILES)
+
+
+@dataclass(frozen=True, slots=True)
+class Labels:
+    """One label file.
+
+    Attributes
+    ----------
+    shipped
+        Whether it comes with the program: then a name that matches nothing is no error.
+    elements
+        Elements outside ROS (rule S9).
+    limits
+        How long kinds of data may be kept at most.
+    own
+        Whether it is about one robot of a fleet, and outranks its model's.
+    """
+
+    file: str
+    sha256: str
+    entries: tuple[Entry, ...]
+    flows: tuple[FlowEntry, ...] = ()
+    diagnostics: tuple[Diagnostic, ...] = ()
+    shipped: bool = False
+    elements: tuple[Stated, ...] = ()
+    limits: tuple[Limit, ...] = ()
+    own: bool = False
+
+
+def read_labels(
+    file: str, vocabulary: Vocabulary, *, category: str = "PersonalData", shipped: bool = False, own: bool = False
+) -> Labels:
+    """Read one label file.
+
+    Parameters
+    ----------
+    file
+        Path; or ``rosprivacy:standard`` or ``rosprivacy:infrastructure``, which come with the program.
+    category
+        What the paper's six lists are about; of no effect on other files.
+    shipped
+        Read it as one that comes with the program: of lower rank, and free to name what is not there.
+    own
+        It is about one robot of a fleet, and outranks what its model's files say.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the file, each a ``LabelError`` of one line.
+    """
+
+    def fail(line: int, problem: str, hint: str) -> InputError:
+        return LabelError(file, line, problem, hint)
+
+    name = file.removeprefix(OURS)
+    shipped = shipped or (file.startswith(OURS) and name in SHIPPED_FILES)
+    try:
+        top, data = yaml_values.read(_shipped_path(name) if file.startswith(OURS) and shipped else file, fail)
+    except InputError as error:
+        raise InputErrors([error]) from None
+    tier = OWN if not shipped else PROPOSED if file == INFRASTRUCTURE else SHIPPED
+    reader = LabelReader(file, vocabulary, category, tier, ROBOT if own else 0)
+    reader.document(top)
+    if shipped:
+        check_mundane(reader, top)
+    if reader.problems:
+        raise InputErrors(reader.problems)
+    return Labels(
+        file,
+        hashlib.sha256(data).hexdigest(),
+        tuple(reader.entries),
+        tuple(reader.flows),
+        tuple(reader.diagnostics),
+        shipped,
+        tuple(reader.elements),
+        tuple(reader.limits),
+        own,
+    )
+
+
+def shipped_text(name: str) -> str:
+    """Return a label file that comes with the program, as text: one of ``SHIPPED_FILES``."""
+    return Path(_shipped_path(name)).read_text("utf-8")
+
+
+def _shipped_path(name: str) -> str:
+    return str(files("rosprivacy.ingest.labels").joinpath(f"{name}.yaml"))

@@ -1,0 +1,349 @@
+"""The format of label files: YAML values -> entries, with every problem (rules S7, S8, S9).
+
+In: the values of a file, each with its line. Out: a ``LabelReader`` with what it read. Fleet files have sections of the
+same format, and read them with it.
+
+Source: the paper, section II-A, for the roles and the six lists.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.errors import InputError, LabelError, shown
+from rosprivacy.analysis.kernel.ranks import NONE_OF
+from rosprivacy.analysis.model import GLOB, NAME, Diagnostic, Method, Place, Severity, Statement
+from rosprivacy.ingest.labels.entries import EXACT, SHIPPED, End, Entry, FlowEntry, naming, specificity
+from rosprivacy.ingest.labels.non_ros_reader import is_non_ros, read_element, read_limits
+from rosprivacy.ingest.policies.names import LONGEST_NAME
+from rosprivacy.ingest.reading.format_reader import FileReader
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rosprivacy.ingest.labels.non_ros_reader import Limit, Stated
+    from rosprivacy.ingest.reading.yaml_values import Value
+    from rosprivacy.ontology.vocabulary import Vocabulary
+
+SECTIONS = {
+    "nodes": ("node",),
+    "channels": ("topic", "service", "action"),
+    "topics": ("topic",),
+    "services": ("service",),
+    "actions": ("action",),
+}
+SIX_LISTS = ("source", "leak", "conduit", "sanitizer", "sensitive", "mundane")
+NODE_KEYS = ("source", "leak", "sanitizer", "conduit", "derives", "subjects", "note")
+SAYS_NOTHING = ("subjects", "note")  # of what data does
+CHANNEL_KEYS = ("only", "never", "note")
+END_KINDS = ("node", "topic", "service", "action")
+FLOW_KEYS = ("from", "to", "only", "never", "note")
+OUTSIDE = ("elements", "limits")
+NONE = "none"  # in place of categories: takes back what labels of lower rank say (rule S7)
+LONGEST_GROUP = 100  # characters of a group of persons
+
+
+@dataclass
+class LabelReader(FileReader):
+    """Walks the file once, from the outside in."""
+
+    vocabulary: Vocabulary
+    category: str
+    tier: int
+    above: int = 0
+    diagnostics: list[Diagnostic] = field(default_factory=list)
+    entries: list[Entry] = field(default_factory=list)
+    flows: list[FlowEntry] = field(default_factory=list)
+    elements: list[Stated] = field(default_factory=list)
+    limits: list[Limit] = field(default_factory=list)
+    error: type[InputError] = field(default=LabelError, kw_only=True)
+
+    def rank(self, specific: int) -> tuple[int, int]:
+        """Return the rank of a statement."""
+        return (self.tier, specific + self.above)
+
+    def document(self, top: Value) -> None:
+        """Read a label file."""
+        if top.kind != "map":
+            self.problem(top.line, f"a label file is a map, not a {top.kind}", "begin with 'labels: 1'")
+        elif top.get("labels") is None and any(top.get(key) for key in SIX_LISTS):
+            self._six_lists(top)
+        else:
+            self._labels(top)
+
+    def _labels(self, top: Value) -> None:
+        self.version(top, "labels", "label")
+        for key, line, value in self.entries_of(top, ("labels", *SECTIONS, *OUTSIDE, "flows")):
+            if key in ("flows", *OUTSIDE):
+                self.outside(key, line, value)
+            elif key in SECTIONS:
+                self._section(key, line, value)
+
+    def outside(self, section: str, line: int, value: Value) -> None:
+        """Read a section that fleet files have too."""
+        if section == "limits":
+            self.limits += read_limits(self, line, value)
+        elif section == "flows":
+            for item in self.list_of(value, "flows"):
+                self._flow(item)
+        elif value.kind not in ("map", "empty"):
+            self.problem(line, f"elements is a map, not a {value.kind}", "write 'name: {kind: storage}'")
+        for name, at, facts in value.entries if section == "elements" else ():
+            self._element(name, at, facts)
+
+    def _element(self, name: str, line: int, value: Value) -> None:
+        stated = read_element(self, name, line, value, NODE_KEYS)
+        if stated is None:
+            return
+        labels = replace(value, entries=tuple(entry for entry in value.entries if entry[0] in NODE_KEYS))
+        statements = tuple(self._node(labels, stated.place, self.rank(EXACT)))
+        if stated.kind == "device" and all(key in SAYS_NOTHING for key, *_ in labels.entries):
+            self.problem(line, f"device {shown(name)!r} does nothing", "say what comes from it: source: [Voice]")
+        self.elements.append(stated)
+        self.entries.append(Entry((stated.kind,), name, stated.place, statements, self._subjects(labels)))
+
+    def _section(self, section: str, line: int, value: Value) -> None:
+        if value.kind == "empty":
+            return
+        if value.kind != "map":
+            self.problem(line, f"{section} is a map from names to labels, not a {value.kind}", "write '/name: label'")
+        for name, at, label in value.entries:
+            if not name.startswith(("/", "*", "?", "[")):
+                self.problem(at, f"name {shown(name)!r} is not absolute", "begin it with /")
+                continue
+            if len(name) > LONGEST_NAME:
+                self.problem(at, f"a name of {len(name)} characters", f"no more than {LONGEST_NAME} are read")
+                continue
+            rank = self.rank(specificity(name))
+            read = self._node if section == "nodes" else self._channel
+            statements = tuple(replace(s, naming=naming(name)) for s in read(label, Place(self.file, at), rank))
+            subjects = self._subjects(label) if section == "nodes" else ()
+            self.entries.append(Entry(SECTIONS[section], name, Place(self.file, at), statements, subjects))
+
+    def _node(self, label: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
+        if label.kind == "empty":  # a line of --init that nobody has filled in yet
+            return
+        if label.kind == "text" and label.text == "conduit":
+            yield Statement("conduit", (), rank, place)
+            return
+        if label.kind != "map":
+            what = f"label {shown(label.text or label.kind)!r} on a node"
+            self.problem(place.line, what, "write conduit, or {source: [Video]}, {leak: […]}, {sanitizer: {…}}, …")
+            return
+        for key, line, value in self.entries_of(label, NODE_KEYS):
+            at = Place(self.file, line)
+            if value.kind == "text" and value.text == NONE and key in NONE_OF:
+                yield Statement(NONE_OF[key], (), rank, at)
+            elif key == "source":
+                yield from self._source(value, at, rank)
+            elif key in ("leak", "conduit"):
+                for name in self._categories(value, key):
+                    yield Statement(key, (name,), rank, at)
+            elif key == "sanitizer":
+                yield from self._sanitizer(value, at, rank)
+            elif key == "derives":
+                yield from self._derives(value, at, rank)
+
+    def _source(self, value: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
+        if value.kind != "map":
+            for name in self._categories(value, "source"):
+                yield Statement("source", (name,), rank, place)
+            return
+        self._not_empty(value, "source")
+        for written, line, channels in value.entries:
+            name = self.kind_of_data(written, line)
+            through = tuple(
+                sorted({self._name(item) for item in self.list_of(channels, f"source of {shown(written)}")})
+            )
+            if not through:
+                self.problem(line, f"source of {shown(written)} names no channel", "name them: [/topic]")
+            yield Statement("source", (name,), rank, place, through=through)
+
+    def _sanitizer(self, value: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
+        if value.kind != "map":
+            for name in self._categories(value, "sanitizer"):
+                yield Statement("sanitizer", (name,), rank, place, Method.PSEUDONYMISE, stated=False)
+            return
+        self._not_empty(value, "sanitizer")
+        for written, line, method in value.entries:
+            name = self.kind_of_data(written, line)
+            if method.kind == "empty":
+                yield Statement("sanitizer", (name,), rank, place, Method.PSEUDONYMISE, stated=False)
+            elif method.kind == "text" and method.text in list(Method):
+                yield Statement("sanitizer", (name,), rank, place, Method(method.text))
+            else:
+                what = f"sanitizer method {shown(method.text or method.kind)!r}"
+                self.problem(method.line, what, f"one of {', '.join(Method)}")
+
+    def _derives(self, value: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
+        if value.kind == "empty":
+            self.problem(value.line, "derives takes a list, not nothing", "write [{from: Video, to: FaceTemplate}]")
+        for item in self.list_of(value, "derives"):
+            if item.kind != "map":
+                self.problem(
+                    item.line, f"a derivation is a map, not a {item.kind}", "write {from: Video, to: FaceTemplate}"
+                )
+                continue
+            ends = {key: self._category_of(end) for key, _, end in self.entries_of(item, ("from", "to"))}
+            if len(ends) < len(("from", "to")):
+                self.problem(item.line, "a derivation needs from and to", "write {from: Video, to: FaceTemplate}")
+            elif all(ends.values()):
+                yield Statement("derivation", (ends["from"],), rank, place, to=ends["to"])
+
+    def _subjects(self, label: Value) -> tuple[str, ...]:
+        """Whom the data of a source are about: groups of persons, as a person calls them."""
+        value = label.get("subjects")
+        if value is None:
+            return ()
+        if not value.items:
+            self.problem(value.line, "subjects names nobody", "write [residents, staff], or remove it")
+        for item in value.items:
+            if item.kind != "text" or not item.text.strip() or len(item.text) > LONGEST_GROUP:
+                what = f"{shown(item.text) or f'a {item.kind}'!r} where a group of persons is named"
+                self.problem(item.line, what, f"write a word or two, at most {LONGEST_GROUP} characters")
+        return tuple(sorted({item.text.strip() for item in value.items}))
+
+    def _channel(self, label: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
+        if label.kind == "empty":
+            return
+        if label.kind == "text" and label.text in ("mundane", "sensitive"):
+            yield Statement(label.text, (), rank, place, shipped=self.tier <= SHIPPED)
+            return
+        if label.kind != "map":
+            what = f"label {shown(label.text or label.kind)!r} on a channel"
+            self.problem(place.line, what, "write mundane, sensitive, {only: […]} or {never: […]}")
+            return
+        yield from self._restrictions(label, CHANNEL_KEYS, rank)
+
+    def _restrictions(self, label: Value, keys: tuple[str, ...], rank: tuple[int, int]) -> Iterable[Statement]:
+        """``only`` and ``never`` of a channel or flow."""
+        named: set[str] = set()
+        for key, line, value in self.entries_of(label, keys):
+            if key in ("only", "never"):
+                names = tuple(self._categories(value, key))
+                for name in sorted(named.intersection(names)):
+                    self.problem(line, f"{name} is under only and under never", "name it under one of them")
+                named.update(names)
+                if names:
+                    yield Statement(key, names, rank, Place(self.file, line))
+
+    def _flow(self, item: Value) -> None:
+        if item.kind != "map":
+            self.problem(item.line, f"a flow is a map, not a {item.kind}", "write {from: /a, to: /b, never: [Video]}")
+            return
+        place = Place(self.file, item.line)
+        ends = {key: self.end(value) for key, _, value in item.entries if key in ("from", "to")}
+        names = [end.name for end in ends.values()]
+        rank = self.rank(sum(map(specificity, names)))
+        how = GLOB if any(naming(name) != NAME for name in names) else NAME
+        statements = tuple(replace(s, naming=how) for s in self._restrictions(item, FLOW_KEYS, rank))
+        if len(ends) < len(("from", "to")):
+            self.problem(item.line, "a flow needs from and to", "write {from: /a, to: /b, never: [Video]}")
+            return
+        stated = self.states(names)
+        if not stated and not (item.get("only") or item.get("never")):
+            hint = "write {from: /a, to: /b, never: [Video]}; what policies do not know goes through an element"
+            self.problem(item.line, "a flow between nodes and channels needs only or never", hint)
+            return
+        if statements or (stated and all(names)):
+            source, target = ends["from"], ends["to"]
+            self.flows.append(FlowEntry(source.name, target.name, place, statements, (source.kind, target.kind)))
+
+    def states(self, ends: Iterable[str]) -> bool:
+        """Return whether a line about a flow states it; flows between nodes and channels are in the policies."""
+        return any(map(is_non_ros, ends))
+
+    def _six_lists(self, top: Value) -> None:
+        """The paper's JSON: six lists of names, one kind of data; there a sanitizer ends it (rule S8)."""
+        name = self.kind_of_data(self.category, 0)
+        for role, line, value in self.entries_of(top, SIX_LISTS):
+            kinds = SECTIONS["channels" if role in ("sensitive", "mundane") else "nodes"]
+            for item in self.list_of(value, role):
+                element = self._name(item)
+                place, rank = Place(self.file, item.line), self.rank(specificity(element))
+                method = Method.ANONYMISE if role == "sanitizer" else None
+                statement = Statement(role, (name,), rank, place, method, naming=naming(element))
+                self.entries.append(Entry(kinds, element, place, (statement,)))
+            if role == "sanitizer" and value.items:
+                message = "a sanitizer of the paper's six lists ends the category; the method is not stated"
+                self.diagnostics.append(Diagnostic(Place(self.file, line), Severity.NOTICE, message))
+
+    def entries_of(self, value: Value, known: tuple[str, ...]) -> Iterable[tuple[str, int, Value]]:
+        """Return the entries of a map but for notes, those with unknown keys reported."""
+        for key, line, child in super().entries_of(value, known):
+            if key != "note":
+                yield key, line, child
+            elif child.kind != "text":
+                self.problem(line, f"note takes text, not a {child.kind}", "write it, or remove it")
+
+    def _not_empty(self, value: Value, what: str) -> None:
+        if not value.entries:
+            self.problem(value.line, f"{what} names no category", "name one, such as {Video: …}, or remove it")
+
+    def _categories(self, value: Value, what: str) -> Iterable[str]:
+        if value.kind == "empty" or (value.kind == "list" and not value.items):
+            self.problem(value.line, f"{what} names no category", "name one, such as [Video], or remove it")
+        for item in self.list_of(value, what):
+            name = self._category_of(item)
+            if name:
+                yield name
+
+    def _category_of(self, value: Value) -> str:
+        if value.kind != "text":
+            self.problem(value.line, f"a {value.kind} where a category is named", "write its name, such as Video")
+            return ""
+        return self.kind_of_data(value.text, value.line)
+
+    def kind_of_data(self, written: str, line: int) -> str:
+        """Return the category's name; rule S11: one that is not there is an error with the nearest."""
+        category = self.vocabulary.find(written)
+        if category is None:
+            self.problem(line, f"unknown category {shown(written)!r}", self.vocabulary.hint(written))
+            return ""
+        if new := self.vocabulary.respelt_as(written):
+            message = f"{shown(written)} is a former spelling; DPV spells it {new}"
+            self.diagnostics.append(Diagnostic(Place(self.file, line), Severity.NOTICE, message))
+        return category.name
+
+    def end(self, value: Value) -> End:
+        """Return an end of a flow: a name or glob of ROS, with its kind where that is said, or a name outside ROS."""
+        if value.kind == "map":
+            return self._end_of_kind(value)
+        if value.kind == "text" and value.text and is_non_ros(value.text):
+            return End(value.text)
+        return End(self._name(value))
+
+    def _end_of_kind(self, value: Value) -> End:
+        entries = list(self.entries_of(value, END_KINDS))
+        if len(entries) != 1:
+            self.problem(value.line, "the end of a flow names one element", "write {topic: /map}, or {node: /map}, …")
+            return End("")
+        ((kind, _, name),) = entries
+        return End(self.name_on_flow(name), kind)
+
+    def name_on_flow(self, value: Value) -> str:
+        """Return the name or glob of ROS at the end of a flow."""
+        return self._name(value)
+
+    def _name(self, value: Value) -> str:
+        if value.kind != "text" or not value.text.startswith(("/", "*", "?", "[")):
+            self.problem(value.line, f"{shown(value.text or value.kind)!r} is not an absolute name", "begin it with /")
+        elif len(value.text) > LONGEST_NAME:
+            what = f"a name of {len(value.text)} characters"
+            self.problem(value.line, what, f"no more than {LONGEST_NAME} are read")
+            return ""
+        return value.text
+
+
+def check_mundane(reader: LabelReader, top: Value) -> None:
+    """Refuse what a file of standard channels says beside that channels are mundane (rule S13)."""
+    hint = "write channels: {/name: mundane} only; other labels go into a file for --labels"
+    for key, line, _ in top.entries if top.kind == "map" else ():
+        if key in ("nodes", "flows", *OUTSIDE, *SIX_LISTS):
+            reader.problem(line, f"{key} in a file of standard channels", hint)
+    for entry in reader.entries:
+        for statement in entry.statements if "node" not in entry.kinds else ():
+            if statement.role != "mundane":
+                what = f"{shown(entry.name)!r} is {statement.role} in a file of standard channels"
+                reader.problem(statement.place.line, what, hint)

@@ -1,0 +1,144 @@
+"""Grants set to DENY: which lines would cut some flows, and what else would go with them (rules S3 to S5).
+
+In: policies, the graph that they make, flows. Out: ``Denial``s; policies with some grants set to DENY. A DENY holds for
+its policy, enclave and direction, and for all that its name covers; it takes names out of the enclave's wildcards.
+One that sros2 does not read takes nothing away: there only the ALLOW goes that it takes the place of (rule S5).
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.mitigation.candidates import Denial
+from rosprivacy.ingest.policies.names import covers, endpoints, is_pattern, overlaps
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Iterator, Sequence
+
+    from rosprivacy.analysis.model import FlowGraph, Grant, Place, Policy
+    from rosprivacy.ingest.policies.names import Endpoint
+
+# policy, enclave, whether it writes, DDS name or expression; the line, where sros2 does not read it (rule S5)
+Part = tuple[str, str, bool, str, str]
+
+
+def with_denied(policies: Iterable[Policy], grants: Collection[Grant]) -> tuple[Policy, ...]:
+    """Return policies with some grants set to DENY."""
+    chosen = set(grants)
+    return tuple(
+        replace(policy, grants=tuple(replace(g, allow=False) if g in chosen else g for g in policy.grants))
+        for policy in policies
+    )
+
+
+def denials(policies: Iterable[Policy], graph: FlowGraph, flows: Collection[int]) -> tuple[Denial, ...]:
+    """Return the grants that would cut or touch some flows if they were set to DENY, one of those that do the same.
+
+    Grants are taken one by one, for their enclave; a line that several profiles include also as a whole; and for a
+    flow that none of these cuts (its node stands in several enclaves, or an action is granted by its parts) a set.
+
+    Notes
+    -----
+    O(lines · flows) within an enclave for lines with wildcards; the others are looked up by name.
+    """
+    rights = _Rights(graph)
+    wanted = sorted(flows)
+    concerned = {part for f in wanted for part in rights.parts[f]}
+    first = {grant for f in wanted for grant in graph.flows[f].grants}
+    lines = [grant for policy in policies for grant in policy.grants if grant.allow]
+    found: dict[frozenset[Part], Denial] = {}
+    ordered = sorted(dict.fromkeys(lines), key=lambda grant: grant not in first)
+    by_line: dict[tuple[Place, str, str], list[Grant]] = defaultdict(list)
+    for grant in ordered:
+        by_line[grant.place, grant.role, grant.name].append(grant)
+    for some in (*([grant] for grant in ordered), *by_line.values()):
+        parts = frozenset(part for grant in some for part in _denied(grant))
+        if parts not in found and not concerned.isdisjoint(rights.touched(parts)):
+            found[parts] = rights.denial(tuple(some), parts)
+    single = list(found.items())
+    for f in wanted:
+        if rights.parts[f] and not any(f in denial.flows for _, denial in single):
+            several = _together(rights.parts[f], single)
+            parts = frozenset(part for one, _ in several for part in one)
+            grants = tuple(grant for _, denial in several for grant in denial.grants)
+            found.setdefault(parts, rights.denial(grants, parts))
+    return tuple(found.values())
+
+
+def _denied(grant: Grant) -> frozenset[Part]:
+    """What an enclave may no longer do when a line is set to DENY."""
+    return frozenset(_part(grant, end) for end in endpoints(grant.role, grant.kind, grant.name))
+
+
+def _part(grant: Grant, end: Endpoint) -> Part:
+    line = f"{grant.place} {grant.role} {grant.name} {grant.node}" if grant.dead else ""
+    return (grant.policy, grant.enclave, end.writes, end.dds, line)
+
+
+def _counts(one: Part, part: Part) -> bool:
+    """Whether a denial says anything about a part: one that sros2 does not read is about its own line only."""
+    return one[:3] == part[:3] and one[4] in ("", part[4])
+
+
+def _covered(part: Part, denied: Iterable[Part]) -> bool:
+    return any(_counts(one, part) and covers(one[3], part[3]) for one in denied)
+
+
+def _touched(part: Part, denied: Iterable[Part]) -> bool:
+    return any(_counts(one, part) and overlaps(one[3], part[3]) for one in denied)
+
+
+def _together(
+    parts: Iterable[Part], single: Sequence[tuple[frozenset[Part], Denial]]
+) -> list[tuple[frozenset[Part], Denial]]:
+    """Lines that together deny all parts of a flow: for each part that is left, the first that covers it."""
+    chosen: list[tuple[frozenset[Part], Denial]] = []
+    for part in parts:
+        if not any(_covered(part, one) for one, _ in chosen):
+            chosen.append(next(pair for pair in single if _covered(part, pair[0])))
+    return chosen
+
+
+class _Rights:
+    """By flow, what of which enclave allows it."""
+
+    def __init__(self, graph: FlowGraph) -> None:
+        self.graph = graph
+        self.parts = [tuple(dict.fromkeys(self._of(f))) for f in range(len(graph.flows))]
+        self.by_part: dict[Part, list[int]] = defaultdict(list)
+        self.matches: dict[int, list[int]] = defaultdict(list)
+        for f, parts in enumerate(self.parts):
+            for part in parts:
+                self.by_part[part].append(f)
+            flow = graph.flows[f]
+            if flow.role == "matches":
+                self.matches[flow.source].append(f)
+                self.matches[flow.target].append(f)
+        self.patterns = [part for part in self.by_part if is_pattern(part[3]) or part[4]]
+
+    def _of(self, f: int) -> Iterator[Part]:
+        flow = self.graph.flows[f]
+        writes = self.graph.elements[flow.target].is_channel
+        channel = self.graph.elements[flow.target if writes else flow.source]
+        for grant in flow.grants:
+            for end in endpoints(grant.role, grant.kind, grant.name):
+                if (end.writes, end.kind, end.name, end.leg) == (writes, channel.kind, channel.name, channel.leg):
+                    yield _part(grant, end)
+
+    def touched(self, denied: Iterable[Part]) -> Iterator[Part]:
+        """The parts that a denial touches."""
+        for one in denied:
+            near = self.by_part if is_pattern(one[3]) else dict.fromkeys((one, *self.patterns))
+            yield from (part for part in near if part in self.by_part and _touched(part, (one,)))
+
+    def denial(self, grants: tuple[Grant, ...], denied: frozenset[Part]) -> Denial:
+        """What goes when some lines are set to DENY."""
+        flows = {f for part in self.touched(denied) for f in self.by_part[part]}
+        gone = {f for f in flows if all(_covered(part, denied) for part in self.parts[f])}
+        touched = flows - gone
+        for f in flows:
+            ends = self.graph.flows[f].source, self.graph.flows[f].target
+            touched |= {other for end in ends if self.graph.elements[end].pattern for other in self.matches[end]}
+        return Denial(grants, frozenset(gone), frozenset(touched))

@@ -1,0 +1,103 @@
+"""What shows only when policies are seen together: enclaves that several state, names that no ROS node can have.
+
+In: all policies of a robot. Out: warnings, few and sorted (rules S4, S5).
+
+Source: ROS 2's ``rmw_validate_full_topic_name``, which refuses such a name when a node starts; sros2 writes it into the
+permissions all the same, where it meets no other name. A doubled underscore is not refused.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from difflib import get_close_matches
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.model import REFUSED_NAME, SHARED_ENCLAVE, Diagnostic, Place, Severity
+from rosprivacy.ingest.policies.names import is_pattern
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+    from rosprivacy.analysis.model import Grant, Policy
+
+LONGEST = 247  # characters that the middlewares of ROS 2 take
+NAMED = 3  # of the enclaves that two files share
+COMPARED = 50  # refused names that are compared with all others
+
+_WILDCARD = re.compile(r"\[[!^]?\]?[^]]*\]|[*?]")
+_REFUSED = (
+    (re.compile(r"[^A-Za-z0-9_/]"), "it has characters other than letters, digits, _ and /"),
+    (re.compile(r"/$"), "it ends with /"),
+    (re.compile(r"//"), "it has // in it"),
+    (re.compile(r"/[0-9]"), "a part of it begins with a digit"),
+    (re.compile(rf"(?s).{{{LONGEST + 1}}}"), f"it is longer than {LONGEST} characters"),
+)
+
+
+def joint_warnings(policies: Iterable[Policy]) -> tuple[Diagnostic, ...]:
+    """Return what is to be said of policies that are read as one system."""
+    policies = sorted(policies, key=lambda policy: policy.file)
+    found = (*_shared_enclaves(policies), *_refused_names(policies))
+    return tuple(sorted(found, key=lambda said: (said.place.file, said.place.line, said.message)))
+
+
+def _shared_enclaves(policies: Sequence[Policy]) -> Iterator[Diagnostic]:
+    """One warning for all enclaves that the same files state."""
+    stated: dict[str, dict[str, Place]] = defaultdict(dict)
+    for policy in policies:
+        for profile in policy.profiles:
+            stated[profile.enclave].setdefault(policy.file, profile.place)
+    shared: dict[tuple[str, ...], list[str]] = defaultdict(list)
+    for enclave, files in stated.items():
+        if len(files) > 1:
+            shared[tuple(files)].append(enclave)
+    for names, enclaves in sorted(shared.items()):
+        named = ", ".join([*map(shown, sorted(enclaves)[:NAMED]), *(["…"] if len(enclaves) > NAMED else [])])
+        what = f"enclave {named} is" if len(enclaves) == 1 else f"{len(enclaves):,} enclaves ({named}) are"
+        others = " and ".join(shown(file) for file in names[1:])
+        message = f"{what} stated in {others} too: sros2 makes permissions of one file; all are read, and no file's "
+        message += "DENY cuts what another file allows; name only what is deployed"
+        yield Diagnostic(stated[min(enclaves)][names[0]], Severity.WARNING, message, SHARED_ENCLAVE)
+
+
+def why_refused(name: str) -> str:
+    """Return why no ROS node can have a fully qualified name, or with wildcards any that it covers; empty if it can.
+
+    >>> why_refused("/video/"), why_refused("/r1/*"), why_refused("/a__b")
+    ('it ends with /', '', '')
+    """
+    plain = _WILDCARD.sub("a", name) if is_pattern(name) else name
+    if not plain.startswith("/"):
+        return ""  # its namespace does not begin with /, and that is told
+    return next((why for expression, why in _REFUSED if expression.search(plain)), "")
+
+
+def _refused_names(policies: Iterable[Policy]) -> Iterator[Diagnostic]:
+    first: dict[tuple[str, str], Grant] = {}
+    good: dict[str, set[str]] = defaultdict(set)
+    refused: dict[tuple[str, str], str] = {}
+    for policy in policies:
+        for grant in policy.grants:
+            key = grant.kind, grant.name
+            if key in first:
+                continue
+            first[key] = grant
+            if why := why_refused(grant.name):
+                refused[key] = why
+            elif not is_pattern(grant.name):
+                good[grant.kind].add(grant.name)
+    for number, ((kind, name), why) in enumerate(sorted(refused.items())):
+        near = _nearest(name, good[kind], compare=number < COMPARED)
+        hint = f"did you mean {shown(near)}?" if near else "correct it"
+        message = f"no ROS node can use the {kind} {shown(repr(name))}: {why}; {hint}"
+        yield Diagnostic(first[kind, name].place, Severity.WARNING, message, REFUSED_NAME)
+
+
+def _nearest(name: str, good: set[str], *, compare: bool) -> str:
+    mended = re.sub(r"/+", "/", name.strip()).rstrip("/")
+    if mended in good:
+        return mended
+    close = get_close_matches(name, sorted(good), n=1) if compare else []
+    return close[0] if close else ""

@@ -1,0 +1,127 @@
+"""What the user names on the command line -> policies: files, folders and globs.
+
+In: paths. Out: ``Policy`` facts in a stable order. A file that was named is read or refused. What lies in a folder or
+behind a glob and is not read is said (rule S11): grants that no policy brings in with a warning, all else with a
+notice. A folder without any policy is an error.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field
+from glob import has_magic
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.errors import InputError, InputErrors, PolicyError, reason
+from rosprivacy.analysis.model import UNREAD_FILE, Diagnostic, Place, Policy, Severity
+from rosprivacy.ingest.policies.folders import contents
+from rosprivacy.ingest.policies.policy_xml import NotAPolicyError, read_policy
+from rosprivacy.ingest.policies.xinclude import MAX_BYTES
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Iterable, Sequence
+
+
+@dataclass(slots=True)
+class _Expanded:
+    """The files behind the arguments; ``found`` by folder or glob."""
+
+    named: set[str] = field(default_factory=set)
+    found: dict[str, set[str]] = field(default_factory=dict)
+    notices: list[Diagnostic] = field(default_factory=list)
+    problems: list[InputError] = field(default_factory=list)
+
+
+def read_policies(
+    arguments: Iterable[str],
+    *,
+    include_root: str | None = None,
+    max_bytes: int = MAX_BYTES,
+    progress: Callable[[Sequence[str]], Iterable[str]] = lambda files: files,
+) -> tuple[tuple[Policy, ...], tuple[Diagnostic, ...]]:
+    """Read every policy that the arguments name, each file once.
+
+    Parameters
+    ----------
+    arguments
+        Files, folders (read with all below them) and glob patterns.
+    progress
+        Wraps the list of files, to show how far it is.
+
+    Returns
+    -------
+    policies
+        In the order of their paths.
+    diagnostics
+        For each XML file of a folder that is no policy a notice, or a warning if it has grants that nothing includes;
+        for each folder a notice on how many other files it has.
+
+    Raises
+    ------
+    InputErrors
+        With the problems of all files.
+    """
+    arguments = tuple(arguments)
+    expanded = _expand(arguments)
+    named, found, problems = expanded.named, expanded.found, expanded.problems
+    policies: list[Policy] = []
+    skipped: list[NotAPolicyError] = []
+    for file in progress(sorted({*named, *(file for files in found.values() for file in files)})):
+        try:
+            policies.append(read_policy(file, include_root=include_root, max_bytes=max_bytes))
+        except InputErrors as error:
+            first = error.errors[0]
+            if isinstance(first, NotAPolicyError) and file not in named:
+                skipped.append(first)
+            else:
+                problems += error.errors
+    passed_over = {error.file for error in skipped}
+    for argument, files in found.items():
+        if files <= passed_over:
+            problems.append(PolicyError(argument, 0, "no SROS 2 policy found", "name a file or folder that has one"))
+    if not arguments:
+        problems.append(PolicyError("nothing", 0, "no SROS 2 policy found", "name a file or folder that has one"))
+    if problems:
+        raise InputErrors(problems)
+    included = {os.path.realpath(name) for policy in policies for name, _ in policy.sources}
+    return tuple(policies), (*(_not_read(error, included) for error in skipped), *expanded.notices)
+
+
+def _not_read(error: NotAPolicyError, included: Collection[str]) -> Diagnostic:
+    """What is to be said of XML that is no policy: grants that nothing brings in are a gap (rule S11)."""
+    place = Place(error.file, error.line)
+    if not error.grants or os.path.realpath(error.file) in included:
+        return Diagnostic(place, Severity.NOTICE, f"not read by itself: {error.problem}")
+    what = f"not read: {error.problem}, and no policy read here includes it, so what it grants is not known"
+    return Diagnostic(place, Severity.WARNING, f"{what}; name the policy that does, or remove it", UNREAD_FILE)
+
+
+def _expand(arguments: Iterable[str]) -> _Expanded:
+    """Return the files named, what folders and globs hold, and what is not there; each file under one spelling."""
+    expanded = _Expanded()
+    spelt: dict[str, str] = {}
+    for argument in sorted(set(arguments), key=lambda name: (len(name), name)):
+        try:
+            held = contents(argument)
+        except (OSError, ValueError) as error:
+            what = f"cannot be read: {reason(error)}"
+            expanded.problems.append(PolicyError(argument or "''", 0, what, "name a policy"))
+            continue
+        if held is None:
+            expanded.named.add(spelt.setdefault(os.path.abspath(argument), argument))  # noqa: PTH100 - by its text
+            continue
+        expanded.problems += held.problems
+        if said := held.said(argument):
+            expanded.notices.append(said)
+        if held.files:
+            expanded.found[argument] = {
+                spelt.setdefault(os.path.abspath(file), file)  # noqa: PTH100
+                for file in sorted(held.files)
+            }
+        elif not held.problems:
+            glob = has_magic(argument) and not Path(argument).is_dir()
+            what = "no file matches" if glob else "a folder with no .xml file"
+            hint = "correct the pattern" if glob else "name a policy"
+            expanded.problems.append(PolicyError(argument, 0, what, hint))
+    return expanded

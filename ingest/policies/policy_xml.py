@@ -1,0 +1,290 @@
+"""SROS 2 policy XML -> ``Policy``: what each line grants to each profile.
+
+In: a policy file. Out: grants with file, line, enclave and profile; warnings and notices. All problems of a file are
+raised at once.
+
+Source: sros2's ``policy.xsd`` and ``permissions.xsl`` (version 0.2.0) and ROS 2 design, article 181, as measured in
+the project's notes. An absent attribute grants nothing; an empty profile is valid, an empty group is not; text is
+not trimmed. The dialects that are found in public, which sros2 refuses, are read with a notice.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.errors import InputError, InputErrors, PolicyError, shown
+from rosprivacy.analysis.model import DEAD_DENY, EMPTY_GROUP, Diagnostic, Grant, Place, Policy, Profile, Severity
+from rosprivacy.ingest.policies.names import LONGEST_NAME, resolve
+from rosprivacy.ingest.policies.xinclude import MAX_BYTES, Documents, Item, has_text
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterator
+
+VERSIONS = ("0.1.0", "0.2.0")
+ROLES = {
+    "topics": ("topic", ("publish", "subscribe")),
+    "services": ("service", ("reply", "request")),
+    "actions": ("action", ("call", "execute")),
+}
+PARENTS = {  # where each element belongs, for messages
+    "enclaves": "policy", "enclave": "enclaves", "contexts": "policy", "context": "contexts",
+    "profiles": "enclave", "profile": "profiles", "topics": "profile", "services": "profile",
+    "actions": "profile", "topic": "topics", "service": "services", "action": "actions",
+}  # fmt: skip
+FRAGMENTS = frozenset(PARENTS)
+
+
+class NotAPolicyError(PolicyError):
+    """The root element is not ``<policy>``: a fragment that policies include, or another format.
+
+    Attributes
+    ----------
+    grants
+        Whether it is a fragment with grants in it, or with includes that can bring some.
+    """
+
+    grants = False
+
+
+def read_policy(file: str, *, include_root: str | None = None, max_bytes: int = MAX_BYTES) -> Policy:
+    """Read one policy file with all that it includes.
+
+    Parameters
+    ----------
+    file
+        Path, kept as it is for messages and provenance.
+    include_root
+        Folder tree that includes may read from; the policy's own folder by default.
+    max_bytes
+        Bound on the bytes of the policy and its includes together.
+
+    Returns
+    -------
+    Policy
+        Grants in document order; linear in the size of the file and its includes.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the file, each a ``PolicyError`` of one line.
+    """
+    documents = Documents(Path(include_root) if include_root else Path(file).parent, max_bytes)
+    root = documents.open(file)
+    reader = _Reader(documents, file)
+    reader.policy(root)
+    problems = [*documents.problems, *reader.problems]
+    if problems:
+        raise InputErrors(problems)
+    return Policy(
+        file,
+        tuple(sorted(documents.sources.items())),
+        tuple(reader.profiles),
+        tuple(reader.grants),
+        tuple(dict.fromkeys([*documents.diagnostics, *reader.diagnostics])),
+    )
+
+
+@dataclass
+class _Reader:
+    """Walks the document once, from the outside in."""
+
+    documents: Documents
+    file: str
+    problems: list[InputError] = field(default_factory=list)
+    diagnostics: list[Diagnostic] = field(default_factory=list)
+    profiles: list[Profile] = field(default_factory=list)
+    grants: list[Grant] = field(default_factory=list)
+    old: bool = False
+    namespace: str = ""
+    first: Place | None = None  # where sros2 has read its fill of this enclave: what follows is dead (rule S5)
+
+    def policy(self, root: Item) -> None:
+        if root.tag != "policy":
+            raise InputErrors([_not_a_policy(root)])
+        self.namespace = root.namespace
+        if root.namespace:
+            self._notice(root.place, "default namespace on <policy>: sros2 refuses it; read as if it had none")
+        self._version(root)
+        self._attributes(root, {"version"})
+        sections = list(self._elements(root, {"enclaves", "contexts", "profiles"}))
+        if not sections:
+            self._problem(root.place, "<policy> without <enclaves>", "add <enclaves> with an <enclave> in it")
+        for extra in sections[1:]:
+            self._problem(extra.place, f"second <{extra.tag}> under <policy>", "merge them into one")
+        for section in sections[:1]:
+            self._section(section, root.element.get("version"))
+
+    def _version(self, root: Item) -> None:
+        version = root.element.get("version")
+        if version is None:
+            self._problem(root.place, "<policy> without version", 'write version="0.2.0"')
+        elif version not in VERSIONS:
+            self._problem(root.place, f"policy version {shown(repr(version))}", 'this reads version="0.2.0"')
+
+    def _section(self, section: Item, version: str | None) -> None:
+        if section.tag == "profiles":
+            self.old = version == VERSIONS[0]
+            message = "policy format 0.1.0: no enclaves; each node is taken as an enclave of its own"
+            if not self.old:
+                message = (
+                    "<profiles> without <enclaves>, as in format 0.1.0: each node is taken as an enclave of its own"
+                )
+            self._notice(section.place, message)
+            self._profiles(section, None)
+            return
+        if version == VERSIONS[0]:
+            self._notice(section.place, "version 0.1.0 has no enclaves: read as 0.2.0")
+        inner = {"enclaves": "enclave", "contexts": "context"}[section.tag]
+        if section.tag == "contexts":
+            self._notice(section.place, "<contexts> of a transitional format: read as <enclaves>")
+        self._attributes(section, set())
+        enclaves = list(self._elements(section, {inner}))
+        if not enclaves:
+            self._problem(section.place, f"<{section.tag}> is empty", f"add an <{inner}>")
+        seen: dict[str, Place] = {}
+        for enclave in enclaves:
+            self._enclave(enclave, seen)
+
+    def _enclave(self, enclave: Item, seen: dict[str, Place]) -> None:
+        self._attributes(enclave, {"path"})
+        path = self._required(enclave, "path")
+        if path in seen:
+            message = f"enclave {path} again (first at {seen[path]}): sros2 uses the first only"
+            self._warning(enclave.place, f"{message}; what this one allows is read too, what it denies is not")
+        self.first = seen.get(path)
+        seen.setdefault(path, enclave.place)
+        groups = list(self._elements(enclave, {"profiles"}))
+        if not groups:
+            self._problem(enclave.place, f"<{enclave.tag}> without <profiles>", "add <profiles> with a <profile>")
+        for extra in groups[1:]:
+            message = f"several <profiles> in enclave {path}: DDS uses the first grant only"
+            self._warning(extra.place, f"{message}; what these allow is read too, what they deny is not")
+        for group in groups:
+            self._attributes(group, {"type"})
+            self._profiles(group, path)
+            self.first = self.first or group.place
+
+    def _profiles(self, group: Item, enclave: str | None) -> None:
+        profiles = list(self._elements(group, {"profile"}))
+        if not profiles:
+            self._problem(group.place, "<profiles> is empty", "add a <profile>")
+        for profile in profiles:
+            self._profile(profile, enclave)
+
+    def _profile(self, profile: Item, enclave: str | None) -> None:
+        self._attributes(profile, {"ns", "node"})
+        namespace, node = self._required(profile, "ns", empty=True), self._required(profile, "node")
+        if not namespace.startswith("/") and profile.element.get("ns") is not None:
+            message = f"namespace {namespace!r} does not begin with /: its names are taken as sros2 writes them"
+            self._warning(profile.place, message)
+        name = namespace + node if namespace.endswith("/") else f"{namespace}/{node}"
+        owner = Profile(name if enclave is None else enclave, name, profile.place)
+        self.profiles.append(owner)
+        for group in self._elements(profile, ROLES):
+            self._group(group, owner, namespace, node)
+
+    def _group(self, group: Item, owner: Profile, namespace: str, node: str) -> None:
+        kind, roles = ROLES[group.tag]
+        self._attributes(group, roles)
+        granted = [(role, self._rule(group, role)) for role in roles if group.element.get(role) is not None]
+        names = list(self._elements(group, (kind,)))
+        if not names:
+            self._problem(group.place, f"<{group.tag}> is empty", f"add a <{kind}>, or remove it")
+        if not granted:
+            message = (
+                f'<{group.tag}> without {" or ".join(roles)} grants nothing; write {roles[0]}="ALLOW", or remove it'
+            )
+            self._warning(group.place, message, EMPTY_GROUP)
+        enclave, owned = owner.enclave, owner.node
+        for item in names:
+            name, place = self._name(item, namespace, node), Place(item.file, item.element.sourceline or 0)
+            absolute = (item.element.text or "").startswith("/")
+            for role, allow in granted:
+                dead = self.first is not None
+                self.grants.append(Grant(allow, role, kind, name, enclave, owned, place, self.file, dead, absolute))
+                if dead and not allow:
+                    message = f"dead DENY: {role} {name} is not taken away, since sros2 uses the first <profiles> of"
+                    message += f" enclave {enclave} only ({self.first}); move it there"
+                    self._warning(place, message, DEAD_DENY)
+
+    def _name(self, item: Item, namespace: str, node: str) -> str:
+        element = item.element
+        if element.keys():
+            self._attributes(item, ())
+        if len(element):
+            for child in self.documents.children(item):
+                self._problem(child.place, f"<{shown(child.tag)}> inside <{item.tag}>", "write the name as plain text")
+        written = element.text or ""
+        if len(written) > LONGEST_NAME:
+            what = f"a name of {len(written)} characters"
+            self._problem(item.place, what, f"no more than {LONGEST_NAME} are read")
+            written = ""
+        if "[" in written and ("[:" in written or "[." in written or "[=" in written):
+            self._problem(item.place, f"character class in {shown(repr(written))}", "write a range such as [a-z]")
+        if self.old and written.startswith("~") and not written.startswith("~/"):
+            written = f"~/{written[1:]}"  # 0.1.0 writes ~name for what 0.2.0 calls ~/name
+        name = resolve(written, namespace, node)
+        if not written or written.isspace():
+            self._warning(item.place, f"<{item.tag}> without a name: read as sros2 does, as {name}")
+        return name
+
+    def _rule(self, group: Item, role: str) -> bool:
+        rule = str(group.element.get(role))
+        if rule not in ("ALLOW", "DENY"):
+            what = f"{role}={shown(repr(rule))} on <{group.tag}>"
+            self._problem(group.place, what, "write ALLOW or DENY, in capitals")
+        return rule == "ALLOW"
+
+    def _elements(self, parent: Item, allowed: Collection[str]) -> Iterator[Item]:
+        """Children that belong here; what does not is a problem, and so is text between them."""
+        if has_text(parent):
+            self._problem(parent.place, f"text between the elements of <{parent.tag}>", "remove it")
+        for child in self.documents.children(parent):
+            tag = child.tag
+            if child.namespace and child.namespace != self.namespace:
+                self._notice(child.place, f"<{tag}> in a namespace of its own: read as if it had none")
+            if tag in allowed:
+                yield child
+            elif tag != "metadata":
+                self._problem(child.place, *_misplaced(child.tag, parent.tag, allowed))
+
+    def _attributes(self, item: Item, allowed: Collection[str]) -> None:
+        for name in item.element.keys():  # noqa: SIM118 - an element iterates over its children
+            if name not in allowed and not str(name).startswith("{"):  # xml:base, xsi:… say nothing of grants
+                takes = " and ".join(sorted(allowed)) or "none"
+                what = f"unknown attribute {shown(repr(str(name)))} on <{item.tag}>"
+                self._problem(item.place, what, f"it takes {takes}")
+
+    def _required(self, item: Item, attribute: str, *, empty: bool = False) -> str:
+        value = item.element.get(attribute)
+        if value is None or not (value or empty):
+            self._problem(item.place, f"<{item.tag}> without {attribute}", f'add {attribute}="…"')
+        return str(value or "")
+
+    def _problem(self, place: Place, problem: str, hint: str) -> None:
+        self.problems.append(PolicyError(place.file, place.line, problem, hint))
+
+    def _warning(self, place: Place, message: str, code: str = "") -> None:
+        self.diagnostics.append(Diagnostic(place, Severity.WARNING, shown(message), code))
+
+    def _notice(self, place: Place, message: str) -> None:
+        self.diagnostics.append(Diagnostic(place, Severity.NOTICE, shown(message)))
+
+
+def _misplaced(tag: str, parent: str, allowed: Collection[str]) -> tuple[str, str]:
+    expected = " or ".join(f"<{name}>" for name in sorted(allowed))
+    home = PARENTS.get(tag)
+    where = f"it belongs in <{home}>; here comes" if home else "here comes"
+    return f"<{shown(tag)}> under <{parent}>", f"{where} {expected}"
+
+
+def _not_a_policy(root: Item) -> NotAPolicyError:
+    what = f"the root element is <{shown(root.tag)}>, not <policy>"
+    if root.tag in FRAGMENTS:
+        fragment = NotAPolicyError(root.file, root.place.line, what, "name the policy that includes it")
+        tags = {str(element.tag).rpartition("}")[2] for element in root.element.iter()}
+        fragment.grants = not tags.isdisjoint({*ROLES, *(kind for kind, _ in ROLES.values()), "include"})
+        return fragment
+    return NotAPolicyError(root.file, root.place.line, what, "name an SROS 2 policy")

@@ -1,0 +1,179 @@
+"""A system's policies in one JSON file, to add to later: ``--save-graph`` and ``--add``.
+
+In: policies, or a file saved before. Out: the same facts again, with file and line of each (the paper, section II-B:
+'add new information from policy files to this graph'). Labels are not in it: they are a person's word on one day.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.errors import GraphError, InputErrors, shown
+from rosprivacy.analysis.model import DEAD_DENY, Diagnostic, Grant, Place, Policy, Profile, Severity
+from rosprivacy.ingest.policies.policy_xml import ROLES
+from rosprivacy.ingest.reading.bounded_file import read_regular
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+FORMAT = "rosprivacy.graph/1"
+MAX_BYTES = 2**30
+AGAIN = "save it again with --save-graph"
+_AGAIN = re.compile(r"enclave (.+) again \(first at |several <profiles> in enclave (.+): DDS uses", re.DOTALL)
+UNKNOWN = (
+    "saved by an earlier version, which did not keep which names a policy writes absolute: all are taken so, as they "
+    "stand here; save it again from the policies"
+)
+_ROLES = {role: kind for kind, roles in ROLES.values() for role in roles}
+
+
+def as_dict(policies: Iterable[Policy]) -> dict[str, Any]:
+    """Return policies as plain values, in the order of their files."""
+    return {"format": FORMAT, "policies": [_policy(policy) for policy in sorted(policies, key=lambda p: p.file)]}
+
+
+def read_saved(file: str) -> tuple[Policy, ...]:
+    """Read what ``as_dict`` was written from.
+
+    Raises
+    ------
+    InputErrors
+        If it is not such a file, or was changed so that it cannot be read.
+    """
+
+    def fail(line: int, problem: str, hint: str) -> GraphError:
+        return GraphError(file, line, problem, hint)
+
+    try:
+        return _read(file, fail)
+    except GraphError as error:
+        raise InputErrors([error]) from None
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        what = f"a damaged graph: {shown(f'{type(error).__name__} at {error}')}"
+        raise InputErrors([fail(1, what, AGAIN)]) from None
+
+
+def _read(file: str, fail: Callable[[int, str, str], GraphError]) -> tuple[Policy, ...]:
+    text = read_regular(file, MAX_BYTES, fail)
+    try:
+        data = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise fail(getattr(error, "lineno", 1), "not JSON", AGAIN) from None
+    if not isinstance(data, dict) or data.get("format") != FORMAT:
+        raise fail(1, f"not a saved graph ({FORMAT})", "name a file written by --save-graph of this version")
+    policies = tuple(_read_policy(policy) for policy in data["policies"])
+    if not policies:
+        raise fail(1, "a saved graph without policies", AGAIN)
+    if any("absolute" not in grant for policy in data["policies"] for grant in policy["grants"]):
+        first = policies[0]
+        told = (*first.diagnostics, Diagnostic(Place(file, 1), Severity.WARNING, UNKNOWN))
+        return (replace(first, diagnostics=told), *policies[1:])
+    return policies
+
+
+def _policy(policy: Policy) -> dict[str, Any]:
+    return {
+        "file": policy.file,
+        "sources": dict(policy.sources),
+        "profiles": [
+            {"enclave": p.enclave, "node": p.node, "file": p.place.file, "line": p.place.line} for p in policy.profiles
+        ],
+        "grants": [
+            {
+                "rule": "ALLOW" if grant.allow else "DENY",
+                "role": grant.role,
+                "name": grant.name,
+                "absolute": grant.absolute,
+                "enclave": grant.enclave,
+                "node": grant.node,
+                "file": grant.place.file,
+                "line": grant.place.line,
+                **({} if grant.allow and not grant.dead else {"dead": grant.dead}),
+            }
+            for grant in policy.grants
+        ],
+        "diagnostics": [
+            {
+                "severity": str(d.severity),
+                "message": d.message,
+                "file": d.place.file,
+                "line": d.place.line,
+                **({"code": d.code} if d.code else {}),
+            }
+            for d in policy.diagnostics
+        ],
+    }
+
+
+def _read_policy(saved: dict[str, Any]) -> Policy:
+    profiles = [Profile(_text(p["enclave"]), _text(p["node"]), _place(p)) for p in saved["profiles"]]
+    grants = [
+        Grant(
+            {"ALLOW": True, "DENY": False}[g["rule"]],
+            g["role"],
+            _ROLES[g["role"]],
+            _text(g["name"]),
+            _text(g["enclave"]),
+            _text(g["node"]),
+            _place(g),
+            _text(saved["file"]),
+            _flag(g.get("dead", False)),
+            _flag(g.get("absolute", True)),
+        )
+        for g in saved["grants"]
+    ]
+    owners = {(profile.enclave, profile.node) for profile in profiles}
+    for grant in grants:
+        if (grant.enclave, grant.node) not in owners:
+            raise ValueError(f"grant of {grant.node}, which has no profile in {grant.enclave}")
+    sources = tuple(sorted((_text(name), _text(digest)) for name, digest in saved["sources"].items()))
+    said = [
+        Diagnostic(_place(d), Severity(d["severity"]), _text(d["message"]), _text(d.get("code", "")))
+        for d in saved["diagnostics"]
+    ]
+    if any(g["rule"] == "DENY" and "dead" not in g for g in saved["grants"]):
+        grants, more = _of_earlier_version(grants, said)
+        said += more
+    return Policy(_text(saved["file"]), sources, tuple(profiles), tuple(grants), tuple(said))
+
+
+def _of_earlier_version(grants: list[Grant], said: Iterable[Diagnostic]) -> tuple[list[Grant], list[Diagnostic]]:
+    """Grants of a graph that does not say which lines sros2 does not read: those that may be such take nothing away.
+
+    The warning about a second ``<profiles>`` or ``<enclave>`` says where it begins; what stands there or below, and
+    what is included from another file, may belong to it.
+    """
+    again = [(d.place, match[1] or match[2]) for d in said if (match := _AGAIN.match(d.message))]
+    read: list[Grant] = []
+    told: dict[Diagnostic, None] = {}
+    for grant in grants:
+        file, line = grant.place.file, grant.place.line
+        starts = [p for p, path in again if path == grant.enclave and (p.file != file or p.line <= line)]
+        read.append(replace(grant, dead=bool(starts)))
+        if starts and not grant.allow:
+            message = f"DENY of {shown(grant.name)} is taken as dead: the graph was saved by an earlier version, which"
+            told[Diagnostic(grant.place, Severity.WARNING, f"{message} does not say; {AGAIN}", DEAD_DENY)] = None
+    return read, list(told)
+
+
+def _place(saved: dict[str, Any]) -> Place:
+    line = saved["line"]
+    if not isinstance(line, int):
+        raise TypeError(f"line {line!r}")
+    return Place(_text(saved["file"]), line)
+
+
+def _flag(value: Any) -> bool:
+    if not isinstance(value, bool):
+        raise TypeError(repr(value))
+    return value
+
+
+def _text(value: Any) -> str:
+    if not isinstance(value, str):
+        raise TypeError(repr(value))
+    value.encode()  # half a surrogate pair is no text
+    return value

@@ -1,0 +1,1 @@
+"""Files of anybody in, out come values that know their line, or every problem at its line."""

@@ -1,0 +1,61 @@
+"""What the readers of our YAML formats have in common: problems with their line, the version, unknown keys.
+
+In: values that know their line (``yaml_values.py``). Out: what a format's reader makes of them; all problems of a file.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.errors import InputError, shown
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rosprivacy.ingest.reading.yaml_values import Value
+
+
+@dataclass(kw_only=True)
+class FileReader:
+    """Walks one file once, from the outside in.
+
+    Attributes
+    ----------
+    error
+        Of this kind its problems are.
+    """
+
+    file: str = field(kw_only=False)
+    error: type[InputError]
+    problems: list[InputError] = field(default_factory=list)
+
+    def problem(self, line: int, problem: str, hint: str) -> None:
+        """Note a problem; the file is read on."""
+        self.problems.append(self.error(self.file, line, problem, hint))
+
+    def version(self, top: Value, key: str, what: str) -> None:
+        """Check that a file says which format it is of: ``key: 1``."""
+        version = top.get(key)
+        if version is None:
+            self.problem(top.line, f"no '{key}: 1'", "say so on the first line: it is the format's version")
+        elif (version.kind, version.text) != ("number", "1"):
+            found = f"{what} format {shown(version.text or version.kind)!r}"
+            self.problem(version.line, found, f"this reads '{key}: 1'")
+
+    def entries_of(self, value: Value, known: tuple[str, ...]) -> Iterable[tuple[str, int, Value]]:
+        """Return the entries of a map, those with unknown keys reported."""
+        for key, line, child in value.entries:
+            if key in known:
+                yield key, line, child
+            else:
+                close = get_close_matches(key, known, n=1)
+                hint = f"did you mean {close[0]!r}?" if close else f"one of {', '.join(known)}"
+                self.problem(line, f"unknown key {shown(key)!r}", hint)
+
+    def list_of(self, value: Value, what: str, hint: str = "write […]") -> tuple[Value, ...]:
+        """Return the items of a list; nothing is an empty one."""
+        if value.kind not in ("list", "empty"):
+            self.problem(value.line, f"{what} takes a list, not a {value.kind}", hint)
+        return value.items

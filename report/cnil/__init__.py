@@ -1,0 +1,1 @@
+"""An analysis in, out comes a file that the PIA tool of the CNIL imports."""

@@ -1,0 +1,83 @@
+"""Text for readers that take it as HTML: escaped first, put together after. Names come from anybody's files.
+
+In: any text. Out: ``Html``, which only the functions here make, so that a type checker finds what was not escaped.
+"""
+
+from __future__ import annotations
+
+import html
+from itertools import islice
+from typing import TYPE_CHECKING, NewType
+
+from rosprivacy.analysis.errors import shown
+from rosprivacy.report.lines import one_line
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable
+
+Html = NewType("Html", str)
+_LOOK_ALIKES = str.maketrans({"<": "‹", ">": "›", "&": "＆", '"': "”", "'": "’"})
+
+
+def escaped(text: str) -> Html:
+    r"""Return text as HTML: one line, nothing unprintable, nothing endless.
+
+    >>> escaped("<b>" + chr(10) + "'")
+    '&lt;b&gt;\\n&#x27;'
+    """
+    return Html(html.escape(shown(text)))
+
+
+def prose(text: str) -> Html:
+    """Return a longer text as HTML, in one line."""
+    return Html(html.escape(one_line(text)))
+
+
+def harmless(text: str) -> str:
+    """Return text that says the same whether it is taken as HTML or not: what HTML reads is made a look-alike.
+
+    >>> harmless("<b>")
+    '‹b›'
+    """
+    return shown(text).translate(_LOOK_ALIKES)
+
+
+def joined(*parts: Html) -> Html:
+    """Put pieces one after another."""
+    return Html("".join(parts))
+
+
+def strong(part: Html) -> Html:
+    """Return a piece that stands out."""
+    return Html(f"<strong>{part}</strong>")
+
+
+def paragraph(*parts: Html) -> Html:
+    """Return pieces as a paragraph."""
+    return Html(f"<p>{''.join(parts)}</p>")
+
+
+def bullets(parts: Iterable[Html]) -> Html:
+    """Return pieces as a list; nothing where there are none."""
+    items = "".join(f"<li>{part}</li>" for part in parts)
+    return Html(f"<ul>{items}</ul>" if items else "")
+
+
+def counted(number: int, thing: str) -> Html:
+    """Return a number with what it counts.
+
+    >>> counted(1, "node"), counted(1200, "node")
+    ('1 node', '1,200 nodes')
+    """
+    return Html(f"{number:,} {escaped(thing)}{'' if number == 1 else 's'}")
+
+
+def some(names: Collection[str], most: int) -> Html:
+    """Return names in a row, and how many more there are than the most that are named.
+
+    >>> some(["a", "b", "c"], 2)
+    'a, b and 1 more'
+    """
+    row = ", ".join(escaped(name) for name in islice(names, most))
+    more = len(names) - most
+    return Html(f"{row} and {more:,} more" if more > 0 else row)

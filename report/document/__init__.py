@@ -1,0 +1,1 @@
+"""An analysis in, out comes the JSON document, which is a contract."""

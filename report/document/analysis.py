@@ -1,0 +1,323 @@
+"""Analysis -> the JSON document ``rosprivacy.analysis/1``, a contract (``docs/analysis.schema.json``).
+
+In: an ``Analysis`` and what it rests on. Out: plain dicts and lists, sorted, with no time in them (rule S14).
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.findings.sanitizing import cleanings, makings
+from rosprivacy.analysis.kernel.ranks import in_words
+from rosprivacy.analysis.legal import turned_special
+from rosprivacy.analysis.model import UNREAD_FILE
+from rosprivacy.report.document import ledger
+from rosprivacy.report.document.non_ros import inventory, taken_by_kind, without_backups
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Mapping
+
+    from rosprivacy.analysis.answer import Analysis, Finding, Step
+    from rosprivacy.analysis.findings.ledger import TakenAway
+    from rosprivacy.analysis.hierarchy import Hierarchy
+    from rosprivacy.analysis.kernel.overruled import Overruled
+    from rosprivacy.analysis.model import Category, Diagnostic, Element, Flow, FlowGraph, Grant, Legal
+
+FORMAT = "rosprivacy.analysis/1"
+_KEYS = {"name": "provision"}  # what the contract calls otherwise than the model
+
+
+def document(
+    analysis: Analysis,
+    categories: Mapping[str, Category],
+    hierarchy: Hierarchy,
+    diagnostics: Iterable[Diagnostic],
+    assumptions: Mapping[str, Any],
+    subjects: Mapping[int, tuple[str, ...]] | None = None,
+    taken: Collection[TakenAway] = (),
+) -> dict[str, Any]:
+    """Return the analysis as one JSON object.
+
+    Parameters
+    ----------
+    diagnostics
+        Of the inputs; the analysis' own are added.
+    assumptions
+        What the answer rests on, made by the caller who knows the files.
+    subjects
+        By vertex: whom the data of a source are about.
+    taken
+        The ledger: what was taken away on the data's side.
+    """
+    graph = analysis.graph
+    return {
+        "format": FORMAT,
+        "verdict": str(analysis.verdict),
+        "view": graph.view,
+        "categories": [_category(categories[name], hierarchy) for name in analysis.emitted],
+        "findings": [_finding(finding, categories) for finding in analysis.findings],
+        "open": [
+            {
+                "element": element_dict(question.element),
+                "categories": list(question.categories),
+                "distance": question.distance,
+                "frontier": question.frontier,
+                **({"missing": list(question.missing)} if question.missing else {}),
+            }
+            for question in analysis.open
+        ],
+        "unknown_ends": [
+            {
+                "element": element_dict(end.element),
+                "unknown": end.what,
+                "categories": list(end.categories),
+            }
+            for end in analysis.unknown_ends
+        ],
+        "taken_away": ledger.rows(taken, element_dict),
+        "carries": [
+            {
+                "element": element_dict(carried.element),
+                "categories": list(carried.categories),
+                "pseudonymised": list(carried.pseudonymised),
+            }
+            for carried in analysis.carried
+        ],
+        "roles": [
+            {"element": element_dict(element), "category": category, "roles": list(roles)}
+            for element, said in analysis.roles.items()
+            for category, roles in sorted(said.items())
+            if not element.is_channel
+        ],
+        "outside": inventory(analysis, hierarchy),
+        "subjects": [
+            {"element": element_dict(graph.elements[vertex]), "subjects": list(groups)}
+            for vertex, groups in sorted((subjects or {}).items())
+        ],
+        **_treatment(analysis),
+        **_inventory(analysis),
+        "flows": len(graph.flows),
+        "denied_flows": len(graph.denied),
+        "denied": [_denied(flow, graph) for flow in graph.denied],
+        "elements": len({element.identity for element in graph.elements}),
+        "standard_channels": analysis.standard_channels,
+        "diagnostics": [_diagnostic(d) for d in (*diagnostics, *analysis.diagnostics)],
+        "assumptions": {
+            **assumptions,
+            "taken_away_by": ledger.counts(taken),
+            "taken_by_kind": taken_by_kind(analysis),
+            "backups_taken_as_none": [element_dict(element) for element in without_backups(analysis)],
+            "sanitizers_without_method": [
+                {"element": element_dict(element), "category": category, "taken_as": "pseudonymise"}
+                for element, category in analysis.unstated
+            ],
+            "standard_channels_reached": [
+                {"element": element_dict(replace(element, leg="")), "categories": list(categories)}
+                for element, categories in analysis.standard_reached
+            ],
+            "standard_channels_unchanged": [
+                element_dict(replace(element, leg="")) for element in analysis.standard_unchanged
+            ],
+            "overruled": [_overruled(one) for one in analysis.spread.overruled],
+        },
+    }
+
+
+def files_not_read(document: Mapping[str, Any]) -> int:
+    """Return how many files with grants were not read: why a verdict can be undetermined with nothing open (S11)."""
+    return len({said["file"] for said in document["diagnostics"] if said.get("code") == UNREAD_FILE})
+
+
+def as_text(value: Any) -> str:
+    """Return JSON text that is the same for the same value, and ends with a newline.
+
+    What UTF-8 cannot say (a file name that is none) is escaped.
+    """
+    text = json.dumps(value, indent=2, ensure_ascii=False) + "\n"
+    return text.encode("utf-8", "backslashreplace").decode()
+
+
+def element_dict(element: Element) -> dict[str, Any]:
+    """Return E of the contract.
+
+    >>> from rosprivacy.analysis.model import Element
+    >>> element_dict(Element("service", "/add", leg="request"))
+    {'robot': '', 'kind': 'service', 'name': '/add', 'leg': 'request'}
+    """
+    shown: dict[str, Any] = {"robot": element.robot, "kind": element.kind, "name": element.name}
+    if element.leg:
+        shown["leg"] = element.leg
+    if element.pattern:
+        shown["pattern"] = True
+    return shown
+
+
+def _overruled(one: Overruled) -> dict[str, Any]:
+    """A source or leak that another statement takes away."""
+    return {
+        "role": one.role,
+        "categories": list(one.categories),
+        "elements": list(one.names),
+        "file": one.lost.place.file,
+        "line": one.lost.place.line,
+        "by": {"says": in_words(one.by), "file": one.by.place.file, "line": one.by.place.line},
+    }
+
+
+def _treatment(analysis: Analysis) -> dict[str, Any]:
+    """Who cleans data, and who makes one kind of another."""
+    return {
+        "sanitizers": [
+            {
+                "element": element_dict(cleaning.element),
+                "category": cleaning.category,
+                "method": cleaning.method,
+                "stated": cleaning.stated,
+                "reached": cleaning.reached,
+                "leaves": list(cleaning.leaves),
+                "leaves_pseudonymised": list(cleaning.pseudonymised),
+                "beside": [element_dict(element) for element in cleaning.beside],
+            }
+            for cleaning in cleanings(analysis.spread, analysis.emitted)
+        ],
+        "derivations": [
+            {
+                "element": element_dict(making.element),
+                "from": making.made_of,
+                "to": making.made,
+                "reached": making.reached,
+            }
+            for making in makings(analysis.spread, analysis.emitted)
+        ],
+    }
+
+
+def _inventory(analysis: Analysis) -> dict[str, Any]:
+    """Enclaves, and the elements that no data gets to: with ``carries`` all that there is."""
+    graph = analysis.graph
+    reached = {carried.element.identity for carried in analysis.carried}
+    rest = {element.identity: element for element in graph.elements if element.identity not in reached}
+    nodes: dict[str, set[str]] = {}
+    for profile in graph.profiles:
+        nodes.setdefault(profile.enclave, set()).add(profile.node)
+    return {
+        "unreached": [element_dict(replace(element, leg="")) for element in rest.values()],
+        "enclaves": [{"enclave": enclave, "nodes": sorted(inside)} for enclave, inside in sorted(nodes.items())],
+    }
+
+
+def _category(category: Category, hierarchy: Hierarchy) -> dict[str, Any]:
+    return {
+        "name": category.name,
+        "iri": category.iri,
+        "broader": hierarchy.broader(category.name),
+        "title": category.title,
+        "definition": category.definition,
+        "data_types": list(category.data_types),
+        "gdpr": category.gdpr,
+        "article9": category.article9,
+        "reason": category.reason,
+        "law": [_legal(legal) for legal in category.law],
+        "translations": _translations(category.translations),
+    }
+
+
+def _translations(texts: Mapping[str, Mapping[str, str]]) -> dict[str, dict[str, str]]:
+    """Language -> texts in it; English stands where the facts are."""
+    said = {language: {what: text for what, text in sorted(of.items()) if text} for language, of in texts.items()}
+    return {language: said[language] for language in sorted(said) if said[language]}
+
+
+def law_of(finding: Finding, categories: Mapping[str, Category]) -> dict[str, Any]:
+    """Return what a person has to look up about a finding's data: no verdict on the system.
+
+    ``article9`` is the strongest of the verdicts under Article 9(1) GDPR, ``special_from`` the element that makes a
+    special category of data that were none.
+    """
+    category, turned = categories[finding.category], turned_special(finding, categories)
+    return {
+        "article9": category.article9,
+        "special_from": element_dict(turned) if turned else None,
+        "law": [
+            {"provision": legal.name, "verdict": legal.verdict, "condition": legal.condition} for legal in category.law
+        ],
+    }
+
+
+def _legal(legal: Legal) -> dict[str, Any]:
+    return {
+        "provision": legal.name,
+        "iri": legal.iri,
+        "meaning": legal.meaning,
+        "verdict": legal.verdict,
+        "condition": legal.condition,
+        "stated_of": legal.stated_of,
+        "sources": list(legal.sources),
+        "as_of": legal.as_of,
+        "translations": _translations(
+            {
+                language: {_KEYS.get(what, what): text for what, text in of.items()}
+                for language, of in legal.translations.items()
+            }
+        ),
+    }
+
+
+def _finding(finding: Finding, categories: Mapping[str, Category]) -> dict[str, Any]:
+    shown = {
+        "id": finding.id,
+        "kind": finding.kind,
+        "category": finding.category,
+        "pseudonymised": finding.pseudonymised,
+        "source": element_dict(finding.source),
+        "leak": element_dict(finding.leak),
+        "witness": [element_dict(element) for element in finding.witness],
+        "steps": [_step(step) for step in finding.steps],
+        "disjoint_paths": finding.disjoint_paths,
+        "through": [element_dict(element) for element in finding.through],
+        "dismissed": finding.dismissed,
+        **law_of(finding, categories),
+        **({"reason": finding.reason} if finding.reason else {}),
+        "accepted": finding.accepted,
+        **({"beside_pseudonymised": True} if finding.beside else {}),
+    }
+    if finding.paths:
+        shown["paths"] = [[element_dict(element) for element in path] for path in finding.paths]
+        shown["paths_bounded"] = finding.bounded
+    return shown
+
+
+def _step(step: Step) -> dict[str, Any]:
+    return {
+        "role": step.role,
+        "category": step.category,
+        "pseudonymised": step.pseudonymised,
+        "policy": [_grant(grant) for grant in step.grants],
+    }
+
+
+def _denied(flow: Flow, graph: FlowGraph) -> dict[str, Any]:
+    """What one line allows and another denies (rule S5)."""
+    return {
+        "source": element_dict(graph.elements[flow.source]),
+        "target": element_dict(graph.elements[flow.target]),
+        "role": flow.role,
+        "allowed_by": [_grant(grant) for grant in flow.grants],
+        "denied_by": [_grant(grant) for grant in flow.denials],
+    }
+
+
+def _grant(grant: Grant) -> dict[str, Any]:
+    return {"file": grant.place.file, "line": grant.place.line, "enclave": grant.enclave, "profile": grant.node}
+
+
+def _diagnostic(diagnostic: Diagnostic) -> dict[str, Any]:
+    return {
+        "file": diagnostic.place.file,
+        "line": diagnostic.place.line,
+        "severity": str(diagnostic.severity),
+        "message": diagnostic.message,
+        **({"code": diagnostic.code} if diagnostic.code else {}),
+    }

@@ -1,0 +1,158 @@
+"""Proposals -> the JSON document ``rosprivacy.mitigation/1``.
+
+In: proposals and the analysis document that they start from. Out: plain dicts and lists, sorted, with no time in them
+(rule S14).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.model import DISCLOSURE
+from rosprivacy.report.document.analysis import element_dict
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from rosprivacy.analysis.answer import Analysis, Finding
+    from rosprivacy.analysis.mitigation.affected import Affected, Shown
+    from rosprivacy.analysis.mitigation.limits import Limits
+    from rosprivacy.analysis.mitigation.proposals import Proposal, ProposedStep
+    from rosprivacy.analysis.model import Element, Grant
+
+FORMAT = "rosprivacy.mitigation/1"
+SECTIONS = {"topic": "topics", "service": "services", "action": "actions"}
+
+
+def mitigation_document(
+    report: Mapping[str, Any],
+    analysis: Analysis,
+    limits: Limits,
+    proposals: Iterable[Proposal],
+    patch: str,
+    why_no_patch: str,
+    unmatched: Iterable[str],
+    notes: Iterable[str] = (),
+) -> dict[str, Any]:
+    """Return the proposals as one JSON object.
+
+    Parameters
+    ----------
+    report
+        The document of the analysis that they start from.
+    unmatched
+        Labels that name nothing any more once the patch is applied.
+    """
+    weights = limits.weights
+    critical = {analysis.graph.elements[vertex] for vertex in limits.critical}
+    return {
+        "format": FORMAT,
+        "verdict": report["verdict"],
+        "view": report["view"],
+        "proposals": [_proposal(proposal, critical) for proposal in proposals],
+        "patch": patch,
+        "why_no_patch": why_no_patch,
+        "labels_without_element": list(unmatched),
+        "notes": list(notes),
+        "diagnostics": report["diagnostics"],
+        "assumptions": {
+            **report["assumptions"],
+            "kinds_of_change": sorted(limits.kinds),
+            "weights": {
+                "review": weights.review,
+                "filter": weights.filter,
+                "node": weights.node,
+                "deny": weights.deny,
+            },
+            "time_critical": [element_dict(e) for e in sorted(critical, key=lambda e: e.sort_key())],
+        },
+    }
+
+
+def _proposal(proposal: Proposal, critical: set[Element]) -> dict[str, Any]:
+    leaks = {finding.leak for finding in proposal.removed}
+
+    def element(one: Element) -> dict[str, Any]:
+        marks = {"leak": one in leaks, "time_critical": one in critical}
+        return {**element_dict(one), **{mark: True for mark, holds in marks.items() if holds}}
+
+    return {
+        "categories": list(proposal.categories),
+        "removes": [finding.id for finding in proposal.removed],
+        "keeps": [
+            {
+                "finding": kept.finding.id,
+                "kind": kept.finding.kind,
+                "category": kept.finding.category,
+                "reason": kept.reason,
+                "way": [element_dict(one) for one in kept.way],
+            }
+            for kept in proposal.kept
+        ],
+        "steps": [_step(step, element) for step in proposal.steps],
+        "statements": [_statement(f) for f in _findings(proposal) if f.kind != DISCLOSURE],
+        "cost": proposal.cost,
+        "no_cheaper_than": proposal.lower,
+        "cheapest": bool(proposal.steps) and proposal.cost == proposal.lower,
+        "proven": proposal.proven,
+        "verdict_then": str(proposal.verdict),
+        "affected": [_affected(less, element) for less in proposal.affected],
+    }
+
+
+def _findings(proposal: Proposal) -> tuple[Finding, ...]:
+    return (*proposal.removed, *(kept.finding for kept in proposal.kept))
+
+
+def _statement(finding: Finding) -> dict[str, Any]:
+    """What a person could state or arrange at the end of a way, so that no flow has to change (rule S10)."""
+    return {
+        "finding": finding.id,
+        "kind": finding.kind,
+        "element": element_dict(finding.leak),
+        "category": finding.category,
+        "reason": finding.reason,
+    }
+
+
+def _step(step: ProposedStep, element: Any) -> dict[str, Any]:
+    return {
+        "kind": step.kind,
+        "cost": step.cost,
+        "categories": list(step.categories),
+        "between": [{"from": element(source), "to": element(target)} for source, target in step.between],
+        "channel": element(step.channel) if step.channel else None,
+        "label": _label(step),
+        "policy": [_grant(grant) for grant in step.grants],
+        "reaches": [element(one) for one in step.readers],
+        "spares": [element(one) for one in step.spared],
+    }
+
+
+def _label(step: ProposedStep) -> dict[str, Any] | None:
+    """The label that a review ends in, if the channel carries none."""
+    if step.channel is None:
+        return None
+    return {SECTIONS[step.channel.kind]: {step.channel.name: {"never": list(step.categories)}}}
+
+
+def _grant(grant: Grant) -> dict[str, Any]:
+    return {
+        "file": grant.place.file, "line": grant.place.line, "enclave": grant.enclave, "profile": grant.node,
+        "role": grant.role, "kind": grant.kind, "name": grant.name,
+    }  # fmt: skip
+
+
+def _affected(less: Affected, element: Any) -> dict[str, Any]:
+    return {
+        "element": element(less.element),
+        "filtered": [{"from": _named(at), "categories": list(names)} for at, names in less.filtered],
+        "unread": [_named(at) for at in less.unread],
+        "unwritten": [_named(at) for at in less.unwritten],
+        "narrowed": [_named(at) for at in less.narrowed],
+    }
+
+
+def _named(at: Shown) -> dict[str, str]:
+    robot, kind, name, leg = at
+    return {"robot": robot, "kind": kind, "name": name, **({"leg": leg} if leg else {})}

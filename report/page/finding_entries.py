@@ -1,0 +1,263 @@
+"""Findings -> the entries of a report: one way to assess each, hop by hop, with policy lines and what is to be asked.
+
+In: an ``Index``. Out: ``Way``, in the order of the document; findings that differ only in the robot are one (rule S10).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.report.naming import fit, key, line, name, printable
+from rosprivacy.report.page.decision_texts import Decision, decision_of
+from rosprivacy.report.page.entries_of_robots import finding_pattern, grouped
+from rosprivacy.report.page.index import anchor, state
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterator, Mapping
+
+    from rosprivacy.report.page.index import Index
+
+LINES = 4  # policy lines shown of one step
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """A policy line, and whose it is."""
+
+    place: str
+    of: str
+
+
+@dataclass(frozen=True, slots=True)
+class Hop:
+    """An element of a way, and the step that leaves it.
+
+    Attributes
+    ----------
+    notes
+        What labels say of it; ``open`` whether nobody reviewed it.
+    end
+        ``source``, ``leak`` or empty.
+    verb, lines, more
+        Of the step, empty at the end: what the policy allows, by which lines, and how many more there are.
+    data
+        What goes along the step, where it is not what went before.
+    """
+
+    name: str
+    kind: str
+    notes: tuple[str, ...]
+    open: bool
+    end: str
+    verb: str = ""
+    lines: tuple[Line, ...] = ()
+    more: int = 0
+    data: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Way:
+    """One entry.
+
+    Attributes
+    ----------
+    id, anchor, number
+        Of the first finding; ``others`` are the ids of those that differ only in the robot.
+    kind, state, article9, category
+        As in the contract; the state is ``open``, ``decided``, ``accepted`` or ``dismissed``.
+    sentence
+        What it says, in one sentence.
+    robots
+        That it is the same on, the first included; empty where there is one.
+    spread
+        On how many robots it is, in a sentence; empty where there is one.
+    pattern
+        On a fleet, the id of the pattern: what decisions name.
+    through
+        Other recipients that every way leads through.
+    notes
+        What a person has to know or answer.
+    mark
+        ``new`` or ``changed`` since the earlier report; else empty.
+    """
+
+    id: str
+    anchor: str
+    number: int
+    kind: str
+    state: str
+    category: str
+    article9: str
+    data: str
+    source: str
+    leak: str
+    sentence: str
+    pseudonymised: bool
+    hops: tuple[Hop, ...]
+    notes: tuple[str, ...]
+    special: str
+    others: tuple[str, ...]
+    robots: tuple[str, ...]
+    paths: tuple[str, ...]
+    decision: Decision | None
+    mark: str = ""
+    spread: str = ""
+    pattern: str = ""
+
+    @property
+    def brief(self) -> str:
+        """The way in one line, for those who do not see its picture."""
+        return " → ".join(hop.name for hop in self.hops)
+
+
+def ways(index: Index, marks: Mapping[str, str] | None = None) -> tuple[Way, ...]:
+    """Return the entries.
+
+    Parameters
+    ----------
+    marks
+        Id of a finding -> ``new`` or ``changed``; such findings are put together only with their like.
+
+    Complexity: O(hops of all findings).
+    """
+    marks = marks or {}
+    decided = {finding["id"]: decision_of(finding, index) for finding in index.findings}
+
+    def pattern(finding: Mapping[str, Any]) -> Any:
+        return finding_pattern(finding), marks.get(finding["id"]), decided[finding["id"]]
+
+    fleet = index.patterns  # there each finding is one of its pattern
+    groups = [[finding] for finding in index.findings] if fleet else grouped(index.findings, pattern)
+    return tuple(_way(number, group, index, decided, marks) for number, group in enumerate(groups, 1))
+
+
+def _way(
+    number: int,
+    group: list[Mapping[str, Any]],
+    index: Index,
+    decided: Mapping[str, Decision | None],
+    marks: Mapping[str, str],
+) -> Way:
+    finding = group[0]
+    decision = decided[finding["id"]]
+    stands = state(finding)
+    robots = _robots(group, index)
+    return Way(
+        id=finding["id"],
+        anchor=anchor(finding["id"]),
+        number=number,
+        kind=finding["kind"],
+        state="decided" if decision and stands == "open" else stands,
+        category=finding["category"],
+        article9=finding["article9"],
+        data=index.data(finding["category"], pseudonymised=finding["pseudonymised"]),
+        source=name(finding["source"]),
+        leak=name(finding["leak"]),
+        sentence=_sentence(finding, index),
+        pseudonymised=finding["pseudonymised"],
+        hops=tuple(_hops(finding, index)),
+        notes=tuple(_notes(finding, index)),
+        special=_special(finding, index),
+        others=tuple(f["id"] for f in group[1:]),
+        robots=robots,
+        paths=tuple(" → ".join(map(name, path)) for path in finding.get("paths", ())),
+        decision=decision,
+        mark=marks.get(finding["id"], ""),
+        spread=_spread(finding, robots, index),
+        pattern=index.patterns.get(finding["id"], {}).get("id", ""),
+    )
+
+
+def _robots(group: list[Mapping[str, Any]], index: Index) -> tuple[str, ...]:
+    if index.alike:
+        return tuple(map(fit, index.patterns[group[0]["id"]]["robots"]))
+    return tuple(fit(finding["source"]["robot"]) for finding in group) if len(group) > 1 else ()
+
+
+def _spread(finding: Mapping[str, Any], robots: tuple[str, ...], index: Index) -> str:
+    words, pattern = index.words, index.patterns.get(finding["id"])
+    if not pattern:
+        return words("f.robots", robots=words.count(len(robots), "robot")) if robots else ""
+    if not robots:
+        return words("f.fleet.none")
+    said = [words("f.fleet", n=len(robots), all=words.count(len(index.robots()), "robot"))]
+    said += [words("f.fleet.across", n=pattern["findings"])] if pattern["across"] else []
+    for what in ("dismissed", "accepted", "pseudonymised"):
+        if 0 < pattern[what] < pattern["findings"]:
+            said.append(words(f"f.fleet.{what}", n=pattern[what], all=pattern["findings"]))
+    return " ".join(said)
+
+
+def _sentence(finding: Mapping[str, Any], index: Index) -> str:
+    data = index.data(finding["category"], pseudonymised=finding["pseudonymised"])
+    ends = {"source": name(finding["source"]), "leak": name(finding["leak"])}
+    alone = finding["kind"] == "disclosure" and len(finding["witness"]) == 1
+    said = index.words("f.single" if alone else f"f.{finding['kind']}", data=data, **ends)
+    return said[:1].upper() + said[1:]
+
+
+def _notes(finding: Mapping[str, Any], index: Index) -> Iterator[str]:
+    words = index.words
+    if finding.get("reason"):
+        yield f"{words('f.reason')}: {printable(finding['reason'])}"
+    if finding["dismissed"]:
+        yield words("f.dismissed", names=words.row(map(name, finding["through"])))
+    if finding.get("beside_pseudonymised"):
+        yield words("f.beside")
+    if finding["pseudonymised"]:
+        yield words("f.pseudonymised")
+    if finding["disjoint_paths"] > 1:
+        yield words("f.ways", n=finding["disjoint_paths"])
+    if finding.get("paths_bounded"):
+        yield words("f.bounded", n=len(finding["paths"]))
+
+
+def _special(finding: Mapping[str, Any], index: Index) -> str:
+    turned = finding["special_from"]
+    return index.words("f.special", element=name(turned)) if turned else ""
+
+
+def _hops(finding: Mapping[str, Any], index: Index) -> Iterator[Hop]:
+    """The witness: each element with what labels say of the data that is there, and the step that leaves it."""
+    witness, steps = finding["witness"], finding["steps"]
+    data = [(step["category"], step["pseudonymised"]) for step in steps]
+    for number, element in enumerate(witness):
+        last = number == len(steps)
+        here = [category for category, _ in data[max(number - 1, 0) : number or 1]]
+        here = list(dict.fromkeys([*here, *([finding["category"]] if last else [])]))
+        notes, is_open = _said(element, here, index)
+        end = "leak" if last else "source" if number == 0 else ""
+        if last:
+            yield Hop(name(element), index.words.kind(element), notes, is_open, end)
+            continue
+        changed = number == 0 or data[number] != data[number - 1]
+        label = index.data(data[number][0], pseudonymised=data[number][1]) if changed else ""
+        lines = tuple(_lines(steps[number], index))
+        verb = index.words(f"verb.{steps[number]['role']}")
+        yield Hop(
+            name(element),
+            index.words.kind(element),
+            notes,
+            is_open,
+            end,
+            verb,
+            lines[:LINES],
+            len(lines[LINES:]),
+            label,
+        )
+
+
+def _said(element: Mapping[str, Any], here: Collection[str], index: Index) -> tuple[tuple[str, ...], bool]:
+    notes = [
+        index.words(f"role.{role}", data=index.data(category))
+        for category in here
+        for role in index.roles.get((key(element), category), ())
+    ]
+    return tuple(notes), any((key(element), category) in index.unreviewed for category in here)
+
+
+def _lines(step: Mapping[str, Any], index: Index) -> Iterator[Line]:
+    for grant in step["policy"]:
+        of = index.words("policy.of", enclave=fit(grant["enclave"]), profile=fit(grant["profile"]))
+        yield Line(line(grant), of if grant["enclave"] or grant["profile"] else "")

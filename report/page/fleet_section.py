@@ -1,0 +1,128 @@
+"""A fleet in a report for people: its robots by model, which stand for which, and those that are not as most.
+
+In: an ``Index`` and the entries of the report. Out: ``Fleet``, in plain texts.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.report.naming import fit, name
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from rosprivacy.report.page.finding_entries import Way
+    from rosprivacy.report.page.index import Index
+
+
+@dataclass(frozen=True, slots=True)
+class Alike:
+    """Robots that have the same policies and labels: the first one is shown."""
+
+    model: str
+    shown: str
+    robots: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """One thing in which robots differ from most of their model.
+
+    Attributes
+    ----------
+    more
+        Whether they have it and most do not; else the other way round.
+    way
+        The entry; None where the difference is an element that nobody has reviewed, or one that is reviewed there.
+    ends
+        Source and place of the way, whatever the robot.
+    text
+        In words.
+    """
+
+    more: bool
+    way: Way | None
+    ends: tuple[str, str]
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Deviant:
+    """Robots that are not as most of their model."""
+
+    robots: tuple[str, ...]
+    model: str
+    differences: tuple[Difference, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Fleet:
+    """What a report tells of the robots.
+
+    Attributes
+    ----------
+    models
+        (name, number of robots).
+    """
+
+    intro: str
+    models: tuple[tuple[str, int], ...]
+    alike: tuple[Alike, ...]
+    deviants: tuple[Deviant, ...]
+
+
+def fleet_told(index: Index, entries: Iterable[Way]) -> Fleet | None:
+    """Return the fleet of a document; None if it is of a single robot. Complexity: O(robots + differences)."""
+    fleet = index.document.get("fleet")
+    if not fleet:
+        return None
+    words = index.words
+    by_finding = {way.id: way for way in entries}
+    findings = {finding["id"]: finding for finding in index.findings}
+    ways = {
+        pattern["id"]: (by_finding[pattern["finding"]], _ends(findings[pattern["finding"]], index))
+        for pattern in fleet["patterns"]
+    }
+    alike = tuple(
+        Alike(fit(group["model"]) or words("none"), fit(group["robot"]), tuple(map(fit, group["robots"])))
+        for group in fleet["alike"]
+    )
+    return Fleet(
+        words("fl.intro", robots=words.count(fleet["robots"], "robot"), kinds=words.count(len(alike), "robotkind")),
+        tuple((fit(model) or words("none"), number) for model, number in fleet["models"].items()),
+        alike,
+        tuple(_deviant(deviant, ways, index) for deviant in fleet["deviants"]),
+    )
+
+
+def _deviant(deviant: Mapping[str, Any], ways: Mapping[str, tuple[Way, tuple[str, str]]], index: Index) -> Deviant:
+    shares = [
+        Difference(more, *ways[share["pattern"]], _form(share, index))
+        for more, key in ((True, "more"), (False, "fewer"))
+        for share in deviant[key]
+    ]
+    opened = [
+        Difference(more, None, ("", ""), index.words(f"fl.{key}", names=index.words.row(index.names(deviant[key]))))
+        for more, key in ((True, "more_open"), (False, "fewer_open"))
+        if deviant[key]
+    ]
+    return Deviant(tuple(map(fit, deviant["robots"])), fit(deviant["model"]), (*shares, *opened))
+
+
+def _ends(finding: Mapping[str, Any], index: Index) -> tuple[str, str]:
+    def any_robot(element: Mapping[str, Any]) -> str:
+        return fit(element["name"]) if index.alike.get(element["robot"]) else name(element)
+
+    return any_robot(finding["source"]), any_robot(finding["leak"])
+
+
+def _form(share: Mapping[str, Any], index: Index) -> str:
+    """How a robot takes part in a pattern."""
+    words = index.words
+    said = [words("fl.ends") if share["ends"] else words("fl.begins")]
+    said += [words("fl.dismissed")] if share["dismissed"] else []
+    said += [words("fl.accepted")] if share["accepted"] else []
+    said += [words("fl.hidden" if share["pseudonymised"] else "fl.plain")]
+    return words.row(said)

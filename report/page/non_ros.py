@@ -1,0 +1,97 @@
+"""What lies outside ROS, for a report: storages with their retention, external systems with country and recipient.
+
+In: an ``Index``. Out: rows of plain texts; empty where nobody stated anything. What is not stated is a person's to
+complete, so it is left empty and not guessed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.report.naming import fit, name
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rosprivacy.report.page.index import Index
+
+STORAGE = "storage"
+EVERY = "every"
+
+
+@dataclass(frozen=True, slots=True)
+class Outside:
+    """One element outside ROS.
+
+    Attributes
+    ----------
+    holds
+        Kinds of data that get there.
+    warnings
+        What has to be known and is not stated.
+    place
+        The line that states it.
+    """
+
+    name: str
+    kind: str
+    storage: bool
+    holds: str
+    retention: str
+    backups: str
+    encrypted: str
+    country: str
+    operator: str
+    recipient: str
+    transfer: str
+    warnings: tuple[str, ...]
+    place: str
+
+
+def outside(index: Index) -> tuple[Outside, ...]:
+    """Return all of them, storages first."""
+    rows = sorted(index.outside.values(), key=lambda row: row["element"]["kind"] != STORAGE)
+    return tuple(_outside(row, index) for row in rows)
+
+
+def _outside(row: Mapping[str, Any], index: Index) -> Outside:
+    words, element = index.words, row["element"]
+    area = words(f"area.{row['area']}") if row.get("area") else ""
+    warnings = [words(f"missing.{what}") for what in row.get("missing", ())]
+    if row.get("without_limit"):
+        warnings.append(words("o.unlimited", data=index.all_data(row["without_limit"])))
+    return Outside(
+        name=name(element),
+        kind=words.kind(element),
+        storage=element["kind"] == STORAGE,
+        holds=index.all_data(row["holds"]),
+        retention=retention(row, index),
+        backups=_backups(row.get("backups"), index),
+        encrypted="" if "encrypted" not in row else words("yes" if row["encrypted"] else "no"),
+        country=fit(row.get("country", "")) + (f" ({area})" if area else ""),
+        operator=fit(row.get("operator", "")),
+        recipient=words.known(f"recipient.{row['recipient']}", row["recipient"]) if row.get("recipient") else "",
+        transfer=words.known(f"transfer.{row['transfer']}", row["transfer"]) if row.get("transfer") else "",
+        warnings=tuple(warnings),
+        place=f"{fit(row['file'])}:{row['line']}" if row.get("file") else "",
+    )
+
+
+def retention(row: Mapping[str, Any], index: Index) -> str:
+    """Return how long a storage keeps what."""
+    words = index.words
+    return "; ".join(
+        words("o.every", duration=fit(words.duration(duration)))
+        if category == EVERY
+        else words("o.of", data=index.data(category), duration=fit(words.duration(duration)))
+        for category, duration in row.get("retention", {}).items()
+    )
+
+
+def _backups(value: Any, index: Index) -> str:
+    if value is None:
+        return ""
+    if isinstance(value, bool):
+        return index.words("o.backups.unknown" if value else "no")
+    return fit(index.words.duration(str(value)))

@@ -1,0 +1,351 @@
+"""Analysis -> the two views as pictures: the ROS graph, and where personal data can go.
+
+In: an ``Analysis``. Out: a ``Picture``, with nothing of it left out in silence.
+
+Source: the paper, section II-B, for what the views hold and for their colours. Two things differ. A sanitizer is gone
+from the privacy view only where it ends all that comes to it: one that pseudonymises passes data on (rule S8). And all
+flows on ways to leaks are marked, not only those of paths that share no edge, since which of these are found is chance.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.answer import Verdict
+from rosprivacy.analysis.findings.flows_to_leaks import FlowsToLeaks, flows_to_leaks
+from rosprivacy.analysis.kernel.search import Net
+from rosprivacy.analysis.model import DISCLOSURE
+from rosprivacy.report.pictures.looks import ALLOWED, DATA, DENIED, MATCHES, SHORTEST, WAY
+from rosprivacy.report.pictures.picture import PRIVACY, ROS, Box, Line, Picture, order, sorted_boxes, sorted_lines
+from rosprivacy.report.pictures.privacy import Reached
+from rosprivacy.report.pictures.wording import counted, listed, shortened
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Iterator, Mapping
+
+    from rosprivacy.analysis.answer import Analysis, Finding
+    from rosprivacy.analysis.model import Flow, FlowGraph, Grant, Place
+    from rosprivacy.report.pictures.phrases import Phrases
+    from rosprivacy.report.pictures.picture import Key
+
+VERDICTS = {
+    Verdict.LEAK: "data can reach a leak",
+    Verdict.UNDETERMINED: "no leak reached, but not everything on the way is reviewed",
+    Verdict.NO_LEAK_FOUND: "no way to a leak found",
+}
+PER_BOX = 12  # flows that are looked at for each box: channels with the same ends will be one
+NOTHING = "No data was followed: no label names a source. So this says nothing about the system."
+LONGER = "Not drawn: ways of more"
+BOTH_WAYS = {"request", "reply", "call", "execute"}
+
+
+def ros_view(
+    analysis: Analysis, denials: Iterable[Grant] = (), *, standard: bool = False, beside: Collection[str] = ()
+) -> Picture:
+    """Return the whole system: every element and every grant.
+
+    Parameters
+    ----------
+    denials
+        Grants of the policies; those that deny are drawn even where nothing allows what they deny.
+    standard
+        Whether to draw the standard ROS channels too (rule S13).
+    beside
+        Robots that stand beside others like them (``fleet_view.represented`` draws one for both): none of them counts.
+    """
+    graph = analysis.graph
+    hidden = set() if standard else {graph.elements[vertex].identity for vertex in analysis.spread.standard}
+    boxes = {e.identity: Box.of(e, e.kind) for e in graph.elements if e.identity not in hidden}
+    covered: dict[Key, set[Key]] = defaultdict(set)
+    lines = _Lines(boxes)
+    for flow in graph.flows:
+        if flow.role == "matches":
+            one, other = _ends(analysis, flow)
+            covered[one].add(other)
+            covered[other].add(one)
+        lines.add(*_ends(analysis, flow), MATCHES if flow.role == "matches" else ALLOWED, flow.role, flow.grants)
+    for flow in graph.denied:
+        lines.add(*_ends(analysis, flow), DENIED, flow.role, flow.denials)
+    effective = {grant for flow in graph.denied for grant in flow.denials}
+    denying = [grant for grant in denials if not grant.allow and not grant.dead]
+    undrawn = sum(not _deny(lines, grant, graph, hidden) and grant not in effective for grant in denying)
+    for key in boxes.keys() & covered.keys():
+        if boxes[key].pattern:
+            words = f"covers {counted(len(covered[key] - {key}), 'name')}"
+            boxes[key] = replace(boxes[key], words=(words,))
+    title = f"ROS graph ({graph.view}): {_inventory([key for key in boxes if key[0] not in beside])}"
+    hidden = {key for key in hidden if key[0] not in beside}
+    notes = _left_out(hidden, undrawn, robots=len({element.robot for element in graph.elements}))
+    return Picture(ROS, title, sorted_boxes(boxes.values()), lines.made(), notes)
+
+
+def _ends(analysis: Analysis, flow: Flow) -> tuple[Key, Key]:
+    elements = analysis.graph.elements
+    return elements[flow.source].identity, elements[flow.target].identity
+
+
+def _deny(lines: _Lines, grant: Grant, graph: FlowGraph, hidden: Collection[Key]) -> bool:
+    """A DENY by itself is no flow; it is drawn where there is a channel of that name. Return whether it was."""
+    robots = {element.robot for element in graph.elements}
+    if len(robots) > 1:  # a policy line does not say whose it is
+        return False
+    robot = next(iter(robots), "")
+    node, channel = (robot, "node", grant.node), (robot, grant.kind, grant.name)
+    if grant.role in BOTH_WAYS or grant.role == "publish":
+        lines.add(node, channel, DENIED, grant.role, (grant,))
+    if grant.role in BOTH_WAYS or grant.role == "subscribe":
+        lines.add(channel, node, DENIED, grant.role, (grant,))
+    return channel in lines.boxes or channel in hidden
+
+
+def _inventory(keys: Iterable[Key]) -> str:
+    kinds: dict[str, int] = defaultdict(int)
+    for key in sorted(keys, key=order):
+        kinds[key[1].replace("-", " ")] += 1
+    plural = {"shared memory": "shared memories"}
+    return ", ".join(counted(number, kind, plural.get(kind, "")) for kind, number in kinds.items()) or "nothing"
+
+
+def _left_out(hidden: Collection[Key], undrawn: int, *, robots: int) -> tuple[str, ...]:
+    notes = [f"Not drawn: {counted(len(hidden), 'standard ROS channel')}"] if hidden else []
+    if undrawn and robots > 1:
+        notes.append(f"Not drawn: {counted(undrawn, 'DENY', 'DENYs')} that take nothing away")
+    elif undrawn:
+        notes.append(f"Not drawn: {counted(undrawn, 'DENY', 'DENYs')} without a channel of that very name")
+    return tuple(notes)
+
+
+@dataclass
+class _Lines:
+    """Lines in the making: flows with the same ends and the same look become one."""
+
+    boxes: Collection[Key]
+    lines: dict[tuple[Key, Key, str], Line] = field(default_factory=dict)
+
+    def add(
+        self,
+        source: Key,
+        target: Key,
+        look: str,
+        role: str,
+        grants: Iterable[Grant],
+        carries: Collection[str] = (),
+        *,
+        pseudonymised: bool = False,
+        length: int = 0,
+    ) -> None:
+        """Add a flow; the two sides of a wildcard are one element, and between them nothing is drawn."""
+        if source == target or source not in self.boxes or target not in self.boxes:
+            return
+        places = {grant.place for grant in grants}
+        old = self.lines.get((source, target, look))
+        new = Line(source, target, look, (role,), tuple(carries), pseudonymised, (), length)
+        if old:
+            places |= set(old.places)
+            roles, kinds = tuple(sorted({role, *old.roles})), tuple(sorted({*carries, *old.carries}))
+            lengths = [n for n in (length, old.length) if n]
+            hidden = pseudonymised and old.pseudonymised
+            new = Line(source, target, look, roles, kinds, hidden, (), min(lengths, default=0))
+        self.lines[source, target, look] = replace(new, places=tuple(sorted(places, key=_place)))
+
+    def made(self) -> tuple[Line, ...]:
+        """The lines; data that goes to a leak hides data that goes the same line to none."""
+        ranks = {DATA: 0, WAY: 1, SHORTEST: 2}
+        best: dict[tuple[Key, Key, str], Line] = {}
+        for (source, target, look), line in sorted(self.lines.items()):
+            slot = (source, target, look if look not in ranks else "")
+            old = best.get(slot)
+            if old:
+                upper, lower = (line, old) if ranks[look] > ranks[old.look] else (old, line)
+                line = replace(  # noqa: PLW2901 - the same line, with what else goes along it
+                    upper,
+                    roles=tuple(sorted({*upper.roles, *lower.roles})),
+                    carries=tuple(sorted({*upper.carries, *lower.carries})),
+                    places=tuple(sorted({*upper.places, *lower.places}, key=_place)),
+                )
+            best[slot] = line
+        return sorted_lines(best.values())
+
+
+def _place(place: Place) -> tuple[str, int]:
+    return place.file, place.line
+
+
+def privacy_view(analysis: Analysis, beside: Collection[str] = ()) -> Picture:
+    """Return what some category reaches, with the ways to leaks marked.
+
+    Parameters
+    ----------
+    beside
+        As in ``ros_view``.
+
+    Notes
+    -----
+    Besides what the analysis took: per category with a finding O(flows), see ``flows_to_leaks``.
+    """
+    reached = Reached(analysis)
+    if not reached.sources():
+        return Picture(PRIVACY, NOTHING, (), ())
+    boxes = {box.key: box for box in reached.boxes()}
+    net = Net.of(analysis.spread)
+    open_findings = [finding for finding in analysis.findings if not finding.dismissed]
+    lengths: dict[int, int] = {}
+    for found in _ways_to_all(analysis, net, open_findings):
+        for flow, length in found.items():
+            lengths[flow] = min(length, lengths.get(flow, length))
+    lines = _data_lines(reached, boxes, range(len(analysis.graph.flows)), lengths, _pairs(open_findings))
+    what = listed(analysis.emitted, most=6)
+    findings = counted(len(open_findings), "finding")
+    open_count = counted(len({q.element.identity for q in analysis.open if q.element.robot not in beside}), "element")
+    title = f"Where {what} can go ({analysis.graph.view}): {VERDICTS[analysis.verdict]}"
+    notes = (f"{findings}, {open_count} not reviewed", *reached.left_out(beside))
+    shown = tuple(in_words(finding) for finding in open_findings)
+    core = _core(open_findings)
+    return Picture(PRIVACY, title, sorted_boxes(boxes.values()), lines.made(), notes, shown, core)
+
+
+def _ways_to_all(analysis: Analysis, net: Net, findings: Iterable[Finding]) -> Iterator[dict[int, int]]:
+    """The ways to the leaks of each category, and to where data are kept too long or leave the EEA (rule S10)."""
+    number = {element: vertex for vertex, element in enumerate(analysis.graph.elements)}
+    ends: dict[str, dict[int, int]] = {}
+    for finding in findings:
+        if finding.kind != DISCLOSURE:
+            both = analysis.spread.both(finding.category)
+            ends.setdefault(finding.category, {})[number[finding.leak]] = both
+    for category in sorted({finding.category for finding in findings if finding.kind == DISCLOSURE}):
+        yield flows_to_leaks(net, category).flows
+    for category, where in sorted(ends.items()):
+        yield flows_to_leaks(net, category, leaks=where, past_leaks=True, ends=where).flows
+
+
+class FindingViews:
+    """Pictures of findings; what they share is made once.
+
+    Parameters
+    ----------
+    say
+        The words on the boxes.
+
+    Notes
+    -----
+    O(flows) to begin with, and per finding what ``flows_to_leaks`` takes.
+    """
+
+    def __init__(self, analysis: Analysis, say: Phrases | None = None) -> None:
+        self._analysis, self._say = analysis, say
+        self._net = Net.of(analysis.spread)
+        self._number = {element: vertex for vertex, element in enumerate(analysis.graph.elements)}
+        self._reached: dict[str, Reached] = {}
+
+    def of(self, finding: Finding, about: int | None = None) -> Picture:
+        """Return the ways of one finding, from its source to its leak: the shortest, and the longer ones.
+
+        A dismissed one shows its ways through other leaks. What else the data reaches is in the privacy view.
+
+        Parameters
+        ----------
+        about
+            Take only the shorter ways, with about so many flows: on a large graph much quicker. None for all.
+        """
+        category, graph = finding.category, self._analysis.graph
+        if category not in self._reached:
+            self._reached[category] = Reached(self._analysis, {category}, self._say)
+        reached = self._reached[category]
+        source, leak = self._number[finding.source], self._number[finding.leak]
+        found = FlowsToLeaks({})
+        if finding.steps:
+            ends = None if finding.kind == DISCLOSURE else {leak: self._analysis.spread.both(category)}
+            past = finding.dismissed or ends is not None
+            found = flows_to_leaks(
+                self._net, category, sources=[source], leaks=[leak], past_leaks=past, ends=ends, about=about
+            )
+        lengths = found.flows
+        keys = {element.identity for element in finding.witness}
+        for index in lengths:
+            keys |= set(_ends(self._analysis, graph.flows[index]))
+        boxes = {box.key: box for box in reached.boxes(keys)}
+        lines = _data_lines(reached, boxes, lengths, lengths, _pairs([finding]))
+        form = "pseudonymised " if finding.pseudonymised else ""
+        from_to = f"{shortened(finding.source.name, 60)} to {shortened(finding.leak.name, 60)}"
+        title = f"How {form}{category} can get from {from_to} ({graph.view})"
+        notes = [f"Finding {finding.id}"]
+        if finding.dismissed:
+            through = listed((element.name for element in finding.through), longest=60)
+            notes.append(f"Only through {through}, which has a finding of its own")
+        if finding.disjoint_paths > 1:
+            notes.append(f"{finding.disjoint_paths} ways share no flow")
+        if not found.complete:
+            notes.append(f"{LONGER} than {counted(max(lengths.values()), 'step')}")
+        ordered = sorted_boxes(boxes.values())
+        return Picture(PRIVACY, title, ordered, lines.made(), tuple(notes), (in_words(finding),), _core([finding]))
+
+
+def finding_view(analysis: Analysis, finding: Finding, about: int | None = None) -> Picture:
+    """Return the ways of one finding, see ``FindingViews``."""
+    return FindingViews(analysis).of(finding, about)
+
+
+def bounded(picture: Picture, most: int) -> Picture:
+    """Return the privacy view with the shorter ways to leaks only, so that it has no more boxes than asked for.
+
+    The shortest way of each finding is always there; what was left out is said.
+    """
+    if len(picture.boxes) <= most:
+        return picture
+    lines = [line for line in picture.lines if line.look == SHORTEST]
+    what = "the shortest ways"
+    for length in sorted({line.length for line in picture.lines if line.length}):
+        longer = [line for line in picture.lines if 0 < line.length <= length or line.look == SHORTEST]
+        if len(_joined(longer) | picture.core) > most:
+            break
+        lines, what = longer, f"the ways of up to {counted(length, 'step')}"
+    kept = _joined(lines) | picture.core
+    left = len(picture.boxes) - len(kept)
+    if not left and len(lines) == len(picture.lines):
+        return picture
+    notes = tuple(note for note in picture.notes if not note.startswith(LONGER))
+    known = left and len(notes) == len(picture.notes)
+    note = f"Not drawn: {counted(left, 'element') if known else 'what is'} beside {what}"
+    return replace(picture, notes=notes, lines=tuple(lines)).kept(kept, note)
+
+
+def _joined(lines: Iterable[Line]) -> set[Key]:
+    return {key for line in lines for key in (line.source, line.target)}
+
+
+def _pairs(findings: Iterable[Finding]) -> set[tuple[Key, Key]]:
+    """The steps of the shortest ways."""
+    return {(step.source.identity, step.target.identity) for finding in findings for step in finding.steps}
+
+
+def _core(findings: Iterable[Finding]) -> frozenset[Key]:
+    return frozenset(element.identity for finding in findings for element in finding.witness)
+
+
+def _data_lines(
+    reached: Reached,
+    boxes: Collection[Key],
+    flows: Iterable[int],
+    lengths: Mapping[int, int],
+    shortest: Collection[tuple[Key, Key]],
+) -> _Lines:
+    """What goes along some flows; ``lengths`` has those on ways to leaks."""
+    lines = _Lines(boxes)
+    for index in flows:
+        carries, pseudonymised = reached.along(index)
+        if not carries and index not in lengths:
+            continue
+        flow = reached.graph.flows[index]
+        ends = _ends(reached.analysis, flow)
+        look = DATA if index not in lengths else SHORTEST if ends in shortest else WAY
+        length = lengths.get(index, 0)
+        lines.add(*ends, look, flow.role, flow.grants, carries, pseudonymised=pseudonymised, length=length)
+    return lines
+
+
+def in_words(finding: Finding) -> str:
+    """Return a finding's shortest way as a sentence."""
+    form = "pseudonymised " if finding.pseudonymised else ""
+    return f"{form}{finding.category}: " + " to ".join(shortened(element.name, 60) for element in finding.witness)

@@ -1,0 +1,129 @@
+"""Where things stand in files: the policy line of a step, the label line of a role, the line of a finding.
+
+In: an ``Analysis`` and what was said of its elements. Out: places. For readers that show a finding beside a line of a
+file: every finding has a place, whatever it rests on.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.model import Place
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+    from typing import Any
+
+    from rosprivacy.analysis.answer import Analysis, Finding, OpenQuestion, Step
+    from rosprivacy.analysis.kernel.roles import Facts
+    from rosprivacy.analysis.model import Element
+
+    Shown = tuple[str, ...]
+
+OURS = "rosprivacy:"  # label files that come with the program have no path
+NOWHERE = Place("the database", 0)  # what people added there by hand stands in no file
+
+
+@dataclass(frozen=True, slots=True)
+class Places:
+    """Looks places up.
+
+    Attributes
+    ----------
+    facts
+        Vertex -> category -> what labels decide; the statement of the highest rank stands first (rule S7).
+    vertices
+        Element at an end of a finding -> its vertices' numbers; the two sides of a wildcard are one to the reader.
+    channels
+        Channel to be reviewed -> a policy line that names it.
+    profiles
+        Name of a node -> where its profile begins.
+    files
+        The label files and policies that the answer rests on: the last resort.
+    """
+
+    facts: Mapping[int, Mapping[str, Facts]]
+    vertices: Mapping[Shown, tuple[int, ...]]
+    channels: Mapping[Shown, Place]
+    profiles: Mapping[str, Place]
+    files: tuple[str, ...]
+
+    @classmethod
+    def of(cls, analysis: Analysis, assumptions: Mapping[str, Any]) -> Places:
+        """Collect what is looked up, in one pass over elements and, where channels are to be reviewed, over flows."""
+        ends = {element.shown_as for finding in analysis.findings for element in (finding.source, finding.leak)}
+        vertices: dict[Shown, tuple[int, ...]] = {}
+        for vertex, element in enumerate(analysis.graph.elements):
+            if element.shown_as in ends:
+                vertices[element.shown_as] = (*vertices.get(element.shown_as, ()), vertex)
+        profiles: dict[str, Place] = {}
+        for profile in analysis.graph.profiles:
+            if in_a_file(profile.place):
+                profiles.setdefault(profile.node, profile.place)
+        files = [entry["file"] for kind in ("labels", "policies") for entry in assumptions.get(kind) or ()]
+        return cls(analysis.spread.facts, vertices, _lines(analysis), profiles, tuple(files))
+
+    def of_finding(self, finding: Finding) -> Place:
+        """Return the line that lets the data into the leak; the line of a label where no policy line does (S3)."""
+        lines = (place for step in reversed(finding.steps) for place in of_step(step))
+        said = (
+            self.of_role(element, role, finding.category)
+            for element, role in ((finding.leak, "leak"), (finding.source, "source"))
+        )
+        ends = (self.of_profile(element) for element in (finding.leak, finding.source))
+        return _first((*lines, *said, *ends, self.last_resort()))
+
+    def of_question(self, question: OpenQuestion) -> Place:
+        """Return where an element that nobody has reviewed begins: a node's profile, a line that names a channel."""
+        element = question.element
+        return _first((self.of_profile(element), self.channels.get(element.shown_as), self.last_resort()))
+
+    def of_role(self, element: Element, role: str, category: str) -> Place | None:
+        """Return the line of the label that gives an element a role for a category, None if no file does."""
+        facts = (self.facts.get(vertex, {}).get(category) for vertex in self.vertices.get(element.shown_as, ()))
+        said = (statement for fact in facts if fact for statement in fact.by_role(role))
+        return next((statement.place for statement in said if in_a_file(statement.place)), None)
+
+    def of_profile(self, element: Element) -> Place | None:
+        """Return where a node's profile begins, None if it has none."""
+        return self.profiles.get(element.name) if element.is_node else None
+
+    def last_resort(self) -> Place:
+        """Return the first line of a file that the answer rests on."""
+        return next((Place(file, 1) for file in self.files), NOWHERE)
+
+
+def to_review(analysis: Analysis) -> tuple[OpenQuestion, ...]:
+    """Return the open questions to begin with: nodes on the frontier, or all where there are none (rule S11)."""
+    return tuple(question for question in analysis.open if question.frontier) or analysis.open
+
+
+def of_step(step: Step) -> list[Place]:
+    """Return the lines that allow a step, sorted; none for a step from a wildcard to what it covers."""
+    places = {(grant.place.file, grant.place.line) for grant in step.grants if in_a_file(grant.place)}
+    return [Place(*place) for place in sorted(places)]
+
+
+def in_a_file(place: Place) -> bool:
+    """Whether a place is a line of a file that a person can open."""
+    return place.line > 0 and bool(place.file) and not place.file.startswith(OURS)
+
+
+def _lines(analysis: Analysis) -> dict[Shown, Place]:
+    """The first policy line that names each channel to be reviewed."""
+    elements = analysis.graph.elements
+    wanted = {question.element.shown_as for question in to_review(analysis) if question.element.is_channel}
+    found: dict[Shown, tuple[str, int]] = {}
+    for flow in analysis.graph.flows if wanted else ():
+        for end in (elements[flow.source].shown_as, elements[flow.target].shown_as):
+            if end in wanted:
+                lines = [(grant.place.file, grant.place.line) for grant in flow.grants if in_a_file(grant.place)]
+                known = [found[end]] if end in found else []
+                if lines or known:
+                    found[end] = min([*lines, *known])
+    return {end: Place(*line) for end, line in found.items()}
+
+
+def _first(places: Iterable[Place | None]) -> Place:
+    return next(place for place in places if place is not None)

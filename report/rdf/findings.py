@@ -1,0 +1,286 @@
+"""Findings -> RDF: each a ``dpv:Process`` with its data, its way and its law, in the words of DPV 2.3 and our own.
+
+In: an ``Analysis``, the vocabulary, what it rests on. Out: an rdflib graph without time or chance in it (rule S14),
+which ``serialise.py`` writes. Nothing here is a legal verdict: a provision is one that a person has to look at.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+from rdflib import RDF, RDFS, SKOS, XSD, Graph, Literal
+from rdflib.namespace import PROV
+
+from rosprivacy.analysis.errors import shown
+from rosprivacy.report.document.analysis import document
+from rosprivacy.report.rdf.facts import changes, emitted_by, foreign_terms, kinds_along, legal_of
+from rosprivacy.report.rdf.provenance import by_path, provenance
+from rosprivacy.report.rdf.terms import (
+    DPV,
+    OWN,
+    RISK,
+    RP,
+    Triple,
+    about,
+    below,
+    duration,
+    finding_iri,
+    foreign,
+    listed,
+    named,
+    text,
+)
+from rosprivacy.report.rdf.things import Things
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Iterator, Mapping
+    from datetime import datetime
+
+    from rdflib import URIRef
+    from rdflib.term import Node
+
+    from rosprivacy.analysis.answer import Analysis, Finding
+    from rosprivacy.analysis.findings.ledger import TakenAway
+    from rosprivacy.analysis.model import Diagnostic, Element
+    from rosprivacy.ontology.vocabulary import Vocabulary
+    from rosprivacy.report.rdf.facts import Change
+    from rosprivacy.report.rdf.things import Stated
+
+PREFIXES: dict[str, object] = {
+    "dpv": DPV, "risk": RISK, "pd": "https://w3id.org/dpv/pd#", "eu-gdpr": "https://w3id.org/dpv/legal/eu/gdpr#",
+    "rp": OWN, "prov": PROV, "rdf": RDF, "rdfs": RDFS, "skos": SKOS, "xsd": XSD,
+}  # fmt: skip
+NOTHING: Mapping[Any, Any] = MappingProxyType({})
+STORED = "storage-limitation"
+OF_KIND = {"disclosure": DPV.Disclose, STORED: DPV.Store, "third-country-transfer": DPV.CrossBorderTransfer}
+AT_LEAK = {"storage": DPV.Store, "external-system": DPV.Transfer}
+ROLES = {
+    "source": RP.sourceOf, "leak": RP.leakOf, "sanitizer": RP.sanitizerOf, "conduit": RP.conduitOf,
+    "derivation": RP.derivationOf,
+}  # fmt: skip
+
+
+def rdf_graph(
+    analysis: Analysis,
+    vocabulary: Vocabulary,
+    diagnostics: Iterable[Diagnostic],
+    assumptions: Mapping[str, Any],
+    *,
+    when: datetime | None = None,
+    stated: Stated = NOTHING,
+    accepted: Mapping[str, str] = NOTHING,
+    taken: Collection[TakenAway] = (),
+) -> Graph:
+    """Return the findings of an analysis, its verdict and where they come from, as RDF.
+
+    Parameters
+    ----------
+    diagnostics, assumptions
+        As for ``document``.
+    when
+        The time of the run, if it is to be told; None leaves every time out.
+    stated
+        (robot, kind, name) of a storage or recipient -> what people stated of it: ``retention``, ``country``,
+        ``encrypted``, ``operator``, ``role``, ``basis``.
+    accepted
+        Id of a finding -> why a person accepted it.
+    taken
+        The ledger.
+
+    Notes
+    -----
+    Takes time linear in the hops of all witnesses and paths.
+    """
+    told = document(analysis, vocabulary.categories, vocabulary.hierarchy, diagnostics, assumptions, taken=taken)
+    things = Things(vocabulary, by_path(told["assumptions"]), stated)
+    findings = _Findings.of(analysis, vocabulary, things, stated, accepted)
+    graph = Graph(bind_namespaces="none")
+    for prefix, namespace in PREFIXES.items():
+        graph.bind(prefix, str(namespace))
+    for triple in provenance(analysis, told, things, when):
+        graph.add(triple)
+    for finding in analysis.findings:
+        for triple in findings.triples(finding):
+            graph.add(triple)
+    for triple in things.descriptions():
+        graph.add(triple)
+    return graph
+
+
+@dataclass(frozen=True, slots=True)
+class _Findings:
+    """What is needed to write any finding.
+
+    Attributes
+    ----------
+    emitted
+        Source -> categories that it brings in.
+    unstated, unreviewed
+        (element as shown, category) where a method is not stated, or no label covers what arrives.
+    """
+
+    analysis: Analysis
+    vocabulary: Vocabulary
+    things: Things
+    stated: Stated
+    accepted: Mapping[str, str]
+    emitted: Mapping[Element, set[str]]
+    unstated: frozenset[tuple[object, str]]
+    unreviewed: frozenset[tuple[object, str]]
+
+    @classmethod
+    def of(
+        cls,
+        analysis: Analysis,
+        vocabulary: Vocabulary,
+        things: Things,
+        stated: Stated,
+        accepted: Mapping[str, str],
+    ) -> _Findings:
+        unstated = frozenset((element.shown_as, category) for element, category in analysis.unstated)
+        unreviewed = frozenset((q.element.shown_as, category) for q in analysis.open for category in q.categories)
+        emitted = emitted_by(analysis)
+        return cls(analysis, vocabulary, things, stated, accepted, emitted, unstated, unreviewed)
+
+    def triples(self, finding: Finding) -> Iterator[Triple]:
+        """Everything about a finding."""
+        iri, things = finding_iri(finding), self.things
+        source, leak = things.element(finding.source), things.element(finding.leak)
+        yield from about(
+            iri,
+            (RDF.type, [DPV.Process, RP.Finding]),
+            (RDFS.label, [text(shown(f"{finding.category}: {finding.source.name} -> {finding.leak.name}"))]),
+            (RP.id, [Literal(finding.id)]),
+            (RP.kind, [Literal(finding.kind)]),
+            (RP.category, things.categories([finding.category])),
+            (RP.dataSource, [source]),
+            (RP.leak, [leak]),
+            (RP.pseudonymised, [Literal(finding.pseudonymised)]),
+            (RP.dismissed, [Literal(finding.dismissed)]),
+            (RP.through, [things.element(element) for element in finding.through]),
+            (RP.accepted, [text(self.accepted[finding.id])] if finding.id in self.accepted else []),
+            (RP.disjointPaths, [Literal(finding.disjoint_paths)]),
+            (DPV.hasDataSource, [source]),
+            (DPV.hasPersonalData, self._data(finding)),
+        )
+        yield source, RDF.type, DPV.DataSource
+        changed = changes(finding, self.emitted.get(finding.source, ()))
+        yield from self._processing(iri, finding, changed)
+        for number, change in enumerate((change for change in changed if change.pseudonymises), 1):
+            yield from self._measure(iri, below(iri, "measure", number), change)
+        yield from self._leak(iri, finding)
+        yield from self._law(iri, finding)
+        yield from self._witness(iri, finding)
+        yield from self._paths(iri, finding)
+
+    def _data(self, finding: Finding) -> list[Node]:
+        terms = [foreign(term) for term in foreign_terms(finding.category, self.vocabulary)]
+        form = [DPV.PseudonymisedData] if finding.pseudonymised else []
+        return [*self.things.categories([finding.category]), *terms, *form]
+
+    def _processing(self, iri: URIRef, finding: Finding, changed: list[Change]) -> list[Triple]:
+        """What is done with the data, and what could come of it."""
+        doing = {OF_KIND[finding.kind], AT_LEAK.get(finding.leak.kind, OF_KIND[finding.kind])}
+        if DPV.CrossBorderTransfer in doing:
+            doing -= {DPV.Transfer}
+        derived = {self.things.element(change.element) for change in changed if change.derives}
+        risk = RISK.DataRisk if finding.kind == STORED else RISK.UnwantedDisclosureData
+        return about(
+            iri,
+            (DPV.hasProcessing, [*doing, *([DPV.Derive] if derived else [])]),
+            (DPV.hasRisk, [risk, *([RISK.Reidentification] if finding.pseudonymised else [])]),
+            (RP.derivedAt, derived),
+        )
+
+    def _measure(self, iri: URIRef, measure: URIRef, change: Change) -> Iterator[Triple]:
+        names = {name for name, _ in (change.before, change.after) if name}
+        unstated = any((change.element.shown_as, name) in self.unstated for name in names)
+        yield iri, DPV.hasTechnicalMeasure, measure
+        yield from about(
+            measure,
+            (RDF.type, [DPV.Pseudonymisation]),
+            (RDFS.label, [text(f"pseudonymisation at {shown(change.element.name)}", "en")]),
+            (RP.at, [self.things.element(change.element)]),
+            (RP.cleans, self.things.categories(names)),
+            (RP.stated, [Literal(not unstated)]),
+        )
+
+    def _leak(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:
+        """Who receives the data, and how they are kept: whoever stands behind a leak, as software receives nothing."""
+        leak = finding.leak
+        known, name, at = self.stated.get(leak.identity, {}), shown(leak.name), self.things.element(leak)
+        if finding.kind != STORED:
+            recipient = named("recipient", *leak.identity)
+            label = shown(known["operator"]) if "operator" in known else f"whoever receives what {name} lets out"
+            yield iri, DPV.hasRecipient, recipient
+            yield from about(recipient, (RDF.type, [DPV.Recipient]), (RDFS.label, [text(label)]), (RP.at, [at]))
+        if leak.kind == "storage":
+            condition, kept = named("storage-duration", *leak.identity), known.get("retention")
+            label = f"{name} keeps data for {shown(kept)}" if kept else f"how long {name} keeps data is not stated"
+            yield iri, DPV.hasStorageCondition, condition
+            yield from about(condition, (RDF.type, [DPV.StorageDuration]), (RDFS.label, [text(label)]), (RP.at, [at]))
+            yield from about(condition, (RP.stated, [Literal(bool(kept))]))
+            yield from about(condition, (DPV.hasDuration, [duration(kept)] if kept else []))
+
+    def _law(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:
+        for number, (legal, names) in enumerate(legal_of(finding, self.vocabulary), 1):
+            link = below(iri, "law", number)
+            yield iri, RP.fallsUnder, link
+            yield from about(
+                link,
+                (RP.provision, [self.things.provision(legal)]),
+                (RP.verdict, [text(legal.verdict)]),
+                (RP.condition, [text(legal.condition, "en")] if legal.condition else []),
+                (RP.statedOf, self.things.categories(names)),
+            )
+
+    def _witness(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:
+        """The shortest way, element by element, with what arrives and leaves and the lines that allow it."""
+        kinds = kinds_along(finding)
+        hops = [below(iri, "hop", number) for number in range(1, len(kinds) + 1)]
+        first, cells = listed(hops)
+        yield iri, RP.witness, first
+        yield from cells
+        for number, (hop, element, (leaving, form)) in enumerate(zip(hops, finding.witness, kinds, strict=True)):
+            yield from about(
+                hop,
+                (RDF.type, [RP.Hop]),
+                (RP.position, [Literal(number + 1)]),
+                (RP.element, [self.things.element(element)]),
+                (RP.leavesAs, self.things.categories([leaving])),
+                (RP.leavesPseudonymised, [Literal(form)]),
+            )
+            here = {leaving}
+            if number:
+                step = finding.steps[number - 1]
+                here.add(step.category)
+                yield from about(
+                    hop,
+                    (RP.by, [Literal(step.role)]),
+                    (RP.arrivesAs, self.things.categories([step.category])),
+                    (RP.arrivesPseudonymised, [Literal(step.pseudonymised)]),
+                    (RP.allowedBy, [self.things.line(grant) for grant in step.grants]),
+                )
+            yield from self._said(hop, element, here)
+
+    def _said(self, hop: URIRef, element: Element, here: set[str]) -> Iterator[Triple]:
+        """What labels say of an element about the data that is there, or that they say nothing."""
+        said = self.analysis.roles.get(element, {})
+        for name in here:
+            category = self.things.categories([name])
+            yield from about(hop, *((ROLES[role], category) for role in said.get(name, ()) if role in ROLES))
+            if (element.shown_as, name) in self.unreviewed:
+                yield from about(hop, (RP.notReviewedFor, category))
+
+    def _paths(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:
+        """Further ways, if they were asked for."""
+        for number, path in enumerate(finding.paths, 1):
+            way = below(iri, "path", number)
+            elements, cells = listed([self.things.element(element) for element in path])
+            yield iri, RP.path, way
+            yield from cells
+            yield from about(way, (RDF.type, [RP.Path]), (RP.position, [Literal(number)]), (RP.elements, [elements]))
+        if finding.paths:
+            yield iri, RP.pathsBounded, Literal(finding.bounded)

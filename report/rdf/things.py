@@ -1,0 +1,140 @@
+"""Elements, policy lines, categories and provisions as RDF: each is named where it is needed, and described once.
+
+In: facts of the model. Out: their IRIs at once, their descriptions at the end.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from rdflib import RDF, SKOS, XSD, Literal
+
+from rosprivacy.report.rdf.terms import RP, Triple, about, element_iri, foreign, line_iri, text
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from rdflib import URIRef
+
+    from rosprivacy.analysis.model import Category, Element, Grant, Legal
+    from rosprivacy.ontology.vocabulary import Vocabulary
+
+CLASSES = {
+    "node": RP.RosNode, "topic": RP.Topic, "service": RP.Service, "action": RP.Action, "storage": RP.Storage,
+    "external-system": RP.ExternalSystem, "shared-memory": RP.SharedMemory, "side-channel": RP.SideChannel,
+    "device": RP.Device, "display": RP.Display, "person": RP.Person,
+}  # fmt: skip
+
+
+Stated = Mapping[tuple[str, str, str], Mapping[str, str]]
+STATED = {
+    "country": RP.country, "encrypted": RP.encrypted, "operator": RP.operator, "role": RP.operatorRole,
+    "basis": RP.transferBasis, "retention": RP.retention,
+}  # fmt: skip
+
+
+class Things:
+    """What was named so far.
+
+    Parameters
+    ----------
+    files
+        Path -> IRIs of the files that were read there.
+    stated
+        (robot, kind, name) -> what people stated of an element.
+    """
+
+    def __init__(self, vocabulary: Vocabulary, files: Mapping[str, tuple[URIRef, ...]], stated: Stated) -> None:
+        self._categories = vocabulary.categories
+        self._ancestors = vocabulary.hierarchy.ancestors
+        self._files = files
+        self._stated = stated
+        self._elements: dict[URIRef, Element] = {}
+        self._lines: dict[URIRef, Grant] = {}
+        self._provisions: dict[URIRef, Legal] = {}
+        self._named: set[str] = set()
+
+    def element(self, element: Element) -> URIRef:
+        """Return the IRI of an element."""
+        iri = element_iri(element)
+        self._elements.setdefault(iri, element)
+        return iri
+
+    def line(self, grant: Grant) -> URIRef:
+        """Return the IRI of the policy line of a grant."""
+        iri = line_iri(grant)
+        self._lines.setdefault(iri, grant)
+        return iri
+
+    def provision(self, legal: Legal) -> URIRef:
+        """Return the IRI of a provision."""
+        iri = foreign(legal.iri)
+        self._provisions.setdefault(iri, legal)
+        return iri
+
+    def categories(self, names: Iterable[str]) -> list[URIRef]:
+        """Return the IRIs of categories, in order of their names."""
+        wanted = sorted(names)
+        self._named.update(wanted)
+        return [foreign(self._categories[name].iri) for name in wanted]
+
+    def descriptions(self) -> Iterator[Triple]:
+        """Describe all that was named, and the categories that are broader."""
+        for iri, element in self._elements.items():
+            yield from _element(iri, element)
+            known = self._stated.get(element.identity, {})
+            yield from about(iri, *((term, [text(known[what])]) for what, term in STATED.items() if known.get(what)))
+        for iri, grant in self._lines.items():
+            yield from _line(iri, grant, self._files.get(grant.place.file, ()))
+        for iri, legal in self._provisions.items():
+            yield from _provision(iri, legal)
+        for name in {up for category in self._named for up in self._ancestors[category]}:
+            category = self._categories[name]
+            broader = [foreign(self._categories[up].iri) for up in category.broader if up in self._categories]
+            yield from _category(category, broader)
+
+
+def _element(iri: URIRef, element: Element) -> list[Triple]:
+    return about(
+        iri,
+        (RDF.type, [RP.Element, CLASSES[element.kind]]),
+        (RP.name, [text(element.name)]),
+        (RP.kind, [Literal(element.kind)]),
+        (RP.robot, [text(element.robot)] if element.robot else []),
+        (RP.leg, [Literal(element.leg)] if element.leg else []),
+        (RP.pattern, [Literal(element.pattern)]),
+    )
+
+
+def _line(iri: URIRef, grant: Grant, files: Iterable[URIRef]) -> list[Triple]:
+    return about(
+        iri,
+        (RDF.type, [RP.PolicyLine]),
+        (RP.file, [text(grant.place.file)]),
+        (RP.line, [Literal(grant.place.line)]),
+        (RP.enclave, [text(grant.enclave)]),
+        (RP.profile, [text(grant.node)]),
+        (RP.inFile, files),
+    )
+
+
+def _provision(iri: URIRef, legal: Legal) -> list[Triple]:
+    return about(
+        iri,
+        (RDF.type, [RP.LegalProvision]),
+        (RP.identifier, [text(legal.name)]),
+        (SKOS.definition, [text(legal.meaning, "en")]),
+        (RP.asOf, [Literal(legal.as_of, datatype=XSD.date)]),
+    )
+
+
+def _category(category: Category, broader: list[URIRef]) -> list[Triple]:
+    return about(
+        foreign(category.iri),
+        (RDF.type, [SKOS.Concept]),
+        (SKOS.prefLabel, [text(category.title, "en")]),
+        (SKOS.definition, [text(category.definition, "en")]),
+        (SKOS.broader, [*broader, *(foreign(iri) for iri in category.within)]),
+        (SKOS.exactMatch, [foreign(iri) for iri in category.same_as]),
+    )

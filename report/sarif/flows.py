@@ -1,0 +1,167 @@
+"""A finding's ways as SARIF's ``codeFlows``: the witness first, each step at the policy line that allows it.
+
+In: a ``Finding`` and where things stand. Out: plain dicts. Names come from anybody's files: they are made printable,
+short, and neither links nor placeholders.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.answer import Step
+from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.model import Flow
+from rosprivacy.report.lines import one_line
+from rosprivacy.report.places import of_step
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping, Sequence
+
+    from rosprivacy.analysis.answer import Analysis, Finding
+    from rosprivacy.analysis.model import Element, Place
+    from rosprivacy.report.places import Places
+
+    Physical = Callable[[Place], dict[str, Any]]
+    Pair = tuple[tuple[str, ...], tuple[str, ...]]
+
+MAX_FLOWS = 10  # ways of a finding
+MAX_STEPS = 1_000  # locations of a way: what GitHub shows; 10 of them are what it takes
+
+
+def text(name: str) -> str:
+    """Return a name for a message of SARIF, where ``{0}`` is a placeholder and ``[a](b)`` a link.
+
+    >>> text("/a[0-9]{1}](b)")
+    '/a[0-9]{{1}}] (b)'
+    """
+    return _neutral(shown(name))
+
+
+def prose(said: str) -> str:
+    """Return a longer text for a message, as ``text`` does a name."""
+    return _neutral(one_line(said))
+
+
+def _neutral(said: str) -> str:
+    return said.replace("{", "{{").replace("}", "}}").replace("](", "] (")
+
+
+def named(element: Element) -> str:
+    """Return an element's name for a message: with its robot, and its kind where it is no node."""
+    robot = f"{element.robot}:" if element.robot else ""
+    leg = f"{element.leg} of " if element.leg else ""
+    kind = "" if element.is_node else f"{leg}{element.kind} "
+    return f"{kind}{text(robot + element.name)}"
+
+
+def logical(element: Element) -> dict[str, str]:
+    """Return an element as ``logicalLocation``."""
+    robot = f"{element.robot}:" if element.robot else ""
+    kind = "module" if element.is_node else "resource"
+    return {"name": shown(element.name), "fullyQualifiedName": shown(robot + element.name), "kind": kind}
+
+
+def flows_between(analysis: Analysis) -> dict[Pair, Flow]:
+    """Return the flow behind each step of the further ways that were asked for; O(flows), and nothing without them."""
+    ways = [path for finding in analysis.findings for path in finding.paths]
+    wanted = {(a.shown_as, b.shown_as) for path in ways for a, b in pairwise(path)}
+    elements = analysis.graph.elements
+    found: dict[Pair, Flow] = {}
+    for flow in analysis.graph.flows if wanted else ():
+        pair = (elements[flow.source].shown_as, elements[flow.target].shown_as)
+        if pair in wanted:
+            found.setdefault(pair, flow)
+    return found
+
+
+def further_ways(finding: Finding) -> int:
+    """Return how many ways of a finding are known beside its witness."""
+    return len(_others(finding))
+
+
+def flows_of(
+    finding: Finding, between: Mapping[Pair, Flow], places: Places, physical: Physical
+) -> list[dict[str, Any]]:
+    """Return the ``codeFlows`` of a finding: the witness, then further ways up to a bound, one ``threadFlow`` each."""
+    ways: list[Sequence[Step]] = [finding.steps]
+    ways += [_steps(path, between) for path in _others(finding)[: MAX_FLOWS - 1]]
+    start = _start(finding, places)
+    return [
+        {
+            "threadFlows": [{"locations": _locations(finding, steps, start, physical)}],
+            "message": {"text": _about(number)},
+        }
+        for number, steps in enumerate(ways)
+    ]
+
+
+def _about(number: int) -> str:
+    return "A shortest way." if number == 0 else "Another way."
+
+
+def _others(finding: Finding) -> list[tuple[Element, ...]]:
+    return [path for path in finding.paths if path != finding.witness]
+
+
+def _steps(path: Iterable[Element], between: Mapping[Pair, Flow]) -> list[Step]:
+    """The steps of a way that is known by its elements; what the data is on each step is not known."""
+    nothing = Flow(0, 0, "flow")
+    found = [(a, b, between.get((a.shown_as, b.shown_as), nothing)) for a, b in pairwise(path)]
+    return [Step(a, b, flow.role, "", pseudonymised=False, grants=flow.grants) for a, b, flow in found]
+
+
+def _start(finding: Finding, places: Places) -> Place:
+    """Where a way begins: the label of the source, its profile, or the first line that lets the data go."""
+    said = places.of_role(finding.source, "source", finding.steps[0].category if finding.steps else finding.category)
+    lines = (place for step in finding.steps for place in of_step(step))
+    return said or places.of_profile(finding.source) or next(lines, None) or places.of_finding(finding)
+
+
+def _locations(finding: Finding, steps: Sequence[Step], start: Place, physical: Physical) -> list[dict[str, Any]]:
+    """One location per element: the source, then what each step leads to, at the line that allows the step."""
+    begins = f"{named(finding.source)} is a source of {_data(steps[0]) if steps else text(finding.category)}."
+    if not steps:
+        begins = f"{named(finding.source)} is a source and a leak of {text(finding.category)}."
+    found: list[tuple[Element, str, Place]] = [(finding.source, begins, start)]
+    for step in steps:
+        place = next(iter(of_step(step)), found[-1][2])  # a wildcard covers: the line before holds the wildcard
+        found.append((step.target, _hop(step), place))
+    if len(found) > MAX_STEPS:
+        left_out = len(found) - MAX_STEPS
+        element, what, place = found[-MAX_STEPS // 2]
+        after = (element, f"{left_out} steps are left out before this one. {what}", place)
+        found = [*found[: MAX_STEPS // 2], after, *found[len(found) - MAX_STEPS // 2 + 1 :]]
+    return [
+        {
+            "location": {
+                "physicalLocation": physical(place),
+                "logicalLocations": [logical(element)],
+                "message": {"text": what},
+            },
+            "executionOrder": order,
+            "importance": "essential" if order in (1, len(found)) else "important",
+        }
+        for order, (element, what, place) in enumerate(found, 1)
+    ]
+
+
+def _data(step: Step) -> str:
+    return f"pseudonymised {text(step.category)}" if step.pseudonymised else text(step.category or "data")
+
+
+def _hop(step: Step) -> str:
+    """One step as a sentence, with the profile that may do it."""
+    source, target, data = named(step.source), named(step.target), _data(step)
+    if step.role == "matches":
+        return f"{source} and {target} overlap, by a wildcard."
+    if step.target.is_channel:
+        what = f"{source} sends {data} to {target}"
+    elif step.source.is_channel:
+        what = f"{target} receives {data} from {source}"
+    else:
+        what = f"{data} goes from {source} to {target}"
+    grant = next(iter(step.grants), None)
+    if grant is None or not grant.node:
+        return f"{what}."
+    return f"{what} ({text(step.role)}, profile {text(grant.node)} of enclave {text(grant.enclave)})."

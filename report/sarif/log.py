@@ -1,0 +1,202 @@
+"""Analysis -> SARIF 2.1.0, for code scanning and editors: each finding at the line that allows it, with the way there.
+
+In: an ``Analysis``, what it rests on, and what was decided. Out: plain dicts and lists, sorted, with no time in them
+(rule S14). Nothing is suppressed by itself: only what a person accepted, and that stays in the file.
+
+Limits are those of the viewers (GitHub: 25,000 results in a run, 10,000 locations of paths and 1,000 others in a
+result; other viewers show the first path only). What is cut is counted in a notification.
+"""
+
+from __future__ import annotations
+
+from itertools import islice
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.model import Place, Severity, unread
+from rosprivacy.report.inventory import law_of
+from rosprivacy.report.places import Places, in_a_file, to_review
+from rosprivacy.report.sarif.flows import flows_between, further_ways, prose, text
+from rosprivacy.report.sarif.results import LAW, ROOT, Files, Results
+from rosprivacy.report.sarif.rules import (
+    FILES_NOT_READ,
+    NO_VERDICT,
+    NOTHING_FOLLOWED,
+    RULES,
+    UNREVIEWED,
+    descriptors,
+    rule_of,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from pathlib import Path
+
+    from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.analysis.model import Category, Diagnostic, Legal
+
+SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
+MAX_RESULTS = 25_000
+MAX_LOCATIONS = 200_000  # of ways in the whole file, some 120 MB
+MAX_NOTIFICATIONS = 1_000
+LEVELS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.NOTICE: "note"}
+NOTHING: Mapping[str, str] = {}
+
+
+def sarif(
+    analysis: Analysis,
+    categories: Mapping[str, Category],
+    diagnostics: Iterable[Diagnostic],
+    assumptions: Mapping[str, Any],
+    root: Path,
+    accepted: Mapping[str, str] = NOTHING,
+) -> dict[str, Any]:
+    """Return the analysis as a SARIF log of one run.
+
+    Parameters
+    ----------
+    diagnostics
+        Of the inputs; the analysis' own are added.
+    assumptions
+        What the answer rests on, made by the caller who knows the files.
+    root
+        Absolute folder that files are shown relative to: the root of the repository.
+    accepted
+        Id of a finding -> why a person accepted it (reason, owner, until when). Only decisions that hold now.
+    """
+    files, diagnostics = Files(root), tuple(diagnostics)
+    law = {name: law_of(categories[name]) for name in analysis.emitted}
+    taxa = sorted({legal.iri: legal for said in law.values() for legal in said}.values(), key=lambda legal: legal.name)
+    found = (rule_of(finding.kind) for finding in analysis.findings)
+    not_read = [FILES_NOT_READ] if unread(diagnostics) else []
+    rules = {rule.id: rule for rule in (*RULES, *found, UNREVIEWED, NOTHING_FOLLOWED, *not_read)}
+    made = Results(
+        analysis,
+        Places.of(analysis, assumptions),
+        files,
+        categories,
+        law,
+        taxa={legal.iri: number for number, legal in enumerate(taxa)},
+        rules={name: number for number, name in enumerate(rules)},
+        between=flows_between(analysis),
+        accepted=accepted,
+    )
+    results = list(_within(islice(made.all(), MAX_RESULTS)))
+    notices = [*_about(analysis, results), *_said((*diagnostics, *analysis.diagnostics), files)]
+    driver = {
+        "name": "rosprivacy",
+        "version": str(assumptions.get("rosprivacy", "")),
+        "shortDescription": {"text": "Where personal data can go in a ROS 2 system, by its SROS 2 policies."},
+        "fullDescription": {"text": NO_VERDICT},
+        "rules": descriptors(rules.values()),
+        **({"supportedTaxonomies": [{"name": LAW, "index": 0}]} if taxa else {}),
+    }
+    run = {
+        "tool": {"driver": driver},
+        "columnKind": "unicodeCodePoints",
+        "originalUriBaseIds": {ROOT: {"description": {"text": "The root of the repository."}}},
+        "invocations": [{"executionSuccessful": True, "toolExecutionNotifications": notices}],
+        "artifacts": list(_artifacts(assumptions, files)),
+        **({"taxonomies": [_taxonomy(taxa)]} if taxa else {}),
+        "results": results,
+        "properties": {
+            "verdict": str(analysis.verdict),
+            "view": analysis.graph.view,
+            "unreviewedElements": len(analysis.open),
+            "standardChannels": analysis.standard_channels,
+            "assumptions": _whole(assumptions),
+        },
+    }
+    return {"$schema": SCHEMA, "version": "2.1.0", "runs": [run]}
+
+
+def _within(results: Iterable[dict[str, Any]]) -> Iterator[dict[str, Any]]:
+    """Results whose ways together have no more locations than the bound: further ways go first, then the witness."""
+    room = MAX_LOCATIONS
+    for result in results:
+        kept = []
+        for flow in result.get("codeFlows", ()):
+            room -= len(flow["threadFlows"][0]["locations"])
+            if room < 0:
+                break
+            kept.append(flow)
+        yield {**result, "codeFlows": kept} if kept else {k: v for k, v in result.items() if k != "codeFlows"}
+
+
+def _taxonomy(taxa: Sequence[Legal]) -> dict[str, Any]:
+    """The provisions that results point to, each with its meaning and the date of the law (rule S12)."""
+    return {
+        "name": LAW,
+        "version": max(legal.as_of for legal in taxa),
+        "shortDescription": {"text": "Provisions of data protection law that a person has to check."},
+        "fullDescription": {"text": f"Their meaning in one sentence of our own. {NO_VERDICT}"},
+        "contents": ["localizedData", "nonLocalizedData"],
+        "isComprehensive": False,
+        "taxa": [
+            {
+                "id": legal.name,
+                "shortDescription": {"text": legal.meaning or legal.name},
+                "properties": {"iri": legal.iri, "asOf": legal.as_of},
+            }
+            for legal in taxa
+        ],
+    }
+
+
+def _artifacts(assumptions: Mapping[str, Any], files: Files) -> Iterator[dict[str, Any]]:
+    """What was read, with its hash (rule S12)."""
+    standard = assumptions.get("standard_channels")
+    read = {
+        "analysisTarget": assumptions.get("policies") or (),
+        "userSpecifiedConfiguration": [
+            entry for kind in ("fleet", "labels", "ontologies") for entry in assumptions.get(kind) or ()
+        ],
+        "toolSpecifiedConfiguration": [standard] if standard else [],
+    }
+    for role, entries in read.items():
+        for entry in entries:
+            own = in_a_file(Place(entry["file"], 1))
+            location = files.artifact(entry["file"]) if own else {"description": {"text": text(entry["file"])}}
+            yield {"location": location, "roles": [role], "hashes": {"sha-256": entry["sha256"]}}
+
+
+def _about(analysis: Analysis, results: Sequence[Mapping[str, Any]]) -> Iterator[dict[str, Any]]:
+    """The verdict with what is open, and what was left out of the file."""
+    unreviewed = f"{len(analysis.open)} elements that data reaches are not reviewed"
+    yield _notice(
+        "note" if not analysis.open else "warning", "verdict", f"{analysis.verdict}; {unreviewed}. {NO_VERDICT}"
+    )
+    left_out = len(analysis.findings) + len(to_review(analysis)) - len(results)
+    if left_out > 0:
+        yield _notice("warning", "bound", f"{left_out} results are left out: a viewer takes {MAX_RESULTS} at most.")
+    ways = sum(1 + further_ways(finding) for finding in analysis.findings)
+    ways -= sum(len(result.get("codeFlows", ())) for result in results)
+    if ways:
+        yield _notice("note", "bound", f"{ways} ways of findings are left out; --format json lists them.")
+    bounded = sum(finding.bounded for finding in analysis.findings)
+    if bounded:
+        yield _notice("note", "bound", f"{bounded} findings have more ways than were looked for (--max-paths).")
+
+
+def _said(diagnostics: Sequence[Diagnostic], files: Files) -> Iterator[dict[str, Any]]:
+    """What the inputs were read with."""
+    for diagnostic in diagnostics[:MAX_NOTIFICATIONS]:
+        notice = _notice(LEVELS[diagnostic.severity], "input", prose(diagnostic.message))
+        if in_a_file(diagnostic.place):
+            notice["locations"] = [{"physicalLocation": files.physical(diagnostic.place)}]
+        yield notice
+    left_out = len(diagnostics) - MAX_NOTIFICATIONS
+    if left_out > 0:
+        yield _notice("note", "bound", f"{left_out} notes on the inputs are left out; --format json lists them.")
+
+
+def _notice(level: str, name: str, message: str) -> dict[str, Any]:
+    return {"level": level, "descriptor": {"id": name}, "message": {"text": message}}
+
+
+def _whole(value: Any) -> Any:
+    """Return plain data without half characters (of a file name that is no UTF-8), which some readers refuse."""
+    if isinstance(value, str):
+        return value.encode("utf-8", "backslashreplace").decode()
+    if isinstance(value, dict):
+        return {_whole(key): _whole(part) for key, part in value.items()}
+    return [_whole(part) for part in value] if isinstance(value, list | tuple) else value

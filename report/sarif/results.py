@@ -1,0 +1,219 @@
+"""Findings and open questions as SARIF ``results``, each at a line of a file.
+
+In: an ``Analysis`` and where things stand. Out: plain dicts, what counts most first.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.answer import Verdict
+from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.legal import MAY_REVEAL, turned_special
+from rosprivacy.report.places import NOWHERE, of_step, to_review
+from rosprivacy.report.sarif.artifacts import uri_of
+from rosprivacy.report.sarif.flows import flows_of, logical, named, prose, text
+from rosprivacy.report.sarif.rules import FILES_NOT_READ, NOTHING_FOLLOWED, UNREVIEWED, Rule, rule_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+    from pathlib import Path
+
+    from rosprivacy.analysis.answer import Analysis, Finding, OpenQuestion
+    from rosprivacy.analysis.model import Category, Element, Flow, Legal, Place
+    from rosprivacy.report.places import Places
+
+ROOT = "%SRCROOT%"
+LAW = "data-protection-law"
+MAX_RELATED = 100
+
+
+@dataclass(frozen=True, slots=True)
+class Files:
+    """File names as SARIF has them. ``known`` only saves asking twice."""
+
+    root: Path
+    known: dict[str, dict[str, Any]] = field(default_factory=dict)
+
+    def artifact(self, file: str) -> dict[str, Any]:
+        """Return the ``artifactLocation`` of a file."""
+        if file not in self.known:
+            uri, relative = uri_of(file, self.root)
+            self.known[file] = {"uri": uri, **({"uriBaseId": ROOT} if relative else {})}
+        return self.known[file]
+
+    def physical(self, place: Place) -> dict[str, Any]:
+        """Return the ``physicalLocation`` of a place; viewers want a line, so one that has none gets the first."""
+        return {"artifactLocation": self.artifact(place.file), "region": {"startLine": max(place.line, 1)}}
+
+
+@dataclass(frozen=True, slots=True)
+class Results:
+    """Makes results.
+
+    Attributes
+    ----------
+    law
+        Category -> the provisions that a person has to look at, what holds always first.
+    taxa, rules
+        Numbers of provisions by IRI, and of rules by id.
+    between
+        The flows behind the steps of further ways.
+    accepted
+        Id of a finding -> why a person accepted it.
+    """
+
+    analysis: Analysis
+    places: Places
+    files: Files
+    categories: Mapping[str, Category]
+    law: Mapping[str, tuple[Legal, ...]]
+    taxa: Mapping[str, int]
+    rules: Mapping[str, int]
+    between: Mapping[Any, Flow]
+    accepted: Mapping[str, str]
+
+    def all(self) -> Iterator[dict[str, Any]]:
+        """One result per finding, the dismissed ones last, then one per node to review next (rules S10, S11).
+
+        What is undetermined has a result, so that an empty list never stands for it (S12).
+        """
+        for finding in sorted(self.analysis.findings, key=lambda f: f.dismissed):
+            yield self._finding(finding)
+        for question in to_review(self.analysis):
+            yield self._question(question)
+        if self.analysis.verdict is Verdict.UNDETERMINED and not self.analysis.open:
+            not_read = FILES_NOT_READ.id in self.rules and self.analysis.carried
+            yield self._rule_alone(FILES_NOT_READ if not_read else NOTHING_FOLLOWED)
+
+    def _finding(self, finding: Finding) -> dict[str, Any]:
+        rule = rule_of(finding.kind)
+        law = self.law.get(finding.category, ())
+        place = self.places.of_finding(finding)
+        result: dict[str, Any] = {
+            "ruleId": rule.id,
+            "ruleIndex": self.rules[rule.id],
+            "level": "note" if finding.dismissed else rule.level,
+            "message": {"text": _message(finding, law, turned_special(finding, self.categories), place)},
+            "locations": [self._location(finding.leak, place)],
+            "codeFlows": flows_of(finding, self.between, self.places, self.files.physical),
+            "partialFingerprints": _fingerprints(finding.id),
+        }
+        if related := self._related(finding, place):
+            result["relatedLocations"] = related
+        if law:
+            distinct = {legal.iri: legal for legal in law}.values()
+            result["taxa"] = [reference(legal, self.taxa[legal.iri]) for legal in distinct]
+        if finding.id in self.accepted:
+            why = prose(self.accepted[finding.id])
+            result["suppressions"] = [{"kind": "external", "status": "accepted", "justification": why}]
+        result["properties"] = {
+            "category": shown(finding.category),
+            "pseudonymised": finding.pseudonymised,
+            "dismissed": finding.dismissed,
+            "disjointPaths": finding.disjoint_paths,
+            "article9": self.categories[finding.category].article9,
+            "law": [{"provision": legal.name, "verdict": legal.verdict, "condition": legal.condition} for legal in law],
+        }
+        return result
+
+    def _question(self, question: OpenQuestion) -> dict[str, Any]:
+        element, rule = question.element, UNREVIEWED
+        kinds = ", ".join(text(name) for name in question.categories)
+        unknown = "whether it may carry that" if element.is_channel else "what it does with that"
+        what = f"{named(element)} gets {kinds}, and no label says {unknown}."
+        if question.missing:
+            what = f"{named(element)} gets {kinds}, and nobody states its {' or '.join(question.missing)}."
+        digest = hashlib.sha256("\0".join(("unreviewed", *element.shown_as)).encode()).hexdigest()[:16]
+        return {
+            "ruleId": rule.id,
+            "ruleIndex": self.rules[rule.id],
+            "kind": "review",
+            "level": rule.level,
+            "message": {"text": f"{what} The analysis lets it pass; a person has to look."},
+            "locations": [self._location(element, self.places.of_question(question))],
+            "partialFingerprints": _fingerprints(digest),
+            "properties": {"categories": [shown(name) for name in question.categories], "distance": question.distance},
+        }
+
+    def _rule_alone(self, rule: Rule) -> dict[str, Any]:
+        """A result about the whole system."""
+        return {
+            "ruleId": rule.id,
+            "ruleIndex": self.rules[rule.id],
+            "level": rule.level,
+            "message": {"text": rule.short},
+            "locations": [{"physicalLocation": self.files.physical(self.places.last_resort())}],
+            "partialFingerprints": _fingerprints(rule.id),
+        }
+
+    def _location(self, element: Element, place: Place) -> dict[str, Any]:
+        return {"physicalLocation": self.files.physical(place), "logicalLocations": [logical(element)]}
+
+    def _related(self, finding: Finding, place: Place) -> list[dict[str, Any]]:
+        """The labels at both ends, and further lines that allow the last step."""
+        begins = finding.steps[0].category if finding.steps else finding.category
+        said: list[tuple[Place | None, str]] = [
+            (
+                self.places.of_role(finding.source, "source", begins),
+                f"{named(finding.source)} is labelled source here.",
+            ),
+            (
+                self.places.of_role(finding.leak, "leak", finding.category),
+                f"{named(finding.leak)} is labelled leak here.",
+            ),
+        ]
+        last = [other for step in finding.steps[-1:] for other in of_step(step) if other != place]
+        found = [(where, what) for where, what in said if where] + [
+            (other, "Allows the last step, too.") for other in last
+        ]
+        return [
+            {"id": number, "physicalLocation": self.files.physical(where), "message": {"text": what}}
+            for number, (where, what) in enumerate(found[:MAX_RELATED])
+        ]
+
+
+def reference(legal: Legal, number: int) -> dict[str, Any]:
+    """Return a provision as a reference to its taxon."""
+    return {"id": legal.name, "index": number, "toolComponent": {"name": LAW, "index": 0}}
+
+
+def _fingerprints(digest: str) -> dict[str, str]:
+    """The first is the only one that GitHub looks at; by itself it would take the line, which many findings share."""
+    return {"primaryLocationLineHash": f"{digest}:1", "rosprivacyFinding/v1": digest}
+
+
+def _message(finding: Finding, law: Sequence[Legal], turned: Element | None, place: Place) -> str:
+    """What a viewer shows; some show the first sentence only."""
+    category, source, leak = text(finding.category), named(finding.source), named(finding.leak)
+    said = [f"{category} can get from {source} to {leak}: a path to assess."]
+    if len(finding.witness) == 1:
+        said = [f"{source} brings {category} in and lets it out itself: a path to assess."]
+    if finding.reason:
+        said.append(f"{leak}: {prose(finding.reason)}.")
+    if finding.pseudonymised:
+        said.append("It arrives pseudonymised, which is still personal data.")
+    if turned is not None:
+        said.append(f"{named(turned)} makes such data of other data.")
+    if finding.dismissed:
+        through = ", ".join(named(element) for element in finding.through)
+        said.append(f"Every way there goes through {through}, which has a finding of its own.")
+    if finding.disjoint_paths > 1:
+        said.append(f"{finding.disjoint_paths} ways share no step.")
+    said += _to_check(law)
+    if place == NOWHERE:
+        said.append("No file says so: it stands in the database.")
+    return " ".join([*said, f"Finding {finding.id}."])
+
+
+def _to_check(law: Sequence[Legal]) -> list[str]:
+    """What a person has to look up; of what such data may only reveal, the names."""
+    strong = [legal for legal in law if legal.verdict != MAY_REVEAL]
+    weak = [text(legal.name) for legal in law if legal.verdict == MAY_REVEAL]
+    said = []
+    for legal in strong:
+        condition = f": {legal.condition}" if legal.condition else ""
+        said.append(f"To be checked: {text(legal.name)} ({text(legal.verdict)}{prose(condition)}).")
+    return [*said, f"It may reveal what these speak of: {', '.join(dict.fromkeys(weak))}."] if weak else said

@@ -1,0 +1,1 @@
+"""A JSON document in, out come lines for the terminal."""

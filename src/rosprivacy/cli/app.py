@@ -1,0 +1,77 @@
+"""The command line: options in, ``assembly`` called, a report out, an exit code.
+
+Exit codes: 0 no leak found, 1 leak, 2 bad input or usage, 3 database or cluster unreachable, 4 undetermined (only with
+``--fail-on undetermined``). Heavy imports stand in the commands, so that ``--version`` and completion are quick.
+"""
+
+from __future__ import annotations
+
+import sys
+from typing import Annotated
+
+import typer
+
+from rosprivacy.analysis.errors import RosPrivacyError
+from rosprivacy.analysis.files_read import one_run
+from rosprivacy.cli import (
+    analyze,
+    categories,
+    db,
+    decide,
+    diff,
+    fleet,
+    graph,
+    labels,
+    load,
+    mitigate,
+    query,
+    report,
+    unload,
+    why_not,
+)
+from rosprivacy.version import __version__
+
+app = typer.Typer(
+    name="rosprivacy",
+    help="Where personal data can go in a ROS 2 system, per kind of data.",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+app.add_typer(db.app, name="db", help="The private Neo4j: start it, stop it, see where it is.")
+app.command()(diff.diff)
+app.command()(fleet.fleet)
+app.command()(load.load)
+app.command()(unload.unload)
+app.command()(query.query)
+app.command()(graph.graph)
+app.command()(categories.categories)
+app.command()(mitigate.mitigate)
+app.command()(decide.decide)
+app.command()(report.report)
+app.command("why-not")(why_not.why_not)
+
+
+@app.callback(invoke_without_command=True)
+def root(
+    context: typer.Context,
+    version: Annotated[bool, typer.Option("--version", help="Print the version.")] = False,
+) -> None:
+    """Where personal data can go in a ROS 2 system, per kind of data."""
+    context.with_resource(one_run())  # until the command has ended
+    if version:
+        print(f"rosprivacy {__version__}")
+        raise typer.Exit
+
+
+app.command()(analyze.analyze)
+app.command()(labels.labels)
+
+
+def main() -> None:
+    """Run the command line; a problem that we raise is one line each on standard error, never a traceback."""
+    try:
+        app()
+    except RosPrivacyError as error:
+        print(error, file=sys.stderr)
+        sys.exit(error.exit_code)

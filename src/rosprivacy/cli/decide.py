@@ -1,0 +1,176 @@
+"""``rosprivacy decide``: what is decided about findings, into ``decisions.yaml``."""
+
+from __future__ import annotations
+
+import json
+import os
+from datetime import date
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from rosprivacy.analysis.errors import DecisionError, InputError, InputErrors, shown
+from rosprivacy.cli.options import complete_category
+from rosprivacy.cli.output import emit
+
+SHORTEST = 4  # digits of an id, where the report says which are meant
+
+
+class Decide(StrEnum):
+    """What is decided."""
+
+    accept = "accept"
+    mitigate = "mitigate"
+    delegate = "delegate"
+    avoid = "avoid"
+
+
+def decide(
+    choice: Annotated[Decide, typer.Argument(metavar="DECISION", help="accept, mitigate, delegate or avoid.")],
+    ids: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="ID", help="Of findings; without one, a pattern.", show_default=False),
+    ] = None,
+    decisions: Annotated[
+        Path, typer.Option(metavar="FILE", help="The decisions file; made if it is not there.")
+    ] = Path("decisions.yaml"),
+    report: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            show_default=False,
+            help="Of analyze --format json: ids are checked against it, and may be shortened.",
+        ),
+    ] = None,
+    reason: Annotated[str | None, typer.Option(help="Why; an acceptance needs one.", show_default=False)] = None,
+    owner: Annotated[str | None, typer.Option(help="Who answers for it; the same.", show_default=False)] = None,
+    legal_basis: Annotated[
+        list[str] | None,
+        typer.Option(metavar="ARTICLE", help="Such as 6(1)(f), and 9(2)(h); may be repeated.", show_default=False),
+    ] = None,
+    expires: Annotated[
+        str | None, typer.Option(metavar="YYYY-MM-DD", help="The last day on which it is valid.", show_default=False)
+    ] = None,
+    ticket: Annotated[str | None, typer.Option(help="Where the work is tracked.", show_default=False)] = None,
+    category: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            autocompletion=complete_category,
+            help="Of a pattern: this category and narrower ones.",
+            show_default=False,
+        ),
+    ] = None,
+    source: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Of a pattern: name or glob.", show_default=False)
+    ] = None,
+    leak: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Of a pattern: name or glob.", show_default=False)
+    ] = None,
+    robot: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="Of a pattern: robot of the leak, name or glob.", show_default=False),
+    ] = None,
+    from_robot: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="Of a pattern: robot of the source; what goes from one robot to another needs it beside --robot.",
+            show_default=False,
+        ),
+    ] = None,
+) -> None:
+    """Decide about findings, or about a pattern of them, in a file that analyze and mitigate take into account."""
+    from rosprivacy.clock import today
+    from rosprivacy.ingest.decisions.decision_writer import with_decision
+    from rosprivacy.ingest.decisions.decisions_file import is_date
+    from rosprivacy.ontology.vocabulary import load
+
+    pattern = {"category": category, "source": source, "leak": leak, "robot": robot, "from_robot": from_robot}
+    targets = [{key: value for key, value in pattern.items() if value}] if not ids else [{"id": one} for one in ids]
+    if ids and any(pattern.values()):
+        raise typer.BadParameter("name findings by their ids, or a pattern of them, not both")
+    if not ids and not any(pattern.values()):
+        raise typer.BadParameter("name a finding's id, or a pattern: --category, --source, --leak")
+    if expires is not None and not is_date(expires):
+        raise typer.BadParameter(f"{expires!r} is no date: write YYYY-MM-DD", param_hint="--expires")
+    found = _findings(report) if report else None
+    if found is not None and ids:
+        targets = [_chosen(found, one, str(report)) for one in ids]
+    entry = {
+        "decision": choice.value,
+        "reason": reason,
+        "owner": owner,
+        "legal_basis": list(legal_basis) if legal_basis else None,
+        "date": date.fromisoformat(today(os.environ)),
+        "expires": date.fromisoformat(expires) if expires else None,
+        "ticket": ticket,
+    }
+    said = {key: value for key, value in entry.items() if value is not None}
+    text, vocabulary = _text(decisions), load()
+    for target in targets:
+        remark = _remark(found, target)
+        text = with_decision(str(decisions), text, {**target, **said}, remark, vocabulary)
+    about = "; ".join(", ".join(f"{key} {shown(str(value))}" for key, value in target.items()) for target in targets)
+    answer = f"{shown(str(decisions))}: {choice.value} {about}\n"
+    emit(answer, None, {decisions: text or ""}, edited=decisions)  # the one file that is meant to be read and written
+
+
+def _text(file: Path) -> str | None:
+    """What is in the file; None if it is not there."""
+    from rosprivacy.ingest.reading.bounded_file import read_regular
+    from rosprivacy.ingest.reading.yaml_values import MAX_BYTES
+
+    if not file.exists() and not file.is_symlink():
+        return None
+
+    def fail(line: int, problem: str, hint: str) -> InputError:
+        return DecisionError(str(file), line, problem, hint)
+
+    try:
+        return read_regular(str(file), MAX_BYTES, fail).decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise fail(1, "not UTF-8", "save the file as UTF-8") from None
+
+
+def _findings(report: Path) -> dict[str, dict[str, Any]]:
+    """The findings of a JSON report by id, those of a fleet by the ids of their patterns."""
+    from rosprivacy.ingest.reading.bounded_file import contents
+
+    hint = "write it with rosprivacy analyze --format json -o FILE"
+    try:
+        document = json.loads(contents(report))
+        findings = {finding["id"]: finding for finding in document["findings"]}
+        if not document.get("fleet"):
+            return findings
+        patterns = document["fleet"]["patterns"]
+        return {p["id"]: findings[p["finding"]] | _all_of(p) for p in patterns}
+    except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
+        what = "not found" if isinstance(error, FileNotFoundError) else "is no report of an analysis"
+        raise DecisionError(str(report), 0, what, hint) from None
+
+
+def _all_of(pattern: dict[str, Any]) -> dict[str, Any]:
+    """What holds for all findings of a pattern."""
+    return {"pseudonymised": pattern["pseudonymised"] == pattern["findings"]}
+
+
+def _chosen(findings: dict[str, dict[str, Any]], written: str, report: str) -> dict[str, Any]:
+    """The finding that is meant by an id or its beginning."""
+    fitting = [one for one in findings if one.startswith(written)] if len(written) >= SHORTEST else []
+    if len(fitting) != 1:
+        which = f"begins {len(fitting)} ids" if fitting else "is no finding"
+        hint = f"copy one: {', '.join(list(findings)[:5])}" if findings else "the report has no finding"
+        raise InputErrors([DecisionError(report, 0, f"{shown(written)!r} {which} of the report", hint)])
+    (one,) = fitting
+    return {"id": one, **({"pseudonymised": True} if findings[one].get("pseudonymised") else {})}
+
+
+def _remark(findings: dict[str, dict[str, Any]] | None, target: dict[str, Any]) -> str:
+    """What a person reads beside an id."""
+    finding = (findings or {}).get(target.get("id", ""))
+    if finding is None:
+        return ""
+    return f"{finding['category']}: {finding['source']['name']} -> {finding['leak']['name']}"

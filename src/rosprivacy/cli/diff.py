@@ -1,0 +1,139 @@
+"""``rosprivacy diff``: what is new, gone and changed between two states of a system; an exit code for CI."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from rosprivacy.cli.options import (
+    DecisionsFile,
+    IncludeRoot,
+    LabelFiles,
+    MaxBytes,
+    NoStandard,
+    Output,
+    Standard,
+    View,
+    ViewChosen,
+)
+from rosprivacy.cli.output import emit, progress_of
+
+if TYPE_CHECKING:
+    from rosprivacy.report.compare.snapshot import Snapshot
+    from rosprivacy.settings import Settings
+
+
+class DiffFormat(StrEnum):
+    """Of what differs."""
+
+    text = "text"
+    json = "json"
+    markdown = "markdown"
+
+
+class FailOnChange(StrEnum):
+    """Which differences end with exit code 1."""
+
+    worse = "worse"
+    any = "any"
+    never = "never"
+
+
+State = "a policy, a folder of them, a fleet file, a saved analysis or a saved graph."
+
+
+def diff(
+    old: Annotated[str, typer.Argument(metavar="OLD", show_default=False, help=f"Before: {State}")],
+    new: Annotated[str, typer.Argument(metavar="NEW", show_default=False, help="After.")],
+    labels: LabelFiles = None,
+    old_labels: Annotated[
+        list[str] | None,
+        typer.Option(metavar="FILE", help="Label file for OLD, in place of --labels.", show_default=False),
+    ] = None,
+    format: Annotated[  # noqa: A002 - the option's name
+        DiffFormat, typer.Option("--format", "-f", help="For people, for programs, for a comment on a pull request.")
+    ] = DiffFormat.text,
+    output: Output = None,
+    decisions: DecisionsFile = None,
+    view: ViewChosen = View.declared,
+    standard_channels: Standard = "rosprivacy:standard",
+    no_standard_channels: NoStandard = False,
+    fail_on: Annotated[
+        FailOnChange, typer.Option(help="Exit with 1 on a finding that is new or worse, or on any difference.")
+    ] = FailOnChange.worse,
+    include_root: IncludeRoot = None,
+    max_bytes: MaxBytes = 64 * 2**20,
+) -> None:
+    """Compare two states: grants, elements and findings that are new, gone or changed.
+
+    Nodes whose names change at every start (a process id, an address) are matched without these.
+    """
+    from rosprivacy.report.compare.difference import difference, differs
+    from rosprivacy.settings import Settings
+
+    settings = Settings(
+        view=view.value,
+        standard_channels=None if no_standard_channels else standard_channels,
+        include_root=str(include_root) if include_root else None,
+        max_bytes=max_bytes,
+        progress=progress_of,
+        decisions=str(decisions) if decisions else None,
+    )
+    given = tuple(labels or ())
+    before = _snapshot(old, tuple(old_labels) if old_labels else given, settings)
+    document = difference(before, _snapshot(new, given, settings))
+    emit(_text(document, format), output)
+    failed = document["worse"] if fail_on is FailOnChange.worse else differs(document)
+    raise typer.Exit(1 if failed and fail_on is not FailOnChange.never else 0)
+
+
+def _text(document: dict[str, Any], form: DiffFormat) -> str:
+    from rosprivacy.report.compare.difference import difference_lines
+    from rosprivacy.report.compare.difference_markdown import difference_markdown
+    from rosprivacy.report.document.analysis import as_text
+
+    if form is DiffFormat.json:
+        return as_text(document)
+    if form is DiffFormat.markdown:
+        return difference_markdown(document)
+    return "".join(f"{line}\n" for line in difference_lines(document))
+
+
+def _snapshot(state: str, labels: tuple[str, ...], settings: Settings) -> Snapshot:
+    """Read a state, whatever it is."""
+    from dataclasses import replace
+
+    from rosprivacy.assembly import run
+    from rosprivacy.fleets import run_fleet
+    from rosprivacy.report.compare.snapshot import snapshot
+
+    kind = _kind(state)
+    if kind == "analysis":
+        from rosprivacy.report.compare.earlier import read_earlier
+
+        return snapshot(read_earlier(state).document, None)
+    if kind == "fleet":
+        result = run_fleet(state, settings)
+    elif kind == "graph":
+        result = run((), labels, replace(settings, add=(state,)))
+    else:
+        result = run((state,), labels, settings)
+    return snapshot(result.document(), result.policies)
+
+
+def _kind(state: str) -> str:
+    """What a file is, by how it begins; folders and globs hold policies."""
+    from pathlib import Path
+
+    try:
+        path = Path(state)
+        head = path.read_bytes()[:4096] if path.is_file() else b""
+    except (OSError, ValueError):
+        return "policies"
+    if b'"rosprivacy.analysis/' in head:
+        return "analysis"
+    if b'"rosprivacy.graph/' in head:
+        return "graph"
+    return "policies" if head.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<") or not head else "fleet"

@@ -1,0 +1,267 @@
+"""``rosprivacy graph``: the two views as pictures, or as graphs for other programs."""
+
+from __future__ import annotations
+
+import sys
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from rosprivacy.analysis.errors import DrawingError
+from rosprivacy.cli.options import (
+    FleetFile,
+    IncludeRoot,
+    LabelFiles,
+    MaxBytes,
+    NoStandard,
+    Ontologies,
+    Output,
+    Policies,
+    SixLists,
+    Standard,
+    View,
+    ViewChosen,
+    complete_category,
+)
+from rosprivacy.cli.output import emit, progress_of
+
+if TYPE_CHECKING:
+    from rosprivacy.analysis.model import Profile
+    from rosprivacy.assembly import Result
+    from rosprivacy.report.pictures.picture import Picture
+    from rosprivacy.settings import Settings
+
+
+class Shown(StrEnum):
+    """Which of the two views."""
+
+    ros = "ros"
+    privacy = "privacy"
+
+
+class PictureFormat(StrEnum):
+    """Of the picture."""
+
+    dot = "dot"
+    svg = "svg"
+    png = "png"
+    graphml = "graphml"
+    mermaid = "mermaid"
+
+
+class Cluster(StrEnum):
+    """What to draw together."""
+
+    none = "none"
+    enclave = "enclave"
+    namespace = "namespace"
+    robot = "robot"
+
+
+class Direction(StrEnum):
+    """Where the data goes on the paper."""
+
+    right = "right"
+    down = "down"
+
+
+SUFFIXES = {".gv": PictureFormat.dot, ".mmd": PictureFormat.mermaid}
+
+
+def graph(
+    policies: Policies = None,
+    labels: LabelFiles = None,
+    fleet: FleetFile = None,
+    show: Annotated[
+        Shown | None,
+        typer.Option(
+            show_default=False,
+            help="The whole ROS graph, which is the default, or where personal data can go under the labels.",
+        ),
+    ] = None,
+    format: Annotated[  # noqa: A002 - the option's name
+        PictureFormat | None,
+        typer.Option("--format", "-f", show_default=False, help="Of the picture; by default what --output ends in."),
+    ] = None,
+    output: Output = None,
+    categories: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--categories",
+            "-c",
+            metavar="NAME",
+            autocompletion=complete_category,
+            show_default=False,
+            help="Draw what this category, narrower and broader ones reach; may be repeated.",
+        ),
+    ] = None,
+    finding: Annotated[
+        str | None,
+        typer.Option(metavar="ID", show_default=False, help="Draw the ways of this finding only: a privacy view."),
+    ] = None,
+    robot: Annotated[
+        str | None, typer.Option(metavar="NAME", show_default=False, help="Draw this robot and what it is joined to.")
+    ] = None,
+    around: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME", show_default=False, help="Draw what is near this element; may be repeated."),
+    ] = None,
+    steps: Annotated[int, typer.Option(min=0, help="How near, in lines, whatever their direction.")] = 2,
+    most: Annotated[
+        int | None,
+        typer.Option(min=1, show_default=False, help="Draw the shorter ways to leaks only, up to so many elements."),
+    ] = None,
+    fold: Annotated[bool, typer.Option("--fold", help="Draw channels with the same ends as one.")] = False,
+    loose_ends: Annotated[
+        bool, typer.Option("--loose-ends/--no-loose-ends", help="Draw channels that only one node names.")
+    ] = True,
+    cluster: Annotated[Cluster, typer.Option(help="Draw together what belongs together.")] = Cluster.none,
+    direction: Annotated[Direction, typer.Option(help="Where data goes on the paper.")] = Direction.right,
+    seconds: Annotated[
+        float, typer.Option(min=0.1, help="For the layout; a simpler one is taken when time runs out.")
+    ] = 45.0,
+    draw_standard_channels: Annotated[
+        bool, typer.Option("--draw-standard-channels", help="Draw the standard ROS channels too.")
+    ] = False,
+    ontology: Ontologies = None,
+    category: SixLists = "PersonalData",
+    view: ViewChosen = View.declared,
+    standard_channels: Standard = "rosprivacy:standard",
+    no_standard_channels: NoStandard = False,
+    include_root: IncludeRoot = None,
+    max_bytes: MaxBytes = 64 * 2**20,
+) -> None:
+    """Draw the ROS graph, or where personal data can go in it. Gives no verdict: exit code 0 once it is drawn."""
+    from rosprivacy.settings import Settings
+
+    if fleet and (policies or labels):
+        raise typer.BadParameter("--fleet takes what the fleet file names: no POLICY, --labels")
+    if not policies and not fleet:
+        raise typer.BadParameter("name at least one policy: a file, a folder or a glob", param_hint="POLICY")
+    if show is Shown.ros and (finding or most):
+        raise typer.BadParameter("--finding and --most are for --show privacy")
+    show = show or (Shown.privacy if finding or most else Shown.ros)
+    form = _format(format, output)
+    settings = Settings(
+        view=view.value,
+        categories=tuple(categories or ()),
+        ontologies=tuple(ontology or ()),
+        category=category,
+        standard_channels=None if no_standard_channels else standard_channels,
+        include_root=str(include_root) if include_root else None,
+        max_bytes=max_bytes,
+        progress=progress_of,
+    )
+    result, own = _drawn_of(policies, labels, fleet, settings)
+    picture = _view(result, show, finding, most, carried_only=bool(categories), standard=draw_standard_channels)
+    if result.fleet and not finding:
+        from rosprivacy.report.pictures.fleet_view import label, represented
+
+        picture = represented(picture, result.fleet.likeness)
+        own = {label(name, result.fleet.likeness): profiles for name, profiles in own.items()}
+        robot = label(robot, result.fleet.likeness) if robot else None
+    picture = _narrowed(picture, robot, around, steps, most, fold=fold, loose_ends=loose_ends)
+    if cluster is not Cluster.none:
+        from rosprivacy.report.pictures.narrow import grouped
+
+        picture = grouped(picture, cluster.value, result.analysis.graph.profiles, own)
+    _write(picture, form, output, "LR" if direction is Direction.right else "TB", seconds)
+
+
+def _drawn_of(
+    policies: list[str] | None, labels: list[str] | None, fleet: str | None, settings: Settings
+) -> tuple[Result, dict[str, tuple[Profile, ...]]]:
+    """The analysis, and of a fleet the profiles of each robot."""
+    if not fleet:
+        from rosprivacy.assembly import run
+
+        return run(tuple(policies or ()), tuple(labels or ()), settings), {}
+    from rosprivacy.fleets import analysed, read_all
+    from rosprivacy.ontology.vocabulary import load
+
+    vocabulary = load(ontologies=settings.ontologies)
+    read = read_all(fleet, vocabulary, settings)
+    return analysed(read, vocabulary, settings), dict(read.placed.profiles)
+
+
+def _format(given: PictureFormat | None, output: Path | None) -> PictureFormat:
+    """Of the option, else of the file's name; DOT where there is neither."""
+    if given or output is None:
+        return given or PictureFormat.dot
+    suffix = output.suffix.lower()
+    if suffix[1:] in set(PictureFormat):
+        return PictureFormat(suffix[1:])
+    if suffix in SUFFIXES:
+        return SUFFIXES[suffix]
+    raise typer.BadParameter(f"what format is {output.name}? Name it with --format: {', '.join(PictureFormat)}")
+
+
+def _view(
+    result: Result, show: Shown, finding: str | None, most: int | None, *, carried_only: bool, standard: bool
+) -> Picture:
+    from rosprivacy.report.pictures import narrow, views
+
+    beside = result.fleet.likeness.second if result.fleet else ()
+    if show is Shown.privacy:
+        if finding:
+            about = views.PER_BOX * most if most else None
+            return views.finding_view(result.analysis, narrow.the_finding(result.analysis, finding), about)
+        return views.privacy_view(result.analysis, beside)
+    denials = [grant for policy in result.policies for grant in policy.grants if not grant.allow]
+    picture = views.ros_view(result.analysis, denials, standard=standard, beside=beside)
+    return narrow.carrying(picture, result.analysis) if carried_only else picture
+
+
+def _narrowed(
+    picture: Picture,
+    robot: str | None,
+    around: list[str] | None,
+    steps: int,
+    most: int | None,
+    *,
+    fold: bool,
+    loose_ends: bool,
+) -> Picture:
+    from rosprivacy.report.pictures import narrow, views
+
+    if robot:
+        picture = narrow.of_robot(picture, robot)
+    if around:
+        picture = narrow.around(picture, around, steps)
+    if fold:
+        picture = narrow.folded(picture)
+    if not loose_ends:
+        picture = narrow.without_loose_ends(picture)
+    return views.bounded(picture, most) if most else picture
+
+
+def _write(picture: Picture, form: PictureFormat, output: Path | None, direction: str, seconds: float) -> None:
+    if form in (PictureFormat.svg, PictureFormat.png):
+        from rosprivacy.report.pictures.layout import drawn
+
+        if output is None and sys.stdout is not None and sys.stdout.isatty():
+            raise DrawingError(f"graph:0: {form.upper()} is not for a terminal; name a file with --output")
+        done = drawn(picture, form.value, direction=direction, seconds=seconds)
+        for said in done.said:
+            print(said, file=sys.stderr)
+        emit(done.data, output)
+        return
+    if form is PictureFormat.graphml:
+        from rosprivacy.report.pictures.graphml import graphml
+
+        emit(graphml(picture).encode(), output)
+        return
+    if form is PictureFormat.dot:
+        from rosprivacy.report.pictures.dot import dot
+
+        emit(dot(picture, direction=direction).encode(), output)
+        return
+    from rosprivacy.report.pictures.mermaid import mermaid, too_large
+
+    text = mermaid(picture, direction=direction)
+    if too_large(picture, text):
+        said = "Mermaid draws no more than 500 lines or 50,000 characters as it is usually set: draw less"
+        print(said, file=sys.stderr)
+    emit(text.encode(), output)

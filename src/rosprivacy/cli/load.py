@@ -1,0 +1,140 @@
+"""``rosprivacy load``: a robot, or all robots of a fleet, into the database."""
+
+from __future__ import annotations
+
+import sys
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from rosprivacy.analysis.errors import shown
+from rosprivacy.cli.driver import driver_of
+from rosprivacy.cli.options import (
+    FleetFile,
+    IncludeRoot,
+    LabelFiles,
+    MaxBytes,
+    NoStandard,
+    Ontologies,
+    Policies,
+    Server,
+    SixLists,
+    Standard,
+    View,
+    ViewChosen,
+)
+from rosprivacy.cli.output import emit, progress_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from rosprivacy.settings import Settings
+
+
+def load(
+    policies: Policies = None,
+    labels: LabelFiles = None,
+    robot: Annotated[str, typer.Option(metavar="NAME", help="What the robot is called in the database.")] = "robot",
+    fleet: FleetFile = None,
+    results: Annotated[
+        str | None,
+        typer.Option(metavar="DIR", help="Write what analyze --results has written there.", show_default=False),
+    ] = None,
+    neo4j: Server = None,
+    ontology: Ontologies = None,
+    category: SixLists = "PersonalData",
+    view: ViewChosen = View.declared,
+    standard_channels: Standard = "rosprivacy:standard",
+    no_standard_channels: NoStandard = False,
+    include_root: IncludeRoot = None,
+    max_bytes: MaxBytes = 64 * 2**20,
+) -> None:
+    """Analyse policies and write the robot into Neo4j, or all robots of a fleet, in place of what was there before."""
+    from rosprivacy.assembly import robot_of, run
+    from rosprivacy.ingest.database import loading as database
+    from rosprivacy.settings import Settings
+
+    if fleet and (policies or labels):
+        raise typer.BadParameter("--fleet takes what the fleet file names: no POLICY, --labels")
+    if results:
+        if policies or labels or fleet:
+            raise typer.BadParameter("--results takes what is in the folder: no POLICY, --labels, --fleet")
+        _load_results(results, tuple(ontology or ()), neo4j)
+        return
+    if not policies and not fleet:
+        raise typer.BadParameter("name at least one policy: a file, a folder or a glob", param_hint="POLICY")
+    settings = Settings(
+        view=view.value,
+        ontologies=tuple(ontology or ()),
+        category=category,
+        standard_channels=None if no_standard_channels else standard_channels,
+        include_root=str(include_root) if include_root else None,
+        max_bytes=max_bytes,
+        progress=progress_of,
+    )
+    if fleet:
+        _load_fleet(fleet, settings, neo4j)
+        return
+    name = database.check_robot_name(robot)
+    result = run(tuple(policies or ()), tuple(labels or ()), settings)
+    rows = robot_of(name, result)
+    with driver_of(neo4j) as driver, _bar(rows.size) as advance:
+        done = database.load(driver, [rows], result.vocabulary, advance)
+    how = "is there already, nothing to change" if done.unchanged else "is written"
+    count = f"{len(rows.elements):,} elements, {len(rows.flows):,} flows, {len(rows.findings):,} findings"
+    emit(f"robot {shown(name)} {how}: {count}; verdict {result.analysis.verdict}\n", None)
+
+
+def _load_fleet(file: str, settings: Settings, neo4j: str | None) -> None:
+    from rosprivacy.fleets import analysed, read_all, rows_of_fleet
+    from rosprivacy.ingest.database import loading as database
+    from rosprivacy.ingest.database.fleet_rows import MOST_ACROSS
+    from rosprivacy.ontology.vocabulary import load
+
+    vocabulary = load()
+    read = read_all(file, vocabulary, settings)
+    result = analysed(read, vocabulary, settings, every=True)
+    rows = rows_of_fleet(read, result, settings)
+    with driver_of(neo4j) as driver, _bar(None) as advance:
+        done = database.load(driver, rows, vocabulary, advance)
+    robots = len(read.fleet.robots)
+    what = f"fleet {shown(file)}: {robots:,} robots and what they share"
+    emit(
+        f"{what}: {done.written:,} written, {done.unchanged:,} as they were; verdict {result.analysis.verdict}\n", None
+    )
+    if rows.left_out:
+        message = f"{rows.left_out:,} findings from one robot to another are not written one by one: of each pattern"
+        print(f"{message} with more than {MOST_ACROSS:,} only one for each robot that data comes from", file=sys.stderr)
+
+
+def _load_results(folder: str, ontologies: tuple[str, ...], neo4j: str | None) -> None:
+    from rosprivacy.ingest.database import loading as database
+    from rosprivacy.ontology.vocabulary import load
+    from rosprivacy.spark.parquet import read
+
+    vocabulary = load(ontologies=ontologies)
+    document, rows = read(folder)
+    with driver_of(neo4j) as driver, _bar(None) as advance:
+        done = database.load(driver, rows, vocabulary, advance)
+    what = f"results {shown(folder)}: {document['fleet']['robots']:,} robots and what they share"
+    emit(f"{what}: {done.written:,} written, {done.unchanged:,} as they were; verdict {document['verdict']}\n", None)
+    if any(pattern["across"] for pattern in document["fleet"]["patterns"]):
+        message = "findings from one robot to another are not written one by one: of each pattern only one for each"
+        print(f"{message} robot that data comes from", file=sys.stderr)
+
+
+@contextmanager
+def _bar(total: int | None) -> Iterator[Callable[[int], None]]:
+    """A bar with rates on a terminal: rows written, rows per second."""
+    if not sys.stderr.isatty():
+        yield lambda _: None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    rate = TextColumn("{task.speed:,.0f} rows/s" if total != 0 else "")
+    columns = (TextColumn("Writing"), BarColumn(), MofNCompleteColumn(), rate, TimeRemainingColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+        task = progress.add_task("", total=total)
+        yield lambda rows: progress.advance(task, rows)

@@ -1,0 +1,167 @@
+"""``rosprivacy query``: questions to the database."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import sys
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from rosprivacy.analysis.errors import QueryError, reason, shown
+from rosprivacy.cli.driver import driver_of
+from rosprivacy.cli.options import (
+    Output,
+    Server,
+)
+from rosprivacy.cli.output import emit
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rosprivacy.queries.library import Query
+    from rosprivacy.queries.run import Rows
+
+
+class RowFormat(StrEnum):
+    """Of the rows of a query."""
+
+    table = "table"
+    json = "json"
+    csv = "csv"
+
+
+def complete_query(incomplete: str) -> list[str]:
+    """Return the queries that begin so, for shell completion."""
+    from rosprivacy.queries.library import pack
+
+    return [name for name in pack() if name.startswith(incomplete)]
+
+
+def query(
+    name: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="NAME",
+            autocompletion=complete_query,
+            show_default=False,
+            help="Question to ask; without it the questions are listed.",
+        ),
+    ] = None,
+    values: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="KEY=VALUE", show_default=False, help="Parameters of the question."),
+    ] = None,
+    cypher: Annotated[str | None, typer.Option(metavar="TEXT", show_default=False, help="Ask this instead.")] = None,
+    file: Annotated[
+        Path | None, typer.Option("--file", metavar="FILE", show_default=False, help="Ask what stands in this file.")
+    ] = None,
+    show: Annotated[bool, typer.Option("--show", help="Print the question's Cypher instead of asking it.")] = False,
+    format: Annotated[RowFormat, typer.Option("--format", "-f", help="Of the rows.")] = RowFormat.table,  # noqa: A002 - the option's name
+    output: Output = None,
+    limit: Annotated[int, typer.Option(min=1, help="Most rows to print.")] = 1000,
+    timeout: Annotated[float, typer.Option(min=0.1, help="Seconds that the server may take.")] = 60.0,
+    neo4j: Server = None,
+) -> None:
+    """Ask the database: one of the questions that come with the program, or Cypher of your own, which only reads."""
+    from rosprivacy.queries.library import find, pack
+    from rosprivacy.queries.run import check_names, run
+
+    given = list(values or ())
+    if (cypher is not None) + (file is not None) + (name is not None and "=" not in name) > 1:
+        raise typer.BadParameter("name a question, or give --cypher, or --file")
+    asked = None
+    if cypher is None and file is None:
+        if name is None:
+            emit(_listed(pack().values()), output)
+            return
+        asked = find(name)
+        if show:
+            emit(asked.text, output)
+            return
+        text, parameters = asked.text, asked.values(_pairs(given))
+    else:
+        text = cypher if cypher is not None else _read(file)
+        parameters = dict(_pairs([*([name] if name else []), *given]))
+    with driver_of(neo4j) as driver:
+        if asked:
+            check_names(driver, asked, parameters)
+        rows = run(driver, text, parameters, limit=limit, timeout=timeout)
+    emit(_text(rows, format, wide=output is not None), output)
+    if rows.more:
+        print(f"only the first {limit:,} rows are shown; --limit shows more", file=sys.stderr)
+
+
+def _listed(queries: Iterable[Query]) -> str:
+    lines = []
+    for query in queries:
+        parameters = " ".join(
+            f"{p.name}=…" if p.default is None else f"[{p.name}={json.dumps(p.default)}]" for p in query.parameters
+        )
+        lines += [f"{query.name} {parameters}".rstrip(), f"    {query.description}"]
+    return "\n".join([*lines, ""])
+
+
+def _pairs(given: list[str]) -> dict[str, str]:
+    pairs: dict[str, str] = {}
+    for text in given:
+        key, equals, value = text.partition("=")
+        if not equals:
+            raise QueryError(f"{shown(text)!r} is no parameter; write key=value")
+        if key in pairs:
+            raise QueryError(f"{shown(key)} is given twice; keep one")
+        pairs[key] = value
+    return pairs
+
+
+def _read(file: Path | None) -> str:
+    from rosprivacy.ingest.reading.bounded_file import contents
+
+    assert file is not None
+    try:
+        return contents(file).decode("utf-8")
+    except (OSError, ValueError) as error:
+        raise QueryError(f"{shown(str(file))}:0: cannot be read: {reason(error)}; name a file of Cypher") from None
+
+
+def _text(rows: Rows, form: RowFormat, *, wide: bool) -> str:
+    from rosprivacy.queries.run import as_cell
+    from rosprivacy.report.spreadsheet import guarded
+
+    if form is RowFormat.json:
+        objects = [dict(zip(rows.columns, row, strict=True)) for row in rows.rows]
+        return json.dumps(objects, indent=2, ensure_ascii=False) + "\n"
+    cells = [[as_cell(*cell) for cell in zip(row, rows.columns, strict=True)] for row in rows.rows]
+    if form is RowFormat.csv:
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(map(guarded, rows.columns))
+        for values, row in zip(rows.rows, cells, strict=True):
+            numbers = [isinstance(value, int | float) for value in values]  # -1 is no formula
+            writer.writerow(c if number else guarded(c) for c, number in zip(row, numbers, strict=True))
+        return text.getvalue()
+    return _table(rows.columns, cells, wide=wide)
+
+
+def _table(columns: tuple[str, ...], cells: list[list[str]], *, wide: bool) -> str:
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    if not cells:
+        return "no rows\n"
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for column in columns:
+        table.add_column(Text(column), overflow="fold")
+    for row in cells:
+        table.add_row(*(Text(shown(cell)) for cell in row))
+    text = io.StringIO()
+    terminal = Console()
+    width = terminal.width if terminal.is_terminal and not wide else 400
+    Console(file=text, width=width, highlight=False).print(table)
+    return "".join(f"{line.rstrip()}\n" for line in text.getvalue().splitlines()).lstrip("\n")

@@ -1,0 +1,128 @@
+"""``rosprivacy why-not``: why data of one element does not get to another, and on whose word."""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from rosprivacy.analysis.errors import InputError, shown
+from rosprivacy.cli.options import (
+    FleetFile,
+    IncludeRoot,
+    LabelFiles,
+    MaxBytes,
+    NoStandard,
+    Ontologies,
+    Output,
+    Policies,
+    SixLists,
+    Standard,
+    TextOrJson,
+    View,
+    ViewChosen,
+)
+from rosprivacy.cli.output import emit, progress_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rosprivacy.analysis.findings.why_not import WhyNot
+    from rosprivacy.assembly import Result
+    from rosprivacy.settings import Settings
+
+
+def why_not(
+    source: Annotated[
+        str, typer.Argument(metavar="SOURCE", help="Where data comes in: a name; of a fleet robot:name.")
+    ],
+    leak: Annotated[
+        str, typer.Argument(metavar="LEAK", help="Where it should not get: a name; of a fleet robot:name.")
+    ],
+    policies: Policies = None,
+    labels: LabelFiles = None,
+    fleet: FleetFile = None,
+    categories: Annotated[
+        list[str] | None,
+        typer.Option("--categories", "-c", metavar="NAME", show_default=False, help="Ask about this kind only."),
+    ] = None,
+    ontology: Ontologies = None,
+    category: SixLists = "PersonalData",
+    view: ViewChosen = View.declared,
+    standard_channels: Standard = "rosprivacy:standard",
+    no_standard_channels: NoStandard = False,
+    include_root: IncludeRoot = None,
+    max_bytes: MaxBytes = 64 * 2**20,
+    format: Annotated[TextOrJson, typer.Option("--format", "-f", help="Of the answer.")] = TextOrJson.text,  # noqa: A002 - the option's name
+    output: Output = None,
+) -> None:
+    """Tell why data of one element does not get to another: where its way ends, and on whose word."""
+    from rosprivacy.report.document.analysis import as_text
+    from rosprivacy.report.document.why_not import document
+    from rosprivacy.report.terminal.why_not import lines
+    from rosprivacy.settings import Settings
+
+    settings = Settings(
+        view=view.value,
+        ontologies=tuple(ontology or ()),
+        category=category,
+        standard_channels=None if no_standard_channels else standard_channels,
+        include_root=str(include_root) if include_root else None,
+        max_bytes=max_bytes,
+        progress=progress_of,
+    )
+    if bool(fleet) == bool(policies):
+        raise typer.BadParameter("name policies, or a fleet with --fleet")
+    result = _result(policies or [], labels or [], fleet, settings)
+    answers = list(_answers(result, source, leak, tuple(categories or ())))
+    text = as_text(document(answers)) if format is TextOrJson.json else "".join(f"{line}\n" for line in lines(answers))
+    emit(text, output)
+
+
+def _result(policies: list[str], labels: list[str], fleet: str | None, settings: Settings) -> Result:
+    if fleet:
+        from rosprivacy.fleets import run_fleet
+
+        return run_fleet(fleet, settings)
+    from rosprivacy.assembly import run
+
+    return run(tuple(policies), tuple(labels), settings)
+
+
+def _answers(result: Result, source: str, leak: str, asked: tuple[str, ...]) -> Iterator[WhyNot]:
+    from rosprivacy.analysis.findings.why_not import why_not as explained
+
+    found = result.analysis.spread
+    ends = [_vertices(result, name) for name in (source, leak)]
+    names = [category.name if (category := result.vocabulary.find(name)) else name for name in asked]
+    unknown = [name for name in names if name not in found.categories]
+    if unknown:
+        emitted = ", ".join(found.categories) or "none"
+        raise InputError("-c", 0, f"no source or derivation emits {shown(unknown[0])!r}", f"emitted are: {emitted}")
+    begun = [name for name in found.categories if any(found.begins(v) & found.both(name) for v in ends[0])]
+    for name in names or begun or found.categories:
+        yield explained(result.analysis, ends[0], ends[1], name)
+    if not found.categories:
+        raise InputError(
+            "labels", 0, "no label names a source", "say where data comes in: nodes: {/x: {source: [Video]}}"
+        )
+
+
+def _vertices(result: Result, written: str) -> list[int]:
+    """The vertices that a name means; a node before a channel of the same name."""
+    known: dict[str, list[int]] = {}
+    elements = result.analysis.graph.elements
+    for vertex, element in enumerate(elements):
+        name = f"{element.robot}:{element.name}" if element.robot else element.name
+        known.setdefault(name, []).append(vertex)
+    if written not in known:
+        close = get_close_matches(written, known, n=3, cutoff=0.5)
+        hint = (
+            f"did you mean {' or '.join(map(shown, close))}?"
+            if close
+            else "see the names with rosprivacy labels --init"
+        )
+        raise InputError("why-not", 0, f"no element is called {shown(written)!r}", hint)
+    nodes = [vertex for vertex in known[written] if not elements[vertex].is_channel]
+    return nodes or known[written]

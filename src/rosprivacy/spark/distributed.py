@@ -1,0 +1,326 @@
+"""A fleet in parts: what each part says is put together here, and what leaves the border is handed out again.
+
+In: a fleet, and a cluster that does the same with each of its parts. Out: the answer of ``fleet_on_spark.py``. Only
+what is at the border travels between parts: sets of categories first; then, for each category, sets of classes of
+sources, from which pairs are counted. Ways are looked for in the end, among the robots that are shown.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rosprivacy.analysis.answer import Verdict
+from rosprivacy.analysis.errors import FleetError, InputError, InputErrors
+from rosprivacy.analysis.fleet.counts import Counts, counted
+from rosprivacy.analysis.fleet.patterns import different
+from rosprivacy.analysis.fleet.source_leak_pairs import forms
+from rosprivacy.analysis.kernel.arrays import GraphArrays
+from rosprivacy.analysis.kernel.spreading import emitted, fill, meaning
+from rosprivacy.analysis.model import unread
+from rosprivacy.analysis.non_ros import on_day
+from rosprivacy.analysis.parts.border import Core
+from rosprivacy.analysis.parts.part_patterns import Crossed
+from rosprivacy.ingest.fleet.alike_robots import COLON, chosen, known_to_flows
+from rosprivacy.ingest.fleet.fleet_graph import likeness, no_robot, nowhere, place_some
+from rosprivacy.spark import building, workers
+from rosprivacy.spark.classes import Classes, first_of
+from rosprivacy.spark.units import GATE, HUB, border, core_piece, crossing_lines, split, unit_of, with_limits
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from rosprivacy.analysis.fleet.patterns import Deviant, Likeness
+    from rosprivacy.analysis.fleet.patterns_of_pairs import Group
+    from rosprivacy.analysis.hierarchy import Hierarchy
+    from rosprivacy.analysis.kernel.spread import Spread
+    from rosprivacy.analysis.model import Element, NonRosFacts
+    from rosprivacy.ingest.fleet.alike_robots import Alike
+    from rosprivacy.ingest.fleet.fleet_file import Fleet
+    from rosprivacy.ingest.fleet.fleet_graph import Some
+    from rosprivacy.spark.building import Read, Told
+    from rosprivacy.spark.units import Border, Piece
+    from rosprivacy.spark.workers import Parts
+
+    Bits = NDArray[np.uint64]
+    Indices = NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """What is analysed, and what is asked.
+
+    Attributes
+    ----------
+    reader
+        Makes what reads a robot, wherever it is called.
+    asked
+        Names of categories; None for all.
+    today
+        As of ``Options``.
+    """
+
+    fleet: Fleet
+    groups: tuple[Alike, ...]
+    view: str
+    reader: Callable[[], Read]
+    hierarchy: Hierarchy
+    asked: Collection[str] | None = None
+    today: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """What was found out.
+
+    Attributes
+    ----------
+    groups
+        Patterns, without ways.
+    needed
+        Names of the units in which ways of these lie, and of one for each kind of open element.
+    examples
+        Names of units: with these, data of every source gets to one leak of each name that it gets to.
+    leaking
+        Robots of the graph from which data gets to a leak or the like, or at which it does.
+    told
+        What the parts rest on, put together.
+    leaving
+        What leaves each element of the border: bits of the categories.
+    parts
+        With their graphs.
+    core
+        The core with its spread at the fixpoint.
+    open
+        How many elements of the fleet are.
+    """
+
+    emitted: tuple[str, ...]
+    verdict: Verdict
+    groups: tuple[Group, ...]
+    deviants: tuple[Deviant, ...]
+    needed: frozenset[str]
+    examples: frozenset[str]
+    leaking: frozenset[str]
+    counts: Counts
+    told: Told
+    likeness: Likeness
+    leaving: Bits
+    parts: Parts[workers.Ready]
+    core: tuple[Piece, Spread]
+    border: Border
+    open: int
+
+    @property
+    def shared(self) -> dict[Element, NonRosFacts]:
+        """What is stated about the elements of the core, with the limits that hold there."""
+        piece = self.core[0]
+        return {piece.graph.elements[vertex]: facts for vertex, facts in piece.bound.outside.items()}
+
+
+def analyse_in_parts(question: Question, scatter: Callable[[Sequence[Any]], Parts[Any]]) -> Found:
+    """Analyse a fleet.
+
+    Parameters
+    ----------
+    scatter
+        Puts units to parts.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the input, one line each.
+    """
+    return _Run(question, scatter).found()
+
+
+class _Run:
+    """One analysis, step by step."""
+
+    def __init__(self, question: Question, scatter: Callable[[Sequence[Any]], Parts[Any]]) -> None:
+        self._question = question
+        self._fleet = question.fleet
+        self._likeness = likeness(question.groups)
+        self._scatter = scatter
+        self._needed: set[str] = set()
+
+    def found(self) -> Found:
+        question, fleet = self._question, self._fleet
+        fixed, units = split(question.groups)
+        alone = replace(fleet, robots=(), infrastructure=())  # what every part needs of it
+        read = question.reader()
+        members = [replace(read(group.robots[0]), robot=robot) for group in fixed for robot in group.placed]
+        core = place_some(fleet, members, question.view, own=True)
+        built = self._scatter(units).map(
+            partial(building.built, fleet=alone, view=question.view, reader=question.reader),
+            keep=True,
+        )
+        told = _together([building.told_of(core, members), *built.map(building.told).collect()])
+        self._check(told, core, built)
+        at = border(core, (lines for lines, side in told.named if side == 0))
+        categories = sorted(told.emitted | emitted(core.part.elements.values()))
+        piece, gates = core_piece(core, at, question.view)
+        piece = with_limits(piece, fleet, told.limits)
+        piece = replace(piece, bound=replace(piece.bound, outside=on_day(piece.bound.outside, question.today)))
+        ours = meaning(piece.graph, piece.bound, question.hierarchy, categories)
+        network = GraphArrays.of(ours)
+        middle = Core(network, np.array(gates, np.int64), np.array(piece.border, np.int64))
+        ready = built.map(
+            partial(
+                workers.ready, fleet=alone, at=at, view=question.view, categories=categories,
+                hierarchy=question.hierarchy, today=question.today,
+            ),
+            keep=True,
+        )  # fmt: skip
+        steps = self._steps(ours, ready)
+        wanted = [c for c in categories if question.asked is None or c in question.asked]
+        mask = sum(ours.both(category) for category in wanted)
+        numbers = [i for i, name in enumerate(categories) if name in wanted]
+        ways = {i: forms(i, len(categories), steps) for i in numbers}
+        kernels = ready.map(partial(workers.kernel, forms=ways, hierarchy=question.hierarchy), keep=True)
+
+        leaving = self._carry(middle, kernels, ours)
+        classes = Classes(ours, piece, middle, ways, question.hierarchy)
+        classes.number(kernels.map(workers.classes).collect())
+        classes.carry(kernels)
+        asked = workers.Asked(leaving, classes.leaving, classes.numbers, classes.counts, mask, question.hierarchy)
+        answers = ready.map(partial(workers.answered, forms=ways, asked=asked)).collect()
+        return self._put_together(answers, classes, told, at, piece, ours, wanted, mask, leaving, ready)
+
+    def _check(self, told: Told, core: Some, built: Parts[building.Built]) -> None:
+        """Raise what is wrong with the input."""
+        building.raised(told.problems)
+        problems: list[InputError] = []
+        for number, flow in enumerate(self._fleet.flows):
+            for side, end in enumerate(flow.ends):
+                problem = no_robot(self._fleet, flow, end.name)
+                if problem is None and not (told.found[number][side] or core.ends[number][side]):
+                    problem = nowhere(flow, end, self._names(end.name, core, built))
+                problems += [problem] if problem else []
+        for place in told.restated if crossing_lines(self._fleet) else ():
+            what = "a flow within a robot, of which a label file says more"
+            problems.append(
+                FleetError(place.file, place.line, what, "for --engine spark, say all of it in one of both")
+            )
+        if problems:
+            raise InputErrors(problems)
+
+    def _names(self, end: str, core: Some, built: Parts[building.Built]) -> list[str]:
+        """The names that the end of a flow could mean."""
+        if COLON not in end:
+            return sorted(element.name for element in core.part.elements if element.robot == self._fleet.name)
+        robots = frozenset(chosen(end, known_to_flows(self._fleet)))
+        there = {element.name for element in core.part.elements if element.robot in robots}
+        return sorted(there.union(*built.map(partial(building.names_on, robots=robots)).collect()))
+
+    def _steps(self, ours: Spread, ready: Parts[workers.Ready]) -> set[tuple[int, int]]:
+        """What data is made into other data anywhere."""
+        found = {step for some in ours.derives.values() for step in some}
+        problems: list[building.Problem] = []
+        for wrong, some in ready.map(workers.steps).collect():
+            problems += wrong
+            found |= some
+        building.raised(problems)
+        return found
+
+    def _carry(self, middle: Core, kernels: Parts[workers.Kernel], ours: Spread) -> Bits:
+        """Iterate the sets at the border to the fixpoint; return what leaves it."""
+        arrived = np.zeros((len(middle.border), middle.network.emitted.shape[1]), np.uint64)
+        while True:
+            arrives, leaves = middle.carried(arrived)
+            leaving = leaves[middle.border]
+            answers = kernels.map(partial(workers.carried, leaving=leaving, known=arrived)).collect()
+            before = arrived.copy()
+            for bits, _ in answers:
+                arrived |= bits
+            self._needed |= set(first_of(brought for _, brought in answers).values())
+            if np.array_equal(before, arrived):
+                fill(ours, arrives, leaves)
+                return leaving
+
+    def _put_together(
+        self, answers: Sequence[workers.Answer], classes: Classes, told: Told, at: Border, piece: Piece,
+        ours: Spread, wanted: Sequence[str], mask: int, leaving: Bits, ready: Parts[workers.Ready],
+    ) -> Found:  # fmt: skip
+        sources = [*classes.own_sources(), *(source for answer in answers for source in answer.sources)]
+        crossed = Crossed(self._likeness)
+        crossed.within(pair for answer in answers for pair in answer.within)
+        crossed.between(sources, [*classes.own_ends(), *(end for answer in answers for end in answer.ends)])
+        groups = crossed.groups()
+        open_at, count, kinds = _opened(answers, self._likeness)
+        mine = {v: e for v, e in enumerate(piece.graph.elements) if e.robot in (HUB, GATE)}
+        core_open = workers.open_elements(replace(piece, border=tuple(mine)), ours, mask)
+        unit = unit_of(split(self._question.groups)[1])
+        needed = self._needed | classes.bringers(groups, sources)
+        needed |= {unit[robot] for robot in kinds if robot in unit}
+        ends = (element.robot for group in groups for element in (group.source, group.leak))
+        needed |= {unit[robot] for robot in ends if robot in unit}
+        leak = any(group.count > group.dismissed for group in groups)
+        begins = any(ours.begins(v) & mask for v in ours.facts) or any(answer.begins for answer in answers)
+        is_open = bool(count or core_open) or not begins or bool(unread(told.diagnostics))
+        verdict = Verdict.LEAK if leak else Verdict.UNDETERMINED if is_open else Verdict.NO_LEAK_FOUND
+        counts = sum((answer.counts for answer in answers), counted(piece.graph, ours, self._likeness, (), mine))
+        return Found(
+            emitted=tuple(wanted),
+            verdict=verdict,
+            groups=groups,
+            deviants=different(crossed.shares, open_at, self._likeness),
+            needed=frozenset(needed),
+            examples=frozenset(needed | crossed.examples | classes.all_bringers()),
+            leaking=frozenset(r for r, some in crossed.shares.items() if not all(share.dismissed for share in some)),
+            counts=replace(counts, flows=counts.flows + _flows_between(told)),
+            told=told,
+            likeness=self._likeness,
+            leaving=leaving,
+            parts=ready,
+            core=(piece, ours),
+            border=at,
+            open=count + len(core_open),
+        )
+
+
+def _together(told: Iterable[Told]) -> Told:
+    """What all parts tell."""
+    whole, *others = told
+    for part in others:
+        whole = building.joined(whole, part)
+    return whole
+
+
+def _opened(
+    answers: Iterable[workers.Answer], likeness: Likeness
+) -> tuple[dict[str, frozenset[Element]], int, set[str]]:
+    """What is open on each robot; on how many elements of the fleet; and a robot for each kind of open element."""
+    open_at: dict[str, frozenset[Element]] = {}
+    count = 0
+    first: dict[tuple[Element, tuple[str, ...]], str] = {}
+    for answer in answers:
+        sets = [frozenset(element for element, _ in some) for some in answer.sets]
+        for robot, number in answer.open.items():
+            open_at[robot] = sets[number]
+            count += likeness.weight(robot) * len(sets[number])
+            for kind in answer.sets[number] if likeness.weight(robot) else ():
+                first[kind] = min(robot, first.get(kind, robot))
+    return open_at, count, set(first.values())
+
+
+def _flows_between(told: Told) -> int:
+    """How many flows of the fleet file lead from one unit to another."""
+    sides: tuple[Counter[Any], Counter[Any]] = (Counter(), Counter())
+    in_unit: tuple[dict[Any, Mapping[str, int]], ...] = ({}, {})
+    for (lines, side), units in told.named.items():
+        sides[side][lines] = sum(units.values())
+        in_unit[side][lines] = units
+    count = 0
+    for source, many in sides[0].items():
+        for target, others in sides[1].items():
+            if source & target:
+                same = (w * in_unit[1][target].get(unit, 0) for unit, w in in_unit[0][source].items())
+                count += many * others - sum(same)
+    return count

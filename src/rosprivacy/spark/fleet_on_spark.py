@@ -1,0 +1,188 @@
+"""The way of a fleet through Apache Spark: fleet file -> units on partitions -> the answer of ``fleet_on_spark.py``.
+
+In: a fleet file. Out: a ``Result`` like that of ``run_fleet``, in whose graph are the robots that are shown.
+"""
+
+from __future__ import annotations
+
+import os
+from contextlib import chdir
+from dataclasses import asdict, dataclass, replace
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.errors import FleetError, InputError, InputErrors, reason
+from rosprivacy.analysis.files_read import note
+from rosprivacy.analysis.fleet.counts import Counts
+from rosprivacy.analysis.model import Diagnostic, Place, Severity
+from rosprivacy.asked import asked_for
+from rosprivacy.assembly import Result
+from rosprivacy.assumptions import files_read, own_assumptions
+from rosprivacy.clock import judged_on
+from rosprivacy.fleets import Reader
+from rosprivacy.ingest.fleet.alike_robots import alike
+from rosprivacy.ingest.fleet.fleet_file import read_fleet
+from rosprivacy.ingest.fleet.joins import joins_nothing
+from rosprivacy.ingest.labels.countries import countries
+from rosprivacy.ontology.vocabulary import load
+from rosprivacy.spark.distributed import Question, analyse_in_parts
+from rosprivacy.spark.parquet import check_new, write
+from rosprivacy.spark.session import scatter, session
+from rosprivacy.spark.shown_robots import shown
+from rosprivacy.spark.unit_rows import Plan
+from rosprivacy.spark.units import crossing_lines, split
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from rosprivacy.ingest.fleet.dds_domains import Member
+    from rosprivacy.ingest.fleet.fleet_file import Robot
+    from rosprivacy.ontology.vocabulary import Vocabulary
+    from rosprivacy.settings import Settings
+    from rosprivacy.spark.building import Read
+    from rosprivacy.spark.distributed import Found
+    from rosprivacy.spark.shown_robots import Shown
+    from rosprivacy.spark.units import Unit
+
+
+@dataclass(frozen=True, slots=True)
+class SparkResult(Result):
+    """The answer about a fleet of which only the robots that are shown are here.
+
+    Attributes
+    ----------
+    counts
+        Of the whole fleet.
+    open
+        How many elements of the whole fleet are.
+    """
+
+    counts: Counts = Counts()  # noqa: RUF009 - frozen
+    open: int = 0
+
+    def document(self) -> dict[str, Any]:
+        """Return the JSON document of the contract."""
+        made = super(SparkResult, self).document()
+        channels = made["assumptions"]["standard_channels"]
+        if channels:
+            taken = {**channels, "taken": self.counts.standard_channels}
+            made["assumptions"] = {**made["assumptions"], "standard_channels": taken}
+        return {**made, **asdict(self.counts)}
+
+
+def run_on_spark(file: str, settings: Settings, master: str | None = None, results: str | None = None) -> Result:
+    """Read a fleet and analyse it on Spark; the workers read the policies, from where they are.
+
+    Parameters
+    ----------
+    master
+        Of a cluster; None for this machine.
+    results
+        Folder, to be made, for the answer about every robot as Parquet; for the answer about all categories only.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the input, one line each.
+    ClusterError
+        If there is no Spark, or something fails there.
+    """
+    vocabulary = load(ontologies=settings.ontologies)
+    fleet = read_fleet(file, vocabulary)
+    plain = replace(settings, progress=unchanged, today=settings.today or judged_on(os.environ))
+    question = Question(
+        fleet, alike(fleet), settings.view, partial(file_reader, plain, str(Path.cwd())), vocabulary.hierarchy,
+        asked_for(vocabulary, settings), plain.today or "",
+    )  # fmt: skip
+    if results:
+        check_new(results)
+        _check_whole(question)
+    with session(master) as spark:
+        found = analyse_in_parts(question, partial(scatter, spark))
+        _note_what_workers_read(found)
+        told = shown(question, found, settings.paths, settings.max_paths)
+        answer = result(question, found, told, settings, vocabulary)
+        if results:
+            plan, units = plan_of(question, found, answer, plain)
+            write(spark, results, units, plan, answer.document())
+        return answer
+
+
+def _note_what_workers_read(found: Found) -> None:
+    """Workers are processes of their own, whose notes nobody sees here: what they have read is no output either."""
+    for name in (*(file for file, _ in found.told.sources), *(file for file, *_ in found.told.labels)):
+        if Path(name).is_file():
+            note(name, Path(name).stat())
+
+
+def plan_of(question: Question, found: Found, answer: Result, settings: Settings) -> tuple[Plan, tuple[Unit, ...]]:
+    """Return what the rows of units are made with, and the units."""
+    fixed, units = split(question.groups)
+    examples = tuple(unit for unit in units if unit.name in found.examples)
+    fleet = replace(question.fleet, robots=(), infrastructure=())
+    assumptions = answer.assumptions
+    joins = joins_nothing(question.fleet, question.groups, found.told.met)
+    plan = Plan(fleet, fixed, examples, found.shared, found.leaking, assumptions, settings, question.reader, joins)
+    return plan, units
+
+
+def _check_whole(question: Question) -> None:
+    """Refuse results that would not say everything, or have a flow for each pair of robots."""
+    problems: list[InputError] = []
+    if question.asked is not None:
+        what = "results are about all categories"
+        hint = "leave out --categories, --article9 and --data-type, or --results"
+        problems.append(FleetError("--results", 0, what, hint))
+    for line in sorted(crossing_lines(question.fleet)):
+        place = question.fleet.flows[line].place
+        what = "results have no flows from robots to robots, one for each pair"
+        problems.append(FleetError(place.file, place.line, what, "let them meet at an element of the fleet file"))
+    if problems:
+        raise InputErrors(problems)
+
+
+def result(question: Question, found: Found, told: Shown, settings: Settings, vocabulary: Vocabulary) -> SparkResult:
+    """Put together what a report says."""
+    assumptions = {
+        **own_assumptions(told.placed.graph, settings, vocabulary, told.analysis.emitted),
+        **({"countries_as_of": countries().as_of} if found.told.countries else {}),
+        **files_read(sorted(found.told.sources), sorted(found.told.labels), settings, 0),
+        "fleet": [{"file": name, "sha256": digest} for name, digest in question.fleet.sources],
+        "engine": "spark",
+    }
+    bounds = (
+        f"analysed in parts, {found.open:,} open elements in the whole fleet: ways and distances are the shortest "
+        "among the robots that are shown, and open elements and unknown ends are listed of these"
+    )
+    joins = joins_nothing(question.fleet, question.groups, found.told.met)
+    said = (*found.told.diagnostics, *joins, Diagnostic(Place("--engine spark", 0), Severity.NOTICE, bounds))
+    policies = {policy.file: policy for member in told.members.values() for policy in member.policies}
+    labels = {file.file: file for member in told.members.values() for file in member.files}
+    return SparkResult(
+        told.analysis, told.placed.bound, vocabulary, tuple(policies.values()), said, assumptions,
+        tuple(labels.values()), fleet=told.view, counts=found.counts, open=found.open,
+    )  # fmt: skip
+
+
+def file_reader(settings: Settings, folder: str) -> Read:
+    """Return what reads robots from files, on a worker; names are relative to a folder there."""
+    reader = Reader(load(ontologies=settings.ontologies), settings)
+
+    def read(robot: Robot) -> Member:
+        if folder == os.getcwd():  # noqa: PTH109 - as it is compared
+            return reader.member(robot)
+        try:
+            with chdir(folder):
+                return reader.member(robot)
+        except OSError as error:
+            why = f"a worker cannot open the folder: {reason(error)}"
+            hint = "work in a folder that all machines of the cluster share"
+            raise InputErrors([FleetError(folder, 0, why, hint)]) from None
+
+    return read
+
+
+def unchanged(files: Sequence[str]) -> Iterable[str]:
+    """Return the files: a worker has no terminal to show progress on."""
+    return files

@@ -1,0 +1,86 @@
+"""What parts found out -> what a report shows: the ways of one pair of each pattern, on the graph of a few robots.
+
+In: patterns without ways, and the units in which they lie. Out: an ``Analysis`` of these units and of what all share,
+and the view of the whole fleet. Units that bring data to the border are among them, so what is at their elements is
+what is there in the whole fleet.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.findings.findings import Options, analyse
+from rosprivacy.analysis.fleet.patterns import FleetView
+from rosprivacy.analysis.fleet.patterns_of_pairs import patterns_of
+from rosprivacy.ingest.fleet.fleet_graph import place_chosen
+from rosprivacy.spark.units import split
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.analysis.findings.concerns import Concern
+    from rosprivacy.analysis.kernel.spread import Spread
+    from rosprivacy.analysis.model import Bound, Element, NonRosFacts
+    from rosprivacy.ingest.fleet.dds_domains import Member
+    from rosprivacy.ingest.fleet.fleet_graph import Placed
+    from rosprivacy.spark.distributed import Found, Question
+
+Wanted = dict[int, set[tuple[str, int, int, bool]]]
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """What a report is made of.
+
+    Attributes
+    ----------
+    members
+        Those of the graph, by id of the first robot of each group.
+    """
+
+    analysis: Analysis
+    view: FleetView
+    placed: Placed
+    members: dict[str, Member]
+
+
+def shown(question: Question, found: Found, paths: str, max_paths: int) -> Shown:
+    """Look for the ways of what is shown.
+
+    Notes
+    -----
+    A way is a shortest one among the robots that are placed here: those at its ends, those that bring data to what is
+    shared, and what is shared.
+    """
+    fixed, units = split(question.groups)
+    needed = found.needed or {unit.name for unit in units[:1]}
+    groups = [*fixed, *(group for unit in units if unit.name in needed for group in unit.groups)]
+    read = question.reader()
+    members = {group.robots[0].id: read(group.robots[0]) for group in groups}
+    placed = place_chosen(question.fleet, groups, members, question.view)
+    placed = replace(placed, bound=limited(placed, found.shared))
+
+    def choose(spread: Spread, kinds: Sequence[Concern], mask: int) -> Wanted:
+        del kinds, mask
+        vertex = {element: number for number, element in enumerate(spread.graph.elements)}
+        wanted: Wanted = defaultdict(set)
+        for group in found.groups:
+            category = spread.categories.index(group.category)
+            wanted[vertex[group.source]].add((group.kind, vertex[group.leak], category, group.beside))
+        return dict(wanted)
+
+    options = Options(question.asked, paths, max_paths, choose=choose, today=question.today)
+    analysis = analyse(placed.graph, placed.bound, question.hierarchy, options)
+    view = FleetView(found.likeness, patterns_of(found.groups, analysis), found.deviants)
+    analysis = replace(analysis, verdict=found.verdict, emitted=found.emitted)
+    return Shown(analysis, view, placed, members)
+
+
+def limited(placed: Placed, shared: Mapping[Element, NonRosFacts]) -> Bound:
+    """Return what is said, where for what is shared the limits of every robot hold, also of those not placed."""
+    elements = placed.graph.elements
+    outside = {vertex: shared.get(elements[vertex], facts) for vertex, facts in placed.bound.outside.items()}
+    return replace(placed.bound, outside=outside)

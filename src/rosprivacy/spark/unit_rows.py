@@ -1,0 +1,233 @@
+"""Units of a fleet -> their rows for the database, made where they are: no machine has all of them.
+
+In: units, and those in which the ways lie that data takes between units. Out: ``RobotRows`` of their robots, and of
+what is shared as far as it concerns them. What gets there is what gets there in the whole fleet, since the units that
+bring data to what is shared are placed along.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.answer import Verdict
+from rosprivacy.analysis.findings.findings import Options, analyse
+from rosprivacy.analysis.fleet.source_leak_pairs import pairs
+from rosprivacy.analysis.model import unread
+from rosprivacy.assumptions import remembered, sources_of, what_it_rests_on
+from rosprivacy.ingest.database.fleet_rows import FleetRows, verdicts
+from rosprivacy.ingest.database.rows import rows_of
+from rosprivacy.ingest.fleet.dds_domains import pseudo_robot
+from rosprivacy.ingest.fleet.fleet_graph import place_chosen
+from rosprivacy.ontology.vocabulary import load
+from rosprivacy.spark.shown_robots import limited
+from rosprivacy.spark.units import unit_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+
+    from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.analysis.findings.concerns import Concern
+    from rosprivacy.analysis.fleet.source_leak_pairs import Pairs
+    from rosprivacy.analysis.kernel.spread import Spread
+    from rosprivacy.analysis.model import Diagnostic, Element, NonRosFacts
+    from rosprivacy.ingest.database.rows import RobotRows, Row
+    from rosprivacy.ingest.fleet.alike_robots import Alike
+    from rosprivacy.ingest.fleet.dds_domains import Member
+    from rosprivacy.ingest.fleet.fleet_file import Fleet
+    from rosprivacy.ingest.fleet.fleet_graph import Placed
+    from rosprivacy.settings import Settings
+    from rosprivacy.spark.building import Read
+    from rosprivacy.spark.units import Unit
+
+AT_ONCE = 25  # units that are placed in one graph
+Wanted = dict[int, set[tuple[str, int, int, bool]]]
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """What is needed of the whole fleet to make the rows of some of it.
+
+    Attributes
+    ----------
+    fleet
+        Without its robots.
+    fixed
+        The infrastructure of the core.
+    examples
+        See ``Found``.
+    shared
+        What is stated about elements of the core.
+    leaking
+        See ``Found``.
+    assumptions
+        Of the answer about the whole fleet.
+    joins
+        What a reader has to know of the fleet: what joins nothing.
+    """
+
+    fleet: Fleet
+    fixed: tuple[Alike, ...]
+    examples: tuple[Unit, ...]
+    shared: Mapping[Element, NonRosFacts]
+    leaking: frozenset[str]
+    assumptions: Mapping[str, Any]
+    settings: Settings
+    reader: Callable[[], Read]
+    joins: tuple[Diagnostic, ...] = ()
+
+
+def unit_rows(units: Sequence[Unit], plan: Plan) -> list[RobotRows]:
+    """Return the rows of the robots of some units, and of what is shared as far as it concerns them."""
+    made: list[RobotRows] = []
+    read = plan.reader()
+    for start in range(0, len(units), AT_ONCE):
+        made += _rows(units[start : start + AT_ONCE], plan, read)
+    return made
+
+
+def core_rows(plan: Plan) -> list[RobotRows]:
+    """Return the rows of what is shared, as far as it concerns no unit."""
+    placed, members = _placed((), plan, plan.reader())
+    fleet_rows = _fleet_rows(placed, members, plan, unit_of(()))
+    core = _core(plan)
+    made = [rows for owner in core for rows in fleet_rows.of(owner)]
+    mine = {row["id"] for rows in made for row in rows.elements}
+    return [_ending_at(rows, mine, whole=True) for rows in made]
+
+
+def _rows(units: Sequence[Unit], plan: Plan, read: Read) -> Iterator[RobotRows]:
+    placed, members = _placed(units, plan, read)
+    fleet_rows = _fleet_rows(placed, members, plan, unit_of(units))
+    core = _core(plan)
+    made = [rows for owner in sorted(unit_of(units)) for rows in fleet_rows.of(owner)]
+    mine = {row["id"] for rows in made for row in rows.elements}
+    shared = {row["id"] for owner in core for rows in fleet_rows.of(owner) for row in rows.elements}
+    yield from (_derived_at(rows, mine | shared) for rows in made)
+    for owner in core:
+        yield from (_ending_at(rows, mine, whole=False) for rows in fleet_rows.of(owner))
+
+
+def _core(plan: Plan) -> list[str]:
+    """The names under which the core is filed."""
+    domains = {pseudo_robot(group.robots[0].domain) for group in plan.fixed if group.robots[0].domain}
+    return sorted({plan.fleet.name, *(robot.id for group in plan.fixed for robot in group.robots), *domains})
+
+
+def _placed(units: Sequence[Unit], plan: Plan, read: Read) -> tuple[Placed, dict[str, Member]]:
+    names = {unit.name for unit in units}
+    others = [unit for unit in plan.examples if unit.name not in names]
+    groups = [*plan.fixed, *(group for unit in (*units, *others) for group in unit.groups)]
+    members = {group.robots[0].id: read(group.robots[0]) for group in groups}
+    placed = place_chosen(plan.fleet, groups, members, plan.settings.view)
+    return replace(placed, bound=limited(placed, plan.shared)), members
+
+
+def _each_finding(part: Pairs) -> Iterator[tuple[int, int, bool, bool, bool]]:
+    """(source, leak, dismissed, pseudonymised, beside) of each finding of the pairs."""
+    columns = (part.sources, part.leaks, part.dismissed, part.pseudonymised, part.beside)
+    for source, leak, dismissed, hidden, beside in zip(*(c.tolist() for c in columns), strict=True):
+        yield source, leak, dismissed, hidden, False
+        if beside:
+            yield source, leak, True, False, True
+
+
+def _fleet_rows(placed: Placed, members: Mapping[str, Member], plan: Plan, mine: Mapping[str, str]) -> FleetRows:
+    """Findings that begin in our units: each that stays there or ends at what is shared, and one for all others."""
+    vocabulary = load(ontologies=plan.settings.ontologies)
+    unit = {**unit_of(plan.examples), **mine}
+
+    def choose(found: Spread, kinds: Sequence[Concern], mask: int) -> Wanted:
+        elements = found.graph.elements
+        owner = [unit.get(element.robot, "") for element in elements]
+        ours = [element.robot in mine for element in elements]
+        wanted: Wanted = {}
+        for part in pairs(found, kinds, mask):
+            beyond: dict[tuple[int, Element, bool], tuple[bool, bool, int]] = {}
+            for source, leak, dismissed, hidden, beside in _each_finding(part):
+                if owner[source] == owner[leak] or not owner[source] or not owner[leak]:
+                    if ours[source] or ours[leak] or not (owner[source] or owner[leak]):
+                        wanted.setdefault(source, set()).add((part.kind, leak, part.category, beside))
+                elif ours[source]:
+                    key = source, placed.likeness.alike(elements[leak]), beside
+                    beyond[key] = min(beyond.get(key, (True, True, leak)), (dismissed, hidden, leak))
+            for (source, _, beside), (_, _, leak) in beyond.items():
+                wanted.setdefault(source, set()).add((part.kind, leak, part.category, beside))
+        return wanted
+
+    analysis = analyse(
+        placed.graph, placed.bound, vocabulary.hierarchy, Options(choose=choose, today=plan.settings.today or "")
+    )
+    said = {name: _more(member, analysis, plan, vocabulary) for name, member in members.items()}
+    said[plan.fleet.name] = remembered({**plan.assumptions, "policies": [], "labels": []}, plan.joins)
+    known = _verdicts(analysis, plan, [name for name, member in members.items() if unread(member.diagnostics)])
+    more = {name: {**some, "verdict": known.get(name, str(Verdict.UNDETERMINED))} for name, some in said.items()}
+    return FleetRows(placed, analysis, vocabulary, more, most_across=0)
+
+
+def _more(member: Member, analysis: Analysis, plan: Plan, vocabulary: Any) -> dict[str, str]:
+    sources = sources_of(member.policies)
+    said = what_it_rests_on(analysis.graph, sources, member.files, analysis, plan.settings, vocabulary)
+    if said["standard_channels"]:
+        spread = analysis.spread
+        robots = [spread.graph.elements[vertex] for vertex in spread.standard]
+        taken = {element.identity for element in robots if element.robot == member.robot.id}
+        said["standard_channels"] = {**said["standard_channels"], "taken": len(taken)}
+    return remembered(said, member.diagnostics)
+
+
+def _verdicts(analysis: Analysis, plan: Plan, not_read: Iterable[str]) -> dict[str, str]:
+    """The verdict on each robot; which of them leak is known of the whole fleet."""
+    open_at = (question.element for question in analysis.open)
+    reached = (carried.element for carried in analysis.carried)
+    found = verdicts((), open_at, reached, lambda element: element.robot, not_read)
+    return found | dict.fromkeys(plan.leaking, str(Verdict.LEAK))
+
+
+def _derived_at(rows: RobotRows, known: Collection[str]) -> RobotRows:
+    """Without what is made of the data of other units."""
+    parts = _parts(rows)
+    parts["derived"] = [row for row in rows.derived if row["target"] in known]
+    return rows_of(rows.robot, _own(rows.properties), _with_foreign(parts, rows))
+
+
+def _ending_at(rows: RobotRows, ids: Collection[str], *, whole: bool) -> RobotRows:
+    """Of what is shared, the flows, findings and what is made that end at some elements; or with all else, too."""
+    parts = _parts(rows)
+    for name in ("flows", "findings", "derived"):
+        parts[name] = [row for row in parts[name] if row["target"] in ids]
+    found = {row["id"] for row in parts["findings"]}
+    parts["across"] = [row for row in rows.across if row["source"] in found]
+    if not whole:
+        parts |= {"elements": [], "enclaves": [], "memberships": [], "roles": {}}
+    return rows_of(rows.robot, _own(rows.properties), _with_foreign(parts, rows))
+
+
+def _with_foreign(parts: dict[str, Any], rows: RobotRows) -> dict[str, Any]:
+    """Only those elements of others that the rows name."""
+    named = {
+        row[end] for name in ("flows", "derived", "findings") for row in parts[name] for end in ("source", "target")
+    }
+    named |= {row["target"] for row in parts["across"]}
+    return {**parts, "foreign": [row for row in rows.foreign if row["id"] in named]}
+
+
+def put_together(some: Sequence[RobotRows]) -> RobotRows:
+    """Return the rows of what is shared, made of those that parts have of it; the first says what it is."""
+    first, *others = some
+    parts = _parts(first)
+    for rows in others:
+        for name in ("flows", "derived", "findings", "across", "foreign"):
+            parts[name] = [*parts[name], *getattr(rows, name)]
+    parts["foreign"] = sorted({row["id"]: row for row in parts["foreign"]}.values(), key=lambda row: str(row["id"]))
+    return rows_of(first.robot, _own(first.properties), parts)
+
+
+def _parts(rows: RobotRows) -> dict[str, Any]:
+    names = ("elements", "enclaves", "memberships", "flows", "roles", "derived", "findings", "across", "foreign")
+    return {name: getattr(rows, name) for name in names}
+
+
+def _own(properties: Row) -> Row:
+    """Without what ``rows_of`` adds."""
+    return {key: value for key, value in properties.items() if key not in ("digest", "elements", "flows", "roles")}

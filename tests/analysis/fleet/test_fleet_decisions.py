@@ -1,0 +1,122 @@
+"""Decisions on a fleet: about patterns, or about robots by name; never about more than they say (rule S10)."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from tests.helpers.fleet_files import MODELS, folder, write
+
+if TYPE_CHECKING:
+    from tests.helpers.command import Cli
+
+__all__ = ["folder"]  # a fixture
+LEAKS = "labels: 1\nnodes:\n  /camera: {source: [Video]}\n  /uplink: {leak: [Video]}\n"
+FIVE = "fleet: 1\n" + MODELS + "groups: [{robots: 5, model: eye}]\n"
+ACCEPT = "decision: accept, reason: agreed, owner: me, legal_basis: [6(1)(a)]"
+CROSS = (
+    "elements: {base: {kind: external-system, country: DE}}\n"
+    "flows: [{from: '*:/uplink', to: base}, {from: base, to: '*:/uplink'}]\n"
+)
+
+
+@pytest.fixture(autouse=True)
+def _five(folder: object) -> None:  # noqa: ARG001 - for what it does
+    write("eye.yaml", LEAKS)
+    write("five.yaml", FIVE)
+
+
+def decide(*entries: str) -> None:
+    write("d.yaml", "decisions: 1\nfindings:\n" + "".join(f"  - {{{entry}, {ACCEPT}}}\n" for entry in entries))
+
+
+def told(cli: Cli, *options: str) -> dict[str, Any]:
+    done = cli("analyze", "--fleet", "five.yaml", "--decisions", "d.yaml", "-f", "json", *options)
+    assert done.returncode in (0, 1), done.stderr
+    return dict(json.loads(done.stdout)) | {"code": done.returncode}
+
+
+def pattern(cli: Cli) -> dict[str, Any]:
+    decide("category: Voice")
+    (only,) = told(cli)["fleet"]["patterns"]
+    return dict(only)
+
+
+def test_a_pattern_is_accepted_by_its_id(cli: Cli) -> None:
+    decide(f"id: {pattern(cli)['id']}")
+    document = told(cli)
+    (found,) = document["fleet"]["patterns"]
+    assert (document["verdict"], document["code"]) == ("undetermined", 0)  # nobody reviewed /image
+    assert (found["findings"], found["accepted"]) == (5, 5)
+
+
+def test_decide_takes_the_ids_of_patterns_from_a_report(cli: Cli) -> None:
+    cli("analyze", "--fleet", "five.yaml", "-f", "json", "-o", "r.json")
+    said = ("--report", "r.json", "--reason", "agreed", "--owner", "me", "--decisions", "d.yaml")
+    (shown,) = json.loads(Path("r.json").read_text("utf-8"))["fleet"]["patterns"]
+    assert cli("decide", "accept", shown["finding"], *said).returncode == 2
+    assert cli("decide", "accept", shown["id"][:6], *said).returncode == 0
+    assert told(cli)["fleet"]["patterns"][0]["accepted"] == 5
+    text = cli("analyze", "--fleet", "five.yaml", "--decisions", "d.yaml").stdout
+    assert f"[pattern {shown['id']}]" in text
+
+
+def test_names_and_globs_are_about_all_robots(cli: Cli) -> None:
+    decide("category: Video, leak: /up*")
+    (found,) = told(cli)["fleet"]["patterns"]
+    assert (found["findings"], found["accepted"]) == (5, 5)
+
+
+def test_a_robot_by_name_is_about_that_robot_only(cli: Cli) -> None:
+    decide("robot: eye_3, leak: /uplink")
+    document = told(cli)
+    (found,) = document["fleet"]["patterns"]
+    assert (document["verdict"], document["code"]) == ("leak", 1)
+    assert (found["findings"], found["accepted"]) == (5, 1)
+    (shown,) = document["findings"]
+    assert not shown["accepted"]
+    assert shown["source"]["robot"] != "eye_3"
+    (deviant,) = document["fleet"]["deviants"]
+    assert deviant["robots"] == ["eye_3"]
+    assert [share["accepted"] for share in deviant["more"]] == [True]
+
+
+def test_the_id_of_what_stands_for_many_is_about_none_of_them(cli: Cli) -> None:
+    """What a report shows of one robot has the id of that robot's finding; to accept it is not to accept all."""
+    shown = pattern(cli)["finding"]
+    decide(f"id: {shown}")
+    document = told(cli)
+    assert document["verdict"] == "leak"
+    assert document["fleet"]["patterns"][0]["accepted"] == 0
+    assert any("is about no finding" in said["message"] for said in document["diagnostics"])
+
+
+def test_a_robot_that_stands_for_itself_has_findings_with_ids(cli: Cli) -> None:
+    write("five.yaml", FIVE.replace("robots: 5", "robots: 1"))
+    shown = pattern(cli)["finding"]
+    decide(f"id: {shown}")
+    assert told(cli)["fleet"]["patterns"][0]["accepted"] == 1
+
+
+def test_what_goes_from_robot_to_robot_is_decided_by_its_own_id(cli: Cli) -> None:
+    write("five.yaml", FIVE + CROSS)
+    decide("category: Voice")
+    before = {p["across"]: p for p in told(cli)["fleet"]["patterns"] if p["findings"] in (5, 20)}
+    assert (before[False]["findings"], before[True]["findings"]) == (5, 20)
+    decide(f"id: {before[True]['id']}")
+    after = {p["across"]: p for p in told(cli)["fleet"]["patterns"] if p["findings"] in (5, 20)}
+    assert (after[False]["accepted"], after[True]["accepted"]) == (0, 20)
+
+
+def test_without_a_valid_decision_nothing_differs_from_the_fleet_without_decisions(cli: Cli) -> None:
+    write("five.yaml", FIVE + CROSS)
+    decide("category: Voice")
+    document = told(cli)
+    plain = json.loads(cli("analyze", "--fleet", "five.yaml", "-f", "json").stdout)
+    for key in ("verdict", "open", "carries", "roles"):
+        assert document[key] == plain[key]
+    assert document["fleet"] == plain["fleet"]
+    assert [f["id"] for f in document["findings"]] == [f["id"] for f in plain["findings"]]

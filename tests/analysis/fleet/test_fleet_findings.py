@@ -1,0 +1,131 @@
+"""Fleets against brute force (rules S1, S9, S10): all robots in one graph, against one robot for all that are alike."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from hypothesis import given
+
+from rosprivacy.analysis.findings.findings import Options, analyse
+from rosprivacy.analysis.fleet.patterns import FleetView, pattern_id
+from rosprivacy.analysis.fleet.patterns_of_pairs import Groups
+from tests.helpers.random_fleets import Case, fleets, found_in
+from tests.helpers.systems import HIERARCHY
+
+if TYPE_CHECKING:
+    from rosprivacy.analysis.model import Element
+
+Vertex = tuple[str, str]  # robot (or the fleet), name
+
+
+@given(fleets())
+def test_patterns_are_those_of_all_robots_in_one_graph(case: Case) -> None:
+    """Which findings, how many, on which robots, in which form; one robot stands for all that are alike."""
+    result = found_in(case)
+    if result is None:
+        return
+    analysis, placed = result
+    view = FleetView.of(analysis, placed.likeness)
+    brute, elements = case.brute()
+    expected: dict[tuple[object, ...], list[tuple[bool, bool, str]]] = defaultdict(list)
+    for (kind, category, source, leak, beside), (hidden, dismissed, _) in brute.findings().items():
+        a, b = elements[source], elements[leak]
+        across = a.robot != b.robot and {a.robot, b.robot} <= set(case.robots)
+        where = a.robot if a.robot in case.robots else b.robot
+        key = (kind, category, _alike(a, case), _alike(b, case), across, beside)
+        expected[key].append((dismissed, hidden, where if where in case.robots else ""))
+    got = {}
+    for pattern in view.patterns:
+        f, robots = pattern.finding, placed.likeness
+        key = (f.kind, f.category, robots.alike(f.source), robots.alike(f.leak), pattern.across, f.beside)
+        got[key] = (pattern.count, pattern.dismissed, pattern.pseudonymised, pattern.robots)
+        assert pattern.id == pattern_id(f, robots)
+    assert got == {
+        key: (
+            len(found),
+            sum(dismissed for dismissed, _, _ in found),
+            sum(hidden for _, hidden, _ in found),
+            tuple(sorted({robot for *_, robot in found if robot})),
+        )
+        for key, found in expected.items()
+    }
+    assert len({pattern.id for pattern in view.patterns}) == len(view.patterns)
+
+
+def _alike(element: Element, case: Case) -> Element:
+    return replace(element, robot="") if element.robot in case.robots else element
+
+
+@given(fleets())
+def test_patterns_made_of_pairs_are_those_made_of_findings(case: Case) -> None:
+    """Counted in arrays before any way is looked for: the same patterns, deviants and verdict."""
+    result = found_in(case)
+    if result is None:
+        return
+    analysis, placed = result
+    groups = Groups(placed.likeness)
+    chosen = analyse(placed.graph, placed.bound, HIERARCHY, Options(choose=groups))
+    expected, got = FleetView.of(analysis, placed.likeness), groups.view(chosen)
+    assert {pattern.id: pattern for pattern in got.patterns} == {pattern.id: pattern for pattern in expected.patterns}
+    assert got.deviants == expected.deviants
+    assert chosen.verdict == analysis.verdict
+    assert set(chosen.findings) == {pattern.finding for pattern in expected.patterns}
+
+
+@given(fleets())
+def test_each_finding_is_one_of_all_robots_in_one_graph(case: Case) -> None:
+    """Also how short the way is: no way between two robots is longer because a third is not placed."""
+    result = found_in(case)
+    if result is None:
+        return
+    analysis, _ = result
+    brute, elements = case.brute()
+    expected = brute.findings()
+    number = {element: vertex for vertex, element in elements.items()}
+    for f in analysis.findings:
+        key = (f.kind, f.category, number[f.source], number[f.leak], f.beside)
+        assert (f.pseudonymised, f.dismissed, len(f.witness) - 1) == expected[key]
+
+
+@given(fleets())
+def test_open_elements_are_those_of_all_robots_in_one_graph(case: Case) -> None:
+    result = found_in(case)
+    if result is None:
+        return
+    analysis, placed = result
+    likeness = placed.likeness
+    brute, elements = case.brute()
+    stands_for = {robot: first for first, robots in likeness.members.items() for robot in robots}
+    got = {q.element: (set(q.categories), q.distance, q.frontier) for q in analysis.open}
+    for vertex, expected in brute.open().items():
+        element = elements[vertex]
+        assert got[replace(element, robot=stands_for.get(element.robot, element.robot))] == expected
+    shown = FleetView.of(analysis, likeness).shown(analysis)
+    assert len(brute.open()) == sum(likeness.weight(question.element.robot) for question in shown.open)
+
+
+@given(fleets())
+def test_names_of_robots_change_nothing_but_names(case: Case) -> None:
+    moved = {old: old[0] + str(9 - int(old[1:])) for old in case.robots}  # the order is turned round
+    flows = [(_moved(source, moved), _moved(target, moved), never) for source, target, never in case.flows]
+    other = Case({moved[robot]: system for robot, system in case.robots.items()}, case.shared, flows)
+    ours, theirs = found_in(case), found_in(other)
+    assert (ours is None) == (theirs is None)
+    if ours is None or theirs is None:
+        return
+    views = [FleetView.of(analysis, placed.likeness) for analysis, placed in (ours, theirs)]
+    rows = [
+        {(p.id, p.count, p.dismissed, p.pseudonymised, p.across, len(p.robots)) for p in view.patterns}
+        for view in views
+    ]
+    assert rows[0] == rows[1]
+    listed = [{p.id: p.robots for p in view.patterns} for view in views]
+    assert {key: tuple(sorted(moved[r] for r in robots)) for key, robots in listed[0].items()} == listed[1]
+    assert ours[0].verdict == theirs[0].verdict
+
+
+def _moved(end: str, moved: dict[str, str]) -> str:
+    robots, colon, name = end.partition(":")
+    return f"{moved.get(robots, robots)}:{name}" if colon else end

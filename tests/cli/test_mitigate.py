@@ -1,0 +1,411 @@
+"""``rosprivacy mitigate`` as people call it: the paper's factory, limits, patches, what it says where nothing helps."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import subprocess
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+import pytest
+import yaml
+from jsonschema import Draft202012Validator
+
+import rosprivacy
+from rosprivacy.analysis.mitigation.limits import Weights
+from rosprivacy.ingest.policies.policy_xml import read_policy
+from tests.helpers.command import XI, Cli, Done, refused, run
+from tests.helpers.factory import BEFORE, FACTORY, RUN3
+from tests.helpers.paths import ROOT
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+SCHEMA = json.loads((ROOT / "docs" / "mitigation.schema.json").read_text("utf-8"))
+Draft202012Validator.check_schema(SCHEMA)
+
+
+def proposals(cli: Cli, *arguments: str | Path, cwd: Path | None = None) -> Any:
+    document = json.loads(cli("mitigate", *arguments, "--format", "json", cwd=cwd).stdout)
+    Draft202012Validator(SCHEMA).validate(document)
+    return document
+
+
+def step_of(step: dict[str, Any]) -> tuple[Any, ...]:
+    if step["kind"] == "review":
+        return ("review", step["channel"]["kind"], step["channel"]["name"])
+    if step["kind"] == "filter":
+        return ("filter", *((one["from"]["name"], one["to"]["name"]) for one in step["between"]))
+    return ("deny", *((line["role"], line["name"], line["line"]) for line in step["policy"]))
+
+
+def test_the_factory_gets_the_papers_two_changes(cli: Cli) -> None:
+    """The paper, II-C: a filter behind safety video, for the archive only, and a review of save footage."""
+    report = proposals(cli, BEFORE, "-l", RUN3)
+    (proposal,) = report["proposals"]
+    assert [step_of(step) for step in proposal["steps"]] == [
+        ("review", "service", "/save_footage"),
+        ("filter", ("/safety_video", "/archive_server")),
+    ]
+    review, filter_ = proposal["steps"]
+    assert review["categories"] == filter_["categories"] == ["Video"]
+    assert [line["line"] for line in filter_["policy"]] == [14]
+    assert [one["name"] for one in filter_["reaches"]] == ["/archive_server"]
+    assert [one["name"] for one in filter_["spares"]] == ["/emergency_stop"]
+    assert proposal["proven"]
+    assert proposal["cheapest"]
+    assert proposal["verdict_then"] == "no-leak-found"
+    assert [less["element"]["name"] for less in proposal["affected"]] == ["/archive_server"]
+
+
+def test_the_text_says_the_same_in_words(cli: Cli) -> None:
+    done = cli("mitigate", BEFORE, "-l", RUN3)
+    assert done.returncode == 0
+    lines = [line.strip() for line in done.stdout.splitlines()]
+    assert lines[0] == "Video: 2 changes remove 1 finding"
+    assert "Put a filter between /safety_video (topic) and /archive_server (node)" in lines
+    assert "A filter before /safety_video (topic) would also reach: /emergency_stop" in lines
+    assert "/save_footage: {never: [Video]}" in lines
+    assert any(line.startswith("Proven: analysed anew with this, and if the review finds none,") for line in lines)
+
+
+def test_storages_and_transfers_can_be_cut_off_or_stated(cli: Cli, tmp_path: Path) -> None:
+    """Rule S10: their ways go on from leaks, so the filter before the leak alone does not do."""
+    labels = tmp_path / "l.yaml"
+    labels.write_text(
+        "labels: 1\nnodes: {/safety_camera: {source: [Video]}, /archive_server: {leak: [Video]}}\n"
+        "elements:\n  tapes: {kind: storage, country: US, retention: P2Y}\nlimits: {Video: P30D}\n"
+        "flows: [{from: /archive_server, to: tapes}]\n",
+        "utf-8",
+    )
+    (proposal,) = proposals(cli, BEFORE, "-l", labels)["proposals"]
+    assert proposal["proven"]
+    assert len(proposal["removes"]) == 3
+    assert [(s["kind"], s["element"]["name"]) for s in proposal["statements"]] == [
+        ("storage-limitation", "tapes"),
+        ("third-country-transfer", "tapes"),
+    ]
+    text = cli("mitigate", BEFORE, "-l", labels).stdout
+    assert "   Without a change of flows, if it is so or can be arranged, label files can state:" in text.splitlines()
+    assert "      of tapes (storage): a retention within the limit for Video  (" in text
+
+
+def test_what_the_review_and_the_filter_of_the_paper_leave_is_nothing(cli: Cli) -> None:
+    """Run 5 is run 3 with both changes made."""
+    done = cli("mitigate", FACTORY / "after.policy.xml", "-l", FACTORY / "run5.labels.yaml")
+    assert (done.returncode, done.stdout.splitlines()[0]) == (0, "no-leak-found: no open finding, nothing to remove")
+
+
+def test_the_label_that_is_printed_closes_the_way(cli: Cli, tmp_path: Path) -> None:
+    report = proposals(cli, BEFORE, "-l", RUN3)
+    review, _ = report["proposals"][0]["steps"]
+    answer = tmp_path / "answer.yaml"
+    answer.write_text(yaml.safe_dump({"labels": 1, **review["label"]}))
+    (proposal,) = proposals(cli, BEFORE, "-l", RUN3, "-l", answer)["proposals"]
+    assert [step_of(step) for step in proposal["steps"]] == [("filter", ("/safety_video", "/archive_server"))]
+
+
+LIMITS = """\
+limits: 1
+time_critical: [/emergency_stop]
+"""
+
+
+def limits(folder: Path, text: str) -> Path:
+    file = folder / "limits.yaml"
+    file.write_text(text)
+    return file
+
+
+def test_a_time_critical_node_is_named_and_spared(cli: Cli, tmp_path: Path) -> None:
+    done = cli("mitigate", BEFORE, "-l", RUN3, "--limits", limits(tmp_path, LIMITS), "--by", "filter")
+    lines = [line.strip() for line in done.stdout.splitlines()]
+    assert "A filter before /safety_video (topic) would also reach: /emergency_stop (time-critical)" in lines
+    assert "nothing on the way to /emergency_stop is touched: time-critical" in lines
+    assert "Put a filter between /save_footage (service request) and /archive_server (node)" in lines
+
+
+@pytest.mark.parametrize(
+    ("text", "steps"),
+    [
+        # weights turn it: a review that is dear, a node that is not
+        ("weights: {review: 100, filter: 2, node: 1}", [("filter", ("/safety_camera", "/safety_video"))]),
+        # never here
+        (
+            "places: [{from: /safety_video, to: /archive_server, never: [filter]}]\ntime_critical: [/emergency_stop]",
+            None,
+        ),
+        (
+            "places: [{at: /archive_server, never: all}, {at: /safety_video, never: filter}]",
+            None,
+        ),
+        ("places: [{at: /save_footage, never: all}]", [("filter", ("/safety_camera", "/safety_video"))]),
+        ("places: [{at: /save_footage, factor: 50}]", [("filter", ("/safety_camera", "/safety_video"))]),
+        ("places: [{at: '/save*', never: [review]}, {at: /safety_camera, never: [filter]}]\nweights: {deny: 1000}", 2),
+    ],
+)
+def test_limits_decide_what_is_proposed(cli: Cli, tmp_path: Path, text: str, steps: Any) -> None:
+    file = limits(tmp_path, f"limits: 1\n{text}\n")
+    done = cli("mitigate", BEFORE, "-l", RUN3, "--limits", file, "--by", "review", "--by", "filter", "-f", "json")
+    (proposal,) = json.loads(done.stdout)["proposals"]
+    if steps is None:  # nothing may be changed on a way: it says which
+        assert done.returncode == 1
+        assert proposal["steps"] == []
+        (kept,) = proposal["keeps"]
+        assert (kept["reason"], kept["way"][0]["name"], kept["way"][-1]["name"]) == (
+            "not-allowed", "/safety_camera", "/archive_server",
+        )  # fmt: skip
+    elif isinstance(steps, int):
+        assert len(proposal["steps"]) == steps
+        assert proposal["proven"]
+    else:
+        assert [step_of(step) for step in proposal["steps"]] == steps
+        assert (done.returncode, proposal["proven"]) == (0, True)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("limits: 2", "1: limits format '2'"),
+        ("time_critical: []", "1: no 'limits: 1'"),
+        ("[]", "1: a limits file is a map, not a list"),
+        ("limits: 1\ntime_critical: [/emergency_stp]", "2: '/emergency_stp' matches no element"),
+        ("limits: 1\ntime_critical: [/safety_video]", "2: '/safety_video' is a topic"),
+        ("limits: 1\nweights: {filter: 0}", "2: filter is '0'"),
+        ("limits: 1\nweights: {filter: yes}", "2: filter is 'yes'"),
+        ("limits: 1\nweights: {node: 99999999999999999999}", "2: node is '99999999999999999999'"),
+        ("limits: 1\nweights: {fliter: 3}", "2: unknown key 'fliter'; did you mean 'filter'?"),
+        ("limits: 1\nplaces: [{at: /a, from: /b, never: all}]", "2: a place needs at, or from and to"),
+        ("limits: 1\nplaces: [{at: /new_pose, never: [cut]}]", "2: 'cut' is no kind of change"),
+        ("limits: 1\nplaces: [{at: /new_pose}]", "2: a place without never or factor says nothing"),
+        ("limits: 1\nplaces: [{from: /new_pose, to: /safety_camera, never: all}]", "2: no flow goes from '/new_pose'"),
+        ("limits: 1\nplaces: [/a]", "2: a place is a map, not a text"),
+        ("limits: 1\nplaces: /a", "2: places takes a list, not a text"),
+        ("limits: 1\ntime_critical: [3]", "2: a number where an element is named"),
+    ],
+)
+def test_bad_limits_are_refused_with_their_line(cli: Cli, tmp_path: Path, text: str, said: str) -> None:
+    file = limits(tmp_path, text)
+    lines = refused(cli("mitigate", BEFORE, "-l", RUN3, "--limits", file))
+    assert any(line.startswith(f"{file}:{said}") for line in lines), lines
+
+
+def test_all_problems_of_a_limits_file_are_said_at_once(cli: Cli, tmp_path: Path) -> None:
+    file = limits(tmp_path, "limits: 2\nfoo: 1\ntime_critical: [/x]\nplaces: [{at: /y, never: all}]\n")
+    assert len(refused(cli("mitigate", BEFORE, "-l", RUN3, "--limits", file))) == 4
+
+
+# ---------------------------------------------------------------- DENY and patches
+
+
+PATCH = shutil.which("patch")
+
+
+def patched(folder: Path, diff: Path) -> None:
+    """Apply a unified diff as people do."""
+    if PATCH is None:
+        pytest.skip("NO patch PROGRAM: whether patches apply was not tested")
+    command = [PATCH, "-p1", "--batch", "--binary"]
+    applied = subprocess.run(command, cwd=folder, input=diff.read_bytes(), capture_output=True, check=False)
+    assert applied.returncode == 0, (applied.stdout, applied.stderr, diff.read_text("utf-8"))
+
+
+@pytest.mark.parametrize("view", ["declared", "enforced"])
+def test_a_patch_applies_and_removes_the_finding(cli: Cli, tmp_path: Path, view: str) -> None:
+    for file in FACTORY.iterdir():
+        shutil.copy(file, tmp_path / file.name)
+    arguments = ("before.policy.xml", "-l", "run3.labels.yaml", "--view", view)
+    assert run("analyze", *arguments, cwd=tmp_path).returncode == 1
+    done = cli("mitigate", *arguments, "--by", "deny", "--patch", "fix.diff", cwd=tmp_path)
+    assert done.returncode == 0
+    patched(tmp_path, tmp_path / "fix.diff")
+    assert run("analyze", *arguments, cwd=tmp_path).returncode == 0
+
+
+def test_who_can_no_longer_read_in_the_enclave_is_named(cli: Cli, tmp_path: Path) -> None:
+    """Rule S5: a DENY for the archive is one for the emergency stop, which stands in the same enclave."""
+    file = limits(tmp_path, "limits: 1\nplaces: [{at: /safety_camera, never: all}]\n")
+    (proposal,) = proposals(cli, BEFORE, "-l", RUN3, "--by", "deny", "--limits", file)["proposals"]
+    assert ("deny", ("subscribe", "/safety_video", 14)) in [step_of(step) for step in proposal["steps"]]
+    cut_off = {
+        less["element"]["name"] for less in proposal["affected"] if {"name": "/safety_video"}.items() & less.items() or
+        any(one["name"] == "/safety_video" for one in less["unread"])
+    }  # fmt: skip
+    assert cut_off == {"/archive_server", "/emergency_stop"}
+
+
+def policy(profiles: str, *, enclave: str = "/e") -> str:
+    body = f"<enclave path='{enclave}'><profiles>\n{profiles}\n</profiles></enclave>"
+    return f"<policy version='0.2.0' {XI}><enclaves>{body}</enclaves></policy>"
+
+
+CAMERA = "<profile ns='/' node='camera'>\n<topics publish='ALLOW'><topic>video</topic></topics>\n</profile>"
+
+
+def included(folder: Path, inner: str, profiles: str) -> str:
+    (folder / "inner.xml").write_text(inner)
+    return profiles
+
+
+SHAPES: dict[str, Callable[[Path], str]] = {
+    "one name to a group": lambda _: (
+        "<profile ns='/' node='cloud'><topics subscribe='ALLOW'><topic>video</topic></topics></profile>"
+    ),
+    "all on one line": lambda _: (
+        "<profile ns='/' node='cloud'><topics subscribe='ALLOW'><topic>pose</topic>"
+        "<topic>video</topic></topics></profile>"
+    ),
+    "lines of their own": lambda _: (
+        "  <profile ns='/' node='cloud'>\n    <topics subscribe='ALLOW'>\n      <topic>pose</topic>\n"
+        "      <topic>video</topic>\n    </topics>\n  </profile>"
+    ),
+    "two roles in a group": lambda _: (
+        "  <profile ns='/' node='cloud'>\n    <topics publish='ALLOW' subscribe='ALLOW'>\n"
+        "      <topic>video</topic>\n    </topics>\n  </profile>"
+    ),
+    "a comment between": lambda _: (
+        "<profile ns='/' node='cloud'><!-- > <topic>video</topic> -->\n<topics subscribe='ALLOW'>\n"
+        "<!-- why --><topic>video</topic> <!-- here -->\n<topic>pose</topic></topics></profile>"
+    ),
+    "names with characters that XML escapes": lambda _: (
+        "<profile ns='/' node='cloud'><topics subscribe='ALLOW'><topic>pose&amp;&lt;</topic><topic>video</topic>"
+        "</topics></profile>"
+    ),
+    "a line that is included": lambda folder: included(
+        folder,
+        "<profile>\n<topics subscribe='ALLOW'>\n<topic>/video</topic>\n<topic>/pose</topic>\n</topics>\n</profile>",
+        "<profile ns='/' node='cloud'>\n<xi:include href='inner.xml' xpointer='xpointer(/profile/*)'/>\n</profile>\n"
+        "<profile ns='/' node='other'>\n<xi:include href='inner.xml' xpointer='xpointer(/profile/*)'/>\n</profile>",
+    ),
+    "a profile that is included": lambda folder: included(
+        folder,
+        "<profiles>\n<profile ns='/' node='cloud'>\n<topics subscribe='ALLOW'>\n<topic>video</topic>\n</topics>\n"
+        "</profile>\n</profiles>",
+        "<xi:include href='inner.xml' xpointer='xpointer(/profiles/*)'/>",
+    ),
+    "Windows line ends": lambda _: (
+        "<profile ns='/' node='cloud'>\r\n  <topics subscribe='ALLOW'>\r\n    <topic>pose</topic>\r\n"
+        "    <topic>video</topic>\r\n  </topics>\r\n</profile>"
+    ),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("shape", SHAPES)
+def test_a_patch_fits_the_way_a_policy_is_written(tmp_path: Path, shape: str) -> None:
+    file, diff = tmp_path / "p.xml", tmp_path / "fix.diff"
+    file.write_bytes(policy(f"{CAMERA}\n{SHAPES[shape](tmp_path)}").encode())
+    labels = tmp_path / "l.yaml"
+    labels.write_text("labels: 1\nnodes: {/camera: {source: [Video]}, /cloud: {leak: [Video]}}\n")
+    limited = limits(tmp_path, "limits: 1\nplaces: [{at: /camera, never: all}]\n")
+    done = run("mitigate", "p.xml", "-l", "l.yaml", "--by", "deny", "--patch", diff, "--limits", limited, cwd=tmp_path)
+    assert done.returncode == 0, done.stdout
+    assert "no patch:" not in done.stdout, done.stdout
+    before = set(read_policy(str(file)).grants)
+    patched(tmp_path, diff)
+    after = read_policy(str(file)).grants
+    denied = {(grant.role, grant.name, grant.node) for grant in after if not grant.allow}
+    assert denied == {("subscribe", "/video", "/cloud")}
+    kept = {(g.role, g.name, g.node) for g in after if g.allow} | denied
+    assert kept == {(g.role, g.name, g.node) for g in before}
+    assert run("analyze", "p.xml", "-l", "l.yaml", cwd=tmp_path).returncode == 0
+
+
+def test_where_no_patch_can_be_made_it_says_so(cli: Cli, tmp_path: Path) -> None:
+    """A file that is not UTF-8; the proposal stands."""
+    text = policy(f"{CAMERA}\n<!-- é -->\n{SHAPES['one name to a group'](tmp_path)}")
+    (tmp_path / "p.xml").write_bytes(f"<?xml version='1.0' encoding='iso-8859-1'?>{text}".encode("iso-8859-1"))
+    (tmp_path / "l.yaml").write_text("labels: 1\nnodes: {/camera: {source: [Video]}, /cloud: {leak: [Video]}}\n")
+    report = proposals(cli, "p.xml", "-l", "l.yaml", "--by", "deny", cwd=tmp_path)
+    assert report["patch"] == ""
+    assert report["why_no_patch"].startswith("p.xml: ")
+    assert report["proposals"][0]["proven"]
+
+
+def test_labels_that_a_patch_leaves_without_an_element_are_named(cli: Cli, tmp_path: Path) -> None:
+    wildcard = "<profile ns='/' node='cloud'><topics subscribe='ALLOW'><topic>vid*</topic></topics></profile>"
+    (tmp_path / "p.xml").write_text(policy(f"{CAMERA}\n{wildcard}"))
+    (tmp_path / "l.yaml").write_text(
+        "labels: 1\nnodes: {/camera: {source: [Video]}, /cloud: {leak: [Video]}}\n"
+        "flows: [{from: '/vid*', to: /cloud, never: [Voice]}]\n"
+    )
+    limited = limits(tmp_path, "limits: 1\nplaces: [{at: /camera, never: all}]\n")
+    report = proposals(cli, "p.xml", "-l", "l.yaml", "--by", "deny", "--limits", limited, cwd=tmp_path)
+    (line,) = report["labels_without_element"]
+    assert line.startswith("l.yaml:3: no flow goes from '/vid*'")
+
+
+# ---------------------------------------------------------------- where nothing helps, and hostile input
+
+
+def test_a_source_that_is_a_leak_itself_needs_another_role(cli: Cli, tmp_path: Path) -> None:
+    (tmp_path / "p.xml").write_text(policy(CAMERA))
+    (tmp_path / "l.yaml").write_text("labels: 1\nnodes: {/camera: {source: [Video], leak: [Video]}}\n")
+    done = cli("mitigate", "p.xml", "-l", "l.yaml", cwd=tmp_path)
+    assert done.returncode == 1
+    assert "Stays: Video at /camera: it is source and leak, so there is no way to cut; only another role helps" in (
+        done.stdout
+    )
+
+
+def test_a_filter_is_not_proposed_where_a_wildcard_reads_past_it(cli: Cli, tmp_path: Path) -> None:
+    """A leak that may read everything would read what a filter before the topic reads; only at the leak it helps."""
+    logger = "<profile ns='/' node='logger'><topics subscribe='ALLOW'><topic>/*</topic></topics></profile>"
+    (tmp_path / "p.xml").write_text(policy(f"{CAMERA}\n{logger}"))
+    (tmp_path / "l.yaml").write_text("labels: 1\nnodes: {/camera: {source: [Video]}, /logger: {leak: [Video]}}\n")
+    arguments = ("p.xml", "-l", "l.yaml", "--by", "filter")
+    (proposal,) = proposals(cli, *arguments, cwd=tmp_path)["proposals"]
+    assert [step_of(step) for step in proposal["steps"]] == [("filter", ("/*", "/logger"))]
+    limited = limits(tmp_path, "limits: 1\nplaces: [{at: /logger, never: all}]\n")
+    done = cli("mitigate", *arguments, "--limits", limited, cwd=tmp_path)
+    assert done.returncode == 1
+    assert "no proposal for 1 finding: none could be proven by a new analysis" in done.stdout
+
+
+def test_a_hostile_name_is_quoted_in_the_label_and_harmless_in_the_text(cli: Cli, tmp_path: Path) -> None:
+    name = "vi: {x}\u202e#"
+    text = policy(CAMERA.replace("video", name) + SHAPES["one name to a group"](tmp_path).replace("video", name))
+    (tmp_path / "p.xml").write_text(text, "utf-8")
+    (tmp_path / "l.yaml").write_text("labels: 1\nnodes: {/camera: {source: [Video]}, /cloud: {leak: [Video]}}\n")
+    done = cli("mitigate", "p.xml", "-l", "l.yaml", cwd=tmp_path)
+    assert "\u202e" not in done.stdout
+    (line,) = [line for line in done.stdout.splitlines() if "never: [" in line]
+    assert yaml.safe_load(line) == {f"/{name}": {"never": ["Video"]}}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("form", ["text", "json"])
+def test_the_same_input_gives_the_same_bytes(form: str) -> None:  # S14
+    care = ROOT / "examples" / "care-home"
+    policy_, labels = care / "care-home.policy.xml", care / "care-home.labels.yaml"
+    answers = {run("mitigate", policy_, "-l", labels, "-f", form, PYTHONHASHSEED=seed).stdout for seed in "017"}
+    assert len(answers) == 1
+
+
+def test_the_readme_of_mitigation_shows_what_is_printed(cli: Cli) -> None:
+    page = (ROOT / "docs" / "mitigation.md").read_text("utf-8")
+    (shown,) = re.findall(r"```text\n(.*?)```", page, re.DOTALL)
+    (text,) = re.findall(r"```yaml\n(limits:.*?)```", page, re.DOTALL)
+    printed = cli("mitigate", BEFORE, "-l", RUN3, cwd=ROOT).stdout.splitlines()
+    assert all(line in printed for line in shown.splitlines())
+    assert yaml.safe_load(text)["weights"] == asdict(Weights())
+
+
+def test_several_kinds_get_a_proposal_each_and_one_together(cli: Cli) -> None:
+    care = ROOT / "examples" / "care-home"
+    report = proposals(cli, care / "care-home.policy.xml", "-l", care / "care-home.labels.yaml")
+    *single, together = report["proposals"]
+    found = rosprivacy.analyze([str(care / "care-home.policy.xml")], [str(care / "care-home.labels.yaml")]).analysis
+    names = sorted({finding.category for finding in found.findings if not finding.dismissed})
+    assert [proposal["categories"] for proposal in single] == [[name] for name in names]
+    assert together["categories"] == names
+    assert together["verdict_then"] != "leak"
+    assert all(proposal["proven"] for proposal in report["proposals"])
+
+
+def test_a_policy_is_needed(cli: Cli) -> None:
+    done: Done = cli("mitigate", "-l", RUN3)
+    assert done.returncode == 2

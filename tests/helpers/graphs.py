@@ -1,0 +1,67 @@
+"""What tests of the database share: an example as rows, and the whole graph as a value that can be compared."""
+
+from __future__ import annotations
+
+import json
+from contextlib import chdir
+from typing import TYPE_CHECKING, Any
+
+import rosprivacy
+from rosprivacy.fleets import run_fleet
+from rosprivacy.ingest.database.rows import robot_rows
+from rosprivacy.settings import Settings
+from tests.helpers.paths import ROOT
+
+if TYPE_CHECKING:
+    from neo4j import Driver
+
+    from rosprivacy.assembly import Result
+    from rosprivacy.ingest.database.rows import RobotRows
+
+FACTORY, CARE = "examples/factory", "examples/care-home"
+
+
+def factory(run: int) -> Result:
+    """One of the paper's five runs."""
+    policy = "before" if run < 4 else "after"
+    return analysed(f"{FACTORY}/{policy}.policy.xml", f"{FACTORY}/run{run}.labels.yaml")
+
+
+def care_home() -> Result:
+    return analysed(f"{CARE}/care-home.policy.xml", f"{CARE}/care-home.labels.yaml")
+
+
+def hospital() -> Result:
+    """The fleet of the examples."""
+    with chdir(ROOT):
+        return run_fleet("examples/fleet/fleet.yaml", Settings())
+
+
+def analysed(policy: str, labels: str) -> Result:
+    """Files are named as from the repository's folder, so that what is made of them is the same on every machine."""
+    with chdir(ROOT):
+        return rosprivacy.analyze([policy], [labels])
+
+
+def rows_of(robot: str, result: Result) -> RobotRows:
+    return robot_rows(robot, result.analysis, result.bound, result.vocabulary)
+
+
+def dump(driver: Driver, *, without: tuple[str, ...] = ()) -> tuple[set[str], list[str]]:
+    """Nodes and relationships as text; ``without`` some properties."""
+    nodes: dict[str, str] = {}
+    for record in driver.execute_query(
+        "MATCH (n) RETURN elementId(n) AS key, labels(n) AS l, properties(n) AS p"
+    ).records:
+        nodes[record["key"]] = text(sorted(record["l"]), record["p"], without)
+    query = "MATCH (a)-[r]->(b) RETURN elementId(a) AS a, elementId(b) AS b, type(r) AS t, properties(r) AS p"
+    relationships = [
+        f"{nodes[r['a']]} -{text(r['t'], r['p'], without)}-> {nodes[r['b']]}"
+        for r in driver.execute_query(query).records
+    ]
+    assert len(set(nodes.values())) == len(nodes)
+    return set(nodes.values()), sorted(relationships)
+
+
+def text(kind: Any, properties: dict[str, Any], without: tuple[str, ...]) -> str:
+    return json.dumps([kind, {key: value for key, value in sorted(properties.items()) if key not in without}])

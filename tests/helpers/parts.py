@@ -1,0 +1,161 @@
+"""Fleets in parts and in one graph, to be compared."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from rosprivacy.analysis.findings.findings import Options, analyse
+from rosprivacy.analysis.fleet.counts import counted
+from rosprivacy.analysis.fleet.patterns_of_pairs import Groups
+from rosprivacy.fleets import run_fleet
+from rosprivacy.ingest.fleet.alike_robots import alike
+from rosprivacy.settings import Settings
+from rosprivacy.spark.distributed import Question, analyse_in_parts
+from rosprivacy.spark.shown_robots import shown
+from rosprivacy.spark.workers import filled
+from tests.helpers.fleet_files import policy, write
+from tests.helpers.random_fleets import Case, found_in
+from tests.helpers.systems import HIERARCHY
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from pathlib import Path
+
+    from rosprivacy.assembly import Result
+    from rosprivacy.ingest.fleet.dds_domains import Member
+    from rosprivacy.ingest.fleet.fleet_file import Robot
+    from rosprivacy.spark.distributed import Found
+    from rosprivacy.spark.shown_robots import Shown
+    from rosprivacy.spark.units import Unit
+
+
+def given_members(members: dict[str, Member]) -> Callable[[Robot], Member]:
+    return lambda robot: members[robot.id]
+
+
+def question(case: Case) -> Question:
+    fleet = case.fleet()
+    members = {robot.id: case.member(robot) for robot in fleet.robots}
+    return Question(fleet, alike(fleet), "declared", partial(given_members, members), HIERARCHY)
+
+
+def rows(found: Found, told: Shown) -> Any:
+    """Verdict, patterns, deviants; and what each pattern shows."""
+    patterns = {
+        (p.id, p.count, p.robots, p.across, p.dismissed, p.pseudonymised, p.finding.source, p.finding.leak,
+         p.finding.pseudonymised, p.finding.dismissed)
+        for p in told.view.patterns
+    }  # fmt: skip
+    return found.verdict, patterns, set(found.deviants), found.emitted
+
+
+def same(case: Case, scatter: Callable[[Sequence[Unit]], Any]) -> None:
+    """The same verdict, patterns, deviants, counts, open elements, and sets at every element."""
+    result = found_in(case)
+    if result is None:
+        return
+    _, placed = result
+    groups = Groups(placed.likeness)
+    analysis = analyse(placed.graph, placed.bound, HIERARCHY, Options(choose=groups))
+    view = groups.view(analysis)
+    asked = question(case)
+    found = analyse_in_parts(asked, scatter)
+    told = shown(asked, found, "witness", 100)
+    expected = {
+        (p.id, p.count, p.robots, p.across, p.dismissed, p.pseudonymised, p.finding.source, p.finding.leak,
+         p.finding.pseudonymised, p.finding.dismissed)
+        for p in view.patterns
+    }  # fmt: skip
+    assert rows(found, told) == (analysis.verdict, expected, set(view.deviants), analysis.emitted)
+    assert found.counts == counted(placed.graph, analysis.spread, placed.likeness)
+    assert found.open == sum(placed.likeness.weight(q.element.robot) for q in analysis.open)
+    assert carried(found) == {e: bits for e, bits in everywhere(analysis.spread).items() if bits}
+    known = {carried.element: carried for carried in analysis.carried}
+    assert all(known[carried.element] == carried for carried in told.analysis.carried)
+
+
+def everywhere(spread: Any) -> dict[Any, int]:
+    return {element: spread.present(vertex) for vertex, element in enumerate(spread.graph.elements)}
+
+
+def carried(found: Found) -> dict[Any, int]:
+    """What is at each element of the parts and of the core."""
+    sets: dict[Any, int] = {}
+    for spread in [*found.parts.map(partial(filled, leaving=found.leaving)).collect(), found.core[1]]:
+        mine = spread is found.core[1]
+        border = set(found.border.elements)
+        for element, bits in everywhere(spread).items():
+            if bits and not element.robot.startswith("\0") and (mine or element not in border):
+                assert element not in sets
+                sets[element] = bits
+    return sets
+
+
+FLEET = """fleet: 1
+models: {eye: {policies: eye.xml, labels: eye.yaml}, wall: {policies: wall.xml, labels: wall.yaml}}
+robots:
+  odd: {model: eye, labels: odd.yaml}
+  hall_a: {model: eye, domain: hall}
+  hall_b: {policies: hall.xml, labels: hall.yaml, domain: hall}
+groups:
+  - {robots: 4, model: eye}
+  - {robots: 3, model: wall}
+  - {robots: 2, model: eye, id: 'dim_*', domain: yard}
+infrastructure:
+  base: {policies: wall.xml, labels: wall.yaml}
+  desk: {policies: wall.xml, labels: wall.yaml, domain: hall}
+elements:
+  bucket: {kind: storage, country: DE, retention: P30D}
+  cloud: {kind: external-system, country: US}
+flows:
+  - {from: "*:/uplink", to: bucket, never: [Voice]}
+  - {from: bucket, to: "base:/receiver"}
+  - {from: "base:/screen", to: cloud}
+  - {from: cloud, to: "wall_*:/receiver", only: [Video]}
+  - {from: "eye_*:/uplink", to: "*:/receiver"}
+  - {from: "eye_1:/uplink", to: "wall_*:/receiver", never: [Video]}
+  - {from: "odd:/uplink", to: "hall_b:/mirror"}
+"""
+
+
+@pytest.fixture
+def fleet_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
+    """Robots of all sorts: alike, with labels of their own, in domains, infrastructure in one; hubs with limits."""
+    monkeypatch.chdir(tmp_path)
+    write("eye.xml", policy("/camera>/image", "/uplink</image"))
+    write(
+        "eye.yaml",
+        "labels: 1\nnodes:\n  /camera: {source: [Video, Voice]}\n  /uplink: {sanitizer: {Voice: pseudonymise}}\n"
+        "channels: {/image: sensitive}\nlimits: {Video: P7D}\n",
+    )
+    write("odd.yaml", "labels: 1\nnodes: {/uplink: {leak: [Video]}}\n")
+    write("wall.xml", policy("/receiver>/picture", "/screen</picture"))
+    write(
+        "wall.yaml",
+        "labels: 1\nnodes:\n  /receiver: {derives: [{from: Video, to: FaceTemplate}]}\n"
+        "  /screen: {leak: [Biometric]}\n",
+    )
+    write("hall.xml", policy("/mirror>/map<im*"))
+    write("hall.yaml", "labels: 1\nnodes: {/mirror: {leak: [Video]}}\n")
+    write("f.yaml", FLEET)
+    return "f.yaml"
+
+
+PER_ROBOT = ("carries", "roles", "open", "outside")  # of the robots that are shown
+
+
+def documents(file: str, run: Callable[[str], Result]) -> None:
+    """The same document, but that its rows for robots are those of fewer robots."""
+    expected, got = run_fleet(file, Settings()).document(), run(file).document()
+    assert got["assumptions"].pop("engine") == "spark"
+    assert "open elements in the whole fleet: ways and distances are" in got["diagnostics"].pop()["message"]
+    for key in PER_ROBOT:
+        for row in got.pop(key):
+            known = [other for other in expected[key] if other["element"] == row["element"]] if "element" in row else []
+            assert row in expected[key] or key == "open", (key, row, known)
+        expected.pop(key)
+    assert got["assumptions"] == expected["assumptions"]
+    assert got == expected

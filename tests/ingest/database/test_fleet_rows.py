@@ -1,0 +1,205 @@
+"""Fleets in Neo4j: all robots are written, also those for which another one stood, and analysed there alike."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+import rosprivacy
+from rosprivacy.assembly import run_stored
+from rosprivacy.ingest.database import fleet_rows
+from rosprivacy.ingest.database.fleet_rows import FleetRows
+from rosprivacy.ingest.database.loading import load, unload
+from rosprivacy.private_neo4j import connection
+from rosprivacy.queries.library import find
+from rosprivacy.queries.run import run
+from rosprivacy.settings import Settings
+from tests.helpers.fleet_rows import VOCABULARY, rows
+from tests.helpers.graphs import dump
+from tests.helpers.paths import ROOT
+from tests.helpers.random_fleets import Case, fleets, found_in
+from tests.helpers.random_rows import VOCABULARY as SMALL
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from neo4j import Driver
+
+    from rosprivacy.ingest.database.rows import RobotRows
+    from rosprivacy.private_neo4j.connection import Connection
+
+FLEET = str((ROOT / "examples") / "fleet" / "fleet.yaml")
+
+
+@pytest.fixture
+def driver(neo4j_server: Connection) -> Iterator[Driver]:
+    with connection.open_driver(neo4j_server) as driver:
+        driver.execute_query("MATCH (n) DETACH DELETE n")
+        yield driver
+
+
+def test_each_robot_has_its_rows() -> None:
+    """40 robots, the base station, and the fleet for what is shared."""
+    found = {one.robot: one for one in rows(FLEET)}
+    assert len(found) == 42
+    assert {name for name, one in found.items() if one.properties.get("shared")} == {"base", "hospital"}
+    assert found["carrier_07"].properties["model"] == "carrier"
+    same = [_renamed(found[f"carrier_{n:02}"]) for n in (1, 2, 23)]
+    assert same[0] == same[1] == same[2]
+    assert {row["properties"]["name"] for row in found["carrier_07"].foreign} == {
+        "footage bucket", "fleet cloud", "/archive", "/episodes", "/review", "reviewer",
+        "/commander", "/goal", "/screen_driver", "screen",
+    }  # fmt: skip
+    assert all(one.properties["verdict"] == "leak" for name, one in found.items())
+
+
+def _renamed(one: RobotRows) -> Any:
+    text = json.dumps([one.elements, one.flows, one.roles, one.memberships, one.enclaves])
+    return text.replace(one.robot, "ROBOT")
+
+
+@pytest.mark.slow
+@pytest.mark.database
+def test_the_answer_from_the_database_is_that_of_the_file(driver: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT / "examples")
+    done = load(driver, rows("fleet/fleet.yaml"), VOCABULARY)
+    assert (done.written, done.unchanged) == (42, 0)
+    before = dump(driver, without=("digest", "version"))
+    expected = rosprivacy.analyze_fleet("fleet/fleet.yaml").document()
+    document = run_stored(driver, Settings()).document()
+    assert document["assumptions"].pop("database") == {"robots": 40}
+    for document_ in (document, expected):  # of every robot, and of one for all that are alike
+        for key in ("carries", "roles", "open", "subjects"):
+            document_.pop(key)
+    for key in ("unreached", "sanitizers", "derivations"):
+        every, shown = document.pop(key), expected.pop(key)
+        assert shown
+        assert [row for row in every if row in shown] == shown
+        assert len(every) > len(shown)
+    assert document["outside"] != expected["outside"]
+    assert [row for row in document.pop("outside") if row in expected["outside"]] == expected.pop("outside")
+    fleets = document.pop("fleet"), expected.pop("fleet")
+    assert document == expected
+    for key in ("robots", "models", "patterns", "deviants"):
+        assert fleets[0][key] == fleets[1][key], key
+    after = dump(driver, without=("digest", "version"))
+    assert [set(x) ^ set(y) for x, y in zip(after, before, strict=True)] == [set(), set()]
+
+
+@pytest.mark.slow
+@pytest.mark.database
+def test_the_same_load_again_writes_nothing(driver: Driver) -> None:
+    load(driver, rows(FLEET), VOCABULARY)
+    done = load(driver, rows(FLEET), VOCABULARY)
+    assert (done.written, done.unchanged) == (0, 42)
+
+
+@pytest.mark.slow
+@pytest.mark.database
+def test_a_changed_robot_is_written_anew_and_nothing_is_left_behind(driver: Driver, tmp_path: Path) -> None:
+    for file in ((ROOT / "examples") / "fleet").iterdir():
+        (tmp_path / file.name).write_bytes(file.read_bytes())
+    fleet = tmp_path / "fleet.yaml"
+    text = fleet.read_text("utf-8")
+    load(driver, rows(str(fleet)), VOCABULARY)
+    before = dump(driver, without=("digest", "version", "assumptions"))
+    fleet.write_text(text.replace('  - {from: "cleaner_*:/uploader", to: footage bucket}\n', ""), "utf-8")
+    assert load(driver, rows(str(fleet)), VOCABULARY).written
+    assert dump(driver, without=("digest", "version", "assumptions")) != before
+    fleet.write_text(text, "utf-8")
+    load(driver, rows(str(fleet)), VOCABULARY)
+    assert dump(driver, without=("digest", "version", "assumptions")) == before
+    assert len(unload(driver, [one.robot for one in rows(str(fleet))])) == 42
+    assert driver.execute_query("MATCH (n:Element|Finding|Enclave|Robot) RETURN count(n)").records[0][0] == 0
+
+
+@pytest.mark.slow
+@pytest.mark.database
+def test_the_questions_about_robots_leave_out_what_is_shared(driver: Driver) -> None:
+    load(driver, rows(FLEET), VOCABULARY)
+    found = run(driver, find("robots-that-differ").text, {}, limit=None).rows
+    assert [row[0] for row in found] == ["carrier_lent"]
+    patterns = run(driver, find("findings-by-pattern").text, {"category": "Video"}, limit=None).rows
+    assert [row[0] for row in patterns] == [24, 24]
+
+
+@pytest.mark.slow
+@pytest.mark.database
+def test_findings_across_robots_are_bounded_and_it_is_said(driver: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(fleet_rows, "MOST_ACROSS", 100)
+    made = rows(FLEET)
+    assert made.left_out == 468 - 40
+    load(driver, made, VOCABULARY)
+    query = "MATCH (f:Finding {source: '/navigator', leak: 'screen'}) RETURN f.robot, count(f) ORDER BY f.robot"
+    found = {record[0]: record[1] for record in driver.execute_query(query).records}
+    assert len(found) == 40
+    assert found["carrier_01"] == 1
+    assert found["guide_01"] == 2  # one to itself, one across
+    assert run_stored(driver, Settings()).fleet
+
+
+@pytest.mark.slow
+@pytest.mark.database
+def test_on_random_fleets(driver: Driver) -> None:
+    """Every finding, with its pattern, on every robot; and nothing differs from what was loaded."""
+    for case in random_fleets(12):
+        found = found_in(case)
+        assert found is not None
+        analysis, placed = found
+        driver.execute_query("MATCH (n) DETACH DELETE n")
+        load(driver, FleetRows(placed, analysis, SMALL, {}), SMALL)
+        before = dump_findings(driver)
+        assert {row[:6] for row in before} == expected_findings(case)
+        stored = run_stored_small(driver)
+        assert stored == {row[:6] for row in before}
+        assert dump_findings(driver) == before
+
+
+def random_fleets(count: int) -> list[Case]:
+    """The same each time."""
+    from hypothesis import Phase, given, settings
+
+    some: list[Case] = []
+
+    @settings(max_examples=20 * count, derandomize=True, database=None, phases=[Phase.generate], deadline=None)
+    @given(fleets())
+    def take(case: Case) -> None:
+        found = found_in(case)
+        if found is not None and found[0].findings and found[1].likeness.second:
+            some.append(case)
+
+    take()
+    assert len(some) >= count
+    return some[:count]
+
+
+def expected_findings(case: Case) -> set[tuple[Any, ...]]:
+    brute, elements = case.brute()
+    return {
+        (kind, category, elements[a].robot, elements[a].name, elements[b].robot, elements[b].name)
+        for kind, category, a, b, _ in brute.findings()
+    }
+
+
+def dump_findings(driver: Driver) -> set[tuple[Any, ...]]:
+    query = (
+        "MATCH (a)<-[:FROM]-(f:Finding)-[:TO]->(b) RETURN f.kind, f.category, a.robot, a.name, b.robot, b.name, "
+        "f.pattern, f.pseudonymised, f.dismissed, f.reason, COUNT { (f)-[:ACROSS]->() } AS steps"
+    )
+    found = [tuple(record) for record in driver.execute_query(query).records]
+    assert len(set(found)) == len(found)
+    return set(found)
+
+
+def run_stored_small(driver: Driver) -> set[tuple[Any, ...]]:
+    from rosprivacy.analysis.findings.findings import analyse
+    from rosprivacy.ingest.database.read_back import read_stored
+    from rosprivacy.ingest.database.write_back import write_back
+
+    stored = read_stored(driver, SMALL)
+    analysis = analyse(stored.graph, stored.bound, SMALL.hierarchy)
+    write_back(driver, stored, analysis, SMALL)
+    return {(f.kind, f.category, f.source.robot, f.source.name, f.leak.robot, f.leak.name) for f in analysis.findings}

@@ -1,0 +1,235 @@
+"""What is in the database is analysed as what is in files; what people add there in Cypher counts."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+import rosprivacy
+from rosprivacy.analysis.errors import DatabaseError, InputErrors
+from rosprivacy.analysis.findings.findings import analyse
+from rosprivacy.assembly import robot_of, run_stored
+from rosprivacy.ingest.database.loading import load
+from rosprivacy.ingest.database.read_back import read_stored
+from rosprivacy.ingest.database.rows import robot_rows
+from rosprivacy.ingest.database.write_back import write_back
+from rosprivacy.ontology.vocabulary import load as load_vocabulary
+from rosprivacy.private_neo4j import connection
+from rosprivacy.settings import Settings
+from tests.helpers.additions import ADD_STORAGE
+from tests.helpers.cases import CASES
+from tests.helpers.graphs import care_home, dump, factory, rows_of
+from tests.helpers.random_rows import VOCABULARY as SMALL
+from tests.helpers.random_rows import random_systems
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from neo4j import Driver
+
+    from rosprivacy.private_neo4j.connection import Connection
+
+pytestmark = pytest.mark.database
+VOCABULARY = load_vocabulary()
+
+
+@pytest.fixture
+def driver(neo4j_server: Connection) -> Iterator[Driver]:
+    with connection.open_driver(neo4j_server) as driver:
+        driver.execute_query("MATCH (n) DETACH DELETE n")
+        yield driver
+
+
+def ways(result: Any) -> set[tuple[str, ...]]:
+    return {(f.category, *(element.name for element in f.witness)) for f in result.analysis.findings}
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda path: str(path.name))
+def test_the_document_is_that_of_the_files(
+    driver: Driver, case: Path, examples: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(examples)
+    given = json.loads((case / "case.json").read_text("utf-8"))
+    result = rosprivacy.analyze(given["policies"], given["labels"], **given.get("options", {}))
+    load(driver, [robot_of("r", result)], VOCABULARY)
+    before = dump(driver, without=("digest", "version"))
+    document = run_stored(driver, Settings()).document()
+    assert document["assumptions"].pop("database") == {"robots": 1}
+    assert document == result.document()
+    assert dump(driver, without=("digest", "version")) == before
+
+
+def test_on_random_graphs_nothing_changes(driver: Driver) -> None:
+    """60 robots in one analysis find what each finds alone, and nothing differs from what was loaded."""
+    rows, expected = [], set()
+    for number, system in enumerate(random_systems(60)):
+        analysis, robot = system.analyse(), f"g{number:02}"
+        rows.append(robot_rows(robot, analysis, system.bound(), SMALL))
+        expected |= {
+            (robot, f.category, f.pseudonymised, f.dismissed, *(e.name for e in f.witness)) for f in analysis.findings
+        }
+    load(driver, rows, SMALL)
+    different = ("digest", "version", "stops")  # all kinds of data that robots bring in together stand in "stops"
+    before = dump(driver, without=different)
+    stored = read_stored(driver, SMALL)
+    analysis = analyse(stored.graph, stored.bound, SMALL.hierarchy)
+    assert expected == {
+        (f.source.robot, f.category, f.pseudonymised, f.dismissed, *(e.name for e in f.witness))
+        for f in analysis.findings
+    }
+    write_back(driver, stored, analysis, SMALL)
+    after = dump(driver, without=different)
+    assert [set(x) ^ set(y) for x, y in zip(after, before, strict=True)] == [set(), set()]
+    assert write_back(driver, read_stored(driver, SMALL), analysis, SMALL) == 0
+
+
+VIDEO = ("PersonImage", "PersonalData", "Video")  # with the broader ones
+
+
+class TestWhatPeopleAdd:
+    def test_a_storage_behind_a_node_is_found(self, driver: Driver) -> None:
+        """The example of docs/database.md; the recorder is no longer the leak, the bucket is."""
+        load(driver, [rows_of("care", care_home())], VOCABULARY)
+        driver.execute_query(ADD_STORAGE)
+        driver.execute_query("MATCH (:RosNode {name: '/recorder'})-[l:LEAKS]->() DELETE l")
+        result = run_stored(driver, Settings())
+        found = [f for f in result.analysis.findings if f.leak.kind == "storage"]
+        assert [[e.name for e in f.witness][-2:] for f in found] == [["/recorder", "footage bucket"]]
+        rows = driver.execute_query(
+            "MATCH (:RosNode {name: '/recorder'})-[f:FLOWS_TO]->(b:Element:VideoLeak:Video) "
+            "MATCH (x:Finding)-[:TO]->(b) RETURN b.kind, b.carries, f.carries, x.source"
+        ).records
+        assert [list(record) for record in rows] == [["storage", [*VIDEO], [*VIDEO], "/camera"]]
+        assert not driver.execute_query("MATCH (n:VideoLeak:RosNode) RETURN n").records
+
+    def test_a_storage_of_which_nothing_is_said_keeps_for_ever_and_nobody_knows_where(self, driver: Driver) -> None:
+        """Rules S10 and S11."""
+        load(driver, [rows_of("care", care_home())], VOCABULARY)
+        driver.execute_query(ADD_STORAGE.replace(", retention: 'P30D', country: 'DE'", ""))
+        result = run_stored(driver, Settings())
+        (kept,) = [f for f in result.analysis.findings if f.kind == "storage-limitation"]
+        assert (kept.leak.name, kept.reason) == ("footage bucket", "no retention is stated")
+        assert [q.element.name for q in result.analysis.open if q.missing] == ["footage bucket"]
+        rows = driver.execute_query("MATCH (f:Finding {kind: 'storage-limitation'})-[:TO]->(b) RETURN b.name, f.reason")
+        assert [list(record) for record in rows.records] == [["footage bucket", "no retention is stated"]]
+
+    def test_it_is_there_after_the_next_load_and_found_again(self, driver: Driver) -> None:
+        load(driver, [rows_of("care", care_home())], VOCABULARY)
+        driver.execute_query(ADD_STORAGE)
+        first = ways(run_stored(driver, Settings()))
+        assert load(driver, [rows_of("care", care_home())], VOCABULARY).written == 1
+        assert ways(run_stored(driver, Settings())) == first
+        assert any(way[-1] == "footage bucket" for way in first)
+
+    @pytest.mark.parametrize(
+        ("change", "gone"),
+        [
+            ("MATCH (:Element {name: '/recorder'})-[l:LEAKS]->() DELETE l", "/recorder"),
+            ("MATCH (:Element {name: '/camera/image'})-[f:FLOWS_TO]->({name: '/blur'}) DELETE f", "/recorder"),
+            ("MATCH ()-[f:FLOWS_TO]->({name: '/blur'}) SET f.never = ['Video']", "/recorder"),
+            ("MATCH ()-[s:SANITIZES]->() SET s.method = 'drop', s.stated = true", "/recorder"),
+            ("MATCH (n {name: '/audio'}), (c:DataCategory {name: 'Voice'}) CREATE (n)-[:HAS_NOT]->(c)", "/uplink"),
+            ("MATCH (n {name: '/audio'}), (c:DataCategory {name: 'Video'}) CREATE (n)-[:HAS_ONLY]->(c)", "/uplink"),
+        ],
+    )
+    def test_a_changed_label_or_flow_counts(self, driver: Driver, change: str, gone: str) -> None:
+        load(driver, [rows_of("care", care_home())], VOCABULARY)
+        before = ways(run_stored(driver, Settings()))
+        driver.execute_query(change)
+        after = ways(run_stored(driver, Settings()))
+        assert after < before
+        assert {way[-1] for way in before - after} == {gone}
+
+    def test_one_word_by_hand_outranks_the_file(self, driver: Driver) -> None:
+        """The file says that /display is a conduit for everything."""
+        load(driver, [rows_of("care", care_home())], VOCABULARY)
+        driver.execute_query(
+            "MATCH (n {name: '/navigator'}), (c:DataCategory {name: 'PersonTrack'}) CREATE (n)-[:LEAKS]->(c)"
+        )
+        assert ("PersonTrack", "/navigator") in {(way[0], way[-1]) for way in ways(run_stored(driver, Settings()))}
+
+    def test_two_robots_meet_at_a_storage(self, driver: Driver) -> None:
+        """Data that one writes and the other reads flows on, across robots (rule S9)."""
+        load(driver, [rows_of("care", care_home()), rows_of("factory", factory(5))], VOCABULARY)
+        assert not [f for f in run_stored(driver, Settings()).analysis.findings if f.leak.robot == "factory"]
+        driver.execute_query(
+            "MATCH (a:RosNode {robot: 'care', name: '/camera'}), "
+            "(b:RosNode {robot: 'factory', name: '/archive_server'}) "
+            "CREATE (a)-[:FLOWS_TO]->(:Storage {name: 'shared'})-[:FLOWS_TO]->(b)"
+        )
+        found = [f for f in run_stored(driver, Settings()).analysis.findings if f.leak.robot == "factory"]
+        assert [[(e.robot, e.name) for e in f.witness] for f in found] == [
+            [("care", "/camera"), ("", "shared"), ("factory", "/archive_server")]
+        ]
+        verdicts = driver.execute_query("MATCH (r:Robot) RETURN r.verdict ORDER BY r.name").records
+        assert [record[0] for record in verdicts] == ["leak", "leak"]
+
+    def test_the_answer_may_be_about_some_categories_but_all_are_written(self, driver: Driver) -> None:
+        load(driver, [rows_of("care", care_home())], VOCABULARY)
+        result = run_stored(driver, Settings(categories=("Voice",)))
+        assert {f.category for f in result.analysis.findings} == {"Voice"}
+        assert driver.execute_query("MATCH (f:Finding) RETURN count(f)").records[0][0] == 3
+
+
+class TestProblems:
+    @pytest.mark.parametrize(
+        ("damage", "message"),
+        [
+            ("CREATE (:Storage:Element)", "has no name; SET n.name"),
+            ("CREATE (:Element {name: 'x'})", "what is 'x'\\? its labels do not say its kind; give it one of"),
+            ("CREATE (:Element:Storage:Device {name: 'x'})", "what is 'x'\\?"),
+            ("CREATE (:Element:Storage {name: 'x'}), (:Element:Storage {name: 'x'})", "two elements storage 'x'"),
+            (
+                "MATCH (n {name: '/blur'}) CREATE (n)-[:LEAKS]->(:DataCategory {name: 'Nonsense', iri: 'x'})",
+                "unknown category 'Nonsense'",
+            ),
+            ("MATCH ()-[f:FLOWS_TO]->({name: '/blur'}) SET f.never = ['Nonsense']", "unknown category 'Nonsense'"),
+            ("MATCH ()-[s:SANITIZES]->() SET s.method = 'pray'", "SANITIZES of '/.*' cannot be understood: 'pray'"),
+            ("MATCH ()-[s:DERIVES]->() REMOVE s.of", "DERIVES of '/.*' cannot be understood: it does not say of what"),
+            ("MATCH ()-[s:LEAKS]->() SET s.tier = 'high'", "LEAKS of '/.*' cannot be understood"),
+            ("MATCH ()-[f:FLOWS_TO]->({name: '/blur'}) SET f.line = 'high'", "a flow cannot be understood"),
+            ("MATCH ()-[f:FLOWS_TO]->({name: '/blur'}) SET f.further = ['{']", "a flow cannot be understood"),
+            ("MATCH ()-[f:FLOWS_TO]->({name: '/blur'}) SET f.never = 7", "a flow cannot be understood"),
+            (
+                "CREATE (:Element:Storage {name: 'x', country: 'UK'})",
+                "storage 'x' cannot be understood: country 'UK' is no ISO 3166-1 code; did you mean GB\\?",
+            ),
+            ("CREATE (:Element:Storage {name: 'x', retention: 'long'})", "retention 'long' is no ISO 8601 duration"),
+            ("CREATE (:Element:Storage {name: 'x', limits: ['X: P1D']})", "limits names the unknown category 'X'"),
+            ("CREATE (:Element:Storage {name: 'x', backups: 'some'})", "backups 'some' is no ISO 8601 duration"),
+            ("CREATE (:Element:Storage {name: 'x', transfer: 'trust'})", "transfer 'trust' is none of adequacy, "),
+            ("CREATE (:Element:Storage {name: 'x', operator: 7})", "operator is no text"),
+            ("CREATE (:Robot {name: 'other', view: 'enforced'})", "in the views declared and enforced"),
+            ("MATCH (r:Robot) DELETE r", "there is no robot in it; load one"),
+            (
+                "MATCH (n {name: '/camera'}), (c:DataCategory {name: 'Video'}) CREATE (n)-[:SANITIZES {tier: 1}]->(c)",
+                "/camera is source for Video here and sanitizer|/camera is sanitizer .* for Video here and source",
+            ),
+        ],
+    )  # fmt: skip
+    def test_each_is_a_line_and_nothing_is_written(self, driver: Driver, damage: str, message: str) -> None:
+        load(driver, [rows_of("care", care_home())], VOCABULARY)
+        driver.execute_query(damage.replace("DELETE r", "DETACH DELETE r"))
+        before = driver.execute_query("MATCH (r:Robot) RETURN collect(r.version)").records[0][0]
+        with pytest.raises(InputErrors, match=message) as error:
+            run_stored(driver, Settings())
+        for line in str(error.value).splitlines():
+            assert line.startswith("the database:0: ") or ":" in line
+        assert driver.execute_query("MATCH (r:Robot) RETURN collect(r.version)").records[0][0] == before
+
+    def test_a_robot_that_is_loaded_meanwhile_is_not_written_over(self, driver: Driver) -> None:
+        load(driver, [rows_of("r", factory(2))], VOCABULARY)
+        stored = read_stored(driver, VOCABULARY)
+        analysis = analyse(stored.graph, stored.bound, VOCABULARY.hierarchy)
+        load(driver, [rows_of("r", factory(5))], VOCABULARY)
+        before = dump(driver)
+        with pytest.raises(DatabaseError, match="'r' was loaded meanwhile; analyse the database again"):
+            write_back(driver, stored, analysis, VOCABULARY)
+        assert dump(driver) == before
+
+    def test_an_empty_database(self, driver: Driver) -> None:
+        with pytest.raises(InputErrors, match="there is no robot in it; load one with rosprivacy load"):
+            run_stored(driver, Settings())

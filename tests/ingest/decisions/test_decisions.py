@@ -1,0 +1,370 @@
+"""Decisions (S10, S12): which holds for which finding, until when, what it does not hide, what it lacks."""
+
+from __future__ import annotations
+
+import json
+import os
+from typing import TYPE_CHECKING, Any
+
+import jsonschema
+import pytest
+
+from rosprivacy.analysis.decisions import Case, Choice, Decision, Decisions, State, missing
+from rosprivacy.analysis.errors import InputErrors
+from rosprivacy.analysis.model import Element, Place
+from rosprivacy.clock import today
+from rosprivacy.ingest.decisions.decisions_file import parse_decisions
+from rosprivacy.ontology.vocabulary import load
+from tests.helpers.command import XI, Cli, refused, run
+from tests.helpers.paths import ROOT
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+CARE: list[str | Path] = [
+    ROOT / "examples/care-home/care-home.policy.xml",
+    "-l",
+    ROOT / "examples/care-home/care-home.labels.yaml",
+]
+SIGNED = "reason: why, owner: who, legal_basis: ['6(1)(f)']"
+ID = "0123456789abcdef"
+
+
+# ---------------------------------------------------------------- which decision holds
+
+
+def case(category: str = "Video", source: str = "/camera", leak: str = "/cloud", **more: Any) -> Case:
+    facts = {"id": ID, "kind": "disclosure", "pseudonymised": False, **more}
+    return Case(category=category, source=Element("node", source, "r1"), leak=Element("node", leak), **facts)
+
+
+def decisions(*entries: str, day: str = "2026-11-20") -> Decisions:
+    text = "decisions: 1\nfindings:\n" + "".join(f"- {{{entry}, reason: why, owner: who}}\n" for entry in entries)
+    return parse_decisions("d.yaml", text, load(), day)
+
+
+@pytest.mark.parametrize(
+    ("entry", "about"),
+    [
+        (f"id: {ID}", True),
+        ("id: fedcba9876543210", False),
+        ("category: Video", True),
+        ("category: PersonalData", True),  # stands for the narrower ones
+        ("category: FaceImage", False),
+        ("source: /camera", True),
+        ("source: /cam", False),
+        ("source: '/cam*'", True),
+        ("leak: '/c[!l]*'", False),
+        ("leak: '/c[^a]*'", True),
+        ("leak: '*', robot: 'r?'", True),
+        ("leak: '*', robot: r2", False),
+        ("category: Video, kind: disclosure", True),
+        ("category: Video, kind: storage-limitation", False),
+        ("category: Video, pseudonymised: true", False),  # it arrives as it is
+        ("category: Video, pseudonymised: false", True),
+        (f"id: {ID}, category: Health", False),  # all that it says must hold
+    ],
+)
+def test_what_a_decision_is_about(entry: str, about: bool) -> None:  # noqa: FBT001 - a column of the table
+    assert decisions(f"{entry}, decision: accept").accepts(case()) == about
+
+
+@pytest.mark.parametrize(
+    ("entries", "choice"),
+    [
+        (["category: Video, decision: accept", f"id: {ID}, decision: mitigate"], Choice.MITIGATE),  # an id outranks
+        (["leak: '/cl*', decision: accept", "leak: /cloud, decision: avoid"], Choice.AVOID),  # a name a glob
+        (["leak: '/*', decision: accept", "leak: '/cl*', decision: avoid"], Choice.AVOID),  # the longer the shorter
+        (["category: PersonalData, decision: accept", "category: Video, decision: delegate"], Choice.DELEGATE),
+        (["source: /camera, decision: accept", "source: /camera, leak: /cloud, decision: avoid"], Choice.AVOID),
+        (["category: Video, decision: accept", "category: Video, pseudonymised: false, decision: avoid"], Choice.AVOID),
+        (["leak: /cloud, decision: accept", "source: /camera, decision: accept"], Choice.ACCEPT),  # they agree
+    ],
+)
+@pytest.mark.parametrize("order", [1, -1])
+def test_the_decision_that_spells_out_more_counts(entries: Sequence[str], choice: Choice, order: int) -> None:
+    found = decisions(*entries[::order]).on(case())
+    assert found is not None
+    assert found.choice is choice
+
+
+def test_a_decision_is_valid_to_the_end_of_its_last_day() -> None:
+    entry = f"id: {ID}, decision: accept, expires: 2026-11-20"
+    assert decisions(entry, day="2026-11-20").accepts(case())
+    assert not decisions(entry, day="2026-11-21").accepts(case())
+
+
+def test_an_expired_decision_about_a_finding_is_not_replaced_by_one_about_more() -> None:
+    """A person decided on this very finding for a time: now a person has to look again."""
+    entries = ("category: Video, decision: accept", f"id: {ID}, decision: accept, expires: 2026-01-01")
+    assert not decisions(*entries).accepts(case())
+    assert decisions(entries[0]).accepts(case())
+
+
+def test_decisions_of_one_rank_that_differ_accept_nothing() -> None:
+    found = decisions("leak: /cloud, decision: accept", "source: /camera, decision: mitigate")
+    assert found.on(case()) is None
+    assert not found.accepts(case())
+
+
+@pytest.mark.parametrize(
+    ("bases", "special", "lacks"),
+    [
+        (["6(1)(f)"], {}, []),
+        ([], {}, ["Article 6(1)"]),
+        (["6(1)(f)"], {"Video": "GDPR Art. 9(1)"}, ["Article 9(2)"]),
+        (["9(2)(h)"], {"Video": "GDPR Art. 9(1)"}, ["Article 6(1)"]),
+        (["6(1)(c)", "9(2)(b)"], {"Video": "GDPR Art. 9(1)"}, []),
+        ([], {"Video": "GDPR Art. 9(1)"}, ["Article 6(1)", "Article 9(2)"]),
+    ],
+)
+def test_an_acceptance_says_which_legal_basis_it_lacks(
+    bases: list[str], special: dict[str, str], lacks: list[str]
+) -> None:
+    class Finding:
+        category = "Video"
+
+    entry = Decision(Choice.ACCEPT, Place("d", 1), legal_basis=tuple(bases))
+    said = list(missing(entry, [Finding()], special))  # type: ignore[list-item]  # a finding's category is all it needs
+    assert len(said) == len(lacks)
+    assert all(what in line for what, line in zip(lacks, said, strict=True))
+
+
+# ---------------------------------------------------------------- the file
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "1: the file is empty"),
+        ("[]", "1: a decisions file is a map, not a list"),
+        ("findings: []", "1: no 'decisions: 1'"),
+        ("decisions: 2", "1: decisions format '2'"),
+        ("decisions: 1\nfinding: []", "2: unknown key 'finding'; did you mean 'findings'?"),
+        ("decisions: 1\nfindings: x", "2: findings takes a list, not a text"),
+        ("decisions: 1\nfindings: [x]", "2: a decision is a map, not a text"),
+        (f"decisions: 1\nfindings:\n- id: {ID}", "3: no decision"),
+        (f"decisions: 1\nfindings:\n- id: {ID}\n  decision: acept", "4: decision 'acept'; did you mean accept?"),
+        (f"decisions: 1\nfindings:\n- id: {ID}\n  decision: accept\n  owner: me", "3: an acceptance without reason"),
+        (f"decisions: 1\nfindings:\n- id: {ID}\n  decision: accept\n  reason: so", "3: an acceptance without owner"),
+        ("decisions: 1\nfindings:\n- id: 7ac\n  decision: avoid", "3: id '7ac'"),
+        ("decisions: 1\nfindings:\n- decision: avoid", "3: a decision about everything"),
+        ("decisions: 1\nfindings:\n- decision: avoid\n  kind: disclosure", "3: a decision about everything"),
+        ("decisions: 1\nfindings:\n- category: Vidio\n  decision: avoid", "3: unknown category 'Vidio'"),
+        (f"decisions: 1\nfindings:\n- id: {ID}\n  decision: avoid\n  expires: 2026-02-30", "5: expires '2026-02-30'"),
+        (f"decisions: 1\nfindings:\n- id: {ID}\n  decision: avoid\n  expires: tomorrow", "5: expires 'tomorrow'"),
+        (f"decisions: 1\nfindings:\n- id: {ID}\n  decision: avoid\n  expires:", "5: expires 'empty'"),
+        (f"decisions: 1\nfindings:\n- id: {ID}\n  decision: avoid\n  legal_basis: consent", "5: legal basis 'consent'"),
+        (
+            f"decisions: 1\nfindings:\n- id: {ID}\n  decision: avoid\n  legal_basis: [6(1)(z)]",
+            "5: legal basis '6(1)(z)'",
+        ),
+        (f"decisions: 1\nfindings:\n- id: {ID}\n  decision: avoid\n  pseudonymised: maybe", "5: pseudonymised takes"),
+        (f"decisions: 1\nfindings:\n- id: {ID}\n  decision: avoid\n  reason: ''", "5: reason takes text"),
+        (f"decisions: 1\nfindings:\n- id: {ID}\n  decision: avoid\n  owner: {{a: b}}", "5: owner takes text"),
+        (f"decisions: 1\nfindings:\n- id: {ID}\n  decision: avoid\n  resaon: x", "5: unknown key 'resaon'"),
+        (
+            f"decisions: 1\nfindings:\n- id: {ID}\n  decision: avoid\n- id: {ID}\n  decision: avoid",
+            "5: 0123456789abcdef",
+        ),
+        (f"decisions: 1\nfindings:\n- id: {ID}\n  decision: avoid\n  reason: {'x' * 10_001}", "5: reason of 10001"),
+    ],
+)
+def test_bad_decisions_are_refused_with_their_line(cli: Cli, tmp_path: Path, text: str, said: str) -> None:
+    file = tmp_path / "d.yaml"
+    file.write_text(text)
+    lines = refused(cli("analyze", *CARE, "--decisions", file))
+    assert any(line.startswith(f"{file}:{said}") for line in lines), lines
+
+
+def test_all_problems_of_a_decisions_file_are_said_at_once(cli: Cli, tmp_path: Path) -> None:
+    file = tmp_path / "d.yaml"
+    file.write_text("decisions: 1\nfindings:\n- id: x\n- category: Vidio\n  decision: y\n  expires: z\n")
+    assert len(refused(cli("analyze", *CARE, "--decisions", file))) == 5
+
+
+@pytest.mark.parametrize("id_", ["1234567812345678", "12345678e1234567", "0x12345678abcdef"])
+def test_an_id_that_yaml_takes_for_a_number_is_an_id(id_: str) -> None:
+    text = f"decisions: 1\nfindings:\n- id: {id_}\n  decision: avoid\n"
+    if id_[1] == "x":
+        with pytest.raises(InputErrors):
+            parse_decisions("d", text, load(), "")
+    else:
+        assert parse_decisions("d", text, load(), "").entries[0].id == id_
+
+
+def test_today_can_be_fixed(monkeypatch: pytest.MonkeyPatch, cli: Cli, tmp_path: Path) -> None:
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
+    assert today(os.environ) == "1970-01-01"
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "soon")
+    (tmp_path / "d.yaml").write_text("decisions: 1")
+    assert refused(cli("analyze", *CARE, "--decisions", tmp_path / "d.yaml"))[0].startswith("SOURCE_DATE_EPOCH:0: ")
+
+
+# ---------------------------------------------------------------- what a decision does to an answer
+
+
+def profile(node: str, **topics: str) -> str:
+    groups = "".join(f"<topics {role}='ALLOW'><topic>{name}</topic></topics>" for role, name in topics.items())
+    return f"<profile ns='/' node='{node}'>{groups}</profile>"
+
+
+@pytest.fixture
+def chain(tmp_path: Path) -> Path:
+    """A camera, a relay that leaks, and behind it a cloud that leaks."""
+    profiles = profile("camera", publish="a") + profile("relay", subscribe="a", publish="b")
+    profiles += profile("cloud", subscribe="b")
+    body = f"<enclave path='/e'><profiles>{profiles}</profiles></enclave>"
+    (tmp_path / "p.xml").write_text(f"<policy version='0.2.0' {XI}><enclaves>{body}</enclaves></policy>")
+    (tmp_path / "l.yaml").write_text(
+        "labels: 1\nnodes: {/camera: {source: [Video]}, /relay: {leak: [Video]}, /cloud: {leak: [Video]}}\n"
+        "channels: {/a: sensitive, /b: sensitive}\n"
+    )
+    return tmp_path
+
+
+def answer(cli: Cli, folder: Path, *entries: str, options: Sequence[str] = ()) -> dict[str, Any]:
+    text = "".join(f"- {{{entry}}}\n" for entry in entries)
+    (folder / "d.yaml").write_text(f"decisions: 1\nfindings:\n{text}")
+    arguments = ("p.xml", "-l", "l.yaml", "--decisions", "d.yaml", "-f", "json", *options)
+    done = cli("analyze", *arguments, cwd=folder)
+    assert done.stderr == ""
+    document: dict[str, Any] = json.loads(done.stdout)
+    schema = json.loads((ROOT / "docs" / "analysis.schema.json").read_text())
+    jsonschema.Draft202012Validator(schema).validate(document)
+    return document
+
+
+def findings(document: dict[str, Any]) -> dict[str, tuple[bool, bool]]:
+    """Leak -> dismissed, accepted."""
+    return {finding["leak"]["name"]: (finding["dismissed"], finding["accepted"]) for finding in document["findings"]}
+
+
+def test_an_accepted_leak_no_longer_hides_what_lies_behind_it(cli: Cli, chain: Path) -> None:
+    """Rule S10."""
+    before = answer(cli, chain)
+    assert findings(before) == {"/relay": (False, False), "/cloud": (True, False)}
+    after = answer(cli, chain, f"leak: /relay, decision: accept, {SIGNED}")
+    assert findings(after) == {"/relay": (False, True), "/cloud": (False, False)}
+    assert after["verdict"] == "leak"
+    both = answer(cli, chain, f"category: Video, decision: accept, {SIGNED}")
+    assert findings(both) == {"/relay": (False, True), "/cloud": (False, True)}
+    assert both["verdict"] == "no-leak-found"
+    for other in ("mitigate", "delegate", "avoid"):
+        document = answer(cli, chain, f"leak: /relay, decision: {other}")
+        assert findings(document) == findings(before)
+        assert document["verdict"] == "leak"
+
+
+def test_an_accepted_leak_is_said_to_be_accepted_not_absent(cli: Cli, chain: Path) -> None:
+    answer(cli, chain, f"category: Video, decision: accept, expires: 2099-01-01, {SIGNED}")
+    done = cli("analyze", "p.xml", "-l", "l.yaml", "--decisions", "d.yaml", cwd=chain)
+    first, second, *rest = done.stdout.splitlines()
+    assert first == (
+        "no-leak-found: no way to a leak but what is accepted, everything on the way is reviewed; 2 findings accepted"
+    )
+    assert second.startswith("2 findings, 2 of them accepted, ")
+    assert "   accepted by who until 2099-01-01, 6(1)(f)  (d.yaml:3)" in rest
+    assert "      why" in rest
+
+
+def test_an_expired_acceptance_counts_no_more_and_shows(cli: Cli, chain: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1800000000")  # 15 January 2027
+    document = answer(cli, chain, f"category: Video, decision: accept, expires: 2026-12-31, {SIGNED}")
+    assert document["verdict"] == "leak"
+    assert findings(document) == {"/relay": (False, False), "/cloud": (True, False)}
+    assert {finding["decision"]["state"] for finding in document["findings"]} == {"expired"}
+    assert document["assumptions"]["decisions"]["today"] == "2027-01-15"
+    (warning,) = document["diagnostics"]
+    assert (warning["file"], warning["line"], warning["severity"]) == ("d.yaml", 3, "warning")
+    assert "expired on 2026-12-31" in warning["message"]
+    done = cli("analyze", "p.xml", "-l", "l.yaml", "--decisions", "d.yaml", cwd=chain)
+    assert "   undecided: accepted until 2026-12-31, which has passed  (d.yaml:3)" in done.stdout.splitlines()
+
+
+def test_an_orphaned_decision_shows(cli: Cli, chain: Path) -> None:
+    entries = (f"id: {ID}, decision: mitigate", f"leak: /relay, decision: accept, {SIGNED}")
+    document = answer(cli, chain, *entries)
+    assert [entry["state"] for entry in document["decisions"]] == [State.ORPHANED, State.VALID]
+    (warning,) = document["diagnostics"]
+    assert (warning["line"], "orphaned" in warning["message"]) == (3, True)
+    some = answer(cli, chain, *entries, options=("-c", "Health"))  # of what was not asked for, nothing is said
+    assert [entry["state"] for entry in some["decisions"]] == [State.VALID, State.VALID]
+
+
+def test_decisions_that_contradict_each_other_about_a_finding_are_refused(cli: Cli, chain: Path) -> None:
+    (chain / "d.yaml").write_text(
+        f"decisions: 1\nfindings:\n- {{leak: /relay, decision: accept, {SIGNED}}}\n"
+        "- {source: /camera, decision: avoid}\n"
+    )
+    (line,) = refused(cli("analyze", "p.xml", "-l", "l.yaml", "--decisions", "d.yaml", cwd=chain))
+    assert line.startswith("d.yaml:4: to avoid ")
+    assert "contradicts line 3: to accept" in line
+
+
+def test_missing_legal_bases_are_flagged_where_a_category_is_special(cli: Cli, tmp_path: Path) -> None:
+    file = tmp_path / "d.yaml"
+    file.write_text(
+        "decisions: 1\nfindings:\n"
+        "- {category: FaceTemplate, decision: accept, reason: why, owner: who, legal_basis: [Art. 6(1)(a)]}\n"
+        "- {category: Voice, decision: accept, reason: why, owner: who}\n"
+    )
+    document = json.loads(cli("analyze", *CARE, "--decisions", file, "-f", "json").stdout)
+    said = {(d["line"], d["message"]) for d in document["diagnostics"] if d["file"] == str(file)}
+    assert {line for line, _ in said} == {3, 4}
+    assert any("no ground under Article 9(2), and FaceTemplate can fall under GDPR Art. 9(1)" in m for _, m in said)
+    assert any(line == 4 and "no legal basis under Article 6(1)" in m for line, m in said)
+    assert len(said) == 2
+
+
+def test_an_acceptance_of_pseudonymised_data_ends_when_it_arrives_as_it_is(cli: Cli, chain: Path) -> None:
+    """The id is the same, so only the form tells."""
+    labels = (chain / "l.yaml").read_text()
+    hidden = labels.replace("/relay: {leak: [Video]}", "/relay: {sanitizer: {Video: pseudonymise}}")
+    (chain / "l.yaml").write_text(hidden)
+    entry = f"category: Video, pseudonymised: true, decision: accept, {SIGNED}"
+    assert findings(answer(cli, chain, entry)) == {"/cloud": (False, True)}
+    (chain / "l.yaml").write_text(labels.replace("/relay: {leak: [Video]}", "/relay: conduit"))
+    document = answer(cli, chain, entry)
+    assert findings(document) == {"/cloud": (False, False)}
+    assert document["verdict"] == "leak"
+
+
+ACCEPT_RELAY = f"leak: /relay, decision: accept, {SIGNED}"
+MITIGATE_CLOUD = "leak: /cloud, decision: mitigate"
+ACCEPT_ALL = f"category: Video, decision: accept, {SIGNED}"
+
+
+@pytest.mark.parametrize(
+    ("entries", "codes"),
+    [  # off, undecided, todo, all, and today's: never, leak, undetermined
+        ([], (0, 1, 1, 1, 0, 1, 1)),
+        ([ACCEPT_RELAY], (0, 1, 1, 1, 0, 1, 1)),  # the cloud is open now
+        ([ACCEPT_RELAY, MITIGATE_CLOUD], (0, 0, 1, 1, 0, 1, 1)),
+        ([ACCEPT_ALL], (0, 0, 0, 1, 0, 0, 0)),
+        (["category: Video, decision: delegate"], (0, 0, 1, 1, 0, 1, 1)),
+        ([ACCEPT_ALL.replace("accept,", "accept, expires: 2020-01-01,")], (0, 1, 1, 1, 0, 1, 1)),
+    ],
+)
+def test_fail_on_looks_at_what_is_decided(cli: Cli, chain: Path, entries: list[str], codes: tuple[int, ...]) -> None:
+    answer(cli, chain, *entries)
+    levels = ("off", "undecided", "todo", "all", "never", "leak", "undetermined")
+    arguments = ("analyze", "p.xml", "-l", "l.yaml", "--decisions", "d.yaml", "--fail-on")
+    assert tuple(cli(*arguments, level, cwd=chain).returncode for level in levels) == codes
+
+
+def test_mitigate_leaves_accepted_findings_alone(cli: Cli, chain: Path) -> None:
+    answer(cli, chain, ACCEPT_RELAY)
+    done = cli("mitigate", "p.xml", "-l", "l.yaml", "--decisions", "d.yaml", "-f", "json", cwd=chain)
+    (proposal,) = json.loads(done.stdout)["proposals"]
+    (step,) = proposal["steps"]
+    assert [(one["from"]["name"], one["to"]["name"]) for one in step["between"]] == [("/b", "/cloud")]
+    assert proposal["proven"]
+
+
+def test_the_same_decisions_give_the_same_bytes_on_the_same_day(chain: Path) -> None:  # S14
+    (chain / "d.yaml").write_text(f"decisions: 1\nfindings:\n- {{{ACCEPT_RELAY}}}\n")
+    arguments = ("analyze", "p.xml", "-l", "l.yaml", "--decisions", "d.yaml", "-f", "json")
+    seeds = ("0", "1")
+    assert len({run(*arguments, cwd=chain, PYTHONHASHSEED=s, SOURCE_DATE_EPOCH="0").stdout for s in seeds}) == 1

@@ -1,0 +1,343 @@
+"""What lies outside ROS (rules S9, S10): how label files state it, what it means, what is refused."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+import rosprivacy
+from rosprivacy.analysis.errors import InputErrors
+from rosprivacy.ingest.labels.countries import countries
+
+if TYPE_CHECKING:
+    from rosprivacy.analysis.answer import Finding
+
+# /camera -> /image -> /recorder and /viewer, /microphone -> /sound -> /viewer; /trainer alone
+POLICY = """<policy version="0.2.0"><enclaves><enclave path="/e"><profiles>
+<profile ns="/" node="camera"><topics publish="ALLOW"><topic>image</topic></topics></profile>
+<profile ns="/" node="recorder"><topics subscribe="ALLOW"><topic>image</topic></topics></profile>
+<profile ns="/" node="viewer"><topics subscribe="ALLOW"><topic>image</topic><topic>sound</topic></topics></profile>
+<profile ns="/" node="microphone"><topics publish="ALLOW"><topic>sound</topic></topics></profile>
+<profile ns="/" node="trainer"><topics publish="ALLOW"><topic>/model</topic></topics></profile>
+</profiles></enclave></enclaves></policy>
+"""
+LABELS = """labels: 1
+nodes:
+  /camera: {source: [Video]}
+  /microphone: {source: [Voice]}
+  /recorder: conduit
+  /viewer: conduit
+  /trainer: conduit
+channels: {'*': sensitive}
+"""
+BUCKET = "elements: {bucket: {kind: storage, country: DE, %s}}\nflows: [{from: /recorder, to: bucket}]\n"
+CLOUD = "elements: {cloud: {kind: external-system, %s}}\nflows: [{from: /recorder, to: cloud}]\n"
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    (tmp_path / "p.xml").write_text(POLICY, "utf-8")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def analysed(more: str) -> Any:
+    Path("l.yaml").write_text(LABELS + more, "utf-8")
+    return rosprivacy.analyze(["p.xml"], ["l.yaml"])
+
+
+def found(more: str) -> list[str]:
+    return [told(finding) for finding in analysed(more).analysis.findings]
+
+
+def told(finding: Finding) -> str:
+    return f"{finding.kind} {finding.category} {' '.join(element.name for element in finding.witness)}"
+
+
+def reasons(more: str) -> list[str]:
+    return [f"{f.category}: {f.reason}" for f in analysed(more).analysis.findings if f.reason]
+
+
+def refused(more: str) -> list[str]:
+    with pytest.raises(InputErrors) as caught:
+        analysed(more)
+    lines = str(caught.value).splitlines()
+    assert all(re.fullmatch(r"l\.yaml:\d+: .+; .+", line) for line in lines)
+    return [line.removeprefix("l.yaml:") for line in lines]
+
+
+class TestTakingPart:
+    def test_what_goes_into_a_storage_comes_out_of_it(self) -> None:
+        more = (
+            "elements:\n  bucket: {kind: storage, country: DE, retention: P1D}\n"
+            "  cloud: {kind: external-system, country: FR}\n"
+            "flows: [{from: /recorder, to: bucket}, {from: bucket, to: /trainer}, {from: /trainer, to: cloud}]\n"
+        )
+        assert found(more) == ["disclosure Video /camera /image /recorder bucket /trainer cloud"]
+
+    def test_a_step_keeps_the_line_that_states_it(self) -> None:
+        finding = analysed(CLOUD % "country: DE").analysis.findings[0]
+        assert [str(grant.place) for grant in finding.steps[-1].grants] == ["l.yaml:10"]
+        assert finding.steps[-1].role == "flow"
+
+    @pytest.mark.parametrize(
+        ("kind", "leaks"),
+        [
+            ("external-system", True),
+            ("display", True),
+            ("person", True),
+            ("storage", False),
+            ("shared-memory", False),
+            ("side-channel", False),
+        ],
+    )
+    def test_what_is_taken_by_kind(self, kind: str, leaks: bool) -> None:  # noqa: FBT001
+        more = "elements: {it: {kind: %s, country: DE}}\nflows: [{from: /recorder, to: it}]\n" % kind  # noqa: UP031 - braces
+        result = analysed(more)
+        assert [f.leak.name for f in result.analysis.findings if f.kind == "disclosure"] == ["it"] * leaks
+        assert result.document()["assumptions"]["taken_by_kind"] == {kind: "leak" if leaks else "conduit"}
+        assert not result.analysis.open
+
+    def test_a_label_outranks_what_is_taken_by_kind(self) -> None:
+        more = (
+            "elements: {screen: {kind: display, conduit: [Video]}}\n"
+            "flows: [{from: /viewer, to: screen}, {from: /recorder, to: screen}]\n"
+        )
+        assert found(more) == ["disclosure Voice /microphone /sound /viewer screen"]
+
+    def test_a_device_is_a_source_by_itself(self) -> None:
+        more = (
+            "elements: {badge reader: {kind: device, source: [Location]}, screen: {kind: display}}\n"
+            "flows: [{from: badge reader, to: /trainer}, {from: /trainer, to: screen}]\n"
+        )
+        assert found(more) == ["disclosure Location badge reader /trainer screen"]
+
+    def test_a_side_channel_joins_nodes_in_both_directions(self) -> None:
+        more = (
+            "elements:\n  ring: {kind: shared-memory, between: [/recorder, /trainer]}\n  screen: {kind: display}\n"
+            "flows: [{from: /trainer, to: screen}]\n"
+        )
+        assert found(more) == ["disclosure Video /camera /image /recorder ring /trainer screen"]
+
+    def test_only_some_kinds_go_along_a_flow(self) -> None:
+        more = "elements: {screen: {kind: display}}\nflows: [{from: /viewer, to: screen, only: [Voice]}]\n"
+        assert found(more) == ["disclosure Voice /microphone /sound /viewer screen"]
+
+    def test_a_glob_names_nodes_and_where_there_are_none_channels(self) -> None:
+        more = "elements: {screen: {kind: display}}\nflows: [{from: '/*er', to: screen}]\n"
+        assert {way.split()[-2] for way in found(more)} == {"/recorder", "/viewer"}
+        more = "elements: {tap: {kind: display}}\nflows: [{from: '/imag?', to: tap}]\n"
+        assert found(more) == ["disclosure Video /camera /image tap"]
+
+    def test_the_same_element_in_two_files_is_one(self, folder: Path) -> None:
+        (folder / "a.yaml").write_text(LABELS + CLOUD % "country: DE", "utf-8")
+        (folder / "b.yaml").write_text("labels: 1\n" + CLOUD % "country: DE", "utf-8")
+        result = rosprivacy.analyze(["p.xml"], ["a.yaml", "b.yaml"])
+        assert [told(f) for f in result.analysis.findings] == ["disclosure Video /camera /image /recorder cloud"]
+        lines = [str(grant.place) for grant in result.analysis.findings[0].steps[-1].grants]
+        assert lines == ["a.yaml:10", "b.yaml:3"]
+
+
+class TestStorageLimitation:
+    """Rule S10; GDPR Article 5(1)(e)."""
+
+    @pytest.mark.parametrize(
+        ("facts", "limits", "reason"),
+        [
+            ("", "", "no retention is stated"),
+            ("retention: P30D", "", None),
+            ("retention: P30D", "{Video: P30D}", None),
+            ("retention: P31D", "{Video: P30D}", "kept for P31D, which can be longer than the P30D that Video"),
+            ("retention: P1M", "{Video: P30D}", "kept for P1M, which can be longer"),
+            ("retention: P1Y", "{Voice: P1D}", None),
+            ("retention: P31D", "{PersonalData: P30D}", "longer than the P30D that Video may be kept"),
+            ("retention: P31D", "{PersonalData: P30D, Video: P60D}", None),  # the nearest limit counts
+            ("retention: {Video: P1D}", "{Video: P30D}", None),
+            ("retention: {Voice: P1D}", "", "no retention is stated for Video"),
+            ("retention: {PersonalData: P1Y, Video: P1D}", "{Video: P30D}", None),
+            ("retention: {PersonalData: P1D, Video: P1Y}", "{Video: P30D}", "kept for P1Y"),
+            ("retention: P30D, backups: true", "", "it has backups, and nothing says for how long"),
+            ("retention: P30D, backups: false", "{Video: P30D}", None),
+            ("retention: P20D, backups: P10D", "{Video: P30D}", None),
+            ("retention: P20D, backups: P11D", "{Video: P30D}", "kept for P20D and in backups P11D more, which can"),
+        ],
+    )
+    def test_how_long_it_is_kept(self, facts: str, limits: str, reason: str | None) -> None:
+        (why, *more) = [*reasons(BUCKET % facts + f"limits: {limits}\n"), None]
+        assert not more[:-1]
+        assert (why is None) == (reason is None)
+        assert reason is None or reason in str(why)
+
+    def test_what_may_be_a_narrower_kind_is_held_against_its_limit(self) -> None:
+        more = BUCKET % "retention: P1Y" + "limits: {FaceTemplate: P1D}\n"
+        assert reasons(more) == []  # of Video, no face template is made
+        more = more.replace("elements: {", "elements: {reader: {kind: device, source: [Biometric]}, ")
+        more = more.replace("flows: [", "flows: [{from: reader, to: bucket}, ")
+        assert reasons(more) == [
+            "Biometric: kept for P1Y, which can be longer than the P1D that FaceTemplate may be kept"
+        ]
+
+    def test_pseudonymised_data_counts(self) -> None:
+        result = analysed((BUCKET % "").replace("elements:", "elements:", 1))
+        assert [f.pseudonymised for f in result.analysis.findings] == [False]
+        text = Path("l.yaml").read_text("utf-8").replace("/recorder: conduit", "/recorder: {sanitizer: [Video]}")
+        Path("l.yaml").write_text(text, "utf-8")
+        result = rosprivacy.analyze(["p.xml"], ["l.yaml"])
+        assert [(f.kind, f.pseudonymised) for f in result.analysis.findings] == [("storage-limitation", True)]
+
+    def test_what_is_not_held_against_a_limit_is_said(self) -> None:
+        (row,) = analysed(BUCKET % "retention: P30D").document()["outside"]
+        assert row["without_limit"] == ["Video"]
+
+    def test_it_is_found_behind_a_leak_too(self) -> None:
+        """A leak on the way cures no retention, so the finding is not dismissed."""
+        more = (
+            "elements: {cloud: {kind: external-system, country: DE}, bucket: {kind: storage, country: DE}}\n"
+            "flows: [{from: /recorder, to: cloud}, {from: cloud, to: bucket}]\n"
+        )
+        findings = analysed(more).analysis.findings
+        assert [(f.kind, f.leak.name, f.dismissed) for f in findings] == [
+            ("disclosure", "cloud", False),
+            ("storage-limitation", "bucket", False),
+        ]
+
+    def test_only_a_storage_keeps(self) -> None:
+        (line,) = refused(CLOUD % "retention: P30D")
+        assert line.startswith("9: unknown key 'retention'")
+
+
+class TestThirdCountries:
+    """Rule S10; GDPR Articles 44 to 49."""
+
+    @pytest.mark.parametrize(
+        ("facts", "reason"),
+        [
+            ("country: DE", None),
+            ("country: NO", None),  # which YAML takes for 'no'
+            ("country: 'NO'", None),
+            ("country: GP", None),  # a part of France
+            ("country: JP", None),
+            ("country: CN", "in CN, for which no adequacy decision is known; no basis for the transfer is stated"),
+            ("country: US", "in US, whose adequacy decision covers participants of the EU-US Data Privacy Framework"),
+            ("country: CN, transfer: standard-clauses", None),
+            ("country: CN, transfer: none", "no basis for the transfer is stated"),
+            ("country: CN, transfer: adequacy", "the basis stated is adequacy, and no such decision is known"),
+            ("country: US, transfer: adequacy", None),
+        ],
+    )
+    def test_where_it_lies(self, facts: str, reason: str | None) -> None:
+        (why, *more) = [*reasons(CLOUD % facts), None]
+        assert not more[:-1]
+        assert (why is None) == (reason is None)
+        assert reason is None or reason in str(why)
+
+    @pytest.mark.parametrize("text", [CLOUD, BUCKET.replace(", country: DE", "")])
+    def test_where_nobody_says_it_is_open(self, text: str) -> None:
+        result = analysed(text % "operator: x")
+        assert [(q.element.name, q.missing) for q in result.analysis.open] == [
+            (result.analysis.open[0].element.name, ("country",))
+        ]
+        assert not analysed(text % "transfer: derogation").analysis.open
+
+    def test_without_a_finding_the_verdict_is_undetermined(self) -> None:
+        text = (BUCKET % "retention: P1D").replace("country: DE, ", "")
+        assert analysed(text).analysis.verdict == "undetermined"
+
+    def test_the_date_of_the_list_is_assumed(self) -> None:
+        assumed = analysed(CLOUD % "country: US").document()["assumptions"]
+        assert assumed["countries_as_of"] == countries().as_of
+        assert "countries_as_of" not in analysed(CLOUD % "operator: x").document()["assumptions"]
+
+    def test_the_list_has_every_code_once(self) -> None:
+        areas = countries().areas
+        assert len(areas) == 249
+        assert sum(area == "eea" for area in areas.values()) == 30 + 7  # the EEA, and parts of its members
+        assert not set(countries().partly) - set(areas)
+
+    @pytest.mark.skipif(not Path("/usr/share/zoneinfo/iso3166.tab").exists(), reason="no list to compare with")
+    def test_the_codes_are_those_of_the_time_zone_database(self) -> None:
+        lines = Path("/usr/share/zoneinfo/iso3166.tab").read_text("utf-8").splitlines()
+        assert set(countries().areas) == {line.split("\t")[0] for line in lines if not line.startswith("#")}
+
+
+class TestRefusals:
+    @pytest.mark.parametrize(
+        ("elements", "problem"),
+        [
+            ("bucket: {}", "9: element 'bucket' has no kind; write {kind: …}, one of device, "),
+            ("bucket: storage", "9: element 'bucket' has no kind"),
+            ("bucket: {kind: database}", "9: element 'bucket' of kind 'database'; write"),
+            ("bucket: {kind: storage, retention: 30 days}", "9: '30 days' is no ISO 8601 duration; write"),
+            ("bucket: {kind: storage, retention: 30}", "9: '30' is no ISO 8601 duration"),
+            ("bucket: {kind: storage, retention: }", "9: nothing is no ISO 8601 duration"),
+            ("bucket: {kind: storage, retention: P1.5M}", "9: 'P1.5M' is a part of a month"),
+            ("bucket: {kind: storage, retention: {Vide: P1D}}", "9: unknown category 'Vide'; did you mean"),
+            ("bucket: {kind: storage, retention: {}}", "9: retention names no category"),
+            ("bucket: {kind: storage, backups: maybe}", "9: 'maybe' is no ISO 8601 duration; write"),
+            ("bucket: {kind: storage, encrypted: maybe}", "9: encrypted: 'maybe'; write true or false"),
+            ("bucket: {kind: storage, country: UK}", "9: 'UK' is no ISO 3166-1 country code; did you mean GB?"),
+            ("bucket: {kind: storage, country: de}", "9: 'de' is no ISO 3166-1 country code; did you mean DE?"),
+            ("bucket: {kind: storage, country: EU}", "9: 'EU' is no ISO 3166-1 country code; did you mean the member"),
+            ("bucket: {kind: storage, country: XX}", "9: 'XX' is no ISO 3166-1 country code; write the two letters"),
+            ("bucket: {kind: storage, country: []}", "9: a list is no ISO 3166-1 country code"),
+            ("bucket: {kind: storage, recipient: friend}", "9: recipient: 'friend'; one of controller, "),
+            ("bucket: {kind: storage, transfer: trust}", "9: transfer: 'trust'; one of adequacy, "),
+            ("bucket: {kind: storage, operator: }", "9: operator: nothing; write its name"),
+            ("bucket: {kind: storage, retentoin: P1D}", "9: unknown key 'retentoin'; did you mean 'retention'?"),
+            ("bucket: {kind: storage, between: [/a, /b]}", "9: unknown key 'between'"),
+            ("ring: {kind: shared-memory, between: [/recorder]}", "9: between names at least two nodes"),
+            ("ring: {kind: shared-memory, between: [/recorder, /nobody]}", "9: a flow names '/nobody', which is not"),
+            ("badge: {kind: device}", "9: device 'badge' does nothing; say what comes from it"),
+            ("/bucket: {kind: storage}", "9: '/bucket' cannot name an element outside ROS; a plain name"),
+            ("'a:b': {kind: storage}", "9: 'a:b' cannot name an element outside ROS"),
+            ("bucket: {kind: storage, source: [Vide]}", "9: unknown category 'Vide'"),
+            ("bucket: {kind: storage, source: [Video], conduit: [Video]}", "9: bucket is source for Video here and"),
+        ],
+    )  # fmt: skip
+    def test_an_element(self, elements: str, problem: str) -> None:
+        lines = refused(f"elements: {{{elements}}}\n")
+        assert lines[0].startswith(problem)
+        assert len(lines) == 1
+
+    @pytest.mark.parametrize(
+        ("flow", "problem"),
+        [
+            ("{from: /recorder, to: buket}", "10: a flow names 'buket', which is not there; did you mean bucket?"),
+            (
+                "{from: /recordr, to: bucket}",
+                "10: a flow names '/recordr', which is not there; did you mean /recorder",
+            ),
+            ("{from: '/x*', to: bucket}", "10: a flow names '/x*', which is not there; see the names with"),
+            ("{from: bucket}", "10: a flow needs from and to"),
+            ("{from: /recorder, to: /trainer}", "10: a flow between nodes and channels needs only or never"),
+            ("{from: /recorder, to: bucket, only: [Vide]}", "10: unknown category 'Vide'"),
+            ("{from: 3, to: bucket}", "10: '3' is not an absolute name; begin it with /"),
+        ],
+    )
+    def test_a_flow(self, flow: str, problem: str) -> None:
+        lines = refused(f"elements: {{bucket: {{kind: storage}}}}\nflows: [{flow}]\n")
+        assert [line[: len(problem)] for line in lines] == [problem]
+
+    @pytest.mark.parametrize(
+        ("limits", "problem"),
+        [
+            ("{Vide: P1D}", "9: unknown category 'Vide'"),
+            ("{Video: soon}", "9: 'soon' is no ISO 8601 duration"),
+            ("[P1D]", "9: limits is a map, not a list"),
+        ],
+    )
+    def test_a_limit(self, limits: str, problem: str) -> None:
+        assert refused(f"limits: {limits}\n")[0].startswith(problem)
+
+    def test_the_same_name_with_other_facts(self, folder: Path) -> None:
+        (folder / "a.yaml").write_text("labels: 1\nelements: {b: {kind: storage}}\n", "utf-8")
+        (folder / "l.yaml").write_text(LABELS + "elements: {b: {kind: display}}\n", "utf-8")
+        with pytest.raises(InputErrors, match=r"l\.yaml:9: element 'b' again, with other facts than at a\.yaml:2"):
+            rosprivacy.analyze(["p.xml"], ["a.yaml", "l.yaml"])
+
+    def test_all_problems_are_told_at_once(self) -> None:
+        lines = refused("elements:\n  b: {kind: storage, country: XX, retention: x}\nlimits: {Video: x}\n")
+        assert [line.split(":")[0] for line in lines] == ["10", "10", "11"]

@@ -1,0 +1,328 @@
+"""The shipped ontology as data: what it covers, its law, its ties to DPV 2.3, three languages.
+
+Queries run over the graph of the files, not over ``ontology/vocabulary.py``, so that both stand on their own.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TYPE_CHECKING
+
+import pytest
+from rdflib import OWL, RDF, RDFS, SH, SKOS, Graph, Literal, Namespace, URIRef
+
+from rosprivacy.analysis.model import KINDS, Method
+from rosprivacy.ingest.database import schema
+from tests.helpers.ontologies import FOLDER, RP, SHIPPED, categories, ontology, provisions, shapes
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from rdflib.term import Node
+
+PD = Namespace("https://w3id.org/dpv/pd#")
+EU_GDPR = Namespace("https://w3id.org/dpv/legal/eu/gdpr#")
+DPV_FILES = ("dpv", "pd", "tech", "risk", "eu-gdpr")
+DPV_TERM = "https://w3id.org/dpv"
+LANGUAGES = {"en", "de", "fr"}
+ARTICLE_9_ITEMS = (
+    "ethnic-origin", "political-opinions", "beliefs", "trade-union", "genetic", "biometric", "health", "sex-life",
+)  # fmt: skip
+# What robots meet, by the names that people look for.
+COVERED = (
+    "face image", "face template", "video of persons", "voice", "voice print", "speech transcript", "gait pattern",
+    "body pose", "eye gaze", "fingerprint", "iris template", "health data", "vital sign", "emotion estimate",
+    "person track", "trajectory", "GNSS position", "map of a home", "room number", "licence plate", "device identifier",
+    "wireless device identifier", "name of a person", "staff badge", "staff performance", "household object",
+    "ethnicity", "religion", "political opinion", "trade union membership", "sex life or sexual orientation",
+    "genetic data", "criminal offence", "criminal conviction", "depth image of persons", "thermal image of persons",
+    "point cloud of persons",
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def dpv_terms(dpv: Path) -> Graph:
+    graph = Graph()
+    for name in DPV_FILES:
+        graph.parse(dpv / f"{name}.ttl")
+    return graph
+
+
+def named(node: Node) -> str:
+    return str(node).removeprefix(str(RP))
+
+
+def broader(node: Node) -> set[Node]:
+    """Our categories above one."""
+    parents = list(ontology().objects(node, SKOS.broader))
+    above = {up for parent in parents for up in ontology().transitive_objects(parent, SKOS.broader)}
+    return {up for up in above if up is not None} & set(categories())
+
+
+def verdicts(category: Node) -> dict[str, str]:
+    """Provision -> verdict, as the file states them."""
+    graph = ontology()
+    links = list(graph.objects(category, RP.fallsUnder))
+    return {named(graph.value(link, RP.provision) or link): str(graph.value(link, RP.verdict)) for link in links}
+
+
+def article9(category: Node) -> set[str]:
+    return {verdict for provision, verdict in verdicts(category).items() if provision.startswith("GDPR-9-1")}
+
+
+def borrowed(*files: str) -> set[URIRef]:
+    """The DPV terms that some files name."""
+    nodes = {node for name in files for triple in Graph().parse(FOLDER / f"{name}.ttl") for node in triple}
+    return {node for node in nodes if isinstance(node, URIRef) and node.startswith(DPV_TERM)}
+
+
+def allowed(shape: Node) -> list[str]:
+    """The closed list of a shape; empty if it has none."""
+    first = shapes().value(shape, SH["in"])
+    return [] if first is None else [str(value) for value in shapes().items(first)]
+
+
+class TestCategories:
+    def test_there_are_many_and_what_robots_meet_is_among_them(self) -> None:
+        assert len(categories()) >= 75
+        names = {str(name) for c in categories() for name in ontology().objects(c, SKOS.prefLabel)}
+        assert set(COVERED) <= names
+
+    @pytest.mark.parametrize("category", categories(), ids=named)
+    def test_each_has_the_three_dimensions_and_three_languages(self, category: Node) -> None:
+        graph = ontology()
+        assert (category, SKOS.inScheme, RP.Categories) in graph
+        for text in (SKOS.prefLabel, SKOS.definition):
+            assert {
+                value.language for value in graph.objects(category, text) if isinstance(value, Literal)
+            } == LANGUAGES
+        gdpr = graph.value(category, RP.gdprCategory, any=False)
+        assert (gdpr, RDF.type, RP.LegalProvision) in graph
+        assert list(graph.objects(category, RP.dataType))
+        assert bool(article9(category)) != ((category, RP.article9, Literal("no")) in graph)
+
+    def test_no_two_can_be_taken_for_each_other(self) -> None:
+        """Also in another language, and in upper or lower case: ``Vocabulary.find`` takes any of these."""
+        meant: dict[str, set[str]] = defaultdict(set)
+        for category in categories():
+            meant[named(category).casefold()].add(named(category))
+            for predicate in (SKOS.prefLabel, SKOS.altLabel, RP.label):
+                for text in ontology().objects(category, predicate):
+                    meant[str(text).casefold()].add(named(category))
+        assert {text: found for text, found in meant.items() if len(found) > 1} == {}
+
+    def test_a_label_is_that_of_no_other_thing_in_the_graph(self) -> None:
+        labels = {str(label) for category in categories() for label in ontology().objects(category, RP.label)}
+        kinds = (schema.ELEMENT, schema.ROBOT, schema.ENCLAVE, schema.CATEGORY, schema.PROVISION, schema.FINDING)
+        others = {*schema.KIND_LABELS.values(), schema.LEG, schema.WILDCARD, *(kind.label for kind in kinds)}
+        assert others <= set(allowed(RP.ReservedLabel))
+        assert not labels & others
+        assert not labels & {label + role for label in labels for role in ("Source", "Leak", "Sanitizer")}
+
+    def test_each_is_personal_data_and_no_kind_of_itself(self) -> None:
+        for category in categories():
+            assert category not in broader(category), named(category)
+            assert category == RP.PersonalData or RP.PersonalData in broader(category), named(category)
+
+    def test_the_data_types_are_a_closed_list_and_each_is_used(self) -> None:
+        graph = ontology()
+        listed = {str(graph.value(t, SKOS.notation)) for t in graph.subjects(RDF.type, RP.DataType)}
+        in_shapes = [shape for shape in shapes().subjects(SH.path, RP.dataType) if allowed(shape)]
+        narrow = set(categories()) - {RP.PersonalData}
+        assert [set(allowed(shape)) for shape in in_shapes] == [listed]
+        assert {str(t) for c in narrow for t in graph.objects(c, RP.dataType)} == listed
+
+
+class TestVerdicts:
+    """What the law, the guidelines and the judgments say, row by row."""
+
+    @pytest.mark.parametrize(
+        ("category", "expected"),
+        [
+            ("Video", {}),  # recital 51; EDPB 3/2019: a wheelchair (63), a church (67)
+            ("FaceImage", {}),
+            ("Voice", {}),  # EDPB 02/2021
+            ("Biometric", {"GDPR-9-1-biometric": "conditional"}),
+            ("FaceTemplate", {"GDPR-9-1-biometric": "conditional"}),
+            ("VoicePrint", {"GDPR-9-1-biometric": "conditional"}),
+            ("GaitPattern", {"GDPR-9-1-biometric": "conditional", "GDPR-9-1-health": "may-reveal"}),
+            ("FacialExpression", {"GDPR-9-1-biometric": "conditional", "GDPR-9-1-health": "may-reveal"}),
+            ("Accent", {"GDPR-9-1-ethnic-origin": "may-reveal"}),
+            ("SkinTone", {"GDPR-9-1-ethnic-origin": "may-reveal"}),
+            ("Ethnicity", {"GDPR-9-1-ethnic-origin": "always"}),
+            ("RoomNumber", {"GDPR-9-1-health": "may-reveal"}),
+            ("MobilityAid", {"GDPR-9-1-health": "may-reveal"}),
+            ("VitalSign", {"GDPR-9-1-health": "always"}),
+            ("FallEvent", {"GDPR-9-1-health": "always"}),
+            ("Prescription", {"GDPR-9-1-health": "always"}),
+            ("DnaSequence", {"GDPR-9-1-genetic": "always"}),
+            ("ReligiousBelief", {"GDPR-9-1-beliefs": "always"}),
+            ("PoliticalOpinion", {"GDPR-9-1-political-opinions": "always"}),
+            ("TradeUnionMembership", {"GDPR-9-1-trade-union": "always"}),
+            ("SexualPreference", {"GDPR-9-1-sex-life": "always"}),
+            ("HouseholdMembers", {"GDPR-9-1-sex-life": "may-reveal"}),  # CJEU C-184/20: the name of a partner
+            ("CriminalConviction", {"GDPR-10": "always"}),
+            ("WatchListMatch", {"GDPR-10": "conditional"}),
+            ("PersonTrack", {}),
+            ("LicencePlate", {}),
+            ("StaffPerformance", {}),
+            ("PersonIdentifier", {}),
+            ("PersonalData", {"GDPR-9-1": "may-reveal"}),  # the label does not say which kind
+        ],
+    )
+    def test_verdict(self, category: str, expected: dict[str, str]) -> None:
+        assert verdicts(RP[category]) == expected
+
+    def test_each_item_of_article_9_has_categories(self) -> None:
+        used = {provision for category in categories() for provision in verdicts(category)}
+        assert {f"GDPR-9-1-{item}" for item in ARTICLE_9_ITEMS} <= used
+
+    def test_article_10_stands_apart(self) -> None:
+        ten = [category for category in categories() if "GDPR-10" in verdicts(category)]
+        assert len(ten) >= 3
+        for category in ten:
+            assert not article9(category)
+            assert (category, RP.article9, Literal("no")) in ontology()
+
+    def test_no_kind_is_less_than_a_narrower_one(self) -> None:
+        """A source may emit any narrower kind than the one it names (rule S7): 'no' would be wrong then."""
+        for category in categories():
+            for up in broader(category) if verdicts(category) else ():
+                assert verdicts(up), f"{named(up)} is 'no', but {named(category)} is under {verdicts(category)}"
+
+
+class TestLaw:
+    def test_what_is_cited_is_there(self) -> None:
+        wanted = {
+            *(f"GDPR-4-{n}" for n in (1, 5, 13, 14, 15)),
+            *(f"GDPR-5-1-{x}" for x in "bcdef"),
+            *(f"GDPR-6-1-{x}" for x in "abcdef"),
+            *(f"GDPR-9-1-{item}" for item in ARTICLE_9_ITEMS),
+            *(f"GDPR-9-2-{x}" for x in "abcdefghij"),
+            *(f"GDPR-{n}" for n in (10, 25, 28, 30, 32, 35, "35-3", 44, 45, 46, 47, 48, 49)),
+            "GDPR-recital-26", "GDPR-recital-51", "EDPB-3-2019",
+        }  # fmt: skip
+        assert wanted <= {named(provision) for provision in provisions()}
+
+    def test_every_provision_that_is_pointed_to_is_described(self) -> None:
+        graph = ontology()
+        pointers = (RP.provision, RP.source, RP.gdprCategory, RP.partOf)
+        pointed = {target for pointer in pointers for target in graph.objects(None, pointer)}
+        assert pointed <= set(provisions())
+
+    @pytest.mark.parametrize("provision", provisions(), ids=named)
+    def test_each_says_what_it_means_in_a_sentence_and_as_of_when(self, provision: Node) -> None:
+        for meaning in ontology().objects(provision, SKOS.definition):
+            assert str(meaning).endswith(".")
+            assert ". " not in str(meaning).replace("Version 2.0", "").replace("29. Januar", "").replace("7. Juli", "")
+        assert str(ontology().value(provision, RP.asOf)) == "2026-04-30"
+
+    @pytest.mark.parametrize(("article", "letters"), [("6-1", "abcdef"), ("9-2", "abcdefghij")])
+    def test_legal_bases_are_those_of_dpv(self, article: str, letters: str) -> None:
+        for letter in letters:
+            provision = RP[f"GDPR-{article}-{letter}"]
+            assert (provision, SKOS.closeMatch, EU_GDPR[f"A{article}-{letter}"]) in ontology()
+            assert (provision, RP.partOf, RP[f"GDPR-{article}"]) in ontology()
+
+    def test_the_items_of_article_9_are_parts_of_it(self) -> None:
+        for item in ARTICLE_9_ITEMS:
+            above = set(ontology().transitive_objects(RP[f"GDPR-9-1-{item}"], RP.partOf))
+            assert {RP["GDPR-9-1"], RP["GDPR-9"], RP.GDPR} <= above
+
+
+class TestDpv:
+    def test_every_term_that_is_named_is_in_the_list(self) -> None:
+        listed = set(ontology().subjects(RP.inVersion, Literal("2.3")))
+        assert borrowed(*(name for name in SHIPPED if name != "dpv")) <= listed
+
+    def test_the_list_is_true(self, dpv_terms: Graph) -> None:
+        assert {str(version) for version in dpv_terms.objects(None, OWL.versionInfo)} == {"2.3"}
+        assert [term for term in borrowed(*SHIPPED) if (term, RDF.type, None) not in dpv_terms] == []
+
+    def test_it_names_all_kinds_of_personal_data_of_dpv(self, dpv_terms: Graph) -> None:
+        theirs = {term for term in dpv_terms.subjects(RDF.type, SKOS.Concept) if str(term).startswith(str(PD))}
+        assert theirs <= set(ontology().subjects(RP.inVersion, None))
+
+    def test_twelve_terms_were_respelt(self, dpv_terms: Graph) -> None:
+        respelt = {str(old): term for term, old in ontology().subject_objects(RP.formerly)}
+        assert len(respelt) == 12
+        assert respelt[str(PD.Behavioral)] == PD.Behavioural
+        assert not [old for old in respelt if (URIRef(old), RDF.type, None) in dpv_terms]
+
+    def test_each_category_leads_into_dpv(self) -> None:
+        ties = (SKOS.broader, SKOS.exactMatch)
+        for category in categories():
+            targets = [target for tie in ties for target in ontology().objects(category, tie)]
+            assert any(str(target).startswith(DPV_TERM) for target in targets), named(category)
+
+    def test_the_hierarchy_is_that_of_dpv_where_no_note_says_why_not(self, dpv_terms: Graph) -> None:
+        ours = {term: category for category, term in ontology().subject_objects(SKOS.exactMatch)}
+        for category in categories():
+            ties = {*ontology().objects(category, SKOS.exactMatch), *ontology().objects(category, SKOS.broader)}
+            theirs = {up for term in ties for up in dpv_terms.transitive_objects(term, SKOS.broader)}
+            missing = {ours[up] for up in theirs if up in ours} - broader(category) - {category}
+            assert not missing or ontology().value(category, SKOS.note), named(category)
+
+    def test_each_special_category_of_dpv_has_one_of_ours_with_a_verdict(self, dpv_terms: Graph) -> None:
+        special = set(dpv_terms.subjects(RDF.type, URIRef("https://w3id.org/dpv#SpecialCategoryPersonalData")))
+        assert len(special) == 32
+        for term in special:
+            (category,) = ontology().subjects(SKOS.exactMatch, term)
+            assert article9(category), named(category)
+
+    def test_a_note_says_why_a_verdict_is_not_the_typing_of_dpv(self, dpv_terms: Graph) -> None:
+        """DPV types a term as special or not; 'may reveal' is not its question."""
+        special = set(dpv_terms.subjects(RDF.type, URIRef("https://w3id.org/dpv#SpecialCategoryPersonalData")))
+        differ = set()
+        for category, term in ontology().subject_objects(SKOS.exactMatch):
+            stated = article9(category)
+            if (stated != {"always"}) if term in special else (stated & {"always", "conditional"}):
+                differ.add(named(category))
+                assert ontology().value(category, SKOS.note), named(category)
+        assert differ == {"Biometric", "Ethnicity", "FaceTemplate", "FacialExpression", "Fingerprint", "RetinaPattern"}
+
+
+class TestElements:
+    def of_type(self, kind: str) -> dict[str, Node]:
+        graph = ontology()
+        return {str(graph.value(item, SKOS.notation)): item for item in graph.subjects(RDF.type, RP[kind])}
+
+    def test_the_kinds_are_those_of_the_model_with_the_labels_of_the_graph(self) -> None:
+        kinds = self.of_type("ElementKind")
+        assert set(kinds) == set(KINDS)
+        assert {n: str(ontology().value(kind, RP.label)) for n, kind in kinds.items()} == schema.KIND_LABELS
+
+    def test_the_methods_are_those_of_label_files(self) -> None:
+        ends = {n: str(ontology().value(item, RP.endsCategory)) for n, item in self.of_type("Method").items()}
+        assert ends == {method.value: str(method.ends).lower() for method in Method}
+
+    @pytest.mark.parametrize(
+        ("kind", "notations"),
+        [
+            ("Role", {"source", "leak", "sanitizer", "conduit", "derivation"}),
+            ("FindingKind", {"disclosure", "storage-limitation", "third-country-transfer"}),
+            ("Verdict", {"always", "conditional", "may-reveal", "no"}),
+        ],
+    )
+    def test_what_there_is(self, kind: str, notations: set[str]) -> None:
+        assert set(self.of_type(kind)) == notations
+
+    def test_processing_is_processing_in_dpv(self, dpv_terms: Graph) -> None:
+        for term in ontology().objects(None, RP.processing):
+            assert (term, RDF.type, URIRef("https://w3id.org/dpv#Processing")) in dpv_terms
+        for term in ontology().objects(None, RP.risk):
+            assert (term, RDF.type, URIRef("https://w3id.org/dpv/risk#PotentialRisk")) in dpv_terms
+
+    def test_classes_are_classes(self) -> None:
+        for kind in ("Role", "ElementKind", "FindingKind"):
+            assert all((item, RDF.type, RDFS.Class) in ontology() for item in self.of_type(kind).values())
+
+
+def test_no_file_says_anything_twice_or_of_nothing() -> None:
+    """Each subject of ours stands in one file, so that there is one place to look."""
+    where: dict[Node, set[str]] = defaultdict(set)
+    for name in SHIPPED:
+        for subject in set(Graph().parse(FOLDER / f"{name}.ttl").subjects()):
+            if isinstance(subject, URIRef):
+                where[subject].add(name)
+    assert {subject: files for subject, files in where.items() if len(files) > 1} == {}

@@ -1,0 +1,109 @@
+"""Findings and Article 9 GDPR: filters, where data become special; the program and Cypher give the same answer."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+import rosprivacy
+from rosprivacy.analysis.errors import InputErrors
+from rosprivacy.analysis.model import ARTICLE_9
+from rosprivacy.ingest.database.loading import load
+from rosprivacy.private_neo4j import connection
+from rosprivacy.queries.library import find
+from rosprivacy.queries.run import run
+from tests.helpers.graphs import care_home, rows_of
+from tests.helpers.paths import ROOT
+
+if TYPE_CHECKING:
+    from rosprivacy.private_neo4j.connection import Connection
+
+CARE = ROOT / "examples" / "care-home"
+Key = tuple[str, str, str, str]  # provision, verdict, category, leak
+
+
+def document(**settings: Any) -> dict[str, Any]:
+    policy, labels = CARE / "care-home.policy.xml", CARE / "care-home.labels.yaml"
+    return rosprivacy.analyze([str(policy)], [str(labels)], **settings).document()
+
+
+def found(shown: dict[str, Any]) -> set[tuple[str, str]]:
+    return {(finding["category"], finding["leak"]["name"]) for finding in shown["findings"]}
+
+
+def under_article_9(shown: dict[str, Any]) -> set[Key]:
+    return {
+        (legal["provision"], legal["verdict"], finding["category"], finding["leak"]["name"])
+        for finding in shown["findings"]
+        for legal in finding["law"]
+        if legal["provision"].startswith(ARTICLE_9)
+    }
+
+
+class TestDocument:
+    def test_each_finding_says_what_a_person_has_to_look_up(self) -> None:
+        shown = document()
+        by_category = {finding["category"]: finding for finding in shown["findings"]}
+        face, video = by_category["FaceTemplate"], by_category["Video"]
+        assert (face["article9"], face["special_from"]["name"]) == ("conditional", "/face_recognizer")
+        (legal,) = face["law"]
+        assert legal["provision"] == "GDPR Art. 9(1) biometric data"
+        assert "uniquely" in legal["condition"]
+        assert (video["article9"], video["special_from"], video["law"]) == ("no", None, [])
+
+    def test_the_date_of_the_law_is_an_assumption(self) -> None:  # S12
+        assert document()["assumptions"]["law_as_of"] == "2026-04-30"
+
+    def test_what_a_category_is_stands_once_for_all_its_findings(self) -> None:
+        categories = {category["name"]: category for category in document()["categories"]}
+        assert categories["Video"]["data_types"] == ["video"]
+        assert "ecital 51" in categories["Video"]["reason"] or categories["Video"]["reason"]
+        assert categories["FaceTemplate"]["gdpr"] == "GDPR Art. 4(14) biometric data"
+
+
+class TestFilters:
+    def test_article_9_only(self) -> None:
+        assert found(document(article9=True)) == {("FaceTemplate", "/uplink")}
+
+    def test_a_data_type_only(self) -> None:
+        assert found(document(data_types=("video",))) == {("Video", "/recorder")}
+        assert found(document(data_types=("video", "audio"))) == {("Video", "/recorder"), ("Voice", "/uplink")}
+
+    def test_a_category_with_narrower_ones_only(self) -> None:
+        assert found(document(categories=("Biometrie",))) == {("FaceTemplate", "/uplink")}  # the German name
+
+    def test_filters_narrow_together(self) -> None:
+        shown = document(categories=("PersonalData",), article9=True, data_types=("video",))
+        assert shown["findings"] == []
+        assert shown["verdict"] == "undetermined"  # no such data was followed: no 'nothing found'
+
+    def test_what_is_asked_for_stands_in_the_assumptions(self) -> None:
+        assumptions = document(article9=True, data_types=("audio",))["assumptions"]
+        assert (assumptions["article9_only"], assumptions["data_types_asked"]) == (True, ["audio"])
+
+    def test_an_unknown_data_type_is_an_error(self) -> None:
+        with pytest.raises(InputErrors, match=r"--data-type:0: unknown data type 'vidoe'; it is one of: .*video"):
+            document(data_types=("vidoe",))
+
+
+@pytest.mark.slow
+@pytest.mark.database
+def test_cypher_says_the_same(neo4j_server: Connection) -> None:
+    result = care_home()
+    expected = under_article_9(result.document())
+    assert expected
+    with connection.open_driver(neo4j_server) as driver:
+        driver.execute_query("MATCH (n) DETACH DELETE n")
+        load(driver, [rows_of("h1", result)], result.vocabulary)
+        query = find("findings-under-article")
+        rows = run(driver, query.text, query.values({}))
+        at = {name: number for number, name in enumerate(rows.columns)}
+        pack = {tuple(row[at[name]] for name in ("provision", "verdict", "category", "leak")) for row in rows.rows}
+        one_line = (
+            "MATCH (f:Finding)-[:OF_CATEGORY]->()-[u:FALLS_UNDER]->(p:LegalProvision) "
+            "WHERE p.name STARTS WITH 'GDPR Art. 9(1)' RETURN p.name, u.verdict, f.category, f.leak"
+        )
+        plain = {tuple(record.values()) for record in driver.execute_query(one_line).records}
+    assert pack == expected
+    assert plain == expected

@@ -1,0 +1,163 @@
+"""The query pack: for every question a case with rows and one without, on systems that are loaded from files.
+
+``cases/queries/<name>.json``: ``hits`` and ``clean``, each with ``load`` (robot -> system of
+``cases/queries/systems/systems.json``), ``parameters`` and all ``rows``. Rows were judged by hand from the rules.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from rosprivacy.analysis.findings.findings import analyse
+from rosprivacy.analysis.model import Category, Element, Flow, FlowGraph, Legal
+from rosprivacy.assembly import read_system
+from rosprivacy.ingest.database.loading import load
+from rosprivacy.ingest.database.rows import robot_rows
+from rosprivacy.ingest.labels.binding import bind
+from rosprivacy.ingest.labels.label_file import STANDARD, read_labels
+from rosprivacy.ingest.policies.flow_graph import build
+from rosprivacy.ontology.vocabulary import Vocabulary
+from rosprivacy.private_neo4j import connection
+from rosprivacy.queries.library import COLUMN_TYPES, find, pack
+from rosprivacy.queries.run import run
+from rosprivacy.settings import Settings
+from tests.helpers.paths import ROOT
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from neo4j import Driver
+
+    from rosprivacy.ingest.database.rows import RobotRows
+    from rosprivacy.private_neo4j.connection import Connection
+
+FOLDER = ROOT / "tests" / "cases" / "queries"
+SYSTEMS = json.loads((FOLDER / "systems" / "systems.json").read_text("utf-8"))
+QUERIES = pack()
+CASES = {path.stem: json.loads(path.read_text("utf-8")) for path in sorted(FOLDER.glob("*.json"))}
+PARENTS = {
+    "PersonalData": (),
+    "Video": ("PersonalData",),
+    "Voice": ("PersonalData",),
+    "Biometric": ("PersonalData",),
+    "FaceTemplate": ("Biometric",),
+    "VoicePrint": ("Biometric",),
+    "Location": ("PersonalData",),
+    "PersonTrack": ("Location",),
+}
+
+
+TYPES = {"Video": ("video",), "Voice": ("audio",), "FaceTemplate": ("template",), "Location": ("position",)}
+
+
+def under(name: str, verdict: str, condition: str = "") -> tuple[Legal, ...]:
+    return (Legal(f"urn:test:{name}", name, name, "2026-01-01", verdict, condition),)
+
+
+# Of the test's own, so that a change of the ontology changes no rows; what is said of Voice and Video is made up.
+LAW = {
+    "Biometric": under("GDPR Art. 9(1) biometric data", "conditional", "if it is to identify a person"),
+    "Voice": under("GDPR Art. 10", "may-reveal"),
+    "Video": under("GDPR Art. 90", "always"),
+}
+VOCABULARY = Vocabulary.of(
+    Category(name, f"urn:test:{name}", name, name, name, up, law=LAW.get(name, ()), data_types=TYPES.get(name, ()))
+    for name, up in PARENTS.items()
+)
+
+
+def system(robot: str, name: str) -> RobotRows:
+    """The rows of a system of ``systems.json``; its paths are relative to the repository."""
+    given = SYSTEMS[name]
+    graph = build(read_system(tuple(given["policies"]), Settings())[0])
+    graph = with_storages(graph, given.get("storages", {}))
+    labels = [read_labels(STANDARD, VOCABULARY), *(read_labels(file, VOCABULARY) for file in given["labels"])]
+    bound = bind(graph, labels)
+    return robot_rows(robot, analyse(graph, bound, VOCABULARY.hierarchy), bound, VOCABULARY)
+
+
+def with_storages(graph: FlowGraph, storages: Mapping[str, Any]) -> FlowGraph:
+    """The graph with storages, which no policy speaks of (rule S9)."""
+    elements = tuple(sorted({*graph.elements, *(Element("storage", name) for name in storages)}, key=Element.sort_key))
+    number = {element: i for i, element in enumerate(elements)}
+
+    def moved(flows: tuple[Flow, ...]) -> list[Flow]:
+        ends = graph.elements
+        return [replace(f, source=number[ends[f.source]], target=number[ends[f.target]]) for f in flows]
+
+    new = [
+        Flow(number[source], number[target], "flow")
+        for name, ends in storages.items()
+        for source, target in [
+            *((Element("node", n), Element("storage", name)) for n in ends["from"]),
+            *((Element("storage", name), Element("node", n)) for n in ends["to"]),
+        ]
+    ]
+    flows = sorted([*moved(graph.flows), *new], key=lambda f: (f.source, f.target, f.role))
+    return replace(graph, elements=elements, flows=tuple(flows), denied=tuple(moved(graph.denied)))
+
+
+@pytest.fixture(scope="module")
+def driver(neo4j_server: Connection) -> Iterator[Driver]:
+    with connection.open_driver(neo4j_server) as opened:
+        yield opened
+
+
+def fill(driver: Driver, robots: Mapping[str, str]) -> None:
+    """Wipe the database and load what a case asks for."""
+    driver.execute_query("MATCH (n) DETACH DELETE n")
+    load(driver, [system(robot, name) for robot, name in robots.items()], VOCABULARY)
+
+
+def ask(driver: Driver, name: str, parameters: Mapping[str, str]) -> tuple[tuple[str, ...], list[list[Any]]]:
+    query = find(name)
+    rows = run(driver, query.text, query.values(parameters), limit=None)
+    return rows.columns, [list(row) for row in rows.rows]
+
+
+def by_load() -> list[tuple[str, list[tuple[str, str]]]]:
+    """What is loaded, as JSON, with the (query, case) that ask it: each load is done once."""
+    groups: dict[str, list[tuple[str, str]]] = {}
+    for name, cases in CASES.items():
+        for which, case in cases.items():
+            groups.setdefault(json.dumps(case["load"]), []).append((name, which))
+    return sorted(groups.items())
+
+
+def test_every_query_has_a_case_and_every_case_a_query() -> None:
+    assert len(QUERIES) >= 20
+    assert sorted(CASES) == sorted(QUERIES)
+    assert all({"hits", "clean"} <= set(cases) for cases in CASES.values())
+    assert all(cases["hits"]["rows"] for cases in CASES.values())
+
+
+@pytest.mark.slow
+@pytest.mark.database
+def test_on_an_empty_database_there_are_no_rows(driver: Driver) -> None:
+    fill(driver, {})
+    for name, query in QUERIES.items():
+        required = {field.name: "x" for field in query.parameters if field.default is None}
+        columns, rows = ask(driver, name, required)
+        assert list(columns) == [field.name for field in query.columns]
+        assert rows == [], name
+
+
+@pytest.mark.database
+@pytest.mark.parametrize("robots", [robots for robots, _ in by_load()])
+def test_rows(robots: str, driver: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    fill(driver, json.loads(robots))
+    wrong = {}
+    for name, which in dict(by_load())[robots]:
+        case = CASES[name][which]
+        columns, rows = ask(driver, name, case["parameters"])
+        assert list(columns) == [field.name for field in QUERIES[name].columns]
+        types = [COLUMN_TYPES[field.type] for field in QUERIES[name].columns]
+        assert all(type(v) is t for row in rows for v, t in zip(row, types, strict=True) if v is not None), name
+        if rows != case["rows"]:
+            wrong[name, which] = rows
+    assert not wrong

@@ -1,0 +1,90 @@
+"""Cypher that only reads: the server refuses the rest; rows and time have bounds; values come back as JSON has them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from rosprivacy.analysis.errors import QueryError
+from rosprivacy.private_neo4j import connection
+from rosprivacy.queries.run import run
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from neo4j import Driver
+
+    from rosprivacy.private_neo4j.connection import Connection
+
+pytestmark = pytest.mark.database
+
+
+@pytest.fixture(scope="module")
+def driver(neo4j_server: Connection) -> Iterator[Driver]:
+    with connection.open_driver(neo4j_server) as opened:
+        yield opened
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "CREATE (n:ShouldNotBe) RETURN n",
+        "MERGE (n:ShouldNotBe) RETURN n",
+        "MATCH (n) SET n.x = 1",
+        "MATCH (n) DETACH DELETE n",
+        "CREATE INDEX i FOR (n:X) ON (n.y)",
+        "CALL db.createLabel('ShouldNotBe')",
+        "UNWIND [1] AS x CALL (x) { CREATE (:ShouldNotBe) } RETURN x",
+    ],
+)
+def test_what_writes_is_refused_and_writes_nothing(driver: Driver, text: str) -> None:
+    with pytest.raises(QueryError, match=r"would write|refuses"):
+        run(driver, text)
+    assert run(driver, "MATCH (n:ShouldNotBe) RETURN count(n)").rows == ((0,),)
+
+
+def test_rows_have_a_bound(driver: Driver) -> None:
+    text = "UNWIND range(1, 5) AS x RETURN x"
+    assert (run(driver, text, limit=3).rows, run(driver, text, limit=3).more) == (((1,), (2,), (3,)), True)
+    assert (len(run(driver, text, limit=5).rows), run(driver, text, limit=5).more) == (5, False)
+    assert len(run(driver, text, limit=None).rows) == 5
+
+
+def test_time_has_a_bound(driver: Driver) -> None:
+    with pytest.raises(QueryError, match=r"took longer than 0\.2 s; .*--timeout"):
+        run(driver, "UNWIND range(1, 1000000000) AS x WITH x WHERE x < 0 RETURN x", timeout=0.2)
+
+
+@pytest.mark.parametrize("text", ["WHAT IS THIS", "RETURN $missing", "RETURN 1/0", "RETURN x"])
+def test_what_the_server_cannot_do_is_one_line(driver: Driver, text: str) -> None:
+    with pytest.raises(QueryError, match="the server refuses the query: ") as caught:
+        run(driver, text)
+    assert len(str(caught.value).splitlines()) == 1
+
+
+@pytest.mark.parametrize("value", [2**63, "\udcff"])
+def test_what_cannot_be_sent_is_one_line(driver: Driver, value: object) -> None:
+    with pytest.raises(QueryError, match="cannot be sent"):
+        run(driver, "RETURN $x", {"x": value})
+
+
+def test_values_are_those_of_json(driver: Driver) -> None:
+    rows = run(
+        driver, "RETURN 1 AS a, 1.5 AS b, true AS c, null AS d, 'x' AS e, [1, {k: 'v'}] AS f, date('2026-01-02')"
+    )
+    assert rows.rows == ((1, 1.5, True, None, "x", [1, {"k": "v"}], "2026-01-02"),)
+
+
+def test_nodes_relationships_and_paths(driver: Driver) -> None:
+    with driver.session() as session, session.begin_transaction() as transaction:  # never committed
+        transaction.run("CREATE (:Shown:Here {name: 'a'})-[:TO {n: 1}]->(:Shown {name: 'b'})")
+        found = transaction.run("MATCH p = (:Here)-[r:TO]->(n:Shown) RETURN p, r, n").single(strict=True)
+        from rosprivacy.queries.run import plain
+
+        start, flow, end = (
+            {"labels": ["Here", "Shown"], "name": "a"},
+            {"type": "TO", "n": 1},
+            {"labels": ["Shown"], "name": "b"},
+        )
+        assert [plain(value) for value in found] == [[start, flow, end], flow, end]

@@ -1,0 +1,410 @@
+"""The file for the CNIL's PIA tool: what the tool does with it when it imports, shows, sorts and checks it.
+
+``Tool`` does what the tool's own import and views do, step by step, written anew from a reading of them.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import sys
+from dataclasses import dataclass, field, replace
+from datetime import UTC, datetime
+from html.parser import HTMLParser
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import rosprivacy
+from rosprivacy.analysis.findings.findings import analyse
+from rosprivacy.analysis.model import Bound, Category, Element, Flow, FlowGraph, Method, Place, Statement
+from rosprivacy.assembly import robot_of, run_stored
+from rosprivacy.formats import pia_file
+from rosprivacy.ingest.database.loading import load as load_robots
+from rosprivacy.ontology.vocabulary import load
+from rosprivacy.private_neo4j import connection
+from rosprivacy.report.cnil import answers as cnil_answers
+from rosprivacy.report.cnil.pia import cnil_pia
+from rosprivacy.settings import Settings
+from tests.helpers.additions import ADD_STORAGE
+from tests.helpers.paths import ROOT
+from tests.helpers.sarif import HOSTILE, analyze, checked, log_of, physical, small_system, way
+from tests.helpers.systems import HIERARCHY, PARENTS, System, analysed, systems
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from rosprivacy.private_neo4j.connection import Connection
+
+CARE_HOME = (["care-home/care-home.policy.xml"], ["care-home/care-home.labels.yaml"])
+CATEGORIES = {n: Category(n, f"urn:{n}", n, n, n, up) for n, up in PARENTS.items()}
+CREATED = "2026-01-02T03:04:05.000Z"
+TEXT = (111, 112, 113, 121, 122, 123, 211, 212, 213, 214, 215, 221, 222, 223, 224, 225, 226, 227)
+LIST = tuple(10 * risk + n for risk in (32, 33, 34) for n in (1, 2, 3, 4))
+GAUGE = tuple(10 * risk + n for risk in (32, 33, 34) for n in (5, 6))
+ITEMS = {"1.1": TEXT[:3], "1.2": TEXT[3:6], "2.1": TEXT[6:11], "2.2": TEXT[11:], **{
+    f"3.{n}": tuple(q for q in (*LIST, *GAUGE) if q // 10 == 30 + n) for n in (2, 3, 4)
+}}  # fmt: skip
+FILLED = [121, 122, 123, 213, 215, 227, 322, 324]
+ON_EVERY_OBJECT = {"constructor", "__proto__", "toString", "valueOf", "hasOwnProperty", "isPrototypeOf"}
+
+
+@dataclass
+class Tool:
+    """The tool's database after an import."""
+
+    pia: dict[str, Any] = field(default_factory=dict)
+    answers: dict[int, dict[str, Any]] = field(default_factory=dict)
+    measures: dict[int, dict[str, Any]] = field(default_factory=dict)
+    evaluations: list[dict[str, Any]] = field(default_factory=list)
+    comments: list[dict[str, Any]] = field(default_factory=list)
+
+    @classmethod
+    def load(cls, text: str) -> Tool:
+        """'Import a PIA': JSON.parse, then importData; what would be an exception or a wrong record fails here."""
+        data = json.loads(text, parse_constant=lambda name: pytest.fail(f"no JSON: {name}"))
+        tool = cls()
+        assert data["pia"], "wrong pia file"
+        given_pia = data["pia"]
+        assert not given_pia.get("user_pias")  # names of users of another server
+        tool.pia = {
+            key: given_pia[key]
+            for key in (
+                "category", "dpo_status", "dpo_opinion", "concerned_people_opinion", "concerned_people_status",
+                "concerned_people_searched_opinion", "concerned_people_searched_content", "rejected_reason",
+                "applied_adjustements", "dpos_names", "people_names", "author_name", "evaluator_name", "validator_name",
+            )
+        }  # fmt: skip
+        tool.pia["name"] = "(IMPORT) " + given_pia["name"]
+        assert not given_pia["structure_id"]
+        tool.pia["status"] = int(given_pia["status"])
+        tool.pia["created_at"], tool.pia["updated_at"] = date(given_pia["created_at"]), date(given_pia["updated_at"])
+        tool.import_answers(data["answers"])
+        tool.import_measures(data)
+        assert isinstance(data["comments"], list)  # comments.forEach
+        return tool
+
+    def import_answers(self, answers: list[Any]) -> None:
+        assert isinstance(answers, list)  # answers.forEach
+        for answer in answers:
+            assert isinstance(answer["reference_to"], int)  # looked up by (pia, number)
+            assert answer["reference_to"] not in self.answers  # the first one only would be shown
+            date(answer["created_at"])
+            self.answers[answer["reference_to"]] = answer["data"]
+
+    def import_measures(self, data: dict[str, Any]) -> None:
+        assert isinstance(data["measures"], list)  # measures.length, measures.forEach
+        for number, measure in enumerate(data["measures"], 1):
+            date(measure["created_at"])
+            assert isinstance(measure["id"], int)
+            self.measures[1000 + number] = {key: measure[key] for key in ("title", "content", "placeholder")}
+        assert isinstance(data["evaluations"], list)  # for … of
+        assert all(isinstance(evaluation["reference_to"], str) for evaluation in data["evaluations"])
+
+    def valid(self, question: int) -> bool:
+        """answerIsValid."""
+        data = self.answers[question]
+        if question in GAUGE:
+            return bool(data["text"]) and data["gauge"] > 0
+        return bool(data["list"] if question in LIST else data["text"])
+
+    def status(self, item: str) -> int:
+        """Verification without evaluations: 0 nothing, 1 begun, 2 ready to be evaluated."""
+        if item == "3.1":
+            full = [m for m in self.measures.values() if m["title"] and m["content"]]
+            return (2 if len(full) == len(self.measures) else 1) if full else 0
+        answered = [question for question in ITEMS[item] if question in self.answers]
+        if answered and sum(map(self.valid, answered)) == len(ITEMS[item]):
+            return 2
+        return 1 if answered else 0
+
+    def shown_as_html(self) -> list[str]:
+        """All that the tool puts into a page as HTML, unsanitised where it says so itself."""
+        texts = [data["text"] for data in self.answers.values() if data["text"]]
+        texts += [item for data in self.answers.values() for item in data["list"]]
+        return texts + [measure[key] for measure in self.measures.values() for key in ("title", "content")]
+
+
+def date(text: str) -> datetime:
+    """``new Date(text)`` that is none of the invalid ones."""
+    assert re.fullmatch(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{3}Z", text)
+    return datetime.fromisoformat(text)
+
+
+class Page(HTMLParser):
+    """What a browser makes of a text: tags, attributes, and the text that is seen."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.tags: list[str] = []
+        self.open: list[str] = []
+        self.seen = ""
+        self.feed(text)
+        self.close()
+        assert not self.open
+
+    def handle_starttag(self, tag: str, attrs: list[Any]) -> None:
+        assert not attrs
+        self.tags.append(tag)
+        self.open.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        self.seen += data
+
+
+def imported(data: dict[str, Any]) -> Tool:
+    """A file that the tool takes, and that harms nobody who looks at it."""
+    tool = Tool.load(json.dumps(data, ensure_ascii=False, allow_nan=False).encode().decode())
+    for text in tool.shown_as_html():
+        page = Page(text)
+        assert set(page.tags) <= {"p", "ul", "li", "strong", "em"}
+        assert page.seen.isprintable()
+    for question in LIST:
+        for item in tool.answers.get(question, {"list": []})["list"]:
+            assert item
+            assert Page(item).seen == item  # the same as text and as HTML
+            assert item not in ON_EVERY_OBJECT  # used as a key of an object
+    titles = [measure["title"] for measure in tool.measures.values()]
+    assert len(set(titles)) == len(titles)
+    assert all(0 < len(title) <= 120 and Page(title).seen == title for title in titles)
+    assert tool.answers.get(324, {"list": []})["list"] == titles  # chosen from the measures, by title
+    assert all(isinstance(tool.pia[f"{who}_name"], str) for who in ("author", "evaluator", "validator"))  # sorted by
+    return tool
+
+
+def seen(tool: Tool, question: int) -> str:
+    return Page(tool.answers[question]["text"]).seen
+
+
+def file_of(policies: list[str], labels: list[str], **options: Any) -> dict[str, Any]:
+    result = analyze(policies, labels, **options)
+    vocabulary = result.vocabulary
+    return cnil_pia(result.analysis, vocabulary.categories, vocabulary.hierarchy, result.assumptions, CREATED)
+
+
+@pytest.fixture(scope="module")
+def care_home() -> Tool:
+    return imported(file_of(*CARE_HOME))
+
+
+# ---------------------------------------------------------------- what is filled
+
+
+def test_the_questions_of_the_graph_are_answered_and_no_other(care_home: Tool) -> None:
+    """An empty answer would count as work begun, and move the tool's progress bar."""
+    assert sorted(care_home.answers) == FILLED
+    assert all(care_home.valid(question) for question in FILLED)
+    began = {item: care_home.status(item) for item in (*ITEMS, "3.1")}
+    assert began == {"1.1": 0, "1.2": 2, "2.1": 1, "2.2": 1, "3.1": 2, "3.2": 1, "3.3": 0, "3.4": 0}
+
+
+def test_nothing_that_is_a_persons_to_say_is_filled(care_home: Tool) -> None:
+    assert care_home.pia["status"] == 0
+    assert care_home.evaluations == care_home.comments == []
+    assert not any(care_home.answers[q]["gauge"] for q in FILLED)
+    said = {value for key, value in care_home.pia.items() if key not in ("name", "status", "created_at", "updated_at")}
+    assert said == {None, ""}
+
+
+def test_the_data_are_listed_with_law_and_recipients(care_home: Tool) -> None:
+    text = seen(care_home, 121)
+    assert "face template (FaceTemplate): A vector or other template" in text
+    assert "Made: /face_recognizer makes it of Video" in text
+    assert "Law to check: GDPR Art. 9(1) biometric data (conditional: biometric data count here only when" in text
+    assert "Recipients that it can reach: /recorder (pseudonymised)" in text
+    assert "Brought in by: /microphone" in text
+
+
+def test_the_life_cycle_shows_cleaning_and_the_shortest_way(care_home: Tool) -> None:
+    text = seen(care_home, 122)
+    assert "Cleaning: /blur: pseudonymise (the data is still personal)" in text
+    assert "Voice: /microphone → topic /audio → /uplink" in text
+    assert "examples" not in text
+    assert re.search(r"This rests on:care-home/care-home\.policy\.xml \(sha256 [0-9a-f]{12}\)", text)
+
+
+def test_supports_minimisation_and_transfers_name_elements(care_home: Tool) -> None:
+    assert "11 ROS nodes" in seen(care_home, 123)
+    assert "topic /camera/blurred: pseudonymised Video" in seen(care_home, 123)
+    assert "voice: 4 elements that did not bring it in can get it." in seen(care_home, 213)
+    assert "/uplink: country: not stated; basis of a transfer: not stated" in seen(care_home, 227)
+
+
+def test_a_cleaner_is_named_only_for_what_gets_to_it(care_home: Tool) -> None:
+    """/uplink is labelled to drop Location, which never gets there."""
+    assert "/uplink: drop" not in seen(care_home, 122)
+    contents = {m["title"]: Page(m["content"]).seen for m in care_home.measures.values()}
+    assert contents["Data taken out on the way"].startswith("/face_recognizer: Video")
+    assert "Location" not in "".join(contents.values())
+    assert contents["Connections denied by policy"].startswith("/face_recognizer/faces to /uplink")
+
+
+def test_threats_are_paths_to_assess(care_home: Tool) -> None:
+    assert care_home.answers[322]["list"][2] == (
+        "Voice can get from /microphone to /uplink (path to assess 329ba2898df8864e)"
+    )
+
+
+def test_what_is_not_reviewed_is_said_where_it_matters() -> None:
+    tool = imported(file_of(["factory/before.policy.xml"], ["factory/run1.labels.yaml"]))
+    assert re.search(r"none found under the labels given; not reviewed: \d+ elements", seen(tool, 121))
+    assert "Not reviewed yet: " in seen(tool, 122)
+    assert tool.answers[322]["list"][-1] == "11 elements reached by personal data and not reviewed"
+
+
+def test_without_a_source_nothing_is_claimed(tmp_path: Path) -> None:
+    result = small_system(tmp_path, {"/a": "conduit"}, last="conduit: [Video]")
+    tool = imported(pia_file(result))
+    assert seen(tool, 121).startswith("No label names a source of personal data, so nothing was followed")
+    assert 322 not in tool.answers
+    assert "none" not in seen(tool, 121)
+
+
+def test_no_word_of_it_is_a_legal_verdict(care_home: Tool) -> None:
+    text = json.dumps([care_home.answers, care_home.measures]).casefold()
+    assert not any(word in text for word in ("compliant", "violat", "illegal", '"safe"', "breach"))
+
+
+def test_decisions_are_told_with_their_reason() -> None:
+    result = analyze(*CARE_HOME)
+    first = result.analysis.findings[0].id
+    tool = imported(pia_file(result, {first: "staff & family agreed <2030>"}))
+    assert tool.answers[322]["list"][0].endswith(f"(path to assess {first}, accepted: staff ＆ family agreed ‹2030›)")
+    assert "(accepted: staff & family agreed <2030>)" in seen(tool, 122)
+
+
+def test_storages_and_recipients_with_what_was_stated_of_them() -> None:
+    """Rule S9."""
+    elements = (
+        Element("node", "/camera"), Element("node", "/blur"), Element("external-system", "cloud"),
+        Element("storage", "bucket"), Element("storage", "disk"),
+    )  # fmt: skip
+    flows = tuple(Flow(a, b, "flow") for a, b in ((0, 1), (1, 2), (1, 3), (1, 4)))
+    here = Place("labels.yaml", 1)
+    said = {
+        0: (Statement("source", ("Video",), (1, 0), here),),
+        1: (Statement("sanitizer", ("Video",), (1, 0), here, Method.PSEUDONYMISE, stated=False),),
+        2: (Statement("leak", ("Video",), (1, 0), here),),
+    }
+    vocabulary = load()
+    graph, bound = FlowGraph(elements, flows, (), ()), Bound(said)
+    analysis = analyse(graph, bound, vocabulary.hierarchy)
+    stated = {
+        ("", "storage", "bucket"): {"retention": "P30D", "country": "DE", "encrypted": "yes"},
+        ("", "external-system", "cloud"): {"country": "US", "basis": "standard contractual clauses"},
+    }
+    tool = imported(cnil_pia(analysis, vocabulary.categories, vocabulary.hierarchy, {}, CREATED, stated=stated))
+    assert "Kept in: storage bucket (P30D), storage disk (retention not stated)" in seen(tool, 121)
+    assert "/blur: pseudonymise (the data is still personal), taken because the label states no method" in seen(
+        tool, 122
+    )
+    assert "storage bucket: pseudonymised Video; retention: P30D" in seen(tool, 215)
+    assert "storage disk: pseudonymised Video; retention: not stated" in seen(tool, 215)
+    assert "external-system cloud: country: US; basis of a transfer: standard contractual clauses" in seen(tool, 227)
+    contents = {m["title"]: Page(m["content"]).seen for m in tool.measures.values()}
+    assert contents["Encryption of storages"].startswith("bucket: yes")
+    assert "Access control by SROS 2 policies" not in contents  # no profile, so nothing is known of it
+
+
+# ---------------------------------------------------------------- bounds, names, sameness
+
+
+def test_long_answers_are_bounded_and_say_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    topics = "".join(f"<topic>/t{i:03}</topic>" for i in range(50))
+    profiles = "".join(
+        f'<profile ns="/" node="s{i}"><topics publish="ALLOW">{topics}</topics></profile>'
+        f'<profile ns="/" node="l{i}"><topics subscribe="ALLOW">{topics}</topics></profile>'
+        for i in range(12)
+    )
+    enclave = f'<enclave path="/"><profiles>{profiles}</profiles></enclave>'
+    (tmp_path / "p.xml").write_text(f'<policy version="0.2.0"><enclaves>{enclave}</enclaves></policy>')
+    (tmp_path / "l.yaml").write_text("labels: 1\nnodes: {/s*: {source: [Video]}, /l*: {leak: [Video]}}\n")
+    result = rosprivacy.analyze([str(tmp_path / "p.xml")], [str(tmp_path / "l.yaml")])
+    assert len(result.analysis.findings) == 144
+    tool = imported(pia_file(result))
+    assert len(json.dumps(tool.answers)) < 100_000
+    assert tool.answers[322]["list"][100] == "44 more paths to assess"
+    assert "and 94 more" in seen(tool, 122)
+    assert "and 20 more" in seen(tool, 123)
+    monkeypatch.setattr(cnil_answers, "NAMES", 3)
+    assert "/l0, /l1, /l10 and 9 more" in seen(imported(pia_file(result)), 121)
+
+
+def test_a_hostile_name_harms_nothing(tmp_path: Path) -> None:
+    result = small_system(tmp_path, {"/a": "{source: [Video]}", "/b": "{sanitizer: {Video: pseudonymise}}"})
+    known = result.analysis.graph
+    elements = tuple(replace(e, name=HOSTILE + e.name, robot=HOSTILE) for e in known.elements)
+    analysis = analyse(replace(known, elements=elements), result.bound, result.vocabulary.hierarchy)
+    files = {"policies": [{"file": "<img src=x onerror=alert(1)>\u202e.xml", "sha256": "0" * 64}]}
+    why = {finding.id: HOSTILE for finding in analysis.findings}
+    vocabulary = result.vocabulary
+    stated = {e.identity: {"country": HOSTILE, "basis": HOSTILE} for e in elements}
+    data = cnil_pia(analysis, vocabulary.categories, vocabulary.hierarchy, files, CREATED, why, stated)
+    tool = imported(data)
+    assert "<script>alert(1)</script>" in seen(tool, 121)  # seen as text
+    assert "‹script›" in tool.answers[322]["list"][0]
+    assert len(json.dumps(data)) < 30_000
+    assert "\u202e" not in json.dumps(data, ensure_ascii=False)
+
+
+@given(systems(), st.text(max_size=20))
+def test_any_system_with_any_names_is_taken(system: System, suffix: str) -> None:
+    known = system.graph()
+    graph = replace(known, elements=tuple(replace(e, name=e.name + suffix, robot=suffix) for e in known.elements))
+    if analysed(system) is None:
+        return
+    analysis = analyse(graph, system.bound(), HIERARCHY)
+    tool = imported(cnil_pia(analysis, CATEGORIES, HIERARCHY, {}, CREATED))
+    findings = [finding for finding in analysis.findings if not finding.dismissed]
+    assert len(tool.answers.get(322, {"list": []})["list"]) == len(findings) + bool(analysis.open)
+
+
+def test_the_command_dates_it_as_it_is_told() -> None:
+    command = [sys.executable, "-m", "rosprivacy", "analyze", "care-home.policy.xml", "-l", "care-home.labels.yaml"]
+    outputs = []
+    for epoch in ("1767323045", "1767323045", "soon"):
+        environment = {**os.environ, "SOURCE_DATE_EPOCH": epoch}
+        outputs.append(
+            subprocess.run(
+                [*command, "-f", "cnil-pia"], cwd=ROOT / "examples" / "care-home", env=environment,
+                capture_output=True, text=True, check=False,
+            )
+        )  # fmt: skip
+    assert outputs[0].stdout == outputs[1].stdout
+    assert {a["created_at"] for a in json.loads(outputs[0].stdout)["answers"]} == {"2026-01-02T03:04:05.000Z"}
+    imported(json.loads(outputs[0].stdout))
+    assert outputs[2].returncode == 2
+    assert outputs[2].stderr == "SOURCE_DATE_EPOCH:0: 'soon' is no time; give whole seconds since 1970, or unset it\n"
+
+
+def test_without_being_told_it_is_dated_now(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The tool sorts by date, so there is one."""
+    monkeypatch.delenv("SOURCE_DATE_EPOCH", raising=False)
+    made = imported(pia_file(analyze(*CARE_HOME))).pia["created_at"]
+    assert abs((made - datetime.now(UTC)).total_seconds()) < 60
+
+
+@pytest.mark.database
+def test_what_people_added_in_the_database_is_in_both_formats(neo4j_server: Connection) -> None:
+    """A finding whose last step no policy line allows is at the last line before it."""
+    vocabulary = load()
+    with connection.open_driver(neo4j_server) as driver:
+        driver.execute_query("MATCH (n) DETACH DELETE n")
+        load_robots(driver, [robot_of("care", analyze(*CARE_HOME))], vocabulary)
+        driver.execute_query(ADD_STORAGE)
+        result = run_stored(driver, Settings())
+        driver.execute_query("MATCH (n) DETACH DELETE n")
+    run = checked(log_of(result))
+    (found,) = [r for r in run["results"] if "storage footage bucket" in r["message"]["text"]]
+    assert physical(found["locations"][0]) == ("examples/care-home/care-home.policy.xml", 118)
+    last = way(found)[-1]
+    assert last["message"]["text"] == "pseudonymised Video goes from /recorder to storage footage bucket."
+    tool = imported(pia_file(result))
+    assert "storage footage bucket: pseudonymised Video; retention: P30D" in seen(tool, 215)

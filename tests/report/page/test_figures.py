@@ -1,0 +1,239 @@
+"""Pictures in a report: each finding has one or a word how to get it; bounded; nothing but shapes and text."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any
+
+from lxml import etree
+from lxml import html as lxml_html
+
+from rosprivacy.report.page import figures as module
+from rosprivacy.report.page import inline
+from rosprivacy.report.page.figures import Figures, figures, page_legend
+from rosprivacy.report.page.html import html
+from rosprivacy.report.page.inline import Wishes, picture_of, pictures_of
+from rosprivacy.report.page.outline import outline
+from rosprivacy.report.page.page_svg import DRAWS, SAYS, page_svg
+from rosprivacy.report.page.redact import redacted
+from rosprivacy.report.page.redacted_pictures import aliases_of, renamed
+from rosprivacy.report.page.words import Words
+from rosprivacy.report.pictures import dot as dot_module
+from rosprivacy.report.pictures import graphviz
+from rosprivacy.report.pictures.looks import ROLE_LOOKS
+from rosprivacy.report.pictures.privacy import Reached
+from rosprivacy.report.pictures.views import FindingViews, finding_view
+from tests.helpers.graphs import care_home, factory
+from tests.helpers.pictures import hostile
+from tests.helpers.reports import care
+
+if TYPE_CHECKING:
+    import pytest
+
+    from rosprivacy.analysis.answer import Analysis
+
+SVG = "{http://www.w3.org/2000/svg}"
+ROOT = {"viewBox", "width", "height", "class", "font-family", "font-size", "role", "aria-label"}
+
+
+def checked(svg: str) -> etree._Element:
+    """Nothing but shapes and text: no id, no style, no link, no script, nothing external."""
+    root = etree.fromstring(svg)
+    assert set(root.attrib) <= ROOT
+    for element in root.iter():
+        assert element is root or element.tag in DRAWS
+        assert element is root or set(element.attrib) <= SAYS
+        assert not re.search(r"url|javascript:|https?:", "".join(map(str, element.attrib.values())))
+    return root
+
+
+def texts(root: etree._Element) -> str:
+    return "\n".join(str(text.text).replace("\xa0", " ") for text in root.iter(f"{SVG}text"))
+
+
+def made(analysis: Analysis, **wishes: Any) -> list[inline.Inline]:
+    found = list(pictures_of(analysis, analysis.findings, Wishes(**wishes)))
+    assert None not in found
+    return [one for one in found if one]
+
+
+def test_pictures_for_a_page_have_its_colours_and_name_both_ends() -> None:
+    found = care_home().analysis
+    for one, finding in zip(made(found), found.findings, strict=True):
+        root = checked(one.svg)
+        assert one.whole
+        assert not re.search(r'(fill|stroke)="(black|#000000|white|#ffffff)"', one.svg)
+        assert 'stroke="currentColor"' in one.svg
+        assert {finding.source.name, finding.leak.name} <= set(texts(root).splitlines())
+
+
+def test_a_way_that_is_wide_is_drawn_downwards() -> None:
+    found = care_home().analysis
+    for one in made(found):
+        assert float(str(etree.fromstring(one.svg).get("width")).removesuffix("pt")) <= inline.WIDEST
+
+
+def test_a_picture_for_a_page_is_bounded_whatever_the_names_and_says_so() -> None:
+    found = hostile()
+    (finding,) = found.findings
+    one = picture_of(found, finding)
+    assert one
+    assert len(one.svg) < 40_000
+    checked(one.svg)
+    many = hostile([f"/topic_with_a_long_name/{i}/{'x' * (i % 7)}" for i in range(500)])
+    folded = picture_of(many, many.findings[0])
+    assert folded
+    assert len(folded.svg) < 10_000
+    assert folded.whole  # all are on one box, which says how many they are
+
+
+def test_what_is_not_whole_says_so_and_how_to_get_the_rest() -> None:
+    result = factory(2)
+    told = outline(result.document(), "en")
+    one = made(result.analysis)[0]
+    page = html(told, Figures({told.ways[0].id: inline.Inline(one.svg, whole=False)}))
+    assert "Only the shorter ways are drawn" in page
+    assert f"rosprivacy graph … --finding {told.ways[0].id}" in page
+    assert "Only the shorter ways" not in html(told, Figures({told.ways[0].id: one}))
+
+
+def test_hostile_names_stay_text() -> None:
+    found = hostile()
+    for one in made(found, most=100):
+        root = checked(one.svg)
+        assert "<script>alert(1)</script>" in "".join(root.itertext())
+
+
+def test_only_what_is_known_to_draw_stays() -> None:
+    picture = FindingViews(care_home().analysis).of(care_home().analysis.findings[0])
+    evil = (
+        '<svg width="9pt" height="9pt" viewBox="0 0 9 9" xmlns="http://www.w3.org/2000/svg" onload="x()">'
+        '<script>x()</script><style>*{}</style><image href="http://127.0.0.1/"/><foreignObject/><?x y?><!-- c -->'
+        '<g class="edge" id="e" onclick="x()" style="fill:red"><title>t</title>'
+        '<a href="javascript:x()"><path d="M1"/></a>'
+        '<path d="M0.123,1" fill="url(#x)" stroke="black"/></g></svg>'
+    )
+    root = checked(page_svg(evil.encode(), picture, 'a "way" <b>'))
+    assert [str(element.tag).removeprefix(SVG) for element in root.iter()] == ["svg", "g", "path"]
+    assert dict(root[0][0].attrib) == {"d": "M0.1,1", "stroke": "currentColor"}
+    assert root.get("aria-label") == 'a "way" <b>'
+
+
+def test_each_way_has_its_picture_and_says_it_in_words() -> None:
+    result = care_home()
+    told = outline(result.document(), "en")
+    drawn = figures(result.analysis, told)
+    page = lxml_html.document_fromstring(html(told, drawn))
+    pictures = page.xpath("//figure[@class='picture']//*[@role='img']")
+    assert [picture.get("aria-label") for picture in pictures] == [
+        "Picture of the way: " + " → ".join(e["name"] for e in finding["witness"]) for finding in care()["findings"]
+    ]
+    assert "no picture" not in page.text_content()
+    assert set(drawn.of) == {way.id for way in told.ways}
+
+
+def test_boxes_speak_the_language_of_the_report() -> None:
+    result = care_home()
+    drawn = figures(result.analysis, outline(result.document(), "de"))
+    said = "\n".join(texts(etree.fromstring(one.svg)) for one in drawn.of.values())
+    assert "bringt herein: Video von Personen" in said
+    assert "macht Gesichtstemplate aus Video von Personen" in said.replace("\n", " ")
+    assert not re.search(r"\b(source|leak|makes|ends|more)\b", said)
+
+
+def test_what_has_no_room_is_left_out_in_order_and_it_says_how_many_and_how_to_get_them() -> None:
+    result = care_home()
+    told = outline(result.document(), "en")
+    every = figures(result.analysis, told)
+    first = [way.id for way in told.ways][:1]
+    some = figures(result.analysis, told, room=len(every.of[first[0]].svg.encode()))
+    assert list(some.of) == first
+    page = html(told, some)
+    assert "2 of the ways below have no picture here" in page
+    assert [f"--finding {way.id}" in page for way in told.ways] == [False, True, True]
+
+
+def test_what_graphviz_cannot_draw_is_left_out_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    result = care_home()
+    told = outline(result.document(), "en")
+    second = told.ways[1].source
+    real = dot_module.dot
+
+    def dot(picture: Any, **options: Any) -> str:
+        broken = any(second in box.names for box in picture.boxes)
+        return "no graph" if broken else real(picture, **options)
+
+    monkeypatch.setattr(inline, "dot", dot)
+    drawn = figures(result.analysis, told)
+    missing = [way.id for way in told.ways if way.id not in drawn.of]
+    assert missing
+    assert told.ways[1].id in missing
+    assert f"{len(missing)} of the ways below have no picture here" in html(told, drawn)
+
+
+def test_without_graphviz_the_report_says_in_one_place_how_to_get_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(graphviz, "find_spec", lambda _: None)
+    result = care_home()
+    told = outline(result.document(), "en")
+    drawn = figures(result.analysis, told)
+    assert drawn == Figures(installed=False)
+    page = html(told, drawn)
+    assert page.count("rosprivacy[views]") == 1
+    assert "<figure" not in page
+    assert "How to read the pictures" not in page
+    assert "--finding" not in page
+
+
+def test_a_redacted_report_has_redacted_pictures() -> None:
+    result = care_home()
+    document = result.document()
+    (copy,) = redacted([document])
+    told = outline(copy, "en", redacted=True)
+    drawn = figures(result.analysis, told, aliases_of(document, copy))
+    page = html(told, drawn)
+    names = {element.name for element in result.analysis.graph.elements if len(element.name) > 4}
+    assert len(drawn.of) == len(told.ways)
+    assert not [name for name in names if name in page]
+    shown = texts(etree.fromstring(drawn.of[told.ways[0].id].svg))
+    assert told.ways[0].source in shown
+    assert told.ways[0].leak in shown
+
+
+def test_what_has_no_alias_has_no_name() -> None:
+    found = care_home().analysis
+    picture = renamed(finding_view(found, found.findings[0]), {})
+    assert all(name.startswith("…") for box in picture.boxes for name in box.names)
+    assert picture.title == ""
+    assert len(picture.keys) == len(picture.boxes)
+
+
+def test_the_legend_explains_every_role_in_both_languages() -> None:
+    for language in ("en", "de"):
+        looks = page_legend(Words(language))
+        assert len(looks) == len(ROLE_LOOKS) + 3
+        assert len({words for _, _, words in looks}) == len({look for look, _, _ in looks}) == len(looks)
+    result = care_home()
+    told = outline(result.document(), "en")
+    page = lxml_html.document_fromstring(html(told, figures(result.analysis, told)))
+    samples = page.xpath("//div[@class='legend']//li")
+    assert [sample.text_content().strip() for sample in samples] == [w for *_, w in page_legend(Words("en"))]
+    assert all(sample.find("svg").get("aria-hidden") == "true" for sample in samples)
+
+
+def test_what_pictures_share_is_made_once_for_each_kind_of_data(monkeypatch: pytest.MonkeyPatch) -> None:
+    """So that the time grows with the findings, not with findings times elements."""
+    asked: list[str] = []
+
+    def reached(analysis: Analysis, categories: set[str], say: Any) -> Any:
+        asked.extend(categories)
+        return Reached(analysis, categories, say)
+
+    monkeypatch.setattr("rosprivacy.report.pictures.views.Reached", reached)
+    found = factory(2).analysis
+    made(found)
+    assert len(found.findings) > 1
+    assert sorted(asked) == sorted({finding.category for finding in found.findings})
+
+
+def test_the_room_is_that_of_a_file_that_can_be_mailed() -> None:
+    assert module.ROOM <= 6 * 2**20

@@ -1,0 +1,172 @@
+"""docs/linked-data.md says what is true: its queries and its shape are run, its answers and its words are those there.
+
+``python -m tests.report.rdf.test_linked_data`` writes the answers in it anew.
+"""
+
+from __future__ import annotations
+
+import re
+from contextlib import chdir
+from typing import TYPE_CHECKING
+
+import pyshacl
+import pytest
+from rdflib import SH, Graph, Literal
+
+import rosprivacy
+from rosprivacy.ingest.database.loading import load
+from rosprivacy.private_neo4j import connection
+from rosprivacy.queries.library import find
+from rosprivacy.queries.run import run
+from rosprivacy.report.rdf.terms import OWN, RP
+from tests.helpers.graphs import care_home, rows_of
+from tests.helpers.paths import ROOT
+
+if TYPE_CHECKING:
+    from rdflib.term import Node
+
+    from rosprivacy.private_neo4j.connection import Connection
+
+CONDITION = (
+    "biometric data count here only when they are processed to identify a person uniquely (Article 4(14), recital 51); "
+    "a template that is kept to recognise somebody again is presumed to be"
+)
+CARE = "examples/care-home/care-home"
+PAGE = ROOT / "docs" / "linked-data.md"
+QUESTION = re.compile(r"(```sparql\n(.*?)```\n)\n(?:\|[^\n]*\n)*\n?", re.DOTALL)
+
+
+def findings() -> Graph:
+    """The file of the page."""
+    with chdir(ROOT):
+        result = rosprivacy.analyze([f"{CARE}.policy.xml"], [f"{CARE}.labels.yaml"])
+    return Graph().parse(data=result.linked_data("turtle"), format="turtle")
+
+
+@pytest.fixture(scope="module")
+def graph() -> Graph:
+    return findings()
+
+
+def questions() -> list[str]:
+    return [query for _, query in QUESTION.findall(PAGE.read_text("utf-8"))]
+
+
+def answered(graph: Graph, query: str) -> list[tuple[str, ...]]:
+    return [tuple("" if value is None else str(value) for value in row) for row in graph.query(query)]  # type: ignore[union-attr]
+
+
+def table(graph: Graph, query: str) -> str:
+    """The answer as it stands in the page."""
+    names = [str(name) for name in graph.query(query).vars or ()]
+    rows = [names, ["---"] * len(names), *answered(graph, query)]
+    return "".join(f"| {' | '.join(row)} |\n" for row in rows)
+
+
+def page(text: str) -> str:
+    """The page with its answers anew."""
+    graph = findings()
+    return QUESTION.sub(lambda found: f"{found[1]}\n{table(graph, found[2])}\n", text)
+
+
+def under_article_9(graph: Graph) -> set[tuple[str, ...]]:
+    """By the first question of the page."""
+    return set(answered(graph, questions()[0]))
+
+
+def marked(graph: Graph) -> set[tuple[str, ...]]:
+    """By the page's shape: what pyshacl marks, and what the marked value says."""
+    (shape,) = re.findall(r"```turtle\n(.*?)```", PAGE.read_text("utf-8"), re.DOTALL)
+    _, report, _ = pyshacl.validate(graph, shacl_graph=Graph().parse(data=shape, format="turtle"))
+    assert isinstance(report, Graph)
+    return {row(graph, finding, law) for finding, law in results(report)}
+
+
+def results(report: Graph) -> list[tuple[Node, Node]]:
+    found = report.subjects(SH.resultSeverity, SH.Info)
+    return [(report.value(r, SH.focusNode), report.value(r, SH.value)) for r in found]  # type: ignore[misc]
+
+
+def row(graph: Graph, finding: Node, law: Node) -> tuple[str, ...]:
+    """Category, source, leak, provision, verdict, condition, the category that it is stated of."""
+
+    def value(node: Node | None, *way: Node) -> str:
+        for step in way:
+            node = graph.value(node, step)
+        return "" if node is None else str(node)
+
+    return (
+        value(finding, RP.category).removeprefix(OWN),
+        value(finding, RP.dataSource, RP.name),
+        value(finding, RP.leak, RP.name),
+        value(law, RP.provision, RP.identifier),
+        value(law, RP.verdict),
+        value(law, RP.condition),
+        value(law, RP.statedOf).removeprefix(OWN),
+    )
+
+
+def test_there_are_five_questions_and_each_has_an_answer(graph: Graph) -> None:
+    assert len(questions()) == 5
+    assert all(answered(graph, query) for query in questions())
+
+
+def test_the_answers_are_those_of_the_page() -> None:
+    text = PAGE.read_text("utf-8")
+    assert text == page(text), "python -m tests.report.rdf.test_linked_data"
+
+
+def test_what_is_under_article_9_and_why() -> None:
+    """A face template is, if it is used to identify; video, also pseudonymised, and voice are not by themselves."""
+    expected = {
+        (
+            "FaceTemplate", "/camera", "/uplink", "GDPR Art. 9(1) biometric data", "conditional",
+            CONDITION, "FaceTemplate",
+        )
+    }  # fmt: skip
+    assert under_article_9(findings()) == expected
+
+
+def test_sparql_and_shacl_find_the_same_under_article_9(graph: Graph) -> None:
+    assert marked(graph) == under_article_9(graph) != set()
+
+
+def test_neither_counts_a_dismissed_finding(graph: Graph) -> None:
+    changed = Graph() + graph
+    for finding in list(graph.subjects(RP.fallsUnder, None)):
+        changed.set((finding, RP.dismissed, Literal(lexical_or_value=True)))
+    assert marked(changed) == under_article_9(changed) == set()
+
+
+def test_an_article_whose_number_begins_alike_is_another(graph: Graph) -> None:
+    changed = Graph() + graph
+    for provision in list(graph.subjects(RP.identifier, None)):
+        changed.set((provision, RP.identifier, Literal("GDPR Art. 90")))
+    assert marked(changed) == under_article_9(changed) == set()
+
+
+@pytest.mark.database
+def test_cypher_finds_the_same_under_article_9(graph: Graph, neo4j_server: Connection) -> None:
+    with connection.open_driver(neo4j_server) as driver:
+        driver.execute_query("MATCH (n) DETACH DELETE n")
+        result = care_home()
+        load(driver, [rows_of("care-home", result)], result.vocabulary)
+        query = find("findings-under-article")
+        answer = run(driver, query.text, query.values({}), limit=None)
+    named = ["category", "source", "leak", "provision", "verdict", "condition", "stated_of"]
+    columns = [answer.columns.index(name) for name in named]
+    assert {tuple(str(row[i] or "") for i in columns) for row in answer.rows} == under_article_9(graph)
+
+
+def test_the_words_of_the_page_are_those_of_the_shapes() -> None:
+    """Every class and property of ours has a meaning there, and nothing else has."""
+    shapes = (ROOT / "report" / "linked" / "findings.shapes.ttl").read_text("utf-8")
+    used = set(re.findall(r"sh:path rp:(\w+)|sh:class rp:(\w+)|sh:targetClass rp:(\w+)", shapes))
+    own = {name for names in used for name in names if name}
+    told = set(re.findall(r"`rp:(\w+)`", PAGE.read_text("utf-8").split("## Our own words")[1]))
+    kinds = {"RosNode", "Topic", "Service", "Action", "ExternalSystem", "SharedMemory", "SideChannel", "Device"}
+    assert told == own | kinds | {"Display", "Person", "Storage"}
+
+
+if __name__ == "__main__":
+    PAGE.write_text(page(PAGE.read_text("utf-8")), "utf-8")

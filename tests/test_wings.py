@@ -1,0 +1,168 @@
+"""Wings of a room form a ladder, nobody imports in a circle, and a module's name says which one is meant."""
+
+from __future__ import annotations
+
+import ast
+from collections import defaultdict
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.helpers.paths import ROOT
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+    from pathlib import Path
+
+PACKAGE = ROOT / "src" / "rosprivacy"
+ROOMS = ("analysis", "ingest", "ontology", "queries", "report")
+# Which wings a wing may import from; '' is what stands in the room itself. A name of one module is that module alone.
+FACTS = {"", "kernel", "answer", "decisions", "legal"}
+READING = {"reading", "policies"}
+MAY: dict[str, dict[str, set[str]]] = {
+    "analysis": {
+        "": set(),
+        "kernel": {""},
+        "answer": {"", "kernel"},
+        "decisions": {"", "answer"},
+        "legal": {"", "answer"},
+        "findings": FACTS,
+        "fleet": FACTS | {"findings"},
+        "mitigation": FACTS | {"findings"},
+        "parts": FACTS | {"findings", "fleet"},
+    },
+    "ingest": {
+        "": set(),
+        "reading": set(),
+        "policies": {"reading"},
+        "decisions": {"reading"},
+        "labels": READING,
+        "mitigation": READING,
+        "fleet": READING | {"labels"},
+        "database": READING | {"labels", "fleet"},
+    },
+    "ontology": {"": set()},
+    "queries": {"": set()},
+    "report": {
+        "": set(),
+        "document": {""},
+        "terminal": {"", "document"},
+        "pictures": {""},
+        "compare": {"", "document"},
+        "page": {"", "document", "pictures", "compare"},
+        "sarif": {""},
+        "cnil": {""},
+        "rdf": {"", "document"},
+        "fleet_formats": {"", "document", "pictures", "sarif", "cnil", "rdf"},
+    },
+    "rosprivacy": {
+        "": set(),
+        "private_neo4j": {""},
+        "spark": {""},
+        "cli": {"", "private_neo4j", "spark"},
+        "__main__": {"cli"},
+    },
+}
+# Names that stand twice: the same part of different wings, and what part that is.
+SAME_PART = {
+    "analysis": {"report/document", "report/terminal"},  # the answer about one system, as a document and as lines
+    "categories": {"cli", "report/terminal"},  # the command, and what it prints
+    "decisions": {"analysis", "report/document"},  # what they mean, and how the document tells them
+    "findings": {"analysis/findings", "report/rdf"},  # findings, and findings as RDF
+    "fleet": {"cli", "report/document", "report/terminal"},  # what is told of a fleet
+    "labels": {"cli", "report/terminal"},  # the command, and what was said of labels
+    "ledger": {"analysis/findings", "report/document", "report/terminal"},  # what was taken away, and how it is told
+    "mitigation": {"", "report/document", "report/terminal"},  # what is told of proposals
+    "non_ros": {"analysis", "report/document", "report/page"},  # what is told of non-ROS elements
+    "why_not": {"analysis/findings", "cli", "report/document", "report/terminal"},  # the question, and its answer
+    "unknown_ends": {"analysis/findings", "report/terminal"},  # what nobody knows the end of, and how it is told
+}
+
+
+def modules() -> dict[str, Path]:
+    """Every module of the program: its dotted name and its file."""
+    folders = [*(ROOT / room for room in ROOMS), PACKAGE]
+    files = [file for folder in folders for file in folder.rglob("*.py")]
+    found = {}
+    for file in files:
+        parts = file.relative_to(PACKAGE if PACKAGE in file.parents else ROOT).with_suffix("").parts
+        found[".".join(("rosprivacy", *(parts[:-1] if parts[-1] == "__init__" else parts)))] = file
+    return found
+
+
+MODULES = modules()
+
+
+def imports(module: str) -> Iterator[str]:
+    """The modules of the program that a module imports, at run time, for types, or in a function."""
+    for node in ast.walk(ast.parse(MODULES[module].read_text("utf-8"))):
+        if isinstance(node, ast.ImportFrom):
+            for alias in node.names:
+                inner = f"{node.module}.{alias.name}"
+                yield from (name for name in [inner if inner in MODULES else str(node.module)] if name in MODULES)
+        elif isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names if alias.name in MODULES)
+
+
+IMPORTS: Mapping[str, frozenset[str]] = {module: frozenset(imports(module)) - {module} for module in MODULES}
+
+
+def room_and_wing(module: str) -> tuple[str, str]:
+    parts = module.split(".")[1:]
+    room = parts.pop(0) if parts and parts[0] in ROOMS else "rosprivacy"
+    package = MODULES[module].name == "__init__.py"
+    wing = parts[0] if len(parts) > 1 or (package and parts) or (parts and parts[0] in MAY[room]) else ""
+    return room, wing
+
+
+@pytest.mark.parametrize("room", MAY)
+def test_a_wing_imports_from_those_below_it(room: str) -> None:
+    for module in sorted(MODULES):
+        mine, wing = room_and_wing(module)
+        if mine != room:
+            continue
+        assert wing in MAY[room], f"{module}: name its wing in MAY, and what it may import from"
+        for target in IMPORTS[module]:
+            other, below = room_and_wing(target)
+            if other == room and below != wing:
+                assert below in MAY[room][wing], (
+                    f"{module} imports {target}; {wing or room} may not import from {below}"
+                )
+
+
+@pytest.mark.parametrize("room", MAY)
+def test_the_wings_form_a_ladder(room: str) -> None:
+    left = dict(MAY[room])
+    while left:
+        lowest = {wing for wing, below in left.items() if not below & left.keys()}
+        assert lowest, f"none of {sorted(left)} is below the others"
+        left = {wing: below for wing, below in left.items() if wing not in lowest}
+
+
+@pytest.mark.parametrize("room", MAY)
+def test_every_wing_is_there_and_says_what_it_is(room: str) -> None:
+    folder = PACKAGE if room == "rosprivacy" else ROOT / room
+    for wing in MAY[room]:
+        init = folder / wing / "__init__.py"
+        if not (folder / f"{wing}.py").is_file():
+            assert ast.get_docstring(ast.parse(init.read_text("utf-8"))), f"{init}: a line that says what it is"
+
+
+def test_nobody_imports_in_a_circle() -> None:
+    """Take away modules that import none of those left, until there are none; what stays stands in a circle."""
+    left = dict(IMPORTS)
+    left["rosprivacy"] = frozenset()  # the public API imports what it needs when it is called
+    while free := {module for module, targets in left.items() if not targets & left.keys()}:
+        left = {module: targets for module, targets in left.items() if module not in free}
+    users = left
+    while top := set(users) - {target for targets in users.values() for target in targets}:
+        users = {module: targets for module, targets in users.items() if module not in top}
+    assert not users, f"import in a circle: {sorted(users)}"
+
+
+def test_no_name_stands_twice_but_of_the_same_part() -> None:
+    wings = defaultdict(set)
+    for module, file in MODULES.items():
+        if file.name not in {"__init__.py", "__main__.py"}:
+            wings[module.rpartition(".")[2]].add("/".join(module.split(".")[1:-1]))
+    assert {name: where for name, where in wings.items() if len(where) > 1} == SAME_PART
