@@ -65,7 +65,8 @@ def print_report(console: Console, report: Mapping[str, Any], *, verbose: bool =
         console.print(Text(text, style), soft_wrap=True)
 
 
-def _lines(report: Mapping[str, Any], *, verbose: bool, quiet: bool) -> Iterator[Line]:
+def verdict_line(report: Mapping[str, Any]) -> Line:
+    """Return the line that says the verdict, what it leaves open, and what was not asked for (rules S11, S12)."""
     style, meaning = VERDICTS[report["verdict"]]
     if not any(report["categories"]) or (report["verdict"] == "undetermined" and not report["open"]):
         meaning = UNREAD if files_not_read(report) and any(report["categories"]) else "no data was followed"
@@ -74,7 +75,11 @@ def _lines(report: Mapping[str, Any], *, verbose: bool, quiet: bool) -> Iterator
         style, meaning = "bold yellow", ACCEPTED[report["verdict"]]
     meaning += f"; {_count(accepted, 'finding')} accepted" if accepted else ""
     meaning += "".join(f"; {end}" for end in ends_at_verdict(report)) + asked_at_verdict(report)
-    yield f"{report['verdict']}: {meaning}", style
+    return f"{report['verdict']}: {meaning}", style
+
+
+def _lines(report: Mapping[str, Any], *, verbose: bool, quiet: bool) -> Iterator[Line]:
+    yield verdict_line(report)
     if quiet:
         return
     yield _summary(report), ""
