@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from typing import Any
 
-    from rosprivacy.assembly import Result
+    from rosprivacy.result import Result
 
 __all__ = ["__version__", "analyze", "analyze_fleet"]
 

@@ -14,6 +14,7 @@ import pytest
 from rdflib import SH, Graph, Literal
 
 import rosprivacy
+from rosprivacy.formats import written
 from rosprivacy.ingest.database.loading import load
 from rosprivacy.private_neo4j import connection
 from rosprivacy.queries.library import find
@@ -40,7 +41,7 @@ def findings() -> Graph:
     """The file of the page."""
     with chdir(ROOT):
         result = rosprivacy.analyze([f"{CARE}.policy.xml"], [f"{CARE}.labels.yaml"])
-    return Graph().parse(data=result.linked_data("turtle"), format="turtle")
+    return Graph().parse(data=written(result, "turtle"), format="turtle")
 
 
 @pytest.fixture(scope="module")
@@ -160,7 +161,7 @@ def test_cypher_finds_the_same_under_article_9(graph: Graph, neo4j_server: Conne
 
 def test_the_words_of_the_page_are_those_of_the_shapes() -> None:
     """Every class and property of ours has a meaning there, and nothing else has."""
-    shapes = (ROOT / "report" / "linked" / "findings.shapes.ttl").read_text("utf-8")
+    shapes = (ROOT / "report" / "rdf" / "findings.shapes.ttl").read_text("utf-8")
     used = set(re.findall(r"sh:path rp:(\w+)|sh:class rp:(\w+)|sh:targetClass rp:(\w+)", shapes))
     own = {name for names in used for name in names if name}
     told = set(re.findall(r"`rp:(\w+)`", PAGE.read_text("utf-8").split("## Our own words")[1]))
