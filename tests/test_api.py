@@ -2,22 +2,32 @@
 
 from __future__ import annotations
 
+import hashlib
 import inspect
+import json
 import re
+import shutil
 import subprocess
 import sys
 from dataclasses import fields
+from functools import partial
 from typing import TYPE_CHECKING, assert_type
 
 import pytest
+import yaml
 
 import rosprivacy
 from rosprivacy.analysis import errors
+from rosprivacy.cli.options import Format
+from rosprivacy.formats import FORMATS
+from rosprivacy.report.document import why_not
 from rosprivacy.settings import Settings
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+    from tests.helpers.command import Cli
 
 FACTORY = ROOT / "examples" / "factory"
 CARE = ROOT / "examples" / "care-home"
@@ -150,3 +160,178 @@ def test_labels_that_were_read_with_another_ontology_are_an_error(tmp_path: Path
         rosprivacy.analyze(POLICY, labels)
     hint = "unknown category 'PulseCurve'; give parse_labels the ontologies that analyze gets"
     assert str(error.value) == "\n".join(f"mine:{line}: {hint}" for line in (0, 3, 4))
+
+
+# ---------------------------------------------------------------- what a result can do
+
+
+@pytest.fixture(scope="module")
+def care() -> rosprivacy.Result:
+    return rosprivacy.analyze(POLICY, LABELS)
+
+
+def test_a_result_is_shown_in_one_line_that_begins_with_the_verdict(care: rosprivacy.Result) -> None:
+    """It was 392,420 characters for the factory."""
+    restricted = rosprivacy.analyze(POLICY, LABELS, categories="Biometric")
+    unlabelled = rosprivacy.analyze(POLICY)
+    for result in (care, restricted, unlabelled, rosprivacy.analyze_fleet(ROOT / "examples/fleet/fleet.yaml")):
+        line = result.to("text", quiet=True).rstrip("\n")
+        assert repr(result) == f"<Result: {line}>"
+        assert "\n" not in repr(result)
+        assert line in repr(result.findings)
+    assert repr(restricted).endswith("; only Biometric was asked for>")
+    assert repr(unlabelled).startswith("<Result: undetermined: no data was followed")
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_every_format_is_written_by_its_name(
+    care: rosprivacy.Result, name: str, cli: Cli, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
+    command = "analyze" if name in set(Format) else "report"
+    done = cli(command, POLICY, "-l", LABELS, "--format", name)
+    assert care.to(name) == done.stdout
+
+
+def test_a_format_that_is_none_is_an_error_with_all_that_are(care: rosprivacy.Result) -> None:
+    with pytest.raises(rosprivacy.InputError, match="format:0: unknown format 'sariff'; one of text, json, sarif, "):
+        care.to("sariff")
+
+
+def test_findings_are_a_sequence_and_rows_of_plain_values(care: rosprivacy.Result) -> None:
+    assert_type(care.findings[0], rosprivacy.Finding)
+    assert tuple(care.findings) == care.analysis.findings
+    assert tuple(care.findings[1:]) == care.analysis.findings[1:]
+    rows = care.findings.to_rows()
+    assert json.loads(json.dumps(rows)) == rows
+    document = care.document()["findings"]
+    assert [(row["id"], row["category"], row["source"], row["leak"]) for row in rows] == [
+        (told["id"], told["category"], told["source"]["name"], told["leak"]["name"]) for told in document
+    ]
+    for row, told in zip(rows, document, strict=True):
+        assert row["lines"] == [f"{line['file']}:{line['line']}" for step in told["steps"] for line in step["policy"]]
+
+
+def test_rows_of_a_fleet_count_the_findings_that_they_stand_for() -> None:
+    fleet = rosprivacy.analyze_fleet(ROOT / "examples" / "fleet" / "fleet.yaml")
+    told = [(p["finding"], p["findings"], p["robots"]) for p in fleet.document()["fleet"]["patterns"]]
+    assert [(row["id"], row["findings"], row["robots"]) for row in fleet.findings.to_rows()] == told
+
+
+def test_a_notebook_shows_names_escaped_and_the_verdict_first(tmp_path: Path) -> None:
+    policy = tmp_path / "p.policy.xml"
+    policy.write_text(
+        '<policy version="0.2.0"><enclaves><enclave path="/a"><profiles><profile ns="/" node="a">'
+        '<topics publish="ALLOW"><topic>/t</topic></topics></profile><profile ns="/" node="b">'
+        '<topics subscribe="ALLOW"><topic>/t</topic></topics></profile></profiles></enclave></enclaves></policy>'
+    )
+    hostile = "<img src=x onerror=alert(1)>&"
+    labels = {
+        "labels": 1,
+        "nodes": {"/a": {"source": ["Video"]}},
+        "elements": {hostile: {"kind": "display", "leak": ["Video"]}},
+        "flows": [{"from": "/b", "to": hostile}],
+    }
+    shown = rosprivacy.analyze(policy, rosprivacy.parse_labels(labels)).findings._repr_html_()
+    assert "<img" not in shown
+    assert "&lt;img src=x onerror=alert(1)&gt;&amp;" in shown
+    assert shown.startswith("<table><caption>leak: data can reach a leak</caption>")
+    empty = rosprivacy.analyze(policy).findings._repr_html_()
+    assert empty.startswith("<table><caption>undetermined: ")
+
+
+def test_the_networkx_graph_holds_every_element_and_flow_with_what_they_carry(care: rosprivacy.Result) -> None:
+    network, graph = care.to_networkx(), care.analysis.graph
+    assert tuple(network) == graph.elements
+    ends = [(graph.elements[flow.source], graph.elements[flow.target], flow.role) for flow in graph.flows]
+    assert set(network.edges) == set(ends)
+    assert network.number_of_edges() == len(ends)
+    hierarchy = care.vocabulary.hierarchy
+    for one in care.analysis.carried:
+        parts = [said for element, said in network.nodes(data=True) if element.shown_as == one.element.shown_as]
+        plain, pseudonymised = ({name for part in parts for name in part[key]} for key in ("carries", "pseudonymised"))
+        assert hierarchy.narrowest(sorted(plain)) == one.categories
+        assert hierarchy.narrowest(sorted(pseudonymised)) == one.pseudonymised
+    for finding in care.findings:
+        for step in finding.steps:
+            along = network.edges[step.source, step.target, step.role]
+            assert step.category in along["pseudonymised" if step.pseudonymised else "carries"]
+
+
+def test_why_not_is_what_the_command_says(care: rosprivacy.Result, cli: Cli) -> None:
+    done = cli("why-not", "/lidar", "/uplink", POLICY, "-l", LABELS, "--format", "json")
+    assert why_not.document(care.why_not("/lidar", "/uplink")) == json.loads(done.stdout)
+    with pytest.raises(rosprivacy.InputError, match="no element is called '/lidr'; did you mean /lidar"):
+        care.why_not("/lidr", "/uplink")
+
+
+# ---------------------------------------------------------------- the same policies under other labels
+
+
+def test_other_labels_give_the_answer_of_an_analysis_anew_without_the_policies(tmp_path: Path) -> None:
+    folder = tmp_path / "factory"
+    shutil.copytree(FACTORY, folder)
+    policy, (first, second) = folder / "before.policy.xml", [str(folder / f"run{n}.labels.yaml") for n in (1, 2)]
+    under_first, anew = rosprivacy.analyze(policy, first), rosprivacy.analyze(policy, second).document()
+    for file in folder.glob("*.xml"):
+        file.unlink()
+    assert under_first.with_labels(second).document() == anew
+    assert under_first.with_labels(second).with_labels(first).document() == under_first.document()
+    assert under_first.with_labels(*under_first.labels).document() == under_first.document()
+
+
+@pytest.mark.parametrize(
+    ("section", "name", "said"),
+    [
+        ("nodes", "/blur", {"sanitizer": {"Video": "anonymise"}}),
+        ("nodes", "/recorder", "conduit"),
+        ("nodes", "/uplink", None),
+        ("nodes", "/camera", {"source": ["Location"]}),
+        ("channels", "/camera/*", {"never": ["Video"]}),
+        ("channels", "/face_recognizer/faces", "mundane"),
+        ("channels", "/camera/image", "mundane"),  # of which only a glob spoke
+    ],
+)
+def test_an_entry_replaced_gives_the_answer_of_the_file_changed_so(
+    care: rosprivacy.Result, section: str, name: str, said: object
+) -> None:
+    labels = yaml.safe_load(LABELS.read_text("utf-8"))
+    labels[section][name] = said
+    anew = rosprivacy.analyze(POLICY, rosprivacy.parse_labels(labels))
+    replaced = care.with_entry(section, name, said)
+    assert replaced.analysis.findings == anew.analysis.findings
+    assert replaced.analysis.open == anew.analysis.open
+    assert replaced.analysis.carried == anew.analysis.carried
+    assert replaced.analysis.verdict == anew.analysis.verdict
+    named = replaced.assumptions["labels"]
+    assert named[-1]["file"] == f"{section} {name}"
+    digest = hashlib.sha256(LABELS.read_bytes()).hexdigest()
+    assert all((one["sha256"] == digest) == (one["file"] == str(LABELS)) for one in named)  # S12: no hash is another's
+    assert all(replaced.to(form) for form in FORMATS)
+
+
+def test_an_entry_is_replaced_in_the_section_where_it_stands(care: rosprivacy.Result) -> None:
+    """A topic and a service of one name are two elements (rule S1)."""
+    labels = rosprivacy.parse_labels(
+        "labels: 1\nnodes: {/camera: {source: [Video]}}\nchannels: {/audio: sensitive}\n"
+        "elements: {disk: {kind: storage, retention: P1D}}\nflows: [{from: /recorder, to: disk}]\n"
+    )
+    result = care.with_labels(labels)
+    with pytest.raises(rosprivacy.InputErrors, match="labels:3: '/audio' is labelled for more than topics; replace it"):
+        result.with_entry("topics", "/audio", "mundane")
+    again = result.with_entry("channels", "/audio", "mundane")
+    assert [entry.name for entry in again.labels[1].entries] == ["/camera", "disk"]
+    kept = {"kind": "storage", "retention": "P2D"}
+    disk = result.with_entry("elements", "disk", kept)
+    assert [str(duration) for facts in disk.analysis.outside.values() for _, duration in facts.retention] == ["P2D"]
+
+
+def test_what_cannot_be_replaced_is_an_error(care: rosprivacy.Result) -> None:
+    with pytest.raises(rosprivacy.InputErrors, match="unknown section 'node'; one of nodes, channels, "):
+        care.with_entry("node", "/camera", "conduit")
+    with pytest.raises(rosprivacy.InputErrors, match="nodes /camra:4: '/camra' matches no node of the policies"):
+        care.with_entry("nodes", "/camra", "conduit")
+    fleet = rosprivacy.analyze_fleet(ROOT / "examples" / "fleet" / "fleet.yaml")
+    for change in (fleet.with_labels, partial(fleet.with_entry, "nodes", "/camera", "conduit")):
+        with pytest.raises(rosprivacy.InputError, match="of a fleet or a database labels are not replaced; change"):
+            change()

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import ast
+import doctest
 import re
 import subprocess
 import sys
@@ -175,6 +176,17 @@ def test_the_label_files_that_are_shown_are_read(page: Path, tmp_path: Path) -> 
         file = tmp_path / "labels.yaml"
         file.write_text(block)
         assert read_labels(str(file), load()).entries
+
+
+def test_what_is_shown_of_python_is_what_it_prints(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    page = ROOT / "docs" / "python.md"
+    code = "".join(blocks(page, "pycon"))
+    shown: list[str] = []
+    runner = doctest.DocTestRunner()
+    ran = runner.run(doctest.DocTestParser().get_doctest(code, {}, page.name, str(page), 0), out=shown.append)
+    assert (ran.failed, "".join(shown)) == (0, "")
+    assert ran.attempted > 20
 
 
 def test_the_readmes_first_finding_is_what_is_printed() -> None:

@@ -40,26 +40,31 @@ def with_entry(
     Raises
     ------
     InputErrors
-        If the section or the entry is wrong.
+        If the section or the entry is wrong, or a file says the same of more kinds of elements than the section has.
     """
-    what = f"{section} {name}"
     if section not in KINDS:
-        raise InputErrors([LabelError(what, 0, f"unknown section {shown(section)!r}", f"one of {', '.join(KINDS)}")])
-    entry = parse_labels({"labels": 1, section: {name: said}}, vocabulary, name=what)
-    kinds = frozenset(KINDS[section])
-    return (*(file if file.shipped else _without(file, kinds, name, what) for file in files), entry)
+        raise InputErrors(
+            [LabelError("labels", 0, f"unknown section {shown(section)!r}", f"one of {', '.join(KINDS)}")]
+        )
+    entry = parse_labels({"labels": 1, section: {name: said}}, vocabulary, name=f"{section} {name}")
+    return (*(file if file.shipped else _without(file, section, name) for file in files), entry)
 
 
-def _without(labels: Labels, kinds: frozenset[str], name: str, what: str) -> Labels:
-    """The labels without entries of some kinds and a name."""
-    entries = []
-    for entry in labels.entries:
-        kept = tuple(kind for kind in entry.kinds if entry.name != name or kind not in kinds)
-        entries += [replace(entry, kinds=kept)] if kept else []
-    elements = tuple(one for one in labels.elements if one.name != name or one.kind not in kinds)
-    if (tuple(entries), elements) == (labels.entries, labels.elements):
+def _without(labels: Labels, section: str, name: str) -> Labels:
+    """The labels without the entries of a section for a name."""
+    kinds = set(KINDS[section])
+    gone = [entry for entry in labels.entries if entry.name == name and kinds.intersection(entry.kinds)]
+    for entry in gone:
+        if not kinds.issuperset(entry.kinds):
+            what = f"{shown(name)!r} is labelled for more than {section}"
+            raise InputErrors([LabelError(entry.place.file, entry.place.line, what, "replace it under channels")])
+    if not gone:
         return labels
-    digest = hashlib.sha256(f"{labels.sha256} without {what}".encode("utf-8", "surrogatepass")).hexdigest()
+    file = f"{labels.file} without {section} {name}"
     return replace(
-        labels, file=f"{labels.file} without {what}", sha256=digest, entries=tuple(entries), elements=elements
+        labels,
+        file=file,
+        sha256=hashlib.sha256(f"{labels.sha256} {file}".encode("utf-8", "surrogatepass")).hexdigest(),
+        entries=tuple(entry for entry in labels.entries if entry not in gone),
+        elements=tuple(one for one in labels.elements if one.name != name or one.kind not in kinds),
     )

@@ -6,12 +6,12 @@ In: what a user names. Out: a ``Result``.
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from dataclasses import replace
+from functools import partial
+from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.analysis.findings.findings import Options, analyse
-from rosprivacy.analysis.findings.ledger import ledger
 from rosprivacy.analysis.fleet.patterns import FleetView
 from rosprivacy.analysis.model import unread
 from rosprivacy.asked import asked_for
@@ -34,83 +34,15 @@ from rosprivacy.ingest.policies.joint_policies import joint_warnings
 from rosprivacy.ingest.policies.policy_files import read_policies
 from rosprivacy.ingest.policies.saved_graph import read_saved
 from rosprivacy.ontology.vocabulary import load
-from rosprivacy.report.document.analysis import document
-from rosprivacy.report.document.decisions import with_decisions
-from rosprivacy.report.document.fleet import fleet_document
+from rosprivacy.result import Result
 
 if TYPE_CHECKING:
     from neo4j import Driver
 
-    from rosprivacy.analysis.answer import Analysis
-    from rosprivacy.analysis.decisions import Decided
-    from rosprivacy.analysis.findings.ledger import TakenAway
-    from rosprivacy.analysis.model import Bound, Diagnostic, FlowGraph, Policy
+    from rosprivacy.analysis.model import Diagnostic, FlowGraph, Policy
     from rosprivacy.ingest.database.rows import RobotRows
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.settings import Settings
-
-
-@dataclass(frozen=True, slots=True)
-class Result:
-    """An analysis and what it rests on.
-
-    Attributes
-    ----------
-    fleet
-        Which robots of the graph stand for which, and what they have in common; None for a single robot.
-    """
-
-    analysis: Analysis
-    bound: Bound
-    vocabulary: Vocabulary
-    policies: tuple[Policy, ...]
-    diagnostics: tuple[Diagnostic, ...]
-    assumptions: dict[str, Any]
-    labels: tuple[Labels, ...] = ()
-    options: Options = field(default_factory=Options)
-    decided: Decided | None = None
-    fleet: FleetView | None = None
-
-    @property
-    def shown(self) -> Analysis:
-        """The analysis as readers get it: of a fleet one finding of each pattern, one robot of those that are alike."""
-        return self.fleet.shown(self.analysis) if self.fleet else self.analysis
-
-    @property
-    def taken_away(self) -> tuple[TakenAway, ...]:
-        """The ledger: what was taken away on the data's side, and on whose word; of robots that are alike of one."""
-        rows = ledger(self.analysis, self.bound, self.vocabulary.hierarchy, self.diagnostics)
-        beside = self.fleet.likeness.second if self.fleet else ()
-        return tuple(row for row in rows if row.element is None or row.element.robot not in beside)
-
-    def document(self) -> dict[str, Any]:
-        """Return the JSON document of the contract."""
-        vocabulary = self.vocabulary
-        made = document(
-            self.shown,
-            vocabulary.categories,
-            vocabulary.hierarchy,
-            self.diagnostics,
-            self.assumptions,
-            self.bound.subjects,
-            self.taken_away,
-        )
-        made = with_decisions(made, self.decided) if self.decided else made
-        return fleet_document(made, self.analysis, self.fleet) if self.fleet else made
-
-    def linked_data(self, form: str, **more: Any) -> str:
-        """Return the findings as RDF, in ``turtle`` or ``json-ld``; ``more`` as for ``rdf_graph``."""
-        from rosprivacy.report.rdf.findings import rdf_graph  # noqa: PLC0415 - rdflib, only where it is used
-        from rosprivacy.report.rdf.serialise import SERIALISERS  # noqa: PLC0415
-
-        more = {"taken": self.taken_away, **more}
-        graph = rdf_graph(self.shown, self.vocabulary, self.diagnostics, self.assumptions, **more)
-        if self.fleet:
-            from rosprivacy.report.fleet_formats import robot_triples  # noqa: PLC0415
-
-            for triple in robot_triples(self.fleet):
-                graph.add(triple)
-        return SERIALISERS[form](graph)
 
 
 def run(policies: tuple[str, ...], labels: tuple[str | Labels, ...], settings: Settings) -> Result:
@@ -123,7 +55,18 @@ def run(policies: tuple[str, ...], labels: tuple[str | Labels, ...], settings: S
     """
     vocabulary = load(ontologies=settings.ontologies)
     asked = asked_for(vocabulary, settings)
-    system, diagnostics = read_system(policies, settings)
+    return _under(labels, read_system(policies, settings), vocabulary, asked, settings)
+
+
+def _under(
+    labels: tuple[str | Labels, ...],
+    read: tuple[tuple[Policy, ...], tuple[Diagnostic, ...]],
+    vocabulary: Vocabulary,
+    asked: set[str] | None,
+    settings: Settings,
+) -> Result:
+    """Analyse policies that were read, under labels."""
+    system, diagnostics = read
     files = read_label_files(labels, vocabulary, settings)
     graph = extend(build(system, settings.view), files)
     bound = bind(graph, files)
@@ -138,7 +81,19 @@ def run(policies: tuple[str, ...], labels: tuple[str | Labels, ...], settings: S
     said += joined.diagnostics if joined else ()
     rests_on = what_it_rests_on(graph, sources_of(system), files, analysis, settings, vocabulary)
     rests_on |= assumed_decisions(decisions)
-    return Result(analysis, bound, vocabulary, system, said, rests_on, tuple(files), options, joined)
+    again = partial(_under, read=read, vocabulary=vocabulary, asked=asked, settings=settings)
+    return Result(
+        analysis,
+        bound,
+        vocabulary,
+        said,
+        rests_on,
+        joined,
+        policies=system,
+        labels=tuple(files),
+        options=options,
+        again=again,
+    )
 
 
 def run_stored(driver: Driver, settings: Settings) -> Result:
@@ -173,8 +128,7 @@ def run_stored(driver: Driver, settings: Settings) -> Result:
         own_assumptions(stored.graph, settings, vocabulary, analysis.emitted) | loaded | assumed_decisions(decisions)
     )
     view = FleetView.of(analysis, stored.likeness) if len(stored.robots) > 1 else None
-    result = Result(analysis, stored.bound, vocabulary, (), said, assumptions, options=chosen, decided=joined)
-    return replace(result, fleet=view)
+    return Result(analysis, stored.bound, vocabulary, said, assumptions, joined, view, options=chosen)
 
 
 def robot_of(name: str, result: Result) -> RobotRows:
@@ -212,7 +166,8 @@ def read_label_files(labels: tuple[str | Labels, ...], vocabulary: Vocabulary, s
     """Read the standard channels' file and the user's, if not read before, with the problems of all of them."""
     files: list[Labels] = []
     problems: list[InputError] = []
-    standard = [settings.standard_channels] if settings.standard_channels else []
+    read = {file.file for file in labels if isinstance(file, Labels)}
+    standard = [name for name in (settings.standard_channels,) if name and name not in read]
     for file in dict.fromkeys([*standard, *labels]):
         if isinstance(file, Labels):
             files.append(file)

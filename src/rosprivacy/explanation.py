@@ -45,7 +45,7 @@ def explained(
             "labels", 0, "no label names a source", "say where data comes in: nodes: {/x: {source: [Video]}}"
         )
     begun = [name for name in found.categories if any(found.begins(v) & found.both(name) for v in ends[0])]
-    return tuple(why_not(analysis, *ends, name) for name in names or begun or found.categories)
+    return tuple(why_not(analysis, ends[0], ends[1], name) for name in names or begun or found.categories)
 
 
 def _vertices(analysis: Analysis, written: str) -> list[int]:

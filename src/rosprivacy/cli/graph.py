@@ -29,8 +29,8 @@ from rosprivacy.cli.output import emit, progress_of
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.model import Profile
-    from rosprivacy.assembly import Result
     from rosprivacy.report.pictures.picture import Picture
+    from rosprivacy.result import Result
     from rosprivacy.settings import Settings
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -29,7 +28,7 @@ from rosprivacy.cli.options import (
 from rosprivacy.cli.output import emit, progress_of
 
 if TYPE_CHECKING:
-    from rosprivacy.assembly import Result
+    from rosprivacy.result import Result
     from rosprivacy.settings import Settings
 
 
@@ -105,6 +104,7 @@ def report(
 
     It ends with 0 when the report is written, whatever that says; a gate in CI is ``analyze``.
     """
+    from rosprivacy.formats import Style, written
     from rosprivacy.settings import Settings
 
     settings = Settings(
@@ -131,8 +131,8 @@ def report(
         result = run_fleet(fleet, settings)
     else:
         result = _result(policies, labels, settings, neo4j, from_database=from_database)
-    text = _text(result, format, lang.value, title, since, redact=redact)
-    emit(text.encode(), output)  # it says of itself that it is UTF-8
+    style = Style(language=lang.value, title=title, since=str(since) if since else None, redact=redact)
+    emit(written(result, format.value, style).encode(), output)  # it says of itself that it is UTF-8
 
 
 def _result(
@@ -146,38 +146,3 @@ def _result(
 
     with driver_of(neo4j) as driver:
         return run_stored(driver, settings)
-
-
-def _text(result: Result, form: ReportFormat, language: str, title: str, since: Path | None, *, redact: bool) -> str:
-    """The report; everything in it comes from the documents."""
-    from dataclasses import replace
-
-    from rosprivacy.clock import today
-    from rosprivacy.report.compare.earlier import read_earlier
-    from rosprivacy.report.page.outline import outline
-
-    document = result.document()
-    earlier = read_earlier(str(since)) if since else None
-    aliases = None
-    if redact:
-        from rosprivacy.report.page.redact import redacted
-        from rosprivacy.report.page.redacted_pictures import aliases_of
-
-        copies = redacted([document, *([earlier.document] if earlier else [])])
-        aliases = aliases_of(document, copies[0])
-        document = copies[0]
-        earlier = replace(earlier, document=copies[1], file="file-0") if earlier else None
-    if form is ReportFormat.article30:
-        from rosprivacy.report.page.article30 import record
-
-        return record(document, language)
-    made = today(os.environ)
-    told = outline(document, language, title=title, made=made, earlier=earlier, redacted=redact)
-    if form is ReportFormat.markdown:
-        from rosprivacy.report.page.markdown import markdown
-
-        return markdown(told)
-    from rosprivacy.report.page.figures import figures
-    from rosprivacy.report.page.html import html
-
-    return html(told, figures(result.analysis, told, aliases))

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosprivacy.analysis.findings.why_not import WhyNot
-    from rosprivacy.assembly import Result
+    from rosprivacy.result import Result
     from rosprivacy.settings import Settings
 
 

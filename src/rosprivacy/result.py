@@ -1,0 +1,178 @@
+"""What an analysis gives back: the ``Answer`` that every format is made of, and what was read to get it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.errors import InputError
+from rosprivacy.analysis.findings.findings import Options
+from rosprivacy.explanation import explained
+from rosprivacy.finding_table import Findings
+from rosprivacy.formats import Style, written
+from rosprivacy.ingest.labels.replaced import with_entry
+from rosprivacy.report.answer import Answer
+from rosprivacy.report.document.whole import document
+from rosprivacy.report.terminal.analysis import verdict_line
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import networkx as nx
+
+    from rosprivacy.analysis.findings.why_not import WhyNot
+    from rosprivacy.analysis.model import Element, Policy
+    from rosprivacy.ingest.labels.label_file import Labels
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Result(Answer):
+    """An answer with the policies and label files behind it; ``formats.py`` says in which formats it is written.
+
+    Attributes
+    ----------
+    policies, labels
+        As they were read; none where the system comes from a database.
+    options
+        What was asked.
+    again
+        Analyses the same policies, as they were read, under other labels; None of a fleet and of a database.
+    """
+
+    policies: tuple[Policy, ...] = ()
+    labels: tuple[Labels, ...] = ()
+    options: Options = field(default_factory=Options)
+    again: Callable[[tuple[str | Labels, ...]], Result] | None = field(default=None, compare=False)
+
+    def __repr__(self) -> str:
+        return f"<Result: {self._verdict()}>"
+
+    def _verdict(self) -> str:
+        """The line that every report begins with."""
+        return verdict_line(self.document())[0]
+
+    @property
+    def findings(self) -> Findings:
+        """The findings as a table: a sequence of ``Finding``, with ``to_rows()``; of a fleet one of each pattern.
+
+        >>> import rosprivacy
+        >>> result = rosprivacy.analyze("examples/factory/before.policy.xml", "examples/factory/run2.labels.yaml")
+        >>> [(finding.source.name, finding.leak.name) for finding in result.findings]
+        [('/robot_camera', '/archive_server'), ('/safety_camera', '/archive_server')]
+        """
+        return Findings(self.shown.findings, self.fleet, self._verdict)
+
+    def document(self) -> dict[str, Any]:
+        """Return the JSON document of the contract."""
+        return document(self)
+
+    def to(
+        self,
+        format: str,  # noqa: A002 - the option's name
+        *,
+        verbose: bool = False,
+        quiet: bool = False,
+        language: str = "en",
+        title: str = "",
+        since: str | None = None,
+        redact: bool = False,
+    ) -> str:
+        """Return the answer in a format, as the command line writes it.
+
+        Parameters
+        ----------
+        format
+            A name of ``rosprivacy.formats.FORMATS``: ``text``, ``json``, ``sarif``, ``html``, ``turtle``, …
+        verbose, quiet
+            Of text: every open element and notice, or the verdict only.
+        language, title, redact
+            Of a report: ``en`` or ``de``; name of the system; replace names of elements, files, robots and persons.
+        since
+            File of an earlier analysis, to tell what changed.
+
+        Raises
+        ------
+        InputError
+            If there is no such format, or the earlier file cannot be read.
+
+        Examples
+        --------
+        >>> import rosprivacy
+        >>> result = rosprivacy.analyze("examples/factory/after.policy.xml", "examples/factory/run5.labels.yaml")
+        >>> print(result.to("text", quiet=True), end="")
+        no-leak-found: no way to a leak, everything on the way is reviewed
+        """
+        style = Style(verbose=verbose, quiet=quiet, language=language, title=title, since=since, redact=redact)
+        return written(self, format, style)
+
+    def to_networkx(self) -> nx.MultiDiGraph[Element]:
+        """Return the graph: elements with what they carry and do, flows with what goes along them.
+
+        Of a fleet one robot stands in it for all that are alike. What a DENY takes away is not in it (rule S5).
+        """
+        from rosprivacy.network import to_networkx  # noqa: PLC0415 - networkx, only where it is used
+
+        return to_networkx(self.analysis)
+
+    def why_not(self, source: str, leak: str, *categories: str) -> tuple[WhyNot, ...]:
+        """Return for each category what is between two elements: a finding, or what stands in the way.
+
+        Parameters
+        ----------
+        source, leak
+            Names; of a fleet ``robot:name``.
+        *categories
+            To ask about; by default what the source emits, or all if it emits nothing.
+
+        Raises
+        ------
+        InputError
+            If nothing is called so, or nothing emits the category.
+        """
+        return explained(self.analysis, self.vocabulary, source, leak, categories)
+
+    def with_labels(self, *labels: str | Labels) -> Result:
+        """Analyse the same policies under other labels, without reading the policies again.
+
+        Parameters
+        ----------
+        *labels
+            Label files, or labels from ``parse_labels``, in place of all those before; the standard channels stay.
+
+        Raises
+        ------
+        InputError
+            Of the result of a fleet or a database, whose labels stand elsewhere.
+        InputErrors
+            With every problem of the labels.
+        """
+        if self.again is None:
+            hint = "change what it was read from, and analyse that again"
+            raise InputError("labels", 0, "of a fleet or a database labels are not replaced", hint)
+        return self.again(labels)
+
+    def with_entry(self, section: str, name: str, said: object) -> Result:
+        """Analyse the same policies with one entry in place of all that the label files say of a name.
+
+        Parameters
+        ----------
+        section
+            ``nodes``, ``channels``, ``topics``, ``services``, ``actions`` or ``elements``.
+        name
+            As the label files write it: a glob stands for the entry of that glob.
+        said
+            The entry as in a label file; None to say nothing of it.
+
+        Raises
+        ------
+        InputError, InputErrors
+            As ``with_labels``.
+
+        Examples
+        --------
+        >>> import rosprivacy
+        >>> result = rosprivacy.analyze("examples/factory/before.policy.xml", "examples/factory/run2.labels.yaml")
+        >>> len(result.with_entry("nodes", "/robot_camera", "conduit").findings)
+        1
+        """
+        return self.with_labels(*with_entry(self.labels, section, name, said, self.vocabulary))
