@@ -310,11 +310,10 @@ def _flow(row: tuple[int, int, str, str, Mapping[str, Any]], elements: tuple[Ele
 
 
 def _denied(row: tuple[int, int, str, str, Mapping[str, Any]], elements: tuple[Element, ...]) -> Flow:
-    """A flow that DENY lines take back; of these the places are kept."""
+    """A flow that DENY lines take back."""
     flow, channel = _flow(row, elements), elements[row[1] if elements[row[1]].is_channel else row[0]]
-    lines = [_place(line) for line in row[4].get("denied_by") or ()]
-    denials = tuple(Grant(False, row[2], channel.kind, channel.name, "", "", line) for line in lines)
-    return replace(flow, denials=denials)
+    lines = [json.loads(line) for line in row[4].get("denials") or ()]
+    return replace(flow, denials=_lines(lines, row[2], channel, allow=False))
 
 
 def _place(text: str) -> Place:
@@ -327,9 +326,13 @@ def _grants(said: Mapping[str, Any], role: str, channel: Element) -> tuple[Grant
     """The policy lines behind a flow."""
     lines = [said] if said.get("file") else []
     lines += [json.loads(line) for line in said.get("further") or ()]
+    return _lines(lines, role, channel, allow=True)
+
+
+def _lines(lines: Iterable[Mapping[str, Any]], role: str, channel: Element, *, allow: bool) -> tuple[Grant, ...]:
     return tuple(
         Grant(
-            allow=True,
+            allow=allow,
             role=role,
             kind=channel.kind,
             name=channel.name,

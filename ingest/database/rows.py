@@ -204,7 +204,9 @@ def allowed(result: Row, said: Sequence[Statement], vocabulary: Vocabulary) -> R
 
 def denied(flow: Flow) -> Row:
     """Return the properties of a denied flow."""
-    return {"decision": "deny", "carries": [], "denied_by": [str(grant.place) for grant in flow.denials]}
+    lines = [json.dumps(_grant(grant), sort_keys=True) for grant in flow.denials]
+    by = [str(grant.place) for grant in flow.denials]
+    return {"decision": "deny", "carries": [], "denied_by": by, "denials": lines}
 
 
 def flow_row(robot: str, flow: Flow, source: str, target: str, properties: Row) -> Row:
