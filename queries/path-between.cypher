@@ -19,7 +19,8 @@ CALL (a) {
                 (x)-[m:NEVER_HAS]->(:DataCategory)
                 WHERE NOT EXISTS { (x)-[o:MAY_HAVE|HAS_ONLY]->(:DataCategory)
                                    WHERE coalesce(o.tier, 2) * 10000000 + coalesce(o.specificity, 1000000)
-                                         > coalesce(m.tier, 2) * 10000000 + coalesce(m.specificity, 1000000) } })){1,}
+                                         > coalesce(m.tier, 2) * 10000000 + coalesce(m.specificity, 1000000)
+                                         AND NOT (coalesce(o.naming, '') = 'glob' AND coalesce(m.tier, 2) = 0) } })){1,}
             (b:Element WHERE b.name + '' = $to)  // by index, Neo4j would pair each start with each end
   RETURN p ORDER BY length(p), b.id LIMIT 1
 }

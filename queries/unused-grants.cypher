@@ -23,7 +23,8 @@ CALL (flows) {
   OPTIONAL MATCH (end)-[m:NEVER_HAS]->(:DataCategory)
   WHERE NOT EXISTS { (end)-[o:MAY_HAVE|HAS_ONLY]->(:DataCategory)
                      WHERE coalesce(o.tier, 2) * 10000000 + coalesce(o.specificity, 1000000)
-                           > coalesce(m.tier, 2) * 10000000 + coalesce(m.specificity, 1000000) }
+                           > coalesce(m.tier, 2) * 10000000 + coalesce(m.specificity, 1000000)
+                           AND NOT (coalesce(o.naming, '') = 'glob' AND coalesce(m.tier, 2) = 0) }
   WITH end.name AS channel, count(m) > 0 AS mundane ORDER BY channel
   RETURN collect(DISTINCT channel) AS channels, min(CASE WHEN mundane THEN 1 ELSE 0 END) = 1 AS never
 }

@@ -218,7 +218,7 @@ def test_loose_ends_are_left_out_and_counted_but_never_a_wildcard() -> None:
     picture = narrow.without_loose_ends(ros(care_home()))
     assert "/camera/get_parameters" not in names_of(picture.boxes)
     assert "/camera/*" in names_of(picture.boxes)
-    assert "Not drawn: 7 channels that no more than one node names, wildcards apart" in picture.notes
+    assert "Not drawn: 1 channel that no more than one node names, wildcards apart" in picture.notes
 
 
 def test_a_neighbourhood_is_what_is_within_some_lines() -> None:
