@@ -1,6 +1,21 @@
 """The error tree. Factored out so that every room can raise without importing another.
 
-A message is one line, ``file:line: what is wrong; what to do``; the command line turns errors into exit codes.
+A message is one line, ``file:line: what is wrong; what to do``; the command line turns errors into exit codes::
+
+    RosPrivacyError
+      InputErrors          all problems of an input at once
+      InputError           one problem at one place
+        PolicyError
+        LabelError
+        LimitsError
+        DecisionError
+        FleetError
+        OntologyError
+        GraphError
+      QueryError
+      DrawingError
+      DatabaseError
+      ClusterError
 """
 
 from __future__ import annotations
