@@ -165,7 +165,7 @@ class FleetRows:
         ):
             properties = allowed(result, self._placed.bound.flows.get(index, ()), self._vocabulary)
             leaving[self._graph.elements[flow.source].robot].append((flow, properties))
-        for flow in self._graph.denied:
+        for flow in self._graph.taken_back:
             leaving[self._graph.elements[flow.source].robot].append((flow, denied(flow)))
         return dict(leaving)
 
