@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.answer import Analysis, Carried, Finding, Step, Verdict
 from rosprivacy.analysis.decisions import Case
 from rosprivacy.analysis.findings.concerns import concerns
-from rosprivacy.analysis.findings.further_paths import WITNESS, Between, further
+from rosprivacy.analysis.findings.further_paths import Between, further
 from rosprivacy.analysis.findings.open_questions import open_questions
 from rosprivacy.analysis.findings.unknown_ends import unknown_ends
 from rosprivacy.analysis.kernel import standard_channels
@@ -25,6 +25,7 @@ from rosprivacy.analysis.kernel.search import START, Net, Search, path_to, prese
 from rosprivacy.analysis.kernel.spread import Spread, bits_of
 from rosprivacy.analysis.kernel.spreading import spread
 from rosprivacy.analysis.model import DISCLOSURE, Diagnostic, Element, Place, Severity
+from rosprivacy.analysis.modes import Paths
 from rosprivacy.analysis.non_ros import country_unknown, on_day
 
 if TYPE_CHECKING:
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.findings.concerns import Concern
     from rosprivacy.analysis.hierarchy import Hierarchy
-    from rosprivacy.analysis.model import Bound, FlowGraph
+from rosprivacy.analysis.model import Bound, FlowGraph
 
 MAX_PATHS = 100
 Chosen = tuple[str, int, int, bool]  # kind, leak, number of the category, whether beside a pseudonymised one
@@ -65,7 +66,7 @@ class Options:
     """
 
     categories: Collection[str] | None = None
-    paths: str = WITNESS
+    paths: str = Paths.witness
     max_paths: int = MAX_PATHS
     accepts: Callable[[Case], bool] | None = None
     choose: Callable[[Spread, Sequence[Concern], int], Mapping[int, AbstractSet[Chosen]]] | None = None
