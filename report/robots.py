@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.report.pictures.wording import counted
+from rosprivacy.analysis.text import counted
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.fleet.patterns import FleetView, Pattern

@@ -50,9 +50,8 @@ MAY: dict[str, dict[str, set[str]]] = {
         "pictures": {""},
         "compare": {"", "document"},
         "page": {"", "document", "pictures", "compare"},
-        "robots": {"", "pictures"},
-        "sarif": {"", "robots"},
-        "cnil": {"", "robots"},
+        "sarif": {""},
+        "cnil": {""},
         "rdf": {"", "document"},
     },
     "rosprivacy": {

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.answer import Analysis, Carried, Finding, Step, Verdict
 from rosprivacy.analysis.decisions import Case
 from rosprivacy.analysis.findings.concerns import concerns
-from rosprivacy.analysis.findings.further_paths import WITNESS, Between, further
+from rosprivacy.analysis.findings.further_paths import Between, further
 from rosprivacy.analysis.findings.open_questions import open_questions
 from rosprivacy.analysis.findings.unknown_ends import unknown_ends
 from rosprivacy.analysis.kernel import standard_channels
@@ -25,17 +25,17 @@ from rosprivacy.analysis.kernel.search import START, Net, Search, path_to, prese
 from rosprivacy.analysis.kernel.spread import Spread, bits_of
 from rosprivacy.analysis.kernel.spreading import spread
 from rosprivacy.analysis.model import DISCLOSURE, Diagnostic, Element, Place, Severity
+from rosprivacy.analysis.modes import Paths
 from rosprivacy.analysis.non_ros import country_unknown, on_day
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
     from collections.abc import Set as AbstractSet
     from typing import Any
 
-    from rosprivacy.analysis.answer import OpenQuestion
     from rosprivacy.analysis.findings.concerns import Concern
     from rosprivacy.analysis.hierarchy import Hierarchy
-    from rosprivacy.analysis.model import Bound, FlowGraph
+from rosprivacy.analysis.model import Bound, FlowGraph
 
 MAX_PATHS = 100
 Chosen = tuple[str, int, int, bool]  # kind, leak, number of the category, whether beside a pseudonymised one
@@ -66,7 +66,7 @@ class Options:
     """
 
     categories: Collection[str] | None = None
-    paths: str = WITNESS
+    paths: str = Paths.witness
     max_paths: int = MAX_PATHS
     accepts: Callable[[Case], bool] | None = None
     choose: Callable[[Spread, Sequence[Concern], int], Mapping[int, AbstractSet[Chosen]]] | None = None
@@ -101,7 +101,11 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
     sources = any(found.begins(vertex) & mask for vertex in range(len(graph.elements)))
     return Analysis(
         graph=graph,
-        verdict=_verdict(findings, questions, known=sources and not options.unread),
+        verdict=Verdict.of(
+            leak=any(finding.stands for finding in findings),
+            is_open=bool(questions),
+            known=sources and not options.unread,
+        ),
         emitted=tuple(wanted),
         findings=findings,
         open=questions,
@@ -116,13 +120,6 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
         outside={graph.elements[vertex]: facts for vertex, facts in sorted(bound.outside.items())},
         unknown_ends=unknown_ends(found, mask),
     )
-
-
-def _verdict(findings: Iterable[Finding], questions: Iterable[OpenQuestion], *, known: bool) -> Verdict:
-    """Rule S12. Without any source nothing was asked, and with grants that were not read not all is known."""
-    if any(not finding.dismissed and not finding.accepted for finding in findings):
-        return Verdict.LEAK
-    return Verdict.UNDETERMINED if any(True for _ in questions) or not known else Verdict.NO_LEAK_FOUND
 
 
 def _no_source(options: Options) -> Diagnostic:

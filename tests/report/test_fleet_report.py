@@ -264,6 +264,13 @@ def test_linked_data_names_the_robots_of_each_finding_and_fits_its_shapes() -> N
     assert conforms, text
 
 
+@pytest.mark.parametrize("form", ["html", "markdown", "article30"])
+def test_a_report_to_be_shown_to_others_names_no_robot(cli: Cli, form: str) -> None:
+    done = cli("report", "--fleet", FLEET, "--format", form, "--redact")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert not [robot for robot in ("carrier_", "cleaner_", "guide_") if robot in done.stdout]
+
+
 @pytest.mark.parametrize("form", ["sarif", "cnil-pia", "turtle", "json-ld", "json", "text"])
 def test_every_format_is_written_for_a_fleet(cli: Cli, form: str) -> None:
     done = cli("analyze", "--fleet", FLEET, "--format", form)
