@@ -78,15 +78,6 @@ class Element:
         """What a reader sees: the identity and the leg, without the side of a pattern."""
         return (self.robot, self.kind, self.name, self.leg)
 
-    @property
-    def full_name(self) -> str:
-        """The name, with its robot where there are several.
-
-        >>> Element("node", "/camera", robot="r1").full_name
-        'r1:/camera'
-        """
-        return f"{self.robot}:{self.name}" if self.robot else self.name
-
     def sort_key(self) -> tuple[object, ...]:
         """Nodes first, then by robot, name and part: the order of all output (rule S14)."""
         return (KINDS.index(self.kind), self.robot, self.name, self.leg, self.side, self.without)

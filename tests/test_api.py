@@ -104,6 +104,14 @@ def test_one_name_alone_counts_as_a_list_of_one() -> None:
     assert all("nowhere" in str(one) for one in error.value.errors)
 
 
+def test_a_mode_that_is_none_is_an_error_with_the_nearest() -> None:
+    """B5: 'Declared' ran the enforced view, and called it declared."""
+    with pytest.raises(rosprivacy.RosPrivacyError, match="declared"):
+        rosprivacy.analyze(POLICY, LABELS, view="Declared")  # type: ignore[arg-type]
+    enforced = rosprivacy.analyze(POLICY, LABELS, view=rosprivacy.View.enforced)
+    assert enforced.document() == rosprivacy.analyze(POLICY, LABELS, view="enforced").document()
+
+
 # ---------------------------------------------------------------- labels from memory
 
 

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
         RosPrivacyError,
     )
     from rosprivacy.analysis.model import Element
+    from rosprivacy.analysis.modes import View
     from rosprivacy.api import analyze, analyze_fleet, parse_labels
     from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.result import Result
@@ -61,6 +62,7 @@ __all__ = [
     "Result",
     "RosPrivacyError",
     "Verdict",
+    "View",
     "__version__",
     "analyze",
     "analyze_fleet",
@@ -74,6 +76,7 @@ _MODULES = {  # where a name that is no error stands
     "Labels": "ingest.labels.label_file",
     "Result": "result",
     "Verdict": "analysis.answer",
+    "View": "analysis.modes",
     "analyze": "api",
     "analyze_fleet": "api",
     "parse_labels": "api",

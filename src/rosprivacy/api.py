@@ -19,6 +19,7 @@ from rosprivacy.ontology.vocabulary import TOP, load
 from rosprivacy.settings import Settings
 
 if TYPE_CHECKING:
+    from rosprivacy.analysis.modes import View
     from rosprivacy.result import Result
 
 Path: TypeAlias = str | PathLike[str]
@@ -30,7 +31,7 @@ def analyze(
     policies: Paths = (),
     labels: Path | Labels | Iterable[Path | Labels] = (),
     *,
-    view: Literal["declared", "enforced"] = "declared",
+    view: View | Literal["declared", "enforced"] = "declared",
     categories: Names = (),
     article9: bool = False,
     data_types: Names = (),
@@ -127,7 +128,7 @@ def analyze(
 def analyze_fleet(
     file: Path,
     *,
-    view: Literal["declared", "enforced"] = "declared",
+    view: View | Literal["declared", "enforced"] = "declared",
     categories: Names = (),
     article9: bool = False,
     data_types: Names = (),

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from html import escape
 from typing import TYPE_CHECKING, overload
 
-from rosprivacy.report.naming import fit
+from rosprivacy.analysis.text import fit
 
 if TYPE_CHECKING:
     from collections.abc import Callable
