@@ -22,6 +22,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.text import cut, printable
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
@@ -34,8 +36,7 @@ def shown(text: str) -> str:
     >>> shown("/a" + chr(10) + "b")
     '/a\\nb'
     """
-    line = "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
-    return line if len(line) <= LONGEST_SHOWN else line[:LONGEST_SHOWN] + "…"
+    return cut(printable(text), LONGEST_SHOWN)
 
 
 def reason(error: Exception) -> str:
