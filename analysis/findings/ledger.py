@@ -175,7 +175,7 @@ def _outdone(found: Spread) -> Iterator[TakenAway]:
         element = elements[vertex]
         yield TakenAway(
             OUTDONE, element, None, tuple(sorted(categories)), (by_place,), glob=glob,
-            leak=element if role == "leak" else None, perhaps=role == "source", note=f"{role} of {place}" if place.line else f"{role} by its kind",
+            leak=element if role == "leak" else None, perhaps=role == "source", note=f"{role} {f'of {place}' if place.line else 'by its kind'}",
         )  # fmt: skip
 
 
