@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.findings.concerns import Concern
     from rosprivacy.analysis.hierarchy import Hierarchy
-from rosprivacy.analysis.model import Bound, FlowGraph
+    from rosprivacy.analysis.model import Bound, FlowGraph
 
 MAX_PATHS = 100
 Chosen = tuple[str, int, int, bool]  # kind, leak, number of the category, whether beside a pseudonymised one

@@ -156,7 +156,7 @@ def analyze(
         from rosprivacy.ingest.policies.saved_graph import as_dict
         from rosprivacy.report.document.analysis import as_text
 
-        texts[save_graph] = as_text(as_dict(result.policies))
+        texts[save_graph] = as_text(as_dict(result.policies, result.diagnostics))
     style = Style(verbose=verbose, quiet=quiet, colour=output is None)
     emit(written(result, format.value, style), output, texts)
     raise typer.Exit(_exit_code(result, fail_on))
