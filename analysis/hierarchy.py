@@ -31,6 +31,11 @@ class Hierarchy:
         """Close the hierarchy of some categories; parents that are not among them are left out.
 
         A cycle does no harm here (every member is broader than every other); the ontology's rules refuse it.
+
+        >>> from rosprivacy.analysis.model import Category
+        >>> hierarchy = Hierarchy.of([Category("Video", "", "", "", "", ("Image",)), Category("Image", "", "", "", "")])
+        >>> hierarchy.distance("Video", "Image"), hierarchy.broader("Video"), hierarchy.narrowest(["Image", "Video"])
+        (1, ['Image'], ('Video',))
         """
         parents = {category.name: category.broader for category in categories}
         return cls({name: _climb(name, parents) for name in parents})

@@ -87,6 +87,21 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
     The fixpoint says which leaks are reached; only where one is, searches say from which source and along which way:
     one or two per source, O(flows) each for a fixed number of categories, and networkx's ``edge_disjoint_paths`` on
     the part of the graph between the two.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.hierarchy import Hierarchy
+    >>> from rosprivacy.analysis.model import Bound, Element, Flow, FlowGraph, Place, Statement
+    >>> graph = FlowGraph(
+    ...     (Element("node", "/camera"), Element("node", "/uplink"), Element("topic", "/image")),
+    ...     (Flow(0, 2, "publish"), Flow(2, 1, "subscribe")), denied=(), profiles=(),
+    ... )
+    >>> def said(role, line):
+    ...     return (Statement(role, ("Video",), (1, 1), Place("labels.yaml", line)),)
+    >>> bound = Bound({0: said("source", 3), 1: said("leak", 4)})
+    >>> analysis = analyse(graph, bound, Hierarchy({"Video": {"Video": 0}}))
+    >>> str(analysis.verdict), [element.name for element in analysis.findings[0].witness]
+    ('leak', ['/camera', '/image', '/uplink'])
     """
     options = options or Options()
     bound = replace(bound, outside=on_day(bound.outside, options.today))

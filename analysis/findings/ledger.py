@@ -94,6 +94,23 @@ def ledger(
     -----
     Two runs of the kernel, and one more for each line about several elements that closes a path only as a whole (at
     most ``closures.ROUNDS``); then a search from each place where data ends.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.findings.findings import analyse
+    >>> from rosprivacy.analysis.hierarchy import Hierarchy
+    >>> from rosprivacy.analysis.model import Bound, Element, Flow, FlowGraph, Place, Statement
+    >>> graph = FlowGraph(
+    ...     (Element("node", "/camera"), Element("node", "/uplink"), Element("topic", "/image")),
+    ...     (Flow(0, 2, "publish"), Flow(2, 1, "subscribe")), denied=(), profiles=(),
+    ... )
+    >>> def said(role, line):
+    ...     return (Statement(role, ("Video",), (1, 1), Place("labels.yaml", line)),)
+    >>> bound = Bound({0: said("source", 3), 1: said("leak", 4), 2: said("never", 5)})
+    >>> hierarchy = Hierarchy({"Video": {"Video": 0}})
+    >>> rows = ledger(analyse(graph, bound, hierarchy), bound, hierarchy)
+    >>> [(row.by, row.element.name, row.leak.name) for row in rows]
+    [('never', '/image', '/uplink')]
     """
     found = analysis.spread
     asked = sum(found.both(category) for category in analysis.emitted)
