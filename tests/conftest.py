@@ -50,8 +50,10 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_itemcollected(item: pytest.Item) -> None:
-    """Tests that share a server, a browser or a build run in one process, in their order."""
+    """Tests that share a server, a browser or a build run in one process, in order; readers of a corpus are marked."""
     used = getattr(item, "fixturenames", ())
+    if not {"corpus", "dpv"}.isdisjoint(used):
+        item.add_marker("corpus")
     for group, shared in GROUPS.items():
         if not shared.isdisjoint(used):
             item.add_marker(pytest.mark.xdist_group(group))

@@ -12,6 +12,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +23,7 @@ from tests.helpers.paths import ROOT
 from tests.helpers.sarif import HOSTILE, checked
 
 ACTION, HOOKS, CI = ROOT / "action.yml", ROOT / ".pre-commit-hooks.yaml", ROOT / "examples" / "ci"
+HOSTED = ROOT / ".github" / "workflows" / "ci.yml"
 FACTORY = ROOT / "examples" / "factory"
 GIT = ["git", "-c", "user.name=t", "-c", "user.email=t@example.org", "-c", "init.defaultBranch=main"]
 
@@ -83,8 +85,9 @@ def outputs(runner: dict[str, str]) -> dict[str, str]:
     return dict(line.split("=", 1) for line in Path(runner["GITHUB_OUTPUT"]).read_text().splitlines())
 
 
-def test_the_action_and_the_workflow_are_what_github_takes() -> None:
-    for file, kind in ((ACTION, "github-actions"), (CI / "privacy.yml", "github-workflows")):
+def test_the_action_and_the_workflows_are_what_github_takes() -> None:
+    kinds = {ACTION: "github-actions", CI / "privacy.yml": "github-workflows", HOSTED: "github-workflows"}
+    for file, kind in kinds.items():
         done = tool("check_jsonschema", "--builtin-schema", f"vendor.{kind}", str(file))
         assert done.returncode == 0, done.stdout
 
@@ -499,3 +502,31 @@ def test_the_workflow_runs_what_is_there() -> None:
     assert all(set(given) <= set(inputs) for given in ours)
     assert "pull_request_target" not in workflow()[True]  # YAML reads 'on' so
     assert not any("${{" in step.get("run", "") for job in workflow()["jobs"].values() for step in job["steps"])
+
+
+# ---------------------------------------------------------------- our own checks, hosted and before a commit
+
+
+def test_the_hosted_checks_are_those_of_ci_run_on_each_python_and_may_only_read() -> None:
+    hosted = yaml.safe_load(HOSTED.read_text("utf-8"))
+    assert hosted["permissions"] == {}
+    assert "pull_request_target" not in hosted[True]  # YAML reads 'on' so
+    (job,) = hosted["jobs"].values()
+    assert job["permissions"] == {"contents": "read"}
+    assert [step["run"] for step in job["steps"] if "run" in step] == [".ci/run 'not corpus'"]
+    (out,) = (step["with"] for step in job["steps"] if step.get("uses", "").startswith("actions/checkout@"))
+    assert out["persist-credentials"] is False
+    classifiers = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["classifiers"]
+    supported = [name.rpartition(" ")[2] for name in classifiers if re.search(r":: 3\.\d+$", name)]
+    assert job["strategy"]["matrix"]["python"] == supported
+
+
+def test_before_a_commit_runs_what_ci_runs_from_the_same_environment() -> None:
+    file = ROOT / ".pre-commit-config.yaml"
+    done = tool("pre_commit", "validate-config", str(file))
+    assert done.returncode == 0, done.stdout
+    (local,) = yaml.safe_load(file.read_text("utf-8"))["repos"]
+    assert local["repo"] == "local"
+    commands = (ROOT / ".ci" / "run").read_text("utf-8").splitlines()
+    assert [hook["entry"] for hook in local["hooks"]] == [line for line in commands if line.startswith(".venv/bin/")]
+    assert {hook["language"] for hook in local["hooks"]} == {"system"}

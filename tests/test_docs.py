@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import ast
 import re
 import subprocess
 import sys
@@ -22,12 +23,15 @@ from rosprivacy.ingest.labels.label_file import read_labels
 from rosprivacy.ontology.vocabulary import TOP, load
 from rosprivacy.queries.library import pack
 from rosprivacy.report.terminal import categories
+from tests import test_architecture as rooms
+from tests import test_wings as wings
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
+ARCHITECTURE = ROOT / "docs" / "architecture.md"
 COMMAND_LINE = ROOT / "docs" / "command-line.md"
 DATABASE = ROOT / "docs" / "database.md"
 CATEGORIES = ROOT / "docs" / "categories.md"
@@ -120,13 +124,36 @@ def query_table() -> str:
     return "\n".join(["| query | parameters | question |", "| --- | --- | --- |", *rows, ""])
 
 
-def database_page(text: str) -> str:
-    """The page with its generated parts anew."""
-    for name, part in (("schema", schema_tables()), ("queries", query_table())):
+def with_parts(text: str, **parts: str) -> str:
+    """A page with its generated parts anew."""
+    for name, part in parts.items():
         before, after = text.split(f"<!-- {name}: written by python -m tests.test_docs -->\n")
         text = f"{before}<!-- {name}: written by python -m tests.test_docs -->\n{part}<!-- end -->\n"
         text += after.split("<!-- end -->\n", 1)[1]
     return text
+
+
+def database_page(text: str) -> str:
+    return with_parts(text, schema=schema_tables(), queries=query_table())
+
+
+def house() -> str:
+    """The rooms and their wings, with what each of them says of itself and may import."""
+    rows = []
+    for room in (*rooms.MAY, "rosprivacy"):
+        folder = wings.PACKAGE if room == "rosprivacy" else ROOT / room
+        others = "every room" if room == "rosprivacy" else ", ".join(sorted(rooms.MAY[room])) or "no other room"
+        rows.append(house_row(folder, others))
+        ladder = sorted((len(below), wing, sorted(below - {""})) for wing, below in wings.MAY[room].items())
+        for _, wing, below in ladder:
+            if wing and (folder / wing / "__init__.py").is_file():
+                rows.append(house_row(folder / wing, f"of its room: {', '.join(below) or 'no other wing'}"))
+    return "\n".join(["| folder | what it is | may import |", "| --- | --- | --- |", *rows, ""])
+
+
+def house_row(folder: Path, may: str) -> str:
+    said = (ast.get_docstring(ast.parse((folder / "__init__.py").read_text("utf-8"))) or "").split("\n\n")[0]
+    return f"| `{folder.relative_to(ROOT)}/` | {' '.join(said.split()).replace('``', '`')} | {may} |"
 
 
 def categories_page(text: str) -> str:
@@ -138,6 +165,22 @@ def categories_page(text: str) -> str:
 def test_the_schema_and_the_query_tables_are_those_of_the_program() -> None:
     text = DATABASE.read_text("utf-8")
     assert text == database_page(text)
+
+
+def test_the_house_is_told_as_it_is() -> None:
+    text = ARCHITECTURE.read_text("utf-8")
+    assert text == with_parts(text, house=house())
+    folders = {file.parent for file in wings.MODULES.values()}
+    assert {f"`{folder.relative_to(ROOT)}/`" for folder in folders} <= set(re.findall(r"`[\w/]+/`", text))
+
+
+def test_what_the_architecture_names_is_there() -> None:
+    """Files, and after a colon what they define."""
+    named = re.findall(r"`((?:[\w.-]+/)+[\w.-]+\.\w+)(?::(\w+))?`", ARCHITECTURE.read_text("utf-8"))
+    assert len(named) > 30
+    for file, name in named:
+        assert (ROOT / file).is_file(), file
+        assert not name or re.search(rf"\b(def|class) {name}\b", (ROOT / file).read_text("utf-8")), (file, name)
 
 
 def test_the_option_tables_are_those_of_the_program() -> None:
@@ -204,6 +247,7 @@ def test_no_registry_is_named() -> None:
 
 
 if __name__ == "__main__":
+    ARCHITECTURE.write_text(with_parts(ARCHITECTURE.read_text("utf-8"), house=house()), "utf-8")
     CATEGORIES.write_text(categories_page(CATEGORIES.read_text("utf-8")), "utf-8")
     COMMAND_LINE.write_text(command_line(), "utf-8")
     DATABASE.write_text(database_page(DATABASE.read_text("utf-8")), "utf-8")

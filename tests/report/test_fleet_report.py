@@ -258,7 +258,7 @@ def test_linked_data_names_the_robots_of_each_finding_and_fits_its_shapes() -> N
         (iri,) = graph.subjects(rp.id, rdflib.Literal(pattern.finding.id))
         assert sorted(map(str, graph.objects(iri, rp.onRobot))) == list(pattern.robots)
         assert [int(str(n)) for n in graph.objects(iri, rp.findings)] == [pattern.count]
-    shapes = rdflib.Graph().parse(ROOT / "report" / "linked" / "findings.shapes.ttl")
+    shapes = rdflib.Graph().parse(ROOT / "report" / "rdf" / "findings.shapes.ttl")
     conforms, _, text = pyshacl.validate(graph, shacl_graph=shapes)
     assert conforms, text
 

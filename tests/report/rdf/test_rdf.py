@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.assembly import Result
 
-SHAPES = Graph().parse(ROOT / "report" / "linked" / "findings.shapes.ttl")
+SHAPES = Graph().parse(ROOT / "report" / "rdf" / "findings.shapes.ttl")
 CARE_HOME = ("examples/care-home/care-home.policy.xml", "-l", "examples/care-home/care-home.labels.yaml")
 SYNTAX = {"turtle": pyoxigraph.RdfFormat.TURTLE, "json-ld": pyoxigraph.RdfFormat.JSON_LD}
 VOCABULARY = Vocabulary.of(Category(n, f"urn:test:{n}", n, n, f"{n}.", up) for n, up in PARENTS.items())
