@@ -7,7 +7,7 @@ from enum import StrEnum
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Collection, Iterable, Mapping
 
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Diagnostic, Element, FlowGraph, Grant, NonRosFacts, UnknownEnd
@@ -81,6 +81,11 @@ class Finding:
     accepted: bool = False
     beside: bool = False
 
+    @property
+    def stands(self) -> bool:
+        """Whether the verdict is a leak because of it (rule S12): it is neither dismissed nor accepted."""
+        return not self.dismissed and not self.accepted
+
 
 @dataclass(frozen=True, slots=True)
 class OpenQuestion:
@@ -120,6 +125,17 @@ class Verdict(StrEnum):
     LEAK = "leak"
     UNDETERMINED = "undetermined"
     NO_LEAK_FOUND = "no-leak-found"
+
+    @classmethod
+    def of(cls, *, leak: bool, is_open: bool, known: bool) -> Verdict:
+        """Decide: ``leak`` if a finding stands, ``known`` if data was followed and no grant was left unread (S11, S12).
+
+        >>> str(Verdict.of(leak=False, is_open=False, known=False))
+        'undetermined'
+        """
+        if leak:
+            return cls.LEAK
+        return cls.NO_LEAK_FOUND if known and not is_open else cls.UNDETERMINED
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,3 +187,32 @@ class Analysis:
     diagnostics: tuple[Diagnostic, ...] = ()
     outside: Mapping[Element, NonRosFacts] = field(default_factory=dict)
     unknown_ends: tuple[UnknownEnd, ...] = ()
+
+
+def robot_verdicts(
+    analysis: Analysis,
+    robots: Iterable[str],
+    robot_of: Callable[[Element], str],
+    not_read: Collection[str] = (),
+    leaking: Collection[str] | None = None,
+) -> dict[str, Verdict]:
+    """Return the verdict on each robot (rule S12): what comes from it, gets out at it or is open on it counts.
+
+    Parameters
+    ----------
+    robot_of
+        Element -> name of its robot.
+    not_read
+        Robots of which grants were not read.
+    leaking
+        Robots at which a finding begins or ends, where it is known of more than this analysis.
+    """
+    if leaking is None:
+        leaking = {
+            robot_of(e) for finding in analysis.findings if finding.stands for e in (finding.source, finding.leak)
+        }
+    open_at = {robot_of(question.element) for question in analysis.open}
+    known = {robot_of(carried.element) for carried in analysis.carried}.difference(not_read)
+    return {
+        robot: Verdict.of(leak=robot in leaking, is_open=robot in open_at, known=robot in known) for robot in robots
+    }

@@ -1,11 +1,28 @@
 """The error tree. Factored out so that every room can raise without importing another.
 
-A message is one line, ``file:line: what is wrong; what to do``; the command line turns errors into exit codes.
+A message is one line, ``file:line: what is wrong; what to do``; the command line turns errors into exit codes::
+
+    RosPrivacyError
+      InputErrors          all problems of an input at once
+      InputError           one problem at one place
+        PolicyError
+        LabelError
+        LimitsError
+        DecisionError
+        FleetError
+        OntologyError
+        GraphError
+      QueryError
+      DrawingError
+      DatabaseError
+      ClusterError
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.text import cut, printable
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -19,8 +36,7 @@ def shown(text: str) -> str:
     >>> shown("/a" + chr(10) + "b")
     '/a\\nb'
     """
-    line = "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
-    return line if len(line) <= LONGEST_SHOWN else line[:LONGEST_SHOWN] + "…"
+    return cut(printable(text), LONGEST_SHOWN)
 
 
 def reason(error: Exception) -> str:

@@ -64,6 +64,11 @@ class Element:
         return self.kind in CHANNELS
 
     @property
+    def full_name(self) -> str:
+        """The name, with the robot's where there are several."""
+        return f"{self.robot}:{self.name}" if self.robot else self.name
+
+    @property
     def identity(self) -> tuple[str, str, str]:
         """(robot, kind, name), rule S1: legs and sides are parts of one element."""
         return (self.robot, self.kind, self.name)

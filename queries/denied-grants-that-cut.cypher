@@ -9,7 +9,7 @@
 // returns end: string, name of the element that the DENY keeps it from
 // returns leak: string, name of the first leak on the way on, if nothing is made of the data before
 // returns denied_by: list of string, file:line of the DENY
-// returns allowed_by: string, file:line of the ALLOW that it takes back
+// returns allowed_by: string, file:line of the ALLOW that it takes back; empty where the DENY takes a name out of a wildcard
 // returns reached: boolean, whether data of that kind gets to the leak anyway
 // returns path: list of string, names on a shortest way from the start to the leak
 // order: robot, category, start, end, leak
@@ -42,5 +42,5 @@ WHERE ($robot = '' OR d.robot = $robot)
                WHERE CASE WHEN name CONTAINS '[' OR name CONTAINS '\\' THEN true  // such names are not looked into
                      ELSE b.name =~ '\\Q' + replace(replace(name, '*', '\\E.*\\Q'), '?', '\\E.\\Q') + '\\E' END))
 RETURN d.robot AS robot, category, a.name AS start, b.name AS end, leak.name AS leak, d.denied_by AS denied_by,
-       d.file + ':' + d.line AS allowed_by, reached, [a.name] + way AS path
+       coalesce(d.file + ':' + d.line, '') AS allowed_by, reached, [a.name] + way AS path
 ORDER BY robot, category, start, end, leak

@@ -10,8 +10,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.text import counted
 from rosprivacy.report.document.fleet import counts
-from rosprivacy.report.pictures.wording import counted
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

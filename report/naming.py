@@ -7,30 +7,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.text import fit, printable
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     Key = tuple[str, str, str, str]
-
-LONGEST = 160
-TAIL = 40
-
-
-def fit(text: str) -> str:
-    r"""Return text for one line: what cannot be printed is escaped, the middle of what is too long is left out.
-
-    >>> fit("/a" + chr(10) + chr(0x202E) + "b")
-    '/a\\n\\u202eb'
-    >>> len(fit("x" * 4000)) < 200
-    True
-    """
-    line = printable(text)
-    return line if len(line) <= LONGEST else f"{line[: LONGEST - TAIL]} […] {line[-TAIL:]}"
-
-
-def printable(text: str) -> str:
-    """Return the whole text, what cannot be printed escaped: bidirectional controls are of this kind."""
-    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
 
 
 def name(element: Mapping[str, Any]) -> str:
@@ -39,8 +22,22 @@ def name(element: Mapping[str, Any]) -> str:
     >>> name({"robot": "r1", "kind": "node", "name": "/camera"})
     'r1:/camera'
     """
-    robot = f"{element['robot']}:" if element["robot"] else ""
-    return fit(robot + element["name"])
+    return fit(_full_name(element))
+
+
+def shown_name(element: Mapping[str, Any]) -> str:
+    """Return the same as messages and the terminal show it."""
+    return shown(_full_name(element))
+
+
+def kind_of(element: Mapping[str, Any]) -> str:
+    """Return what an element is, in the program's own words.
+
+    >>> kind_of({"robot": "", "kind": "service", "name": "/add*", "leg": "request", "pattern": True})
+    'service request wildcard'
+    """
+    parts = (element["kind"], element.get("leg", ""), "wildcard" if element.get("pattern") else "")
+    return " ".join(part for part in parts if part)
 
 
 def key(element: Mapping[str, Any]) -> Key:
@@ -65,3 +62,7 @@ def text(of: Mapping[str, Any], what: str, language: str) -> str:
     'Stimme'
     """
     return printable(of.get("translations", {}).get(language, {}).get(what) or str(of[what]))
+
+
+def _full_name(element: Mapping[str, Any]) -> str:
+    return f"{element['robot']}:{element['name']}" if element["robot"] else str(element["name"])

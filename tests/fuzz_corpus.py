@@ -319,8 +319,8 @@ class Corpus:
         try:
             result = outcome(lambda: read_policy(str(target), include_root=root))
             if number % 4 == 0:
-                options = {"standard_channels": str(self.some), "include_root": root}  # may name what is not there
-                outcome(lambda: rosprivacy.analyze([str(target)], **options).document())
+                standard = str(self.some)  # may name what is not there
+                outcome(lambda: rosprivacy.analyze(target, standard_channels=standard, include_root=root).document())
             return result
         finally:
             path.write_bytes(original)

@@ -166,7 +166,7 @@ def _label(root: Path, random: Random) -> None:
 
 def _analysis_of_policy(root: Path, random: Random) -> None:
     def analyse(file: Path) -> Any:
-        view = random.choice(("declared", "enforced"))
+        view: Any = random.choice(("declared", "enforced"))
         return rosprivacy.analyze([str(file)], [str(root / "names.yaml")], view=view, paths="all").document()
 
     never_crashes(root, random, "policy", policies(), analyse)

@@ -28,11 +28,10 @@ from rosprivacy.analysis.model import DISCLOSURE, Diagnostic, Element, Place, Se
 from rosprivacy.analysis.non_ros import country_unknown, on_day
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
     from collections.abc import Set as AbstractSet
     from typing import Any
 
-    from rosprivacy.analysis.answer import OpenQuestion
     from rosprivacy.analysis.findings.concerns import Concern
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.model import Bound, FlowGraph
@@ -101,7 +100,11 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
     sources = any(found.begins(vertex) & mask for vertex in range(len(graph.elements)))
     return Analysis(
         graph=graph,
-        verdict=_verdict(findings, questions, known=sources and not options.unread),
+        verdict=Verdict.of(
+            leak=any(finding.stands for finding in findings),
+            is_open=bool(questions),
+            known=sources and not options.unread,
+        ),
         emitted=tuple(wanted),
         findings=findings,
         open=questions,
@@ -116,13 +119,6 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
         outside={graph.elements[vertex]: facts for vertex, facts in sorted(bound.outside.items())},
         unknown_ends=unknown_ends(found, mask),
     )
-
-
-def _verdict(findings: Iterable[Finding], questions: Iterable[OpenQuestion], *, known: bool) -> Verdict:
-    """Rule S12. Without any source nothing was asked, and with grants that were not read not all is known."""
-    if any(not finding.dismissed and not finding.accepted for finding in findings):
-        return Verdict.LEAK
-    return Verdict.UNDETERMINED if any(True for _ in questions) or not known else Verdict.NO_LEAK_FOUND
 
 
 def _no_source(options: Options) -> Diagnostic:

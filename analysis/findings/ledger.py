@@ -141,7 +141,7 @@ def _closed(found: Spread, leaks: Mapping[int, int], unlabelled: Mapping[int, in
             None if closure.to < 0 else elements[closure.to],
             found.names(closure.bits),
             _places(closure),
-            glob=all(isinstance(line, Statement) and line.glob for line in closure.lines),
+            glob=bool(closure.lines) and all(isinstance(line, Statement) and line.glob for line in closure.lines),
             leak=elements[leak] if leak is not None and leak != PERHAPS else None,
             open=elements[question] if question is not None and question != PERHAPS else None,
             itself=closure.itself,

@@ -63,7 +63,7 @@ class System:
 
 def open_findings(analysis: Analysis) -> tuple[Finding, ...]:
     """Return the findings that are neither dismissed nor accepted."""
-    return tuple(finding for finding in analysis.findings if not finding.dismissed and not finding.accepted)
+    return tuple(finding for finding in analysis.findings if finding.stands)
 
 
 def mitigate(

@@ -11,7 +11,7 @@ from collections import defaultdict
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.answer import Verdict
+from rosprivacy.analysis.answer import robot_verdicts
 from rosprivacy.analysis.findings.derived_from import origins
 from rosprivacy.analysis.fleet.patterns import pattern_id
 from rosprivacy.ingest.database.element_properties import (
@@ -28,7 +28,7 @@ from rosprivacy.ingest.database.rows import add_roles, allowed, denied, element_
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from rosprivacy.analysis.answer import Analysis, Finding
+    from rosprivacy.analysis.answer import Analysis, Finding, Verdict
     from rosprivacy.analysis.fleet.patterns import Likeness
     from rosprivacy.analysis.model import Element, Flow
     from rosprivacy.ingest.database.rows import RobotRows, Row
@@ -133,7 +133,7 @@ class FleetRows:
         ]
         model = self._likeness.models.get(owner)
         properties = {
-            "verdict": self._verdicts.get(owner, str(Verdict.UNDETERMINED)),
+            "verdict": str(self._verdicts[owner]),
             "view": self._graph.view,
             "model": model or None,
             "shared": None if self._likeness.is_robot(owner) else True,
@@ -165,7 +165,7 @@ class FleetRows:
         ):
             properties = allowed(result, self._placed.bound.flows.get(index, ()), self._vocabulary)
             leaving[self._graph.elements[flow.source].robot].append((flow, properties))
-        for flow in self._graph.denied:
+        for flow in self._graph.taken_back:
             leaving[self._graph.elements[flow.source].robot].append((flow, denied(flow)))
         return dict(leaving)
 
@@ -221,38 +221,11 @@ class FleetRows:
         return bool(self._too_many) and pattern_id(finding, self._likeness) in self._too_many
 
     @cached_property
-    def _verdicts(self) -> dict[str, str]:
-        analysis, first = self._analysis, self._likeness.second
-        return verdicts(
-            (finding for finding in analysis.findings),
-            (question.element for question in analysis.open),
-            (carried.element for carried in analysis.carried),
-            lambda element: first.get(element.robot, element.robot),
-            self._not_read,
+    def _verdicts(self) -> dict[str, Verdict]:
+        first = self._likeness.second
+        return robot_verdicts(
+            self._analysis, self._owned, lambda element: first.get(element.robot, element.robot), self._not_read
         )
-
-
-def verdicts(
-    findings: Iterable[Finding],
-    open_at: Iterable[Element],
-    reached: Iterable[Element],
-    robot_of: Any,
-    not_read: Iterable[str] = (),
-) -> dict[str, str]:
-    """Return the verdict on each robot that data reached (rule S12): what comes from it or gets out at it counts.
-
-    Parameters
-    ----------
-    robot_of
-        Element -> name of its robot.
-    not_read
-        Robots of which grants were not read.
-    """
-    leaking = {robot_of(e) for finding in findings if not finding.dismissed for e in (finding.source, finding.leak)}
-    unsettled = {robot_of(element) for element in open_at} | set(not_read)
-    settled = {robot_of(element) for element in reached} - unsettled
-    found = dict.fromkeys(unsettled, str(Verdict.UNDETERMINED)) | dict.fromkeys(settled, str(Verdict.NO_LEAK_FOUND))
-    return found | dict.fromkeys(leaking, str(Verdict.LEAK))
 
 
 class _Ids:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 from collections import defaultdict
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import GraphError, InputError, InputErrors, shown
@@ -47,7 +47,8 @@ if TYPE_CHECKING:
 DATABASE = "the database"
 ADDED = "flow"  # the role of a flow that a person added
 HAND = 2  # the tier of a role that a person added: above every file
-_FLOW_ROLES = {"publish", "subscribe", "request", "reply", "call", "execute", "matches"}
+MATCHES = "matches"
+_FLOW_ROLES = {"publish", "subscribe", "request", "reply", "call", "execute", MATCHES}
 _KIND_OF = {label: kind for kind, label in KIND_LABELS.items()}
 _ROLE_OF = {kind.type: role for role, kind in ROLES.items()}
 
@@ -246,13 +247,14 @@ class _Reader:
         rows = [(number[a], number[b], role, key, said) for a, b, role, key, said in self._flows]
         rows.sort(key=lambda row: (*row[:3], str(row[4].get("file")), str(row[4].get("line")), row[3]))
         allowed = [row for row in rows if row[4].get("decision") != "deny"]
-        denied = [row for row in rows if row[4].get("decision") == "deny"]
+        refused = [(_denied(row, elements), row[2]) for row in rows if row[4].get("decision") == "deny"]
         graph = FlowGraph(
             elements,
             tuple(_flow(row, elements) for row in allowed),
-            tuple(_flow(row, elements) for row in denied),
+            tuple(flow for flow, role in refused if role != MATCHES),
             tuple(sorted(set(self._profiles), key=lambda p: (p.enclave, p.node, p.place.file, p.place.line))),
             view,
+            tuple(flow for flow, role in refused if role == MATCHES),
         )
         statements = {v: tuple(self._statements(vertices[v].key)) for v in range(len(elements))}
         statements = {v: said for v, said in statements.items() if said}
@@ -307,13 +309,30 @@ def _flow(row: tuple[int, int, str, str, Mapping[str, Any]], elements: tuple[Ele
     return Flow(source, target, role, _grants(said, role, elements[target if elements[target].is_channel else source]))
 
 
+def _denied(row: tuple[int, int, str, str, Mapping[str, Any]], elements: tuple[Element, ...]) -> Flow:
+    """A flow that DENY lines take back."""
+    flow, channel = _flow(row, elements), elements[row[1] if elements[row[1]].is_channel else row[0]]
+    lines = [json.loads(line) for line in row[4].get("denials") or ()]
+    return replace(flow, denials=_lines(lines, row[2], channel, allow=False))
+
+
+def _place(text: str) -> Place:
+    """A place as ``str`` writes it."""
+    file, _, line = str(text).rpartition(":")
+    return Place(file, int(line)) if line.isdecimal() else Place(str(text), 0)
+
+
 def _grants(said: Mapping[str, Any], role: str, channel: Element) -> tuple[Grant, ...]:
     """The policy lines behind a flow."""
     lines = [said] if said.get("file") else []
     lines += [json.loads(line) for line in said.get("further") or ()]
+    return _lines(lines, role, channel, allow=True)
+
+
+def _lines(lines: Iterable[Mapping[str, Any]], role: str, channel: Element, *, allow: bool) -> tuple[Grant, ...]:
     return tuple(
         Grant(
-            allow=True,
+            allow=allow,
             role=role,
             kind=channel.kind,
             name=channel.name,
@@ -342,10 +361,11 @@ def _subjects(properties: Mapping[str, Any]) -> tuple[str, ...]:
 
 def _restrictions(said: Mapping[str, Any]) -> Iterator[Statement]:
     """``only`` and ``never`` of a flow."""
+    place = next((_place(text) for text in said.get("said_at") or ()), Place(DATABASE, 0))
     for role in ("only", "never"):
         if names := _names(said, role):
             naming = GLOB if said.get("naming") == GLOB else NAME
-            yield Statement(role, names, (HAND, EXACT), Place(DATABASE, 0), naming=naming)
+            yield Statement(role, names, (HAND, EXACT), place, naming=naming)
 
 
 def _facts(role: str, category: str, said: Mapping[str, Any]) -> tuple[Any, ...]:

@@ -193,7 +193,7 @@ def _flows(robot: str, analysis: Analysis, bound: Bound, names: Names, ids: Sequ
     for index, (flow, result) in enumerate(zip(analysis.graph.flows, results, strict=True)):
         said = bound.flows.get(index, ())
         yield flow_row(robot, flow, ids[flow.source], ids[flow.target], allowed(result, said, names.vocabulary))
-    for flow in analysis.graph.denied:
+    for flow in analysis.graph.taken_back:
         yield flow_row(robot, flow, ids[flow.source], ids[flow.target], denied(flow))
 
 
@@ -204,7 +204,9 @@ def allowed(result: Row, said: Sequence[Statement], vocabulary: Vocabulary) -> R
 
 def denied(flow: Flow) -> Row:
     """Return the properties of a denied flow."""
-    return {"decision": "deny", "carries": [], "denied_by": [str(grant.place) for grant in flow.denials]}
+    lines = [json.dumps(_grant(grant), sort_keys=True) for grant in flow.denials]
+    by = [str(grant.place) for grant in flow.denials]
+    return {"decision": "deny", "carries": [], "denied_by": by, "denials": lines}
 
 
 def flow_row(robot: str, flow: Flow, source: str, target: str, properties: Row) -> Row:
@@ -233,7 +235,9 @@ def _restrictions(said: Sequence[Statement], vocabulary: Vocabulary) -> Row:
     nevers = [s for s in said if s.role == "never" and (only is None or s.rank >= only.rank)]
     never = {name for statement in nevers for name in statement.categories}
     globs = {s.naming for s in (*nevers, *([only] if only else ()))} == {GLOB}
+    places = sorted({str(s.place) for s in (*nevers, *([only] if only else ()))})
     row: Row = {"never": sorted(never) or None, "only": None, "naming": GLOB if globs else None}
+    row["said_at"] = places or None
     if only is None:
         return row
     above = {name for s in nevers if s.rank > only.rank for name in s.categories}

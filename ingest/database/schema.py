@@ -225,6 +225,8 @@ FLOWS_TO = RelationshipKind(
         Property("profile", STRING, "node of that profile"),
         Property("further", STRINGS, "JSON: file, line, enclave and profile of further policy lines behind it"),
         Property("denied_by", STRINGS, "of a denied flow: file:line of the DENY"),
+        Property("denials", STRINGS, "JSON: file, line, enclave and profile of each DENY"),
+        Property("said_at", STRINGS, "file:line of the labels that say only or never of it"),
         Property("only", STRINGS, "a label: it carries these at most"),
         Property("never", STRINGS, "a label: it does not carry these"),
         Property("naming", STRING, "of the label: glob where it names no end in full; absent else"),

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.answer import Verdict
+from rosprivacy.analysis.answer import robot_verdicts
 from rosprivacy.analysis.errors import DatabaseError
 from rosprivacy.analysis.model import unread
 from rosprivacy.ingest.database import cypher
@@ -92,10 +92,9 @@ class _Changes:
         self._across = _by(across, {row["id"]: row["properties"]["robot"] for row in findings}, "source")
         origins = list(origin_rows(analysis, ids, robots))
         self._origins = _by(origins, dict(zip(ids, robots, strict=True)), "source")
-        self._leaking = {of_robot[e] for f in analysis.findings if not f.dismissed for e in (f.source, f.leak)}
-        self._open = {of_robot[question.element] for question in analysis.open}
-        self._reached = {of_robot[carried.element] for carried in analysis.carried}
         self.robots = sorted({*robots, *stored.robots})
+        not_read = [name for name, robot in stored.robots.items() if unread(diagnostics_of(robot))]
+        self._verdicts = robot_verdicts(analysis, self.robots, of_robot.__getitem__, not_read)
 
     def _changed_elements(
         self, results: Iterable[tuple[Row, list[str]]], ids: list[str], robots: list[str]
@@ -144,15 +143,7 @@ class _Changes:
         write(transaction, cypher.create_relationships(DERIVES_FROM), _rows(self._origins, robots))
         write(transaction, cypher.CREATE_FINDINGS, _rows(self._findings, robots))
         write(transaction, cypher.CREATE_ACROSS, _rows(self._across, robots))
-        write(transaction, VERDICTS, [{"robot": name, "verdict": self._verdict(name)} for name in names])
-
-    def _verdict(self, robot: str) -> str:
-        """Rule S12 for one robot: what comes from it or gets out at it, what is open there, whether any data came."""
-        if robot in self._leaking:
-            return str(Verdict.LEAK)
-        not_read = unread(diagnostics_of(self._stored.robots.get(robot, {})))
-        settled = robot in self._reached and robot not in self._open and not not_read
-        return str(Verdict.NO_LEAK_FOUND if settled else Verdict.UNDETERMINED)
+        write(transaction, VERDICTS, [{"robot": name, "verdict": str(self._verdicts[name])} for name in names])
 
 
 def _by(rows: list[Row], robots: Mapping[str, str], key: str) -> dict[str, list[Row]]:

@@ -10,20 +10,27 @@ Source: the paper, section II-A, for the roles; rules S7, S8 and S13 for what th
 from __future__ import annotations
 
 import hashlib
+import json
 from dataclasses import dataclass
+from functools import partial
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.errors import InputError, InputErrors, LabelError
+from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, shown
+from rosprivacy.analysis.model import Place
+from rosprivacy.analysis.non_ros import EVERY
 from rosprivacy.ingest.labels.entries import OWN, PROPOSED, ROBOT, SHIPPED
 from rosprivacy.ingest.labels.label_reader import LabelReader, check_mundane
 from rosprivacy.ingest.reading import yaml_values
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
     from rosprivacy.analysis.model import Diagnostic
     from rosprivacy.ingest.labels.entries import Entry, FlowEntry
     from rosprivacy.ingest.labels.non_ros_reader import Limit, Stated
+    from rosprivacy.ingest.reading.yaml_values import Value
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 OURS, SHIPPED_FILES = "rosprivacy:", ("standard", "infrastructure")
@@ -32,7 +39,7 @@ STANDARD, INFRASTRUCTURE = (f"{OURS}{name}" for name in SHIPPED_FILES)
 
 @dataclass(frozen=True, slots=True)
 class Labels:
-    """One label file.
+    """One label file, or labels from memory.
 
     Attributes
     ----------
@@ -78,25 +85,47 @@ def read_labels(
     InputErrors
         With every problem of the file, each a ``LabelError`` of one line.
     """
-
-    def fail(line: int, problem: str, hint: str) -> InputError:
-        return LabelError(file, line, problem, hint)
-
     name = file.removeprefix(OURS)
     shipped = shipped or (file.startswith(OURS) and name in SHIPPED_FILES)
+    path = _shipped_path(name) if file.startswith(OURS) and shipped else file
     try:
-        top, data = yaml_values.read(_shipped_path(name) if file.startswith(OURS) and shipped else file, fail)
+        top, data = yaml_values.read(path, partial(LabelError, file))
     except InputError as error:
         raise InputErrors([error]) from None
     tier = OWN if not shipped else PROPOSED if file == INFRASTRUCTURE else SHIPPED
     reader = LabelReader(file, vocabulary, category, tier, ROBOT if own else 0)
+    return _labels(reader, top, data, shipped=shipped, own=own)
+
+
+def parse_labels(
+    text: str | Mapping[str, Any], vocabulary: Vocabulary, *, name: str, category: str = "PersonalData"
+) -> Labels:
+    """Read labels that stand in memory, as text or as what a YAML or JSON reader makes of it; see ``read_labels``.
+
+    Parameters
+    ----------
+    name
+        By which messages and reports call them; lines are those of the text.
+    """
+    try:
+        text = text if isinstance(text, str) else json.dumps(text, ensure_ascii=False, indent=1)
+        top = yaml_values.parse(text, partial(LabelError, name))
+    except InputError as error:
+        raise InputErrors([error]) from None
+    except (TypeError, ValueError) as error:
+        hint = "write maps, lists, texts, numbers"
+        raise InputErrors([LabelError(name, 0, f"not as in YAML or JSON: {shown(str(error))}", hint)]) from None
+    return _labels(LabelReader(name, vocabulary, category, OWN), top, text.encode("utf-8", "surrogatepass"))
+
+
+def _labels(reader: LabelReader, top: Value, data: bytes, *, shipped: bool = False, own: bool = False) -> Labels:
     reader.document(top)
     if shipped:
         check_mundane(reader, top)
     if reader.problems:
         raise InputErrors(reader.problems)
     return Labels(
-        file,
+        reader.file,
         hashlib.sha256(data).hexdigest(),
         tuple(reader.entries),
         tuple(reader.flows),
@@ -106,6 +135,19 @@ def read_labels(
         tuple(reader.limits),
         own,
     )
+
+
+def unknown_categories(labels: Labels, vocabulary: Vocabulary) -> Iterator[LabelError]:
+    """Yield a problem for each category of labels that were read with another ontology than this."""
+    statements = [said for entry in labels.entries for said in entry.statements]
+    statements += [said for flow in labels.flows for said in flow.statements]
+    named = {(name, said.place) for said in statements for name in (*said.categories, said.to)}
+    named |= {(name, stated.place) for stated in labels.elements for name, _ in stated.outside.retention}
+    named |= {(name, Place(labels.file, 0)) for name, _ in labels.limits}
+    for name, place in named:
+        if name != EVERY and name not in vocabulary.categories:
+            hint = "give parse_labels the ontologies that analyze gets"
+            yield LabelError(place.file, place.line, f"unknown category {shown(name)!r}", hint)
 
 
 def shipped_text(name: str) -> str:

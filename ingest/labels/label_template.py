@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 
 import yaml
 
+from rosprivacy.analysis.text import blanked
+
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping
 
@@ -63,7 +65,7 @@ def _nodes(graph: FlowGraph, standard: Collection[tuple[str, str]]) -> Iterator[
     writes, reads = _neighbours(graph, standard)
     yield "\nnodes:"
     for group, names in sorted(groups.items()):
-        yield f"  # enclave {_comment(group)}"
+        yield f"  # enclave {blanked(group, '?')}"
         for name in names:
             yield f"  {_key(name)}{_doing(writes.get(name, set()), reads.get(name, set()))}"
 
@@ -92,7 +94,7 @@ def _doing(writes: set[str], reads: set[str], most: int = 4) -> str:
         if names:
             more = f" and {len(names) - most} more" if len(names) > most else ""
             parts.append(f"{verb} {', '.join(sorted(names)[:most])}{more}")
-    return f"  # {_comment('; '.join(parts))}" if parts else ""
+    return f"  # {blanked('; '.join(parts), '?')}" if parts else ""
 
 
 def _channels(graph: FlowGraph, standard: Collection[tuple[str, str]]) -> Iterator[str]:
@@ -119,8 +121,3 @@ def _key(name: str) -> str:
     plain = name.isascii() and all(c.isalnum() or c in "/_-." for c in name)
     text = name if plain else yaml.dump(name, default_style='"', width=float("inf")).strip()
     return f"{text}:" if len(text) < LONGEST_KEY else f"? {text}\n  :"
-
-
-def _comment(text: str) -> str:
-    """Text that ends no line."""
-    return "".join(c if c.isprintable() else "?" for c in text)

@@ -218,9 +218,8 @@ def _bounded(rows: list[Html], number: int) -> list[Html]:
 
 
 def _name(element: Element) -> str:
-    robot = f"{element.robot}:" if element.robot else ""
     kind = "" if element.is_node else f"{element.kind} "
-    return f"{kind}{robot}{element.name}"
+    return f"{kind}{element.full_name}"
 
 
 def _names(elements: Collection[Element]) -> Html:

@@ -10,7 +10,7 @@ from itertools import islice
 from typing import TYPE_CHECKING, NewType
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.report.lines import one_line
+from rosprivacy.analysis.text import one_line
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable

@@ -12,9 +12,9 @@ import json
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.text import printable
 from rosprivacy.report.compare.identity import Identity
 from rosprivacy.report.compare.matching import paired, same
-from rosprivacy.report.naming import printable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

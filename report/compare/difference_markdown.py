@@ -9,6 +9,8 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.text import blanked
+
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
@@ -81,6 +83,6 @@ def code(text: str) -> str:
     >>> code("a`b")
     "`a'b`"
     """
-    plain = "".join(character if character.isprintable() else "?" for character in text).replace("`", "'")
+    plain = blanked(text, "?").replace("`", "'")
     plain = re.sub(r"\s+", " ", plain).strip() or "?"
     return f"`{plain[:LONGEST]}{'…' if len(plain) > LONGEST else ''}`"

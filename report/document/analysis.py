@@ -13,6 +13,7 @@ from rosprivacy.analysis.findings.sanitizing import cleanings, makings
 from rosprivacy.analysis.kernel.ranks import in_words
 from rosprivacy.analysis.legal import turned_special
 from rosprivacy.analysis.model import UNREAD_FILE
+from rosprivacy.analysis.text import utf8
 from rosprivacy.report.document import ledger
 from rosprivacy.report.document.non_ros import inventory, taken_by_kind, without_backups
 
@@ -135,8 +136,7 @@ def as_text(value: Any) -> str:
 
     What UTF-8 cannot say (a file name that is none) is escaped.
     """
-    text = json.dumps(value, indent=2, ensure_ascii=False) + "\n"
-    return text.encode("utf-8", "backslashreplace").decode()
+    return utf8(json.dumps(value, indent=2, ensure_ascii=False) + "\n")
 
 
 def element_dict(element: Element) -> dict[str, Any]:

@@ -12,7 +12,8 @@ from collections import defaultdict
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.report.naming import fit, key, name, whole
+from rosprivacy.analysis.text import fit
+from rosprivacy.report.naming import key, name, whole
 from rosprivacy.report.page.entries_of_robots import grouped
 from rosprivacy.report.page.index import Index
 from rosprivacy.report.page.kinds import provision

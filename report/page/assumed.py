@@ -8,7 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosprivacy.report.naming import fit, name, printable
+from rosprivacy.analysis.text import fit, printable
+from rosprivacy.report.naming import name
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

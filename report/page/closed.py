@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.report.naming import fit
+from rosprivacy.analysis.text import fit
 from rosprivacy.report.page.entries_of_robots import grouped
 
 if TYPE_CHECKING:

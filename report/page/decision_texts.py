@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.report.naming import printable
+from rosprivacy.analysis.text import printable
 from rosprivacy.report.page.index import CAN_BE_SPECIAL
 
 if TYPE_CHECKING:

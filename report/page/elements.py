@@ -8,7 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.report.naming import fit, key, name
+from rosprivacy.analysis.text import fit
+from rosprivacy.report.naming import key, name
 from rosprivacy.report.page.entries_of_robots import grouped, weight
 
 if TYPE_CHECKING:

@@ -9,7 +9,8 @@ from __future__ import annotations
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from rosprivacy.report.naming import fit, name
+from rosprivacy.analysis.text import fit
+from rosprivacy.report.naming import name
 
 Row = TypeVar("Row")
 NOBODY: Mapping[str, Collection[str]] = MappingProxyType({})

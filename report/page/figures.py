@@ -8,12 +8,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.text import printable
 from rosprivacy.report.page.inline import Inline, Wishes, pictures_of
 from rosprivacy.report.page.redacted_pictures import renamed
 from rosprivacy.report.pictures.graphviz import available
 from rosprivacy.report.pictures.looks import INK, LINE_LOOKS, ROLE_LOOKS, SHORTEST, WAY, Look
 from rosprivacy.report.pictures.phrases import TEXTS, Phrases
-from rosprivacy.report.pictures.wording import printable
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -8,7 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.report.naming import fit, key, line, name, printable
+from rosprivacy.analysis.text import fit, printable
+from rosprivacy.report.naming import key, line, name
 from rosprivacy.report.page.decision_texts import Decision, decision_of
 from rosprivacy.report.page.entries_of_robots import finding_pattern, grouped
 from rosprivacy.report.page.index import anchor, state

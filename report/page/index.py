@@ -10,7 +10,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.report.naming import fit, key, text
+from rosprivacy.analysis.text import fit
+from rosprivacy.report.naming import key, text
 from rosprivacy.report.page.entries_of_robots import names_of
 
 if TYPE_CHECKING:

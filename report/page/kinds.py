@@ -8,7 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.report.naming import fit, printable, text
+from rosprivacy.analysis.text import fit, printable
+from rosprivacy.report.naming import text
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping

@@ -9,9 +9,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.text import fit
 from rosprivacy.report.compare.changes import ASKED, Changes, changes
 from rosprivacy.report.document.analysis import files_not_read
-from rosprivacy.report.naming import fit, name
+from rosprivacy.report.naming import name
 from rosprivacy.report.page import assumed, elements, sanitizers, tables
 from rosprivacy.report.page.closed import Closed, closed
 from rosprivacy.report.page.criteria import Criterion, criteria
@@ -185,8 +186,8 @@ def outline(
         criteria=criteria(index),
         size=words(
             "i.intro",
-            elements=_count(document["elements"], "element", words),
-            flows=_count(document["flows"], "flow", words),
+            elements=words.count(document["elements"], "element"),
+            flows=words.count(document["flows"], "flow"),
         ),
         denied=words("i.denied", flows=words.count(document["denied_flows"], "flow"))
         if document["denied_flows"]
@@ -195,10 +196,6 @@ def outline(
         rest=elements.rest(index),
         enclaves=elements.enclaves(index),
     )
-
-
-def _count(number: int, thing: str, words: Words) -> str:
-    return words.count(number, thing)
 
 
 def _title(index: Index) -> str:

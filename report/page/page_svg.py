@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 from lxml import etree
 from markupsafe import Markup
 
+from rosprivacy.analysis.text import shortened
 from rosprivacy.report.pictures.dot import FONT, SIZE
 from rosprivacy.report.pictures.looks import INK, PALE
 from rosprivacy.report.pictures.svg import NAMESPACE, TITLE, group_of, unlink
-from rosprivacy.report.pictures.wording import shortened
 
 if TYPE_CHECKING:
     from rosprivacy.report.pictures.picture import Picture

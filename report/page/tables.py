@@ -11,7 +11,8 @@ from collections import defaultdict
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.report.naming import fit, key
+from rosprivacy.analysis.text import fit
+from rosprivacy.report.naming import key
 from rosprivacy.report.page.entries_of_robots import grouped
 from rosprivacy.report.page.index import anchor, state
 

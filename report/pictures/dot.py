@@ -9,8 +9,9 @@ from html import escape
 from textwrap import wrap
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.text import printable, shortened
 from rosprivacy.report.pictures.looks import INK, LINE_LOOKS, PALE, SHAPES, TEXT, Entry, box_look, legend
-from rosprivacy.report.pictures.wording import broken, printable, shortened
+from rosprivacy.report.pictures.wording import broken
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

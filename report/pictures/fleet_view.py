@@ -9,9 +9,9 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.text import counted
 from rosprivacy.report.pictures.looks import DATA, DERIVATION, LEAK, OPEN, REVIEWED, SANITIZER, SHORTEST, SOURCE, WAY
 from rosprivacy.report.pictures.picture import Box, Line, Picture, sorted_boxes, sorted_lines
-from rosprivacy.report.pictures.wording import counted
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.text import printable
 from rosprivacy.report.pictures.looks import LINE_LOOKS, box_look
-from rosprivacy.report.pictures.wording import printable
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

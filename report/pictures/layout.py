@@ -11,10 +11,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import DrawingError
+from rosprivacy.analysis.text import counted
 from rosprivacy.report.pictures.dot import dot
 from rosprivacy.report.pictures.graphviz import Graphviz, Job, TooLongError
 from rosprivacy.report.pictures.svg import finished
-from rosprivacy.report.pictures.wording import counted
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.text import printable, shortened
 from rosprivacy.report.pictures.dot import label_lines, paired
 from rosprivacy.report.pictures.looks import (
     INK,
@@ -21,7 +22,6 @@ from rosprivacy.report.pictures.looks import (
     legend,
 )
 from rosprivacy.report.pictures.picture import PRIVACY
-from rosprivacy.report.pictures.wording import printable, shortened
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -11,9 +11,9 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import DrawingError, shown
+from rosprivacy.analysis.text import counted
 from rosprivacy.report.pictures.looks import MATCHES
 from rosprivacy.report.pictures.picture import Box, Line, Picture, sorted_lines
-from rosprivacy.report.pictures.wording import counted
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping

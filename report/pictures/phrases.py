@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from rosprivacy.report.pictures.wording import shortened
+from rosprivacy.analysis.text import shortened
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

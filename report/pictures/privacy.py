@@ -8,10 +8,11 @@ from operator import or_
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import CHANNELS, DISCLOSURE
+from rosprivacy.analysis.text import counted
 from rosprivacy.report.pictures.looks import DERIVATION, LEAK, OPEN, REVIEWED, SANITIZER, SOURCE
 from rosprivacy.report.pictures.phrases import Phrases
 from rosprivacy.report.pictures.picture import Box
-from rosprivacy.report.pictures.wording import counted, listed
+from rosprivacy.report.pictures.wording import listed
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator

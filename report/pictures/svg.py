@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 
 from lxml import etree
 
+from rosprivacy.analysis.text import printable
 from rosprivacy.report.pictures.dot import hover, line_hover, paired
-from rosprivacy.report.pictures.wording import printable, sentences
+from rosprivacy.report.pictures.wording import sentences
 
 if TYPE_CHECKING:
     from rosprivacy.report.pictures.picture import Picture

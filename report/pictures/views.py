@@ -17,10 +17,11 @@ from rosprivacy.analysis.answer import Verdict
 from rosprivacy.analysis.findings.flows_to_leaks import FlowsToLeaks, flows_to_leaks
 from rosprivacy.analysis.kernel.search import Net
 from rosprivacy.analysis.model import DISCLOSURE
+from rosprivacy.analysis.text import counted, shortened
 from rosprivacy.report.pictures.looks import ALLOWED, DATA, DENIED, MATCHES, SHORTEST, WAY
 from rosprivacy.report.pictures.picture import PRIVACY, ROS, Box, Line, Picture, order, sorted_boxes, sorted_lines
 from rosprivacy.report.pictures.privacy import Reached
-from rosprivacy.report.pictures.wording import counted, listed, shortened
+from rosprivacy.report.pictures.wording import listed
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping

@@ -5,37 +5,14 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.text import shortened
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
 LONGEST_LINE = 28
 MOST_LINES = 3
 _PARTS = re.compile(r"/?[^/]*")
-
-
-def printable(text: str) -> str:
-    r"""Return text with what is not printable escaped; of any length.
-
-    Signs that turn the direction of writing are not printable, letters that are written from right to left are.
-
-    >>> printable("/a" + chr(10) + chr(0x202E))
-    '/a\\n\\u202e'
-    """
-    if text.isprintable():  # nearly always, and then it is at once done
-        return text
-    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
-
-
-def shortened(text: str, longest: int) -> str:
-    """Return printable text with its middle left out where it is too long.
-
-    >>> shortened("/perception/detection/objects", 15)
-    '/percep…objects'
-    """
-    line = printable(text)
-    if len(line) <= longest:
-        return line
-    return line[: longest // 2] + "…" + line[len(line) - (longest - longest // 2 - 1) :]
 
 
 def broken(name: str) -> tuple[str, ...]:
@@ -75,15 +52,6 @@ def listed(names: Iterable[str], most: int = 3, longest: int = 60) -> str:
     every = [shortened(name, longest) for name in names]
     more = f" and {len(every) - most} more" if len(every) > most else ""
     return ", ".join(every[:most]) + more
-
-
-def counted(number: int, noun: str, plural: str = "") -> str:
-    """Return a number with its noun.
-
-    >>> counted(1, "box", "boxes"), counted(2, "box", "boxes")
-    ('1 box', '2 boxes')
-    """
-    return f"{number:,} {noun if number == 1 else plural or noun + 's'}"
 
 
 def sentences(texts: Sequence[str]) -> str:

@@ -13,6 +13,8 @@ from urllib.parse import quote
 from rdflib import RDF, XSD, BNode, Literal, Namespace, URIRef
 from rdflib.namespace import ClosedNamespace
 
+from rosprivacy.analysis.text import utf8
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
@@ -80,7 +82,7 @@ def foreign(iri: str) -> URIRef:
 
 def text(value: str, language: str | None = None) -> Literal:
     """Return a literal; what UTF-8 cannot say (a file name that is none) is escaped."""
-    return Literal(value.encode("utf-8", "backslashreplace").decode(), lang=language)
+    return Literal(utf8(value), lang=language)
 
 
 def element_iri(element: Element) -> URIRef:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.answer import Step
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import Flow
-from rosprivacy.report.lines import one_line
+from rosprivacy.analysis.text import one_line
 from rosprivacy.report.places import of_step
 
 if TYPE_CHECKING:
@@ -49,17 +49,15 @@ def _neutral(said: str) -> str:
 
 def named(element: Element) -> str:
     """Return an element's name for a message: with its robot, and its kind where it is no node."""
-    robot = f"{element.robot}:" if element.robot else ""
     leg = f"{element.leg} of " if element.leg else ""
     kind = "" if element.is_node else f"{leg}{element.kind} "
-    return f"{kind}{text(robot + element.name)}"
+    return f"{kind}{text(element.full_name)}"
 
 
 def logical(element: Element) -> dict[str, str]:
     """Return an element as ``logicalLocation``."""
-    robot = f"{element.robot}:" if element.robot else ""
     kind = "module" if element.is_node else "resource"
-    return {"name": shown(element.name), "fullyQualifiedName": shown(robot + element.name), "kind": kind}
+    return {"name": shown(element.name), "fullyQualifiedName": shown(element.full_name), "kind": kind}
 
 
 def flows_between(analysis: Analysis) -> dict[Pair, Flow]:

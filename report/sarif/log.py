@@ -13,6 +13,7 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.model import Place, Severity, unread
+from rosprivacy.analysis.text import utf8
 from rosprivacy.report.inventory import law_of
 from rosprivacy.report.places import Places, in_a_file, to_review
 from rosprivacy.report.sarif.flows import flows_between, further_ways, prose, text
@@ -196,7 +197,7 @@ def _notice(level: str, name: str, message: str) -> dict[str, Any]:
 def _whole(value: Any) -> Any:
     """Return plain data without half characters (of a file name that is no UTF-8), which some readers refuse."""
     if isinstance(value, str):
-        return value.encode("utf-8", "backslashreplace").decode()
+        return utf8(value)
     if isinstance(value, dict):
         return {_whole(key): _whole(part) for key, part in value.items()}
     return [_whole(part) for part in value] if isinstance(value, list | tuple) else value

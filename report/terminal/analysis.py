@@ -12,17 +12,19 @@ from rich.text import Text
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import CHANNELS
+from rosprivacy.analysis.text import blanked, counted
 from rosprivacy.report.document.analysis import files_not_read
 from rosprivacy.report.document.decisions import decision_lines
+from rosprivacy.report.naming import key, kind_of, shown_name
 from rosprivacy.report.terminal.denied import denied_lines
 from rosprivacy.report.terminal.fleet import fleet_lines, robots_of
 from rosprivacy.report.terminal.labels import overruled_lines, standard_lines
-from rosprivacy.report.terminal.ledger import counted, listed
+from rosprivacy.report.terminal.ledger import ledger_lines, taken_away_lines
 from rosprivacy.report.terminal.restriction import asked_at_verdict, asked_lines, may_be_asked
 from rosprivacy.report.terminal.unknown_ends import end_lines, ends_at_verdict
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Iterator, Mapping
+    from collections.abc import Collection, Iterator, Mapping
 
     from rich.console import Console
 
@@ -72,7 +74,7 @@ def _lines(report: Mapping[str, Any], *, verbose: bool, quiet: bool) -> Iterator
     accepted = sum(finding["accepted"] for finding in report["findings"])
     if accepted and report["verdict"] != "leak":
         style, meaning = "bold yellow", ACCEPTED[report["verdict"]]
-    meaning += f"; {_count(accepted, 'finding')} accepted" if accepted else ""
+    meaning += f"; {counted(accepted, 'finding')} accepted" if accepted else ""
     meaning += "".join(f"; {end}" for end in ends_at_verdict(report)) + asked_at_verdict(report)
     yield f"{report['verdict']}: {meaning}", style
     if quiet:
@@ -84,7 +86,7 @@ def _lines(report: Mapping[str, Any], *, verbose: bool, quiet: bool) -> Iterator
     yield from end_lines(report, most=None if verbose else SHOWN)
     yield from denied_lines(report, most=None if verbose else SHOWN)
     if verbose:
-        yield from listed(report)
+        yield from ledger_lines(report)
     yield from _assumed(report, verbose=verbose)
     yield from _diagnostics(report, verbose=verbose)
 
@@ -94,30 +96,30 @@ def _summary(report: Mapping[str, Any]) -> str:
     dismissed = len(report["findings"]) - len(findings)
     accepted = sum(finding["accepted"] for finding in findings)
     parts = [
-        _count(len(findings), "finding"),
+        counted(len(findings), "finding"),
         *([f"{accepted} of them accepted"] if accepted else []),
         *([f"{dismissed} more only through another leak"] if dismissed else []),
-        f"{_count(len(report['open']), 'element')} to review",
-        f"{_count(report['elements'], 'element')} and {_count(report['flows'], 'flow')} in all",
+        f"{counted(len(report['open']), 'element')} to review",
+        f"{counted(report['elements'], 'element')} and {counted(report['flows'], 'flow')} in all",
     ]
     return ", ".join(parts)
 
 
 def _findings(report: Mapping[str, Any]) -> Iterator[Line]:
-    roles = {(_key(said["element"]), said["category"]): said["roles"] for said in report["roles"]}
-    unreviewed = {(_key(question["element"]), name) for question in report["open"] for name in question["categories"]}
+    roles = {(key(said["element"]), said["category"]): said["roles"] for said in report["roles"]}
+    unreviewed = {(key(question["element"]), name) for question in report["open"] for name in question["categories"]}
     for number, finding in enumerate(report["findings"], 1):
         source, leak = finding["source"], finding["leak"]
         form = "pseudonymised " if finding["pseudonymised"] else ""
         style = "dim" if finding["dismissed"] or finding["accepted"] else "bold"
         yield "", ""
         what = f"{KINDS[finding['kind']]}{form}{finding['category']}{may_be_asked(report, finding['category'])}"
-        yield f"{number}. {what}: {_name(source)} -> {_name(leak)}   [{finding['id']}]", style
+        yield f"{number}. {what}: {shown_name(source)} -> {shown_name(leak)}   [{finding['id']}]", style
         yield from robots_of(report, finding)
         if "reason" in finding:
             yield f"   {shown(finding['reason'])}", ""
         if finding["dismissed"]:
-            through = ", ".join(_name(element) for element in finding["through"])
+            through = ", ".join(shown_name(element) for element in finding["through"])
             past = "; past it, data gets there pseudonymised only" if finding.get("beside_pseudonymised") else ""
             yield f"   only through {through}, which has a finding of its own{past}", "dim"
         yield from decision_lines(finding)
@@ -133,11 +135,11 @@ def _way(finding: Mapping[str, Any], roles: Mapping[Any, Any], unreviewed: Colle
     for hop, element in enumerate(witness):
         # what is there: the data that arrives, at the source the data that leaves, at the leak what gets out too
         here = dict.fromkeys([*data[max(hop - 1, 0) : hop or 1], *([] if hop < len(steps) else [finding["category"]])])
-        said = [(name, role) for name in here for role in roles.get((_key(element), name), ())]
+        said = [(name, role) for name in here for role in roles.get((key(element), name), ())]
         notes = [f"{role} of {name}" for name, role in said]
-        notes += ["not reviewed" for name in here if (_key(element), name) in unreviewed]
+        notes += ["not reviewed" for name in here if (key(element), name) in unreviewed]
         style = "red" if any(role == "leak" for _, role in said) else ""
-        yield f"   {_name(element)}  ({', '.join([_kind(element), *notes])})", style
+        yield f"   {shown_name(element)}  ({', '.join([kind_of(element), *notes])})", style
         if hop < len(steps):
             before = steps[hop - 1] if hop else steps[hop]
             yield f"     | {_step(steps[hop], before)}", "dim"
@@ -157,7 +159,7 @@ def _paths(finding: Mapping[str, Any]) -> Iterator[Line]:
     if finding["disjoint_paths"] > 1:
         yield f"   {finding['disjoint_paths']} ways that share no flow", ""
     for path in finding.get("paths", ()):
-        yield "   way: " + " -> ".join(_name(element) for element in path), ""
+        yield "   way: " + " -> ".join(shown_name(element) for element in path), ""
     if finding.get("paths_bounded"):
         yield f"   … there are more ways; the bound is {len(finding['paths'])} (--max-paths)", "yellow"
 
@@ -165,15 +167,15 @@ def _paths(finding: Mapping[str, Any]) -> Iterator[Line]:
 def _law(finding: Mapping[str, Any], report: Mapping[str, Any]) -> Iterator[Line]:
     """What a person has to look up about the data that arrives; where it became what it is."""
     if finding["special_from"]:
-        yield f"   {_name(finding['special_from'])} makes such data of other data", ""
+        yield f"   {shown_name(finding['special_from'])} makes such data of other data", ""
     for legal in finding["law"]:
-        condition = f": {_whole(legal['condition'])}" if legal["condition"] else ""
+        condition = f": {blanked(legal['condition'])}" if legal["condition"] else ""
         yield f"   {shown(legal['provision'])}, {MAY[legal['verdict']]}{condition}", "magenta"
     if finding["article9"] == "unknown":
         yield "   the ontology does not say whether Article 9 GDPR applies to such data", "yellow"
     if finding["article9"] == "no":
         reasons = {category["name"]: category["reason"] for category in report["categories"]}
-        yield f"   not Article 9 GDPR by itself: {_whole(reasons.get(finding['category'], ''))}", "dim"
+        yield f"   not Article 9 GDPR by itself: {blanked(reasons.get(finding['category'], ''))}", "dim"
 
 
 def _review(report: Mapping[str, Any], *, verbose: bool) -> Iterator[Line]:
@@ -195,8 +197,8 @@ def _review(report: Mapping[str, Any], *, verbose: bool) -> Iterator[Line]:
         for question in chosen:
             element = question["element"]
             missing = "".join(f" no {what} is stated;" for what in question.get("missing", ()))
-            what = f"{_name(element)}  ({_kind(element)}; {', '.join(question['categories'])};{missing}"
-            yield f"   {what} {_count(question['distance'], 'step')} from a source)", ""
+            what = f"{shown_name(element)}  ({kind_of(element)}; {', '.join(question['categories'])};{missing}"
+            yield f"   {what} {counted(question['distance'], 'step')} from a source)", ""
         if len(questions) > len(chosen):
             yield f"   … and {len(questions) - len(chosen)} more (-v shows all)", "dim"
 
@@ -208,9 +210,9 @@ def _assumed(report: Mapping[str, Any], *, verbose: bool) -> Iterator[Line]:
     view = {"declared": "each node does what its own profile says", "enforced": "each node may do what its enclave may"}
     yield f"   view {report['view']}: {view[report['view']]}", ""
     yield from standard_lines(report, None if verbose else SHOWN)
-    yield from counted(report)
+    yield from taken_away_lines(report)
     if "database" in assumptions:
-        robots = _count(assumptions["database"]["robots"], "robot")
+        robots = counted(assumptions["database"]["robots"], "robot")
         yield f"   {robots} in the database, as loaded from these files and changed there since", ""
     for file in assumptions.get("fleet", ()):
         yield f"   fleet {shown(file['file'])} (sha256 {file['sha256'][:12]})", ""
@@ -227,7 +229,7 @@ def _assumed(report: Mapping[str, Any], *, verbose: bool) -> Iterator[Line]:
     yield f"   law as of {assumptions['law_as_of']}", ""
     yield from _assumed_outside(report)
     for taken in assumptions["sanitizers_without_method"]:
-        method = f"sanitizer {_name(taken['element'])} states no method for {taken['category']}"
+        method = f"sanitizer {shown_name(taken['element'])} states no method for {taken['category']}"
         yield f"   {method}: taken as pseudonymise, the data is still personal", "yellow"
     yield from overruled_lines(report)
     yield "   labels are a person's word; this is no legal verdict", "dim"
@@ -239,12 +241,12 @@ def _assumed_outside(report: Mapping[str, Any]) -> Iterator[Line]:
     for kind, role in assumptions["taken_by_kind"].items():
         yield f"   {kind}: {TAKEN[role]} ({role}), unless a label says otherwise", ""
     if taken := assumptions["backups_taken_as_none"]:
-        yield f"   backups are not stated, taken to have none: {', '.join(map(_name, taken))}", "yellow"
+        yield f"   backups are not stated, taken to have none: {', '.join(map(shown_name, taken))}", "yellow"
     if "countries_as_of" in assumptions:
         yield f"   EEA and adequacy decisions as of {assumptions['countries_as_of']}: check them", ""
     for row in report["outside"]:
         if "without_limit" in row:
-            what = f"how long {_name(row['element'])} keeps {', '.join(row['without_limit'])} was not judged"
+            what = f"how long {shown_name(row['element'])} keeps {', '.join(row['without_limit'])} was not judged"
             yield f"   {what}: no label file states a limit", "yellow"
 
 
@@ -255,27 +257,4 @@ def _diagnostics(report: Mapping[str, Any], *, verbose: bool) -> Iterator[Line]:
             place = f"{shown(diagnostic['file'])}:{diagnostic['line']}"
             yield f"{diagnostic['severity']}: {place}: {diagnostic['message']}", "yellow"
     if notices and not verbose:
-        yield f"{_count(len(notices), 'notice')} (-v shows them)", "dim"
-
-
-def _count(number: int, thing: str) -> str:
-    return f"{number:,} {thing}" if number == 1 else f"{number:,} {thing}s"
-
-
-def _key(element: Mapping[str, Any]) -> tuple[str, ...]:
-    return (element["robot"], element["kind"], element["name"], element.get("leg", ""))
-
-
-def _whole(text: str) -> str:
-    """A sentence of the ontology; anybody's ontology can be used, so it is made printable."""
-    return "".join(c if c.isprintable() else " " for c in text)
-
-
-def _name(element: Mapping[str, Any]) -> str:
-    robot = f"{element['robot']}:" if element["robot"] else ""
-    return shown(robot + element["name"])
-
-
-def _kind(element: Mapping[str, Any]) -> str:
-    parts: Iterable[str] = (element["kind"], element.get("leg", ""), "wildcard" if element.get("pattern") else "")
-    return " ".join(part for part in parts if part)
+        yield f"{counted(len(notices), 'notice')} (-v shows them)", "dim"

@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.text import blanked
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -100,7 +101,7 @@ def details(vocabulary: Vocabulary, category: Category, language: str = "en") ->
     ]
     width = max(len(words[key]) for key, value in rows if key and value) + 2
     return "".join(
-        f"{words[key] + ':':<{width}}{_printable(value)}\n" if key else f"{_printable(value)}\n"
+        f"{words[key] + ':':<{width}}{blanked(value)}\n" if key else f"{blanked(value)}\n"
         for key, value in rows
         if value
     )
@@ -116,8 +117,3 @@ def _legal(legal: Legal, category: Category, language: str) -> str:
         f"{words['as of']} {legal.as_of}",
     ]
     return "; ".join(parts)
-
-
-def _printable(text: str) -> str:
-    """Names come from anybody's ontology; long texts stay whole."""
-    return "".join(c if c.isprintable() else " " for c in text)

@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
+from rosprivacy.report.naming import shown_name
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -24,7 +25,7 @@ def denied_lines(report: Mapping[str, Any], *, most: int | None) -> Iterator[Lin
     yield f"Allowed by one line and denied by another: {len(flows)}", "bold"
     for flow in flows[:most]:
         allowed, denied = _places(flow["allowed_by"]), _places(flow["denied_by"])
-        ends = f"{_name(flow['source'])} -> {_name(flow['target'])}"
+        ends = f"{shown_name(flow['source'])} -> {shown_name(flow['target'])}"
         yield f"   {ends}  ({flow['role']}; ALLOW at {allowed}, DENY at {denied})", ""
     if most is not None and len(flows) > most:
         yield f"   … and {len(flows) - most} more (-v shows all)", "dim"
@@ -33,8 +34,3 @@ def denied_lines(report: Mapping[str, Any], *, most: int | None) -> Iterator[Lin
 def _places(lines: Iterable[Mapping[str, Any]]) -> str:
     places = list(dict.fromkeys(f"{shown(line['file'])}:{line['line']}" for line in lines))
     return f"{places[0]} and {len(places) - 1} more" if len(places) > 1 else places[0]
-
-
-def _name(element: Mapping[str, Any]) -> str:
-    robot = f"{element['robot']}:" if element["robot"] else ""
-    return shown(robot + element["name"])

@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.text import counted
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -23,7 +24,8 @@ def fleet_lines(report: Mapping[str, Any]) -> Iterator[Line]:
     if not fleet:
         return
     models = ", ".join(f"{count} {model}" for model, count in fleet["models"].items() if model)
-    yield f"{_robots(fleet['robots'])}{f' ({models})' if models else ''}; each finding below stands for all like it", ""
+    robots = counted(fleet["robots"], "robot") + (f" ({models})" if models else "")
+    yield f"{robots}; each finding below stands for all like it", ""
     titles = {f["id"]: f"{f['category']}: {f['source']['name']} -> {f['leak']['name']}" for f in report["findings"]}
     titles = {p["id"]: titles[p["finding"]] for p in fleet["patterns"]}
     for deviant in fleet["deviants"]:
@@ -43,7 +45,7 @@ def robots_of(report: Mapping[str, Any], finding: Mapping[str, Any]) -> Iterator
     pattern = next((p for p in fleet["patterns"] if p["finding"] == finding["id"]), None) if fleet else None
     if not fleet or not pattern or not pattern["robots"]:
         return
-    how_many = f"{len(pattern['robots'])} of {_robots(fleet['robots'])}"
+    how_many = f"{len(pattern['robots'])} of {counted(fleet['robots'], 'robot')}"
     across = f", from one to another, {pattern['findings']:,} times" if pattern["across"] else ""
     parts = [f"{pattern[key]:,} {what}" for key, what in FORMS if 0 < pattern[key] < pattern["findings"]]
     more = f" ({', '.join(parts)})" if parts else ""
@@ -65,7 +67,3 @@ def _form(share: Mapping[str, Any]) -> str:
     where = "ends here, " if share["ends"] else ""
     forms = [what for key, what in FORMS if share[key]]
     return where + (", ".join(forms) + " " if forms else "")
-
-
-def _robots(number: int) -> str:
-    return f"{number:,} robot" if number == 1 else f"{number:,} robots"

@@ -8,6 +8,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.text import counted
+from rosprivacy.report.naming import shown_name
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -26,11 +28,11 @@ def standard_lines(report: Mapping[str, Any], most: int | None) -> Iterator[Line
     count = report["standard_channels"]
     by = f"by {shown(taken['file'])} (sha256 {taken['sha256'][:12]})"
     by = "(rosprivacy labels --standard)" if taken["file"] == SHIPPED else by
-    yield f"   {count:,} standard ROS channel{'' if count == 1 else 's'} taken as mundane {by}", ""
-    reached = [f"{_name(row['element'])} ({', '.join(row['categories'])})" for row in reached_of(report)]
+    yield f"   {counted(count, 'standard ROS channel')} taken as mundane {by}", ""
+    reached = [f"{shown_name(row['element'])} ({', '.join(row['categories'])})" for row in reached_of(report)]
     if reached:
         yield f"   data gets to {len(reached):,} of them and stops there: {_listed(reached, most)}", ""
-    unchanged = [_name(element) for element in assumptions.get("standard_channels_unchanged", ())]
+    unchanged = [shown_name(element) for element in assumptions.get("standard_channels_unchanged", ())]
     if unchanged:
         what = f"of {len(unchanged):,} of them a glob says otherwise, which does not count: {_listed(unchanged, most)}"
         yield f"   {what}; name them, or write out the end of the glob (*/rosout)", "yellow"
@@ -40,8 +42,8 @@ def overruled_lines(report: Mapping[str, Any]) -> Iterator[Line]:
     """Return how many sources and leaks labels say that other labels take away."""
     rows = report["assumptions"].get("overruled", ())
     if rows:
-        what = "label of a source or leak is" if len(rows) == 1 else "labels of sources or leaks are"
-        yield f"   {len(rows):,} {what} taken away by another label (see the warnings)", "yellow"
+        what = counted(len(rows), "label of a source or leak is", "labels of sources or leaks are")
+        yield f"   {what} taken away by another label (see the warnings)", "yellow"
 
 
 def reached_of(report: Mapping[str, Any]) -> Sequence[Mapping[str, Any]]:
@@ -53,8 +55,3 @@ def reached_of(report: Mapping[str, Any]) -> Sequence[Mapping[str, Any]]:
 def _listed(names: Sequence[str], most: int | None) -> str:
     more = f" and {len(names) - most:,} more (-v shows all)" if most is not None and len(names) > most else ""
     return ", ".join(names[:most]) + more
-
-
-def _name(element: Mapping[str, Any]) -> str:
-    robot = f"{element['robot']}:" if element["robot"] else ""
-    return shown(robot + element["name"])

@@ -8,6 +8,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.text import counted
+from rosprivacy.report.naming import shown_name
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -34,19 +36,19 @@ SAYS = {
 }  # fmt: skip
 
 
-def counted(report: Mapping[str, Any]) -> Iterator[Line]:
+def taken_away_lines(report: Mapping[str, Any]) -> Iterator[Line]:
     """Return what ``Assumed`` says: how much was taken away, by what, and how much of it closed a path."""
     taken = report["assumptions"]["taken_away_by"]
     if not taken:
         return
-    parts = [f"{number:,} {COUNTED[by][number != 1]}" for by, number in taken.items()]
+    parts = [counted(number, *COUNTED[by]) for by, number in taken.items()]
     yield f"   taken away on the data's side: {', '.join(parts)}", ""
     closing = sum(_closes(row) for row in report["taken_away"])
     if closing:
         yield f"   {closing:,} of these closed a path to a leak or an open element (-v lists them)", "yellow"
 
 
-def listed(report: Mapping[str, Any]) -> Iterator[Line]:
+def ledger_lines(report: Mapping[str, Any]) -> Iterator[Line]:
     """Return a line for each row that closed a path: what, where, on whose word, and what lies behind."""
     rows = [row for row in report["taken_away"] if _closes(row)]
     if not rows:
@@ -62,7 +64,7 @@ def _closes(row: Mapping[str, Any]) -> bool:
 
 
 def _row(row: Mapping[str, Any]) -> str:
-    ends = " -> ".join(_name(row[end]) for end in ("element", "to") if row[end])
+    ends = " -> ".join(shown_name(row[end]) for end in ("element", "to") if row[end])
     lines = ", ".join(f"{shown(place['file'])}:{place['line']}" for place in row["places"])
     said = f"{SAYS[row['by']]}{' by a glob' if row['glob'] else ''}"
     said += f" ({shown(row['note'])})" if row["by"] == "outdone" else ""
@@ -73,14 +75,9 @@ def _row(row: Mapping[str, Any]) -> str:
 def _behind(row: Mapping[str, Any]) -> str:
     """What data would get to."""
     if row["by"] == "decision":
-        return f"it reaches {_name(row['leak'])}, finding {shown(row['note'])}"
+        return f"it reaches {shown_name(row['leak'])}, finding {shown(row['note'])}"
     if row["by"] == "restriction":
-        return f"it reaches {_name(row['leak'])}"
-    places = [f"the leak {_name(row['leak'])}"] if row["leak"] else []
-    places += [f"{_name(row['open'])}, which is not reviewed"] if row["open"] else []
+        return f"it reaches {shown_name(row['leak'])}"
+    places = [f"the leak {shown_name(row['leak'])}"] if row["leak"] else []
+    places += [f"{shown_name(row['open'])}, which is not reviewed"] if row["open"] else []
     return f"without it data gets to {' and '.join(places)}" if places else "what lies behind was not worked out"
-
-
-def _name(element: Mapping[str, Any]) -> str:
-    robot = f"{element['robot']}:" if element["robot"] else ""
-    return shown(robot + element["name"])

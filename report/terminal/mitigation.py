@@ -14,7 +14,9 @@ from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.mitigation.limits import DENY, FILTER, REVIEW
 from rosprivacy.analysis.mitigation.proposals import ITSELF
 from rosprivacy.analysis.model import STORAGE_LIMITATION, THIRD_COUNTRY
+from rosprivacy.analysis.text import counted
 from rosprivacy.report.document.mitigation import SECTIONS
+from rosprivacy.report.naming import kind_of, shown_name
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -58,11 +60,11 @@ def _of_proposal(proposal: Mapping[str, Any]) -> Iterator[Line]:
     steps, removes, kept = proposal["steps"], len(proposal["removes"]), proposal["keeps"]
     if removes and not proposal["proven"]:
         yield (
-            f"{title}: no proposal for {_count(removes, 'finding')}: none could be proven by a new analysis",
+            f"{title}: no proposal for {counted(removes, 'finding')}: none could be proven by a new analysis",
             "bold red",
         )
     elif removes:
-        yield f"{title}: {_count(len(steps), 'change')} {_verb(steps)} {_count(removes, 'finding')}", "bold"
+        yield f"{title}: {counted(len(steps), 'change')} {_verb(steps)} {counted(removes, 'finding')}", "bold"
         yield f"   {_certainty(proposal)}", "dim"
         yield from _reviews([step for step in steps if step["kind"] == REVIEW])
         for step in steps:
@@ -178,7 +180,7 @@ def _breaks(proposal: Mapping[str, Any]) -> Iterator[Line]:
 
 
 def _kept(one: Mapping[str, Any]) -> str:
-    way = " -> ".join(_name(element) for element in one["way"])
+    way = " -> ".join(shown_name(element) for element in one["way"])
     if one["reason"] == ITSELF:
         if one["kind"] in STATED:
             return f"{one['category']} at {way}: it begins there, so there is no way to cut   [{one['finding']}]"
@@ -195,10 +197,8 @@ def _closing(report: Mapping[str, Any]) -> Iterator[Line]:
     yield "Assumed", "bold"
     yield f"   view {report['view']}; kinds of change: {', '.join(assumed['kinds_of_change'])}; weights: {weights}", ""
     if assumed["time_critical"]:
-        yield (
-            f"   nothing on the way to {', '.join(map(_name, assumed['time_critical']))} is touched: time-critical",
-            "",
-        )
+        critical = ", ".join(map(shown_name, assumed["time_critical"]))
+        yield f"   nothing on the way to {critical} is touched: time-critical", ""
     for note in report["notes"]:
         yield f"   {note}", "yellow"
     for line in report["labels_without_element"]:
@@ -212,20 +212,9 @@ def _closing(report: Mapping[str, Any]) -> Iterator[Line]:
 
 def _marked(element: Mapping[str, Any]) -> str:
     marks = [mark for mark, key in (("leak", "leak"), ("time-critical", "time_critical")) if element.get(key)]
-    return _name(element) + (f" ({', '.join(marks)})" if marks else "")
-
-
-def _name(element: Mapping[str, Any]) -> str:
-    robot = f"{element['robot']}:" if element["robot"] else ""
-    return shown(robot + element["name"])
+    return shown_name(element) + (f" ({', '.join(marks)})" if marks else "")
 
 
 def _of(element: Mapping[str, Any]) -> str:
     """The name, and what it is."""
-    leg = f" {element['leg']}" if element.get("leg") else ""
-    wildcard = " wildcard" if element.get("pattern") else ""
-    return f"{_name(element)} ({element['kind']}{leg}{wildcard})"
-
-
-def _count(number: int, thing: str) -> str:
-    return f"{number:,} {thing}" if number == 1 else f"{number:,} {thing}s"
+    return f"{shown_name(element)} ({kind_of(element)})"

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.text import counted
+from rosprivacy.report.naming import shown_name
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -35,7 +36,7 @@ def ends_at_verdict(report: Mapping[str, Any]) -> Iterator[str]:
             ends = [end["element"] for end in report["unknown_ends"] if end["unknown"] == what]
             count = sum(alike.get(element["robot"], 1) for element in ends)
             if count:
-                yield f"{count:,} {one if count == 1 else several}"
+                yield counted(count, one, several)
 
 
 def end_lines(report: Mapping[str, Any], most: int | None) -> Iterator[Line]:
@@ -48,9 +49,8 @@ def end_lines(report: Mapping[str, Any], most: int | None) -> Iterator[Line]:
         yield f"{title}: {len(ends)}", "bold"
         for end in ends[:most]:
             element = end["element"]
-            robot = f"{element['robot']}:" if element["robot"] else ""
             kind = " ".join(part for part in (element["kind"], element.get("leg", "")) if part)
             about = "; ".join(part for part in (kind, ", ".join(end["categories"])) if part)
-            yield f"   {shown(robot + element['name'])}  ({about})", ""
+            yield f"   {shown_name(element)}  ({about})", ""
         if most is not None and len(ends) > most:
             yield f"   … and {len(ends) - most} more (-v shows all)", "dim"

@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from rosprivacy.analysis.findings.why_not import Obstacle, WhyNot
-    from rosprivacy.analysis.model import Element
 
 SILENT = {
     NO_SOURCE: "no label says that it brings in {category}",
@@ -26,7 +25,7 @@ SILENT = {
 def lines(answers: Iterable[WhyNot]) -> Iterator[str]:
     """Return the answers in sentences."""
     for answer in answers:
-        ends = f"{answer.category} from {_name(answer.source)} to {_name(answer.leak)}"
+        ends = f"{answer.category} from {shown(answer.source.full_name)} to {shown(answer.leak.full_name)}"
         if answer.finding:
             yield f"{ends}: it gets there, finding {answer.finding.id}"
         elif not answer.path:
@@ -35,7 +34,7 @@ def lines(answers: Iterable[WhyNot]) -> Iterator[str]:
             fewest = f"of all paths this one has the fewest obstacles ({len(answer.obstacles)})"
             yield f"{ends}: it does not get there; {fewest}"
         if answer.path:
-            yield f"   {' -> '.join(map(_name, answer.path))}"
+            yield f"   {' -> '.join(shown(element.full_name) for element in answer.path)}"
         for obstacle in answer.obstacles:
             yield f"   {_obstacle(obstacle)}"
         if not answer.finding:
@@ -43,13 +42,8 @@ def lines(answers: Iterable[WhyNot]) -> Iterator[str]:
 
 
 def _obstacle(obstacle: Obstacle) -> str:
-    ends = " -> ".join(_name(end) for end in (obstacle.element, obstacle.to) if end)
+    ends = " -> ".join(shown(end.full_name) for end in (obstacle.element, obstacle.to) if end)
     if obstacle.by in SILENT:
         return f"at {ends}: {SILENT[obstacle.by].format(category=obstacle.category)}"
     where = ", ".join(f"{shown(place.file)}:{place.line}" for place in obstacle.places)
     return f"at {ends}: {obstacle.by} for {obstacle.category}, {where}"
-
-
-def _name(element: Element) -> str:
-    robot = f"{element.robot}:" if element.robot else ""
-    return shown(robot + element.name)

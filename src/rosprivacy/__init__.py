@@ -5,74 +5,88 @@
 >>> str(result.analysis.verdict)
 'leak'
 
-The heavy parts are imported when they are used.
+What is public stands in ``__all__``, and is imported when it is used. ``docs/python.md`` tells how to work with it.
 """
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import TYPE_CHECKING
 
 from rosprivacy.version import __version__
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
     from typing import Any
 
+    from rosprivacy.analysis.answer import Analysis, Finding, Verdict
+    from rosprivacy.analysis.errors import (
+        ClusterError,
+        DatabaseError,
+        DecisionError,
+        DrawingError,
+        FleetError,
+        GraphError,
+        InputError,
+        InputErrors,
+        LabelError,
+        LimitsError,
+        OntologyError,
+        PolicyError,
+        QueryError,
+        RosPrivacyError,
+    )
+    from rosprivacy.analysis.model import Element
+    from rosprivacy.api import analyze, analyze_fleet, parse_labels
     from rosprivacy.assembly import Result
+    from rosprivacy.ingest.labels.label_file import Labels
 
-__all__ = ["__version__", "analyze", "analyze_fleet"]
+__all__ = [
+    "Analysis",
+    "ClusterError",
+    "DatabaseError",
+    "DecisionError",
+    "DrawingError",
+    "Element",
+    "Finding",
+    "FleetError",
+    "GraphError",
+    "InputError",
+    "InputErrors",
+    "LabelError",
+    "Labels",
+    "LimitsError",
+    "OntologyError",
+    "PolicyError",
+    "QueryError",
+    "Result",
+    "RosPrivacyError",
+    "Verdict",
+    "__version__",
+    "analyze",
+    "analyze_fleet",
+    "parse_labels",
+]
+_ERRORS = "analysis.errors"
+_MODULES = {  # where a name that is no error stands
+    "Analysis": "analysis.answer",
+    "Element": "analysis.model",
+    "Finding": "analysis.answer",
+    "Labels": "ingest.labels.label_file",
+    "Result": "assembly",
+    "Verdict": "analysis.answer",
+    "analyze": "api",
+    "analyze_fleet": "api",
+    "parse_labels": "api",
+}
 
 
-def analyze(policies: Iterable[str], labels: Iterable[str] = (), **options: Any) -> Result:
-    """Analyse SROS 2 policies under label files.
-
-    Parameters
-    ----------
-    policies
-        Files, folders and globs.
-    labels
-        Label files, YAML or JSON, or the paper's JSON with six lists.
-    **options
-        Fields of ``rosprivacy.settings.Settings``.
-
-    Returns
-    -------
-    Result
-        The analysis, and what it rests on.
-
-    Raises
-    ------
-    InputErrors
-        With every problem of the input, one line each.
-    """
-    from rosprivacy.assembly import run  # noqa: PLC0415 - light start
-    from rosprivacy.settings import Settings  # noqa: PLC0415 - light start
-
-    return run(tuple(policies), tuple(labels), Settings(**options))
+def __getattr__(name: str) -> Any:
+    if name not in __all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    found = getattr(import_module(f"{__name__}.{_MODULES.get(name, _ERRORS)}"), name)
+    globals()[name] = found
+    return found
 
 
-def analyze_fleet(file: str, **options: Any) -> Result:
-    """Analyse the robots of a fleet file together.
-
-    Parameters
-    ----------
-    file
-        Fleet file, YAML or JSON.
-    **options
-        Fields of ``rosprivacy.settings.Settings``.
-
-    Returns
-    -------
-    Result
-        With ``fleet``: which robots are alike, and what they have in common. In the graph one robot stands for all
-        that are alike.
-
-    Raises
-    ------
-    InputErrors
-        With every problem of the input, one line each.
-    """
-    from rosprivacy.fleets import run_fleet  # noqa: PLC0415
-    from rosprivacy.settings import Settings  # noqa: PLC0415 - light start
-
-    return run_fleet(file, Settings(**options))
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

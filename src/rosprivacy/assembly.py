@@ -28,7 +28,7 @@ from rosprivacy.decided import accepts, decisions_of, joined_to
 from rosprivacy.ingest.database.robot_notices import diagnostics_of
 from rosprivacy.ingest.labels.add_non_ros import extend
 from rosprivacy.ingest.labels.binding import bind, unused
-from rosprivacy.ingest.labels.label_file import read_labels
+from rosprivacy.ingest.labels.label_file import Labels, read_labels, unknown_categories
 from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.ingest.policies.joint_policies import joint_warnings
 from rosprivacy.ingest.policies.policy_files import read_policies
@@ -46,7 +46,6 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.findings.ledger import TakenAway
     from rosprivacy.analysis.model import Bound, Diagnostic, FlowGraph, Policy
     from rosprivacy.ingest.database.rows import RobotRows
-    from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.settings import Settings
 
@@ -114,7 +113,7 @@ class Result:
         return SERIALISERS[form](graph)
 
 
-def run(policies: tuple[str, ...], labels: tuple[str, ...], settings: Settings) -> Result:
+def run(policies: tuple[str, ...], labels: tuple[str | Labels, ...], settings: Settings) -> Result:
     """Read everything, analyse it, and keep what the answer rests on.
 
     Raises
@@ -209,12 +208,16 @@ def standard_channels(graph: FlowGraph, vocabulary: Vocabulary, settings: Settin
     return {(graph.elements[vertex].kind, graph.elements[vertex].name) for vertex in bound.elements}
 
 
-def read_label_files(labels: tuple[str, ...], vocabulary: Vocabulary, settings: Settings) -> list[Labels]:
-    """Read the standard channels' file and the user's, with the problems of all of them."""
+def read_label_files(labels: tuple[str | Labels, ...], vocabulary: Vocabulary, settings: Settings) -> list[Labels]:
+    """Read the standard channels' file and the user's, if not read before, with the problems of all of them."""
     files: list[Labels] = []
     problems: list[InputError] = []
     standard = [settings.standard_channels] if settings.standard_channels else []
     for file in dict.fromkeys([*standard, *labels]):
+        if isinstance(file, Labels):
+            files.append(file)
+            problems += unknown_categories(file, vocabulary)
+            continue
         try:
             shipped = file in standard and file not in labels  # named by the user, it is the user's own
             files.append(read_labels(file, vocabulary, category=settings.category, shipped=shipped))

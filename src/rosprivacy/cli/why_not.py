@@ -78,8 +78,7 @@ def _vertices(result: Result, written: str) -> list[int]:
     known: dict[str, list[int]] = {}
     elements = result.analysis.graph.elements
     for vertex, element in enumerate(elements):
-        name = f"{element.robot}:{element.name}" if element.robot else element.name
-        known.setdefault(name, []).append(vertex)
+        known.setdefault(element.full_name, []).append(vertex)
     if written not in known:
         close = get_close_matches(written, known, n=3, cutoff=0.5)
         hint = (

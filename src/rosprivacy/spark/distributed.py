@@ -261,10 +261,12 @@ class _Run:
         needed |= {unit[robot] for robot in kinds if robot in unit}
         ends = (element.robot for group in groups for element in (group.source, group.leak))
         needed |= {unit[robot] for robot in ends if robot in unit}
-        leak = any(group.count > group.dismissed for group in groups)
         begins = any(ours.begins(v) & mask for v in ours.facts) or any(answer.begins for answer in answers)
-        is_open = bool(count or core_open) or not begins or bool(unread(told.diagnostics))
-        verdict = Verdict.LEAK if leak else Verdict.UNDETERMINED if is_open else Verdict.NO_LEAK_FOUND
+        verdict = Verdict.of(
+            leak=any(group.count > group.dismissed for group in groups),
+            is_open=bool(count or core_open),
+            known=begins and not unread(told.diagnostics),
+        )
         counts = sum((answer.counts for answer in answers), counted(piece.graph, ours, self._likeness, (), mine))
         return Found(
             emitted=tuple(wanted),

@@ -10,12 +10,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.answer import Verdict
+from rosprivacy.analysis.answer import robot_verdicts
 from rosprivacy.analysis.findings.findings import Options, analyse
 from rosprivacy.analysis.fleet.source_leak_pairs import pairs
 from rosprivacy.analysis.model import unread
 from rosprivacy.assumptions import remembered, sources_of, what_it_rests_on
-from rosprivacy.ingest.database.fleet_rows import FleetRows, verdicts
+from rosprivacy.ingest.database.fleet_rows import FleetRows
 from rosprivacy.ingest.database.rows import rows_of
 from rosprivacy.ingest.fleet.dds_domains import pseudo_robot
 from rosprivacy.ingest.fleet.fleet_graph import place_chosen
@@ -24,7 +24,7 @@ from rosprivacy.spark.shown_robots import limited
 from rosprivacy.spark.units import unit_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.findings.concerns import Concern
@@ -160,8 +160,9 @@ def _fleet_rows(placed: Placed, members: Mapping[str, Member], plan: Plan, mine:
     )
     said = {name: _more(member, analysis, plan, vocabulary) for name, member in members.items()}
     said[plan.fleet.name] = remembered({**plan.assumptions, "policies": [], "labels": []}, plan.joins)
-    known = _verdicts(analysis, plan, [name for name, member in members.items() if unread(member.diagnostics)])
-    more = {name: {**some, "verdict": known.get(name, str(Verdict.UNDETERMINED))} for name, some in said.items()}
+    not_read = [name for name, member in members.items() if unread(member.diagnostics)]
+    verdicts = robot_verdicts(analysis, said, lambda element: element.robot, not_read, plan.leaking)
+    more = {name: {**some, "verdict": str(verdicts[name])} for name, some in said.items()}
     return FleetRows(placed, analysis, vocabulary, more, most_across=0)
 
 
@@ -174,14 +175,6 @@ def _more(member: Member, analysis: Analysis, plan: Plan, vocabulary: Any) -> di
         taken = {element.identity for element in robots if element.robot == member.robot.id}
         said["standard_channels"] = {**said["standard_channels"], "taken": len(taken)}
     return remembered(said, member.diagnostics)
-
-
-def _verdicts(analysis: Analysis, plan: Plan, not_read: Iterable[str]) -> dict[str, str]:
-    """The verdict on each robot; which of them leak is known of the whole fleet."""
-    open_at = (question.element for question in analysis.open)
-    reached = (carried.element for carried in analysis.carried)
-    found = verdicts((), open_at, reached, lambda element: element.robot, not_read)
-    return found | dict.fromkeys(plan.leaking, str(Verdict.LEAK))
 
 
 def _derived_at(rows: RobotRows, known: Collection[str]) -> RobotRows:

@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+import pytest
 from hypothesis import given
 
 from rosprivacy.analysis.errors import InputErrors
@@ -15,7 +16,7 @@ from rosprivacy.analysis.fleet.source_leak_pairs import pairs
 from tests.helpers.systems import WIDE, WIDE_HIERARCHY, System, statement, systems
 
 if TYPE_CHECKING:
-    from rosprivacy.analysis.model import Bound
+    from rosprivacy.analysis.model import Bound, Statement
 
 Row = tuple[str, str, int, int, bool, bool]
 
@@ -89,20 +90,21 @@ def through(system: System, flow: int) -> Bound:
     return replace(bound, elements=elements, through=ways)
 
 
-def test_a_source_whose_only_channel_carries_nothing_is_still_a_leak_by_itself() -> None:
+def test_a_source_that_names_one_channel_is_still_a_leak_by_itself() -> None:
     """Rule S10: a node that is source and leak of one category is a finding by itself."""
-    said = {0: [statement("source", "Any"), statement("leak", "Any")], 1: [statement("never", "Any")]}
+    said = {0: [statement("source", "Any"), statement("leak", "Any")]}
     system = System(1, 1, [(0, 1), (1, 0)], said, {})
     found = analyse(system.graph(), through(system, 0), system.hierarchy)
     assert [len(finding.witness) for finding in found.findings] == [1]
     same(system, through(system, 0))
 
 
-def test_what_never_goes_along_a_flow_is_not_emitted_along_it() -> None:
-    """Rule S8: a single flow can be restricted, also the one that a source names."""
-    said = {0: [statement("source", "Any")], 1: [statement("leak", "Any")]}
-    system = System(2, 1, [(0, 2), (2, 1)], said, {0: {"Any"}})
-    found = analyse(system.graph(), through(system, 0), system.hierarchy)
-    assert not found.findings
-    assert [carried.element.name for carried in found.carried] == ["/n0"]
-    same(system, through(system, 0))
+@pytest.mark.parametrize(("channel", "flow"), [([statement("never", "Any")], {}), ([], {0: {"Any"}})])
+def test_what_takes_away_the_channel_that_a_source_names_is_refused(
+    channel: list[Statement], flow: dict[int, set[str]]
+) -> None:
+    """Rule S7: a user's full name that takes it away is an error with both lines."""
+    said = {0: [statement("source", "Any")], 1: [statement("leak", "Any")], 2: channel}
+    system = System(2, 1, [(0, 2), (2, 1)], said, flow)
+    with pytest.raises(InputErrors, match="names it for Any"):
+        analyse(system.graph(), through(system, 0), system.hierarchy)

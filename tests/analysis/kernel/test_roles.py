@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -19,7 +19,7 @@ CHAIN = ("camera>image", "a<image", "a>mid", "b<mid", "b>out", "c<out")
 POLICY = '<policy version="0.2.0"><enclaves><enclave path="/"><profiles>{}</profiles></enclave></enclaves></policy>'
 
 
-def system(folder: Path, labels: str, flows: tuple[str, ...] = CHAIN, **options: object) -> Result:
+def system(folder: Path, labels: str, flows: tuple[str, ...] = CHAIN, **options: Any) -> Result:
     """``node>topic`` publishes, ``node<topic`` subscribes."""
     nodes: dict[str, list[str]] = {}
     for flow in flows:

@@ -23,7 +23,7 @@ from rosprivacy.spark.distributed import Question, analyse_in_parts
 from rosprivacy.spark.fleet_on_spark import file_reader, result
 from rosprivacy.spark.shown_robots import shown
 from tests.helpers.fleet_files import write
-from tests.helpers.parts import FLEET, documents, same
+from tests.helpers.parts import FLEET, documents, fleet_file, same
 from tests.helpers.paths import ROOT
 from tests.helpers.random_fleets import Case, fleets
 
@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 
     from rosprivacy.assembly import Result
     from rosprivacy.spark.units import Unit
+
+__all__ = ["fleet_file"]
 
 
 @dataclass(frozen=True)

@@ -19,12 +19,14 @@ from rosprivacy.ingest.fleet.alike_robots import alike
 from rosprivacy.ingest.fleet.fleet_schema import fleet_schema
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.settings import Settings
-from tests.helpers.fleet_files import MODELS, policy, read, write
+from tests.helpers.fleet_files import MODELS, folder, policy, read, write
 from tests.helpers.paths import ROOT
 from tests.helpers.schema_places import places
 
 if TYPE_CHECKING:
     from rosprivacy.assembly import Result
+
+__all__ = ["folder"]
 
 EXAMPLES = ROOT / "examples"
 
@@ -151,8 +153,8 @@ class TestAlike:
             write(f"p/{robot}.xml", Path("eye.xml").read_text("utf-8"))
             write(f"q/{robot}.xml", Path("eye.xml").read_text("utf-8").replace("<topics", INCLUDE + "<topics", 1))
             write(f"r/{robot}.xml", Path("eye.xml").read_text("utf-8") + "<!-- include -->")
-        for folder in ("p", "r"):
-            assert len(alike(read(f"fleet: 1\ngroups: [{{policies: {folder}/*.xml}}]\n"))) == 1
+        for robots in ("p", "r"):
+            assert len(alike(read(f"fleet: 1\ngroups: [{{policies: {robots}/*.xml}}]\n"))) == 1
         assert len(alike(read("fleet: 1\ngroups: [{policies: q/*.xml}]\n"))) == 2
 
     def test_a_robot_that_nothing_joins_is_placed_once(self) -> None:

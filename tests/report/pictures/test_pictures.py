@@ -18,12 +18,13 @@ from hypothesis import strategies as st
 from lxml import etree
 
 import rosprivacy
+from rosprivacy.analysis.text import printable, shortened
 from rosprivacy.report.pictures import looks, narrow, views
 from rosprivacy.report.pictures.dot import dot, label_lines, quoted
 from rosprivacy.report.pictures.graphml import graphml
 from rosprivacy.report.pictures.layout import drawn
 from rosprivacy.report.pictures.mermaid import label, mermaid, too_large
-from rosprivacy.report.pictures.wording import broken, printable, shortened
+from rosprivacy.report.pictures.wording import broken
 from tests.helpers.graphs import care_home, factory
 from tests.helpers.paths import ROOT
 from tests.helpers.pictures import HOSTILE, hostile, pictures, ros

@@ -1,0 +1,70 @@
+"""What the site has beside ``docs/``: pages from the top of the repository, and the reference of the public names.
+
+A hook of MkDocs (see ``mkdocs.yml``). Links from one page to another lead there; a link to a file of the repository
+that is no page becomes its name.
+"""
+
+from __future__ import annotations
+
+import posixpath
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from mkdocs.structure.files import File
+
+import rosprivacy
+
+if TYPE_CHECKING:
+    from mkdocs.config.defaults import MkDocsConfig
+    from mkdocs.structure.files import Files
+
+ROOT = Path(__file__).resolve().parent.parent
+BESIDE = {
+    "README.md": "first-steps.md",
+    "SECURITY.md": "reporting.md",
+    "CONTRIBUTING.md": "contributing.md",
+    "CHANGELOG.md": "changelog.md",
+}
+FACTS = ("rosprivacy.analysis.answer", "rosprivacy.analysis.model", "rosprivacy.analysis.errors")
+DRAWN = "![Where video can go in the paper's factory](pictures/factory-privacy.svg)\n"  # a script would draw the other
+
+
+def on_files(files: Files, config: MkDocsConfig) -> Files:
+    """Add the pages that do not lie in ``docs/``."""
+    for name, page in BESIDE.items():
+        text = (ROOT / name).read_text("utf-8")
+        text = re.sub(r"```mermaid\n.*?```\n", lambda _: DRAWN, text, flags=re.DOTALL)
+        files.append(File.generated(config, page, content=linked(text, "")))
+    files.append(File.generated(config, "reference.md", content=reference()))
+    return files
+
+
+def reference() -> str:
+    """Return the page of all public names, and of the facts that an answer is made of."""
+    public = [name for name in rosprivacy.__all__ if not name.startswith("__")]
+    modules = {name: getattr(getattr(rosprivacy, name), "__module__", "rosprivacy") for name in public}
+    told = [f"{module}.{name}" for name, module in modules.items() if module not in FACTS]
+    return "# Python\n" + "".join(f"\n::: {path}\n" for path in (*told, *FACTS))
+
+
+def on_page_markdown(markdown: str, **_: object) -> str:
+    """Lead links out of ``docs/`` to the pages that stand for these files."""
+    return linked(markdown, "docs")
+
+
+def linked(text: str, folder: str) -> str:
+    """Return a page of a folder of the repository with links as they are on the site."""
+
+    def as_on_site(link: re.Match[str]) -> str:
+        said, target, anchor = link.groups(default="")
+        if ":" in target:
+            return link[0]
+        path = posixpath.normpath(posixpath.join(folder, target))
+        if path in BESIDE:
+            return f"[{said}]({BESIDE[path]}{anchor})"
+        if path.startswith("docs/"):
+            return f"[{said}]({path.removeprefix('docs/')}{anchor})"
+        return said if (ROOT / path).exists() else link[0]
+
+    return re.sub(r"\[([^\]]+)\]\(([^)#\s]+)(#[^)]*)?\)", as_on_site, text)

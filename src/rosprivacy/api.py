@@ -1,0 +1,238 @@
+"""The functions that people call from Python: what they name -> a ``Result``, or labels from memory.
+
+In: names of files, texts, choices; of all lists one item alone may be given. Out: a ``Result``, ``Labels``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from os import PathLike, fspath
+from typing import Any, Literal, TypeAlias
+
+from rosprivacy.analysis.findings.findings import MAX_PATHS
+from rosprivacy.assembly import Result, run
+from rosprivacy.fleets import run_fleet
+from rosprivacy.ingest.labels import label_file
+from rosprivacy.ingest.labels.label_file import STANDARD, Labels
+from rosprivacy.ingest.policies.xinclude import MAX_BYTES
+from rosprivacy.ontology.vocabulary import TOP, load
+from rosprivacy.settings import Settings
+
+Path: TypeAlias = str | PathLike[str]
+Names: TypeAlias = str | Iterable[str]
+Paths: TypeAlias = Path | Iterable[Path]
+
+
+def analyze(
+    policies: Paths = (),
+    labels: Path | Labels | Iterable[Path | Labels] = (),
+    *,
+    view: Literal["declared", "enforced"] = "declared",
+    categories: Names = (),
+    article9: bool = False,
+    data_types: Names = (),
+    ontologies: Paths = (),
+    category: str = TOP,
+    standard_channels: Path | None = STANDARD,
+    paths: Literal["witness", "disjoint", "all"] = "witness",
+    max_paths: int = MAX_PATHS,
+    decisions: Path | None = None,
+    today: str | None = None,
+    add: Paths = (),
+    include_root: Path | None = None,
+    max_bytes: int = MAX_BYTES,
+    progress: Callable[[Sequence[str]], Iterable[str]] = iter,
+) -> Result:
+    """Analyse SROS 2 policies under label files.
+
+    Wherever several may be named, one alone may stand without a list.
+
+    Parameters
+    ----------
+    policies
+        Files, folders and globs.
+    labels
+        Label files, YAML or JSON, or the paper's JSON with six lists; or labels from ``parse_labels``.
+    view
+        ``declared``: each node does what its own profile says; ``enforced``: what DDS holds its enclave to (rule S6).
+    categories
+        Answer for these, narrower and broader ones only; empty for all.
+    article9
+        Answer only for what can fall under Article 9(1) GDPR, or of which that is not known.
+    data_types
+        Answer only for data that are represented so, such as ``video``; empty for all.
+    ontologies
+        Turtle files with more categories, beside those that come with the program.
+    category
+        What the paper's six lists are about.
+    standard_channels
+        Label file of the standard ROS channels; None to take no channel as mundane by itself (rule S13).
+    paths
+        Further paths to list for each finding: none beside the ``witness``, ``disjoint`` ones, or ``all``.
+    max_paths
+        Bound on the listed paths of a finding.
+    decisions
+        File of what people have decided about findings.
+    today
+        Day on which decisions hold or have expired, ``YYYY-MM-DD``; by default that of now, or of
+        ``SOURCE_DATE_EPOCH``.
+    add
+        Saved graphs to add the policies to.
+    include_root
+        Folder that includes may read from; by default the policy's own.
+    max_bytes
+        Bound on a policy with all that it includes.
+    progress
+        Wraps the list of files that are read, to show how far it is.
+
+    Returns
+    -------
+    Result
+        The analysis, and what it rests on.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the input, one line each.
+
+    Examples
+    --------
+    >>> result = analyze("examples/care-home/care-home.policy.xml", "examples/care-home/care-home.labels.yaml")
+    >>> result.analysis.emitted
+    ('FaceTemplate', 'Location', 'PersonTrack', 'Video', 'Voice')
+    """
+    settings = Settings(
+        add=_paths(add),
+        view=view,
+        categories=_several(categories),
+        article9=article9,
+        data_types=_several(data_types),
+        ontologies=_paths(ontologies),
+        category=category,
+        standard_channels=_path(standard_channels),
+        paths=paths,
+        max_paths=max_paths,
+        include_root=_path(include_root),
+        max_bytes=max_bytes,
+        progress=progress,
+        decisions=_path(decisions),
+        today=today,
+    )
+    return run(_paths(policies), _labels(labels), settings)
+
+
+def analyze_fleet(
+    file: Path,
+    *,
+    view: Literal["declared", "enforced"] = "declared",
+    categories: Names = (),
+    article9: bool = False,
+    data_types: Names = (),
+    ontologies: Paths = (),
+    category: str = TOP,
+    standard_channels: Path | None = STANDARD,
+    paths: Literal["witness", "disjoint", "all"] = "witness",
+    max_paths: int = MAX_PATHS,
+    decisions: Path | None = None,
+    today: str | None = None,
+    include_root: Path | None = None,
+    max_bytes: int = MAX_BYTES,
+    progress: Callable[[Sequence[str]], Iterable[str]] = iter,
+) -> Result:
+    """Analyse the robots of a fleet file together.
+
+    Parameters
+    ----------
+    file
+        Fleet file, YAML or JSON; it names policies and labels.
+    view, categories, article9, data_types, ontologies, category, standard_channels, paths, max_paths, decisions, today
+        As in ``analyze``.
+    include_root, max_bytes, progress
+        As in ``analyze``.
+
+    Returns
+    -------
+    Result
+        With ``fleet``: which robots are alike, and what they have in common. In the graph one robot stands for all
+        that are alike.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the input, one line each.
+
+    Examples
+    --------
+    >>> fleet = analyze_fleet("examples/fleet/fleet.yaml").fleet
+    >>> sum(map(fleet.likeness.weight, fleet.likeness.members))
+    40
+    """
+    settings = Settings(
+        view=view,
+        categories=_several(categories),
+        article9=article9,
+        data_types=_several(data_types),
+        ontologies=_paths(ontologies),
+        category=category,
+        standard_channels=_path(standard_channels),
+        paths=paths,
+        max_paths=max_paths,
+        include_root=_path(include_root),
+        max_bytes=max_bytes,
+        progress=progress,
+        decisions=_path(decisions),
+        today=today,
+    )
+    return run_fleet(fspath(file), settings)
+
+
+def parse_labels(
+    text: str | Mapping[str, Any], *, name: str = "labels", ontologies: Paths = (), category: str = TOP
+) -> Labels:
+    """Read labels that stand in memory.
+
+    Parameters
+    ----------
+    text
+        What a label file holds: YAML, JSON, or the same as dicts and lists.
+    name
+        By which messages and reports call them, where a file's name would stand.
+    ontologies
+        Those with which they are analysed.
+    category
+        What the paper's six lists are about; of no effect on other labels.
+
+    Returns
+    -------
+    Labels
+        For ``analyze`` and ``Result.with_labels``.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the labels, each a ``LabelError`` of one line.
+
+    Examples
+    --------
+    >>> labels = parse_labels({"labels": 1, "nodes": {"/camera": {"source": ["Video"]}}})
+    >>> [entry.name for entry in labels.entries]
+    ['/camera']
+    """
+    return label_file.parse_labels(text, load(ontologies=_paths(ontologies)), name=name, category=category)
+
+
+def _several(names: Names) -> tuple[str, ...]:
+    return (names,) if isinstance(names, str) else tuple(names)
+
+
+def _path(path: Path | None) -> str | None:
+    return None if path is None else fspath(path)
+
+
+def _labels(labels: Path | Labels | Iterable[Path | Labels]) -> tuple[str | Labels, ...]:
+    several = [labels] if isinstance(labels, str | PathLike | Labels) else labels
+    return tuple(one if isinstance(one, Labels) else fspath(one) for one in several)
+
+
+def _paths(paths: Paths) -> tuple[str, ...]:
+    return tuple(fspath(path) for path in ([paths] if isinstance(paths, str | PathLike) else paths))

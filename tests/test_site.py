@@ -1,0 +1,69 @@
+"""The documentation as a site: built strictly from docs/ and the docstrings, complete, and without other hosts."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from typing import TYPE_CHECKING
+
+import pytest
+
+import rosprivacy
+from tests.helpers.paths import ROOT
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+pytestmark = pytest.mark.slow
+NO_PART = shutil.ignore_patterns(".*", "build", "dist", "tests", "benchmarks", "__pycache__", "*.egg-info")
+
+
+def built(repository: Path, site: Path) -> subprocess.CompletedProcess[str]:
+    """Build as ``mkdocs.yml`` says, with no way out to the network."""
+    closed = dict.fromkeys(("http_proxy", "https_proxy", "HTTP_PROXY", "HTTPS_PROXY"), "http://127.0.0.1:9")
+    environment = {**os.environ, **closed, "NO_MKDOCS_2_WARNING": "1"}
+    command = [sys.executable, "-m", "mkdocs", "build", "--strict", "--site-dir", str(site)]
+    return subprocess.run(command, cwd=repository, env=environment, capture_output=True, text=True, check=False)
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("site")
+    done = built(ROOT, folder)
+    assert done.returncode == 0, done.stderr
+    return folder
+
+
+def test_every_page_is_there(site: Path) -> None:
+    pages = {page.stem for page in (ROOT / "docs").glob("*.md")} | {"first-steps", "reporting", "changelog"}
+    assert pages <= {page.stem for page in site.glob("*.html")}
+
+
+def test_nothing_is_loaded_from_another_host(site: Path) -> None:
+    for page in site.glob("*.html"):
+        text = page.read_text("utf-8")
+        loaded = re.findall(r"<(?:script|img|link|iframe)\b[^>]*\b(?:src|href)=\"?([^\s\">]+)", text)
+        assert loaded
+        assert not [target for target in loaded if re.match(r"(?:\w+:)?//", target)], page.name
+        assert 'class="mermaid"' not in text  # the theme would fetch what draws it
+
+
+def test_the_reference_tells_every_public_name(site: Path) -> None:
+    """That each of them has a docstring is held by ruff (D100 to D107)."""
+    text = (site / "reference.html").read_text("utf-8")
+    for name in set(rosprivacy.__all__) - {"__version__"}:
+        where = getattr(getattr(rosprivacy, name), "__module__", "rosprivacy")
+        assert f'id="{where}.{name}"' in text, name
+
+
+@pytest.mark.parametrize("link", ["[x](nowhere.md)", "[x](../nowhere.md)", "[x](labels.md#nowhere)"])
+def test_a_dead_link_fails(link: str, tmp_path: Path) -> None:
+    shutil.copytree(ROOT, tmp_path / "copy", symlinks=True, ignore=NO_PART)
+    page = tmp_path / "copy" / "docs" / "views.md"
+    page.write_text(f"{page.read_text('utf-8')}\n{link}\n", "utf-8")
+    done = built(tmp_path / "copy", tmp_path / "site")
+    assert done.returncode == 1
+    assert "nowhere" in done.stderr
