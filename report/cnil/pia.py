@@ -26,10 +26,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.analysis.findings.sanitizing import Cleaning
     from rosprivacy.analysis.fleet.patterns import FleetView
     from rosprivacy.analysis.model import FlowGraph
     from rosprivacy.report.answer import Answer
-    from rosprivacy.report.inventory import Cleaning
 
 TITLES = {
     Method.ANONYMISE: "Anonymisation on the way",
