@@ -156,7 +156,7 @@ def analyze(
         from rosprivacy.ingest.policies.saved_graph import as_dict
         from rosprivacy.report.document.analysis import as_text
 
-        texts[save_graph] = as_text(as_dict(result.policies))
+        texts[save_graph] = as_text(as_dict(result.policies, result.diagnostics))
     emit(_report(result, format, colour=output is None, quiet=quiet, verbose=verbose), output, texts)
     raise typer.Exit(_exit_code(result, fail_on))
 
