@@ -14,10 +14,13 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from rosprivacy.analysis.answer import Analysis, Carried, Finding, Step, Verdict
 from rosprivacy.analysis.decisions import Case
+from rosprivacy.analysis.findings.arrival import shown_arrivals
 from rosprivacy.analysis.findings.concerns import concerns
-from rosprivacy.analysis.findings.further_paths import WITNESS, Between, further
+from rosprivacy.analysis.findings.further_paths import Between, further
 from rosprivacy.analysis.findings.open_questions import open_questions
 from rosprivacy.analysis.findings.unknown_ends import unknown_ends
 from rosprivacy.analysis.kernel import standard_channels
@@ -25,6 +28,7 @@ from rosprivacy.analysis.kernel.search import START, Net, Search, path_to, prese
 from rosprivacy.analysis.kernel.spread import Spread, bits_of
 from rosprivacy.analysis.kernel.spreading import spread
 from rosprivacy.analysis.model import DISCLOSURE, Diagnostic, Element, Place, Severity
+from rosprivacy.analysis.modes import Paths
 from rosprivacy.analysis.non_ros import country_unknown, on_day
 
 if TYPE_CHECKING:
@@ -65,7 +69,7 @@ class Options:
     """
 
     categories: Collection[str] | None = None
-    paths: str = WITNESS
+    paths: str = Paths.witness
     max_paths: int = MAX_PATHS
     accepts: Callable[[Case], bool] | None = None
     choose: Callable[[Spread, Sequence[Concern], int], Mapping[int, AbstractSet[Chosen]]] | None = None
@@ -219,14 +223,10 @@ def _leaks_of(found: Spread, i: int, accepted: Mapping[int, int]) -> dict[int, i
 
 
 def _shown_forms(free: Search, whole: Search, leak: int, i: int, k: int) -> list[tuple[Search, int]]:
-    """The ways to show: not through another leak before through one, as it is before pseudonymised (rule S10).
-
-    Where only pseudonymised data gets there past no other leak, data as it is that gets there through one is shown too.
-    """
-    ways = [(way, bit) for way in (free, whole) for bit in (i, i + k) if present(way, leak) >> bit & 1]
-    first, *others = ways
-    hidden = first[0] is free and first[0] is not whole and first[1] == i + k
-    return [first, *(way for way in others if hidden and way[1] == i)]
+    """The ways to show, the best first (rule S10)."""
+    ways = [(way, bit) for way in (free, whole) for bit in (i, i + k)]
+    there = np.array([present(way, leak) >> bit & 1 for way, bit in ways], bool)
+    return [way for way, shown in zip(ways, shown_arrivals(*there), strict=True) if shown]
 
 
 def _beside(finding: Finding, options: Options) -> Finding:
