@@ -70,7 +70,7 @@ def analyze(
             metavar="NAME",
             autocompletion=complete_category,
             show_default=False,
-            help="Answer for this category, narrower and broader ones only; may be repeated.",
+            help="Answer for this category, narrower, broader and overlapping ones only; may be repeated.",
         ),
     ] = None,
     article9: Annotated[

@@ -94,7 +94,7 @@ def graph(
             metavar="NAME",
             autocompletion=complete_category,
             show_default=False,
-            help="Draw what this category, narrower and broader ones reach; may be repeated.",
+            help="Draw what this category, narrower, broader and overlapping ones reach; may be repeated.",
         ),
     ] = None,
     finding: Annotated[

@@ -61,7 +61,7 @@ def mitigate(
             metavar="NAME",
             autocompletion=complete_category,
             show_default=False,
-            help="Remove the findings of this category, narrower and broader ones only; may be repeated.",
+            help="Remove the findings of this category, narrower, broader and overlapping ones only; may be repeated.",
         ),
     ] = None,
     category: SixLists = "PersonalData",

@@ -89,7 +89,7 @@ def report(
             metavar="NAME",
             autocompletion=complete_category,
             show_default=False,
-            help="Report on this category, narrower and broader ones only; may be repeated.",
+            help="Report on this category, narrower, broader and overlapping ones only; may be repeated.",
         ),
     ] = None,
     ontology: Ontologies = None,
