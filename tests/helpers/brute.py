@@ -217,7 +217,8 @@ class Brute:
             for s in applying:
                 for t in applying:
                     same = not self.beats(s, t, category) and not self.beats(t, s, category)
-                    broad = {s.role, t.role} == {"leak", "conduit"} and self.about_more(s, t)
+                    leak, other = (s, t) if s.role == "leak" else (t, s)
+                    broad = (leak.role, other.role) == ("leak", "conduit") and self.about_more(leak, other)
                     whole = {s.role, t.role} <= OF_EVERY_KIND and s.rank == t.rank
                     if self.opposed(s, t, category) and ((same and not broad) or whole):
                         return True
