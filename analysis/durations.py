@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 DAYS = (date(1696, 9, 1), date(1697, 2, 1), date(1903, 3, 1), date(1903, 7, 1))
 LONGEST = 12_000  # months: a thousand years
+LONGEST_NUMBER = 10  # characters, its unit included
+UNITS = ("year", "month", "week", "day", "hour", "minute", "second")
 _SECOND = timedelta(seconds=1)
 
 
@@ -85,6 +87,20 @@ def parse(text: str) -> Duration:
     if months > LONGEST or read.tdelta > timedelta(days=31 * LONGEST):
         raise ValueError("longer than a thousand years")
     return Duration(text, int(months), read.tdelta / _SECOND)
+
+
+def parts(text: str) -> tuple[tuple[str, int], ...]:
+    """Return the units of a duration and how many there are of each; nothing if it is none or has broken numbers.
+
+    >>> parts("P1Y6M"), parts("PT12H"), parts("P1.5D")
+    ((('year', 1), ('month', 6)), (('hour', 12),), ())
+    """
+    from isodate.isoduration import ISO8601_PERIOD_REGEX  # noqa: PLC0415 - light start
+
+    found = ISO8601_PERIOD_REGEX.fullmatch(text)
+    written = [(unit, found[f"{unit}s"]) for unit in UNITS if found[f"{unit}s"]] if found and not found["sign"] else []
+    whole = all(number[:-1].isdecimal() and len(number) <= LONGEST_NUMBER for _, number in written)
+    return tuple((unit, int(number[:-1])) for unit, number in written) if whole else ()
 
 
 def ordered(pairs: Iterable[tuple[str, Duration]]) -> tuple[tuple[str, Duration], ...]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.model import ARTICLE_9
+from rosprivacy.analysis.model import ARTICLE_9, ARTICLE_9_VERDICTS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 SPECIAL = ("always", "conditional")
 MAY_REVEAL = "may-reveal"
+_STRENGTH = {verdict: number for number, verdict in enumerate(ARTICLE_9_VERDICTS)}
 
 
 def close(categories: Mapping[str, Category], hierarchy: Hierarchy) -> dict[str, Category]:
@@ -110,6 +111,12 @@ def _may_reveal(kinds: list[tuple[Category, Legal]]) -> Legal:
         sources=(),
         translations=translations,
     )
+
+
+def strongest_first(law: Iterable[Legal]) -> tuple[Legal, ...]:
+    """Return provisions, what holds always first; the same said twice once."""
+    distinct = {(legal.iri, legal.verdict, legal.condition): legal for legal in law}.values()
+    return tuple(sorted(distinct, key=lambda legal: (_STRENGTH.get(legal.verdict, len(_STRENGTH)), legal.name)))
 
 
 def turned_special(finding: Finding, categories: Mapping[str, Category]) -> Element | None:

@@ -138,6 +138,7 @@ class Grant:
     absolute: bool = False
 
 
+NOT_READ = "not-read"  # a file that was passed over, or read only where a policy includes it
 UNREAD_FILE = "unread-file"  # grants that no policy brings in: what they allow is not known (rule S11)
 DEAD_DENY = "dead-deny"
 SHARED_ENCLAVE = "shared-enclave"

@@ -10,32 +10,16 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.model import ARTICLE_9_VERDICTS
+from rosprivacy.analysis.findings.sanitizing import cleanings, makings
+from rosprivacy.analysis.legal import strongest_first
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Mapping
 
     from rosprivacy.analysis.answer import Analysis, Finding
+    from rosprivacy.analysis.findings.sanitizing import Cleaning
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.model import Category, Element, Legal
-
-_STRENGTH = {verdict: number for number, verdict in enumerate(ARTICLE_9_VERDICTS)}
-
-
-@dataclass(frozen=True, slots=True)
-class Cleaning:
-    """That an element cleans a kind of data.
-
-    Attributes
-    ----------
-    method
-        As labelled; ``stated`` says whether the label states it (rule S8).
-    """
-
-    element: Element
-    category: str
-    method: str
-    stated: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +36,8 @@ class Kind:
         (element that makes it, category that it is made of).
     reached
         Elements that it gets to, or a narrower kind does, in the order of the graph; the legs of a service are one.
+    cleaned
+        Who cleans it where it, or a narrower kind, gets to.
     findings
         That are about it, those dismissed left out (rule S10).
     open
@@ -71,51 +57,23 @@ class Kind:
 def kinds_of(analysis: Analysis, categories: Mapping[str, Category], hierarchy: Hierarchy) -> tuple[Kind, ...]:
     """Return what is known of each emitted category, sorted by its name."""
     reached = _reached(analysis, hierarchy)
-    cleaned = list(cleanings(analysis, hierarchy))
-    made = list(_made(analysis))
+    here = {(name, element.identity) for name, elements in reached.items() for element in elements}
+    spread, shown = analysis.spread, analysis.roles  # not of a robot of a fleet that another one stands for
+    cleaned = [c for c in cleanings(spread, analysis.emitted) if (c.category, c.element.identity) in here]
+    made = [making for making in makings(spread, analysis.emitted) if making.element in shown]
     return tuple(
         Kind(
             category=categories[name],
-            law=law_of(categories[name]),
+            law=strongest_first(categories[name].law),
             sources=_distinct(e for e, said in analysis.roles.items() if "source" in said.get(name, ())),
-            made=tuple(dict.fromkeys((element, of) for element, of, to in made if to == name)),
+            made=tuple(dict.fromkeys((making.element, making.made_of) for making in made if making.made == name)),
             reached=_distinct(reached[name]),
-            cleaned=tuple(cleaning for cleaning in cleaned if cleaning.category == name),
+            cleaned=tuple(c for c in cleaned if c.category == name and c.element in shown),
             findings=tuple(f for f in analysis.findings if f.category == name and not f.dismissed),
             open=_distinct(question.element for question in analysis.open if name in question.categories),
         )
         for name in analysis.emitted
     )
-
-
-def law_of(category: Category) -> tuple[Legal, ...]:
-    """Return the provisions of a category, what holds always first; the same said twice once."""
-    distinct = {(legal.iri, legal.verdict, legal.condition): legal for legal in category.law}.values()
-    return tuple(sorted(distinct, key=lambda legal: (_STRENGTH.get(legal.verdict, len(_STRENGTH)), legal.name)))
-
-
-def cleanings(analysis: Analysis, hierarchy: Hierarchy) -> Iterator[Cleaning]:
-    """Yield what cleans what gets there, by the label that decides it, in the order of the graph."""
-    reached = _reached(analysis, hierarchy)
-    here = {(name, element.identity) for name, elements in reached.items() for element in elements}
-    for vertex, element in enumerate(analysis.graph.elements):
-        for category, roles in sorted(analysis.roles.get(element, {}).items()):
-            fact = analysis.spread.facts[vertex][category]
-            there = "sanitizer" in roles and (category, element.identity) in here
-            for said in fact.by_role("sanitizer")[:1] if there else ():
-                yield Cleaning(element, category, str(said.method), said.stated)
-
-
-def _made(analysis: Analysis) -> Iterator[tuple[Element, str, str]]:
-    """(element, of, to) of each derivation."""
-    for vertex, decided in sorted(analysis.spread.facts.items()):
-        if analysis.graph.elements[vertex] not in analysis.roles:  # a robot of a fleet that another one stands for
-            continue
-        for category, fact in sorted(decided.items()):
-            for to in fact.derives:
-                if to == category:  # what is a narrower kind already, made of itself
-                    continue
-                yield analysis.graph.elements[vertex], category, to
 
 
 def _reached(analysis: Analysis, hierarchy: Hierarchy) -> dict[str, list[Element]]:

@@ -16,6 +16,8 @@ import pytest
 import typer
 
 from rosprivacy.cli.app import app
+from rosprivacy.cli.inputs import WRITTEN
+from rosprivacy.cli.options import ASKED, READ
 from rosprivacy.ingest.database.schema import NODES, RELATIONSHIPS, Property
 from rosprivacy.ingest.labels.label_file import read_labels
 from rosprivacy.ontology.vocabulary import TOP, load
@@ -26,6 +28,7 @@ from tests import test_wings as wings
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
 ARCHITECTURE = ROOT / "docs" / "architecture.md"
@@ -45,27 +48,54 @@ Exit codes: 0 no leak found, 1 leak, 2 bad input or usage, 3 database unreachabl
 `--fail-on undetermined`). Shell completion: `rosprivacy --install-completion`.
 """
 
+MATRIX = """
+## What is read
+
+The same options mean the same in every command. Where one makes no sense, the command says so and ends with 2.
+`decide` has a `--category` and a `--decisions` of its own.
+"""
+
 
 def command_line() -> str:
     """The options of every command, as the program knows them."""
     group: Any = typer.main.get_command(app)
-    text = HEAD
-    for name, command in sorted(group.commands.items()):
+    text = HEAD + matrix(group.commands)
+    for name, command in group.commands.items():
         if hasattr(command, "commands"):
             rows = [f"| `rosprivacy {name} {n}` | {c.help} |" for n, c in sorted(command.commands.items())]
             lines = ["", f"## rosprivacy {name}", "", command.help, "", "| command | |", "| --- | --- |", *rows, ""]
             text += "\n".join(lines)
             continue
         text += f"\n## rosprivacy {name}\n\n{command.help}\n\n| option | default | meaning |\n| --- | --- | --- |\n"
-        for parameter in command.params:
+        for parameter in (each for each in command.params if not getattr(each, "hidden", False)):
             names = ", ".join(f"`{option}`" for option in parameter.opts + parameter.secondary_opts)
             shown = f"`{parameter.metavar}`" if parameter.param_type_name == "argument" else names
             default = parameter.default
             if isinstance(default, bool) or default in (None, ()):
                 default = ""
             values = f" One of {', '.join(type(default))}." if isinstance(default, StrEnum) else ""
-            text += f"| {shown} | {default} | {getattr(parameter, 'help', '') or ''}{values} |\n"
+            meaning = (getattr(parameter, "help", "") or "").replace("\\[", "[")  # rich's way to write a bracket
+            text += f"| {shown} | {default} | {meaning}{values} |\n"
     return text
+
+
+def matrix(commands: dict[str, Any]) -> str:
+    """Which command takes which of the shared options."""
+    taken = {name: set(shared_options(command)) for name, command in commands.items()}
+    columns = [name for name in commands if taken[name]]
+    lines = [f"| | {' | '.join(columns)} |", f"| --- |{' --- |' * len(columns)}"]
+    for option, written in WRITTEN.items():
+        crosses = ("x" if option in taken[name] else "" for name in columns)
+        lines.append(f"| `{written}` | {' | '.join(crosses)} |")
+    return "\n".join([MATRIX, *lines, ""])
+
+
+def shared_options(command: Any) -> Iterator[str]:
+    """The options of a command that mean what they mean everywhere; some commands have others of the same name."""
+    for parameter in getattr(command, "params", ()):
+        panel = getattr(parameter, "rich_help_panel", None)
+        if not parameter.hidden and (panel in (READ, ASKED) or parameter.metavar == "POLICY"):
+            yield from {parameter.name} & WRITTEN.keys()
 
 
 def schema_tables() -> str:

@@ -14,8 +14,11 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from rosprivacy.analysis.answer import Analysis, Carried, Finding, Step, Verdict
 from rosprivacy.analysis.decisions import Case
+from rosprivacy.analysis.findings.arrival import shown_arrivals
 from rosprivacy.analysis.findings.concerns import concerns
 from rosprivacy.analysis.findings.further_paths import WITNESS, Between, further
 from rosprivacy.analysis.findings.open_questions import open_questions
@@ -219,14 +222,10 @@ def _leaks_of(found: Spread, i: int, accepted: Mapping[int, int]) -> dict[int, i
 
 
 def _shown_forms(free: Search, whole: Search, leak: int, i: int, k: int) -> list[tuple[Search, int]]:
-    """The ways to show: not through another leak before through one, as it is before pseudonymised (rule S10).
-
-    Where only pseudonymised data gets there past no other leak, data as it is that gets there through one is shown too.
-    """
-    ways = [(way, bit) for way in (free, whole) for bit in (i, i + k) if present(way, leak) >> bit & 1]
-    first, *others = ways
-    hidden = first[0] is free and first[0] is not whole and first[1] == i + k
-    return [first, *(way for way in others if hidden and way[1] == i)]
+    """The ways to show, the best first (rule S10)."""
+    ways = [(way, bit) for way in (free, whole) for bit in (i, i + k)]
+    there = np.array([present(way, leak) >> bit & 1 for way, bit in ways], bool)
+    return [way for way, shown in zip(ways, shown_arrivals(*there), strict=True) if shown]
 
 
 def _beside(finding: Finding, options: Options) -> Finding:

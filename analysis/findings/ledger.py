@@ -172,10 +172,10 @@ def _outdone(found: Spread) -> Iterator[TakenAway]:
                     key = (vertex, statement.place, by.place)
                     rows.setdefault(key, (set(), statement.role, by.glob))[0].add(category)
     for (vertex, place, by_place), (categories, role, glob) in rows.items():
-        element = elements[vertex]
+        element, said = elements[vertex], f"of {place}" if place.line else "by its kind"
         yield TakenAway(
             OUTDONE, element, None, tuple(sorted(categories)), (by_place,), glob=glob,
-            leak=element if role == "leak" else None, perhaps=role == "source", note=f"{role} of {place}",
+            leak=element if role == "leak" else None, perhaps=role == "source", note=f"{role} {said}",
         )  # fmt: skip
 
 

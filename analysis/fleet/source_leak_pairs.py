@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rosprivacy.analysis.findings.arrival import shown_arrivals
 from rosprivacy.analysis.kernel.arrays import GraphArrays, as_bits
 from rosprivacy.analysis.kernel.fixpoint import WORD, fixpoint
 from rosprivacy.analysis.model import DISCLOSURE
@@ -278,14 +279,12 @@ def _rows(
     free: tuple[Flags, Flags, Indices],
     through: tuple[Flags, Flags, Indices],
 ) -> tuple[Indices, Indices, Flags, Flags, Flags]:
-    """The pairs, as a finding would be shown: not through another leak before through one, as it is before hidden."""
-    clear, hidden = (_of(free, plane, leaks) for plane in (0, 1))
-    plain = _of(through, 0, leaks)
-    source, leak = np.nonzero((plain | _of(through, 1, leaks)).T)
-    dismissed = ~(clear | hidden)
-    shown_clear = clear | (dismissed & plain)
-    at, beside = (leak, source), hidden & ~clear & plain
-    return sources[source], leaks[leak], ~shown_clear[at], dismissed[at], beside[at]
+    """The pairs, as a finding would be shown."""
+    there = [_of(way, plane, leaks) for way in (free, through) for plane in (0, 1)]
+    plain, hidden, plain_through, hidden_through = shown_arrivals(*there)
+    source, leak = np.nonzero(np.logical_or.reduce(there).T)
+    at, dismissed = (leak, source), ~(plain | hidden)
+    return sources[source], leaks[leak], (hidden | hidden_through)[at], dismissed[at], (hidden & plain_through)[at]
 
 
 def _of(reached: tuple[Flags, Flags, Indices], plane: int, leaks: Indices) -> Flags:

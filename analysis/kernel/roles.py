@@ -56,7 +56,7 @@ class Facts:
     reviewers
         The other statements that answer for the category here: without them it is open, if nothing else covers it.
     unstated
-        Whether it is a sanitizer whose method is taken, not stated.
+        Whether it is a sanitizer whose method is taken: the statement that decides does not state it.
     standard
         Whether only a shipped file says that it carries nothing.
     roles
@@ -121,7 +121,7 @@ def _sum_up(found: Decided, category: str, hierarchy: Hierarchy) -> Facts:
         pseudonymises=any(s.method is Method.PSEUDONYMISE for s in sanitizers),
         derives=tuple(sorted({s.to for s in by_role.get("derivation", [])})),
         covered=bool(roles),
-        unstated=any(not s.stated for s in sanitizers),
+        unstated=bool(sanitizers) and not sanitizers[0].stated,
         standard=bool(mundane) and all(s.shipped for s in mundane),
         roles=tuple(roles),
         method=str(sanitizers[0].method) if sanitizers else "",

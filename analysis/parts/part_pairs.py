@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rosprivacy.analysis.findings.arrival import Arrival, shown_arrivals
 from rosprivacy.analysis.fleet.source_leak_pairs import CategoryRun, unpacked
 from rosprivacy.analysis.model import DISCLOSURE
 
@@ -34,7 +35,7 @@ Met = frozenset[tuple[int, int]]  # number in the border, place of the form: whe
 Class = tuple[Met, Met]  # on ways without another leak of the category, on all ways
 STOPS = (True, False)
 NOTHING = np.empty(0, np.int64)
-NOT_REACHED, FREE, HIDDEN, DISMISSED, BOTH = 0, 1, 2, 4, 8  # how data gets somewhere; flags, best first
+NOT_REACHED = 0  # in place of how data gets somewhere, which is a flag for each ``Arrival``
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,23 +192,17 @@ def how(
 def _codes_of(free: tuple[Flags, Flags], through: tuple[Flags, Flags]) -> Codes:
     """How data gets there, without what changes nothing about it."""
     codes = np.zeros(free[0].shape, np.uint8)
-    beside = free[1] & through[0]
-    ranked = ((through[1], BOTH), (through[0], DISMISSED), (free[1], HIDDEN), (beside, HIDDEN | DISMISSED))
-    for flags, code in (*ranked, (free[0], FREE)):
-        codes[flags] = code
+    for arrival, flags in zip(Arrival, shown_arrivals(*free, *through), strict=True):
+        codes[flags] |= 1 << arrival
     return codes
 
 
 def forms_of(how: int) -> tuple[tuple[bool, bool, bool], ...]:
     """Return (dismissed, pseudonymised, beside) of the findings that a code means (rule S10).
 
-    Not through another leak comes before through one, as it is before pseudonymised.
-
-    >>> forms_of(HIDDEN | DISMISSED)
+    >>> forms_of(1 << Arrival.PSEUDONYMISED | 1 << Arrival.PLAIN_THROUGH)
     ((False, True, False), (True, False, True))
     """
-    if how & FREE:
-        return ((False, False, False),)
-    if how & HIDDEN:
-        return ((False, True, False), *([(True, False, True)] if how & DISMISSED else []))
-    return ((True, not how & DISMISSED, False),) if how else ()
+    flags = shown_arrivals(*np.array([how >> arrival & 1 for arrival in Arrival], bool))
+    shown = [arrival for arrival, flag in zip(Arrival, flags, strict=True) if flag]
+    return tuple((one.dismissed, one.pseudonymised, number > 0) for number, one in enumerate(shown))

@@ -12,7 +12,7 @@ from glob import glob, has_magic
 from pathlib import Path
 
 from rosprivacy.analysis.errors import InputError, PolicyError, reason, shown
-from rosprivacy.analysis.model import Diagnostic, Place, Severity
+from rosprivacy.analysis.model import NOT_READ, Diagnostic, Place, Severity
 
 NAMED = 3  # of the files that are passed over
 
@@ -41,7 +41,7 @@ class Contents:
         named = ", ".join([*sorted(names)[:NAMED], *(["…"] if len(names) > NAMED else [])])
         count = "1 file is" if len(names) == 1 else f"{len(names):,} files are"
         message = f"{count} not read, as the name does not end in .xml: {named}; name a policy among them by itself"
-        return Diagnostic(Place(argument, 0), Severity.NOTICE, message)
+        return Diagnostic(Place(argument, 0), Severity.NOTICE, message, NOT_READ)
 
 
 def contents(argument: str) -> Contents | None:

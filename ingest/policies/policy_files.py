@@ -9,18 +9,19 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, field
+from functools import cache
 from glob import has_magic
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors, PolicyError, reason
-from rosprivacy.analysis.model import UNREAD_FILE, Diagnostic, Place, Policy, Severity
+from rosprivacy.analysis.model import NOT_READ, UNREAD_FILE, Diagnostic, Place, Policy, Severity
 from rosprivacy.ingest.policies.folders import contents
 from rosprivacy.ingest.policies.policy_xml import NotAPolicyError, read_policy
 from rosprivacy.ingest.policies.xinclude import MAX_BYTES
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Sequence
+    from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 
 
 @dataclass(slots=True)
@@ -84,17 +85,36 @@ def read_policies(
         problems.append(PolicyError("nothing", 0, "no SROS 2 policy found", "name a file or folder that has one"))
     if problems:
         raise InputErrors(problems)
-    included = {os.path.realpath(name) for policy in policies for name, _ in policy.sources}
+    included = _included(policies)
     return tuple(policies), (*(_not_read(error, included) for error in skipped), *expanded.notices)
 
 
-def _not_read(error: NotAPolicyError, included: Collection[str]) -> Diagnostic:
+def _included(policies: Iterable[Policy]) -> dict[str, set[tuple[int, str, str]]]:
+    """Real path of each file that was read -> (line, kind, role) of what policies took of it."""
+    taken: dict[str, set[tuple[int, str, str]]] = {}
+    real = cache(os.path.realpath)
+    for policy in policies:
+        for name, _ in policy.sources:
+            taken.setdefault(real(name), set())
+        for grant in policy.grants:
+            taken.setdefault(real(grant.place.file), set()).add((grant.place.line, grant.kind, grant.role))
+    return taken
+
+
+def _not_read(error: NotAPolicyError, included: Mapping[str, Collection[tuple[int, str, str]]]) -> Diagnostic:
     """What is to be said of XML that is no policy: grants that nothing brings in are a gap (rule S11)."""
     place = Place(error.file, error.line)
-    if not error.grants or os.path.realpath(error.file) in included:
-        return Diagnostic(place, Severity.NOTICE, f"not read by itself: {error.problem}")
-    what = f"not read: {error.problem}, and no policy read here includes it, so what it grants is not known"
-    return Diagnostic(place, Severity.WARNING, f"{what}; name the policy that does, or remove it", UNREAD_FILE)
+    taken = included.get(os.path.realpath(error.file))
+    if taken is None and (error.grants or error.includes):
+        what = f"not read: {error.problem}, and no policy read here includes it, so what it grants is not known"
+        return Diagnostic(place, Severity.WARNING, f"{what}; name the policy that does, or remove it", UNREAD_FILE)
+    left = sorted(line for line, *_ in error.grants.difference(taken or ()))
+    if left:
+        what = f"not read whole: of this file no policy read here includes what stands at line {left[0]}"
+        more = f" and {len(left) - 1} more" if len(left) > 1 else ""
+        hint = "include it, name the policy that does, or remove it"
+        return Diagnostic(place, Severity.WARNING, f"{what}{more}; {hint}", UNREAD_FILE)
+    return Diagnostic(place, Severity.NOTICE, f"not read by itself: {error.problem}", NOT_READ)
 
 
 def _expand(arguments: Iterable[str]) -> _Expanded:

@@ -42,10 +42,13 @@ class NotAPolicyError(PolicyError):
     Attributes
     ----------
     grants
-        Whether it is a fragment with grants in it, or with includes that can bring some.
+        (line, kind, role) of what it would grant or deny if a policy included it.
+    includes
+        Whether it is a fragment with includes, which can bring more.
     """
 
-    grants = False
+    grants: frozenset[tuple[int, str, str]] = frozenset()
+    includes: bool = False
 
 
 def read_policy(file: str, *, include_root: str | None = None, max_bytes: int = MAX_BYTES) -> Policy:
@@ -282,9 +285,23 @@ def _misplaced(tag: str, parent: str, allowed: Collection[str]) -> tuple[str, st
 
 def _not_a_policy(root: Item) -> NotAPolicyError:
     what = f"the root element is <{shown(root.tag)}>, not <policy>"
-    if root.tag in FRAGMENTS:
-        fragment = NotAPolicyError(root.file, root.place.line, what, "name the policy that includes it")
-        tags = {str(element.tag).rpartition("}")[2] for element in root.element.iter()}
-        fragment.grants = not tags.isdisjoint({*ROLES, *(kind for kind, _ in ROLES.values()), "include"})
-        return fragment
-    return NotAPolicyError(root.file, root.place.line, what, "name an SROS 2 policy")
+    fragment = root.tag in FRAGMENTS
+    hint = "name the policy that includes it" if fragment else "name an SROS 2 policy"
+    error = NotAPolicyError(root.file, root.place.line, what, hint)
+    error.grants = frozenset(_granted(root))
+    tags = {str(element.tag).rpartition("}")[2] for element in root.element.iter()} if fragment else set()
+    error.includes = "include" in tags
+    return error
+
+
+def _granted(root: Item) -> Iterator[tuple[int, str, str]]:
+    """(line, kind, role) of all that would be granted or denied by what stands somewhere in a document."""
+    for element in root.element.iter():
+        kind, roles = ROLES.get(str(element.tag).rpartition("}")[2], ("", ()))
+        for role in roles:
+            if element.get(role) is not None:
+                yield from (
+                    (child.sourceline or 0, kind, role)
+                    for child in element
+                    if str(child.tag).rpartition("}")[2] == kind
+                )

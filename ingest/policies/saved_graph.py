@@ -12,7 +12,17 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import GraphError, InputErrors, shown
-from rosprivacy.analysis.model import DEAD_DENY, Diagnostic, Grant, Place, Policy, Profile, Severity
+from rosprivacy.analysis.model import (
+    DEAD_DENY,
+    NOT_READ,
+    UNREAD_FILE,
+    Diagnostic,
+    Grant,
+    Place,
+    Policy,
+    Profile,
+    Severity,
+)
 from rosprivacy.ingest.policies.policy_xml import ROLES
 from rosprivacy.ingest.reading.bounded_file import read_regular
 
@@ -30,13 +40,24 @@ UNKNOWN = (
 _ROLES = {role: kind for kind, roles in ROLES.values() for role in roles}
 
 
-def as_dict(policies: Iterable[Policy]) -> dict[str, Any]:
-    """Return policies as plain values, in the order of their files."""
-    return {"format": FORMAT, "policies": [_policy(policy) for policy in sorted(policies, key=lambda p: p.file)]}
+def as_dict(policies: Iterable[Policy], diagnostics: Iterable[Diagnostic] = ()) -> dict[str, Any]:
+    """Return policies as plain values, in the order of their files.
+
+    Parameters
+    ----------
+    diagnostics
+        Of the reading: what was not read is kept, since the answer hangs on it (rule S11).
+    """
+    left = dict.fromkeys(d for d in diagnostics if d.code in (NOT_READ, UNREAD_FILE))
+    return {
+        "format": FORMAT,
+        "policies": [_policy(policy) for policy in sorted(policies, key=lambda p: p.file)],
+        **({"not_read": [_diagnostic(d) for d in left]} if left else {}),
+    }
 
 
-def read_saved(file: str) -> tuple[Policy, ...]:
-    """Read what ``as_dict`` was written from.
+def read_saved(file: str) -> tuple[tuple[Policy, ...], tuple[Diagnostic, ...]]:
+    """Read what ``as_dict`` was written from: policies, and what was not read.
 
     Raises
     ------
@@ -56,7 +77,7 @@ def read_saved(file: str) -> tuple[Policy, ...]:
         raise InputErrors([fail(1, what, AGAIN)]) from None
 
 
-def _read(file: str, fail: Callable[[int, str, str], GraphError]) -> tuple[Policy, ...]:
+def _read(file: str, fail: Callable[[int, str, str], GraphError]) -> tuple[tuple[Policy, ...], tuple[Diagnostic, ...]]:
     text = read_regular(file, MAX_BYTES, fail)
     try:
         data = json.loads(text)
@@ -70,8 +91,8 @@ def _read(file: str, fail: Callable[[int, str, str], GraphError]) -> tuple[Polic
     if any("absolute" not in grant for policy in data["policies"] for grant in policy["grants"]):
         first = policies[0]
         told = (*first.diagnostics, Diagnostic(Place(file, 1), Severity.WARNING, UNKNOWN))
-        return (replace(first, diagnostics=told), *policies[1:])
-    return policies
+        policies = (replace(first, diagnostics=told), *policies[1:])
+    return policies, tuple(map(_read_diagnostic, data.get("not_read", ())))
 
 
 def _policy(policy: Policy) -> dict[str, Any]:
@@ -95,17 +116,23 @@ def _policy(policy: Policy) -> dict[str, Any]:
             }
             for grant in policy.grants
         ],
-        "diagnostics": [
-            {
-                "severity": str(d.severity),
-                "message": d.message,
-                "file": d.place.file,
-                "line": d.place.line,
-                **({"code": d.code} if d.code else {}),
-            }
-            for d in policy.diagnostics
-        ],
+        "diagnostics": [_diagnostic(d) for d in policy.diagnostics],
     }
+
+
+def _diagnostic(d: Diagnostic) -> dict[str, Any]:
+    return {
+        "severity": str(d.severity),
+        "message": d.message,
+        "file": d.place.file,
+        "line": d.place.line,
+        **({"code": d.code} if d.code else {}),
+    }
+
+
+def _read_diagnostic(saved: dict[str, Any]) -> Diagnostic:
+    severity, message = Severity(saved["severity"]), _text(saved["message"])
+    return Diagnostic(_place(saved), severity, message, _text(saved.get("code", "")))
 
 
 def _read_policy(saved: dict[str, Any]) -> Policy:
@@ -130,10 +157,7 @@ def _read_policy(saved: dict[str, Any]) -> Policy:
         if (grant.enclave, grant.node) not in owners:
             raise ValueError(f"grant of {grant.node}, which has no profile in {grant.enclave}")
     sources = tuple(sorted((_text(name), _text(digest)) for name, digest in saved["sources"].items()))
-    said = [
-        Diagnostic(_place(d), Severity(d["severity"]), _text(d["message"]), _text(d.get("code", "")))
-        for d in saved["diagnostics"]
-    ]
+    said = list(map(_read_diagnostic, saved["diagnostics"]))
     if any(g["rule"] == "DENY" and "dead" not in g for g in saved["grants"]):
         grants, more = _of_earlier_version(grants, said)
         said += more

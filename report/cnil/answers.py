@@ -28,8 +28,9 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.answer import Analysis, Carried, Finding
+    from rosprivacy.analysis.findings.sanitizing import Cleaning
     from rosprivacy.analysis.model import Element
-    from rosprivacy.report.inventory import Cleaning, Kind
+    from rosprivacy.report.inventory import Kind
 
     Stated = Mapping[tuple[str, str, str], Mapping[str, str]]
 

@@ -24,10 +24,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.analysis.findings.sanitizing import Cleaning
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.model import Category, FlowGraph
     from rosprivacy.report.cnil.answers import Stated
-    from rosprivacy.report.inventory import Cleaning
 
 TITLES = {
     Method.ANONYMISE: "Anonymisation on the way",

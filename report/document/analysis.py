@@ -230,7 +230,7 @@ def _translations(texts: Mapping[str, Mapping[str, str]]) -> dict[str, dict[str,
     return {language: said[language] for language in sorted(said) if said[language]}
 
 
-def law_of(finding: Finding, categories: Mapping[str, Category]) -> dict[str, Any]:
+def _law(finding: Finding, categories: Mapping[str, Category]) -> dict[str, Any]:
     """Return what a person has to look up about a finding's data: no verdict on the system.
 
     ``article9`` is the strongest of the verdicts under Article 9(1) GDPR, ``special_from`` the element that makes a
@@ -278,7 +278,7 @@ def _finding(finding: Finding, categories: Mapping[str, Category]) -> dict[str, 
         "disjoint_paths": finding.disjoint_paths,
         "through": [element_dict(element) for element in finding.through],
         "dismissed": finding.dismissed,
-        **law_of(finding, categories),
+        **_law(finding, categories),
         **({"reason": finding.reason} if finding.reason else {}),
         "accepted": finding.accepted,
         **({"beside_pseudonymised": True} if finding.beside else {}),

@@ -6,10 +6,10 @@ In: a key and values. Out: plain text; whoever writes a format escapes it. The t
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.durations import parts
 from rosprivacy.report.page.words_de import WORDS as GERMAN
 from rosprivacy.report.page.words_en import WORDS as ENGLISH
 
@@ -17,12 +17,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
 DATE = 3  # parts of one
-_DURATION = re.compile(
-    r"P(?:(\d{1,9})Y)?(?:(\d{1,9})M)?(?:(\d{1,9})W)?(?:(\d{1,9})D)?"
-    r"(?:T(?:(\d{1,9})H)?(?:(\d{1,9})M)?(?:(\d{1,9})S)?)?",
-    re.ASCII,
-)
-UNITS = ("year", "month", "week", "day", "hour", "minute", "second")  # in the order of the groups
 TABLES = {"en": ENGLISH, "de": GERMAN}
 
 
@@ -64,10 +58,7 @@ class Words:
         >>> Words("en").duration("P30D"), Words("de").duration("P1Y6M"), Words("en").duration("PT12H")
         ('30 days', '1 Jahr, 6 Monate', '12 hours')
         """
-        found = _DURATION.fullmatch(text)
-        numbers = zip(UNITS, found.groups(), strict=True) if found else ()
-        parts = [self.count(int(number), unit) for unit, number in numbers if number]
-        return self.row(parts) or text
+        return self.row(self.count(number, unit) for unit, number in parts(text)) or text
 
     def count(self, number: int, thing: str) -> str:
         """Return how many of a thing there are; its key ends in ``.one`` or ``.many``.

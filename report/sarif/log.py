@@ -12,9 +12,9 @@ from __future__ import annotations
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.legal import strongest_first
 from rosprivacy.analysis.model import Place, Severity, unread
 from rosprivacy.analysis.text import utf8
-from rosprivacy.report.inventory import law_of
 from rosprivacy.report.places import Places, in_a_file, to_review
 from rosprivacy.report.sarif.flows import flows_between, further_ways, prose, text
 from rosprivacy.report.sarif.results import LAW, ROOT, Files, Results
@@ -65,7 +65,7 @@ def sarif(
         Id of a finding -> why a person accepted it (reason, owner, until when). Only decisions that hold now.
     """
     files, diagnostics = Files(root), tuple(diagnostics)
-    law = {name: law_of(categories[name]) for name in analysis.emitted}
+    law = {name: strongest_first(categories[name].law) for name in analysis.emitted}
     taxa = sorted({legal.iri: legal for said in law.values() for legal in said}.values(), key=lambda legal: legal.name)
     found = (rule_of(finding.kind) for finding in analysis.findings)
     not_read = [FILES_NOT_READ] if unread(diagnostics) else []

@@ -187,7 +187,8 @@ def robot_of(name: str, result: Result) -> RobotRows:
 
 def read_system(policies: tuple[str, ...], settings: Settings) -> tuple[tuple[Policy, ...], tuple[Diagnostic, ...]]:
     """Read policies and the saved graphs that they add to."""
-    saved = [policy for file in settings.add for policy in read_saved(file)]
+    graphs = [read_saved(file) for file in settings.add]
+    saved = [policy for policies_of, _ in graphs for policy in policies_of]
     read: tuple[Policy, ...] = ()
     diagnostics: tuple[Diagnostic, ...] = ()
     if policies or not saved:
@@ -198,6 +199,8 @@ def read_system(policies: tuple[str, ...], settings: Settings) -> tuple[tuple[Po
             progress=settings.progress,
         )
     known = {policy.file for policy in read}  # read again is read anew
+    sources = {name for policy in read for name, _ in policy.sources}
+    diagnostics += tuple(d for _, left in graphs for d in left if d.place.file not in sources and d not in diagnostics)
     system = (*read, *(policy for policy in saved if policy.file not in known))
     return tuple(sorted(system, key=lambda policy: policy.file)), (*diagnostics, *joint_warnings(system))
 

@@ -63,15 +63,16 @@ OPTIONS = {
     ),
     "decide": (
         "--decisions", "--report", "--reason", "--owner", "--legal-basis", "--expires", "--ticket", "--category",
-        "--source", "--leak", "--robot", "--help",
+        "--source", "--leak", "--robot", "--ontology", "--help",
     ),
     "mitigate": (
-        "--labels", "--limits", "--by", "--patch", "--format", "--output", "--categories", "--category", "--decisions",
+        "--labels", "--add", "--ontology", "--limits", "--by", "--patch", "--format", "--output", "--categories",
+        "--category", "--decisions",
         "--view", "--standard-channels", "--no-standard-channels", "--include-root", "--max-bytes", "--help",
     ),
     "labels": (
-        "--init", "--schema", "--standard", "--infrastructure", "--output", "--standard-channels",
-        "--no-standard-channels", "--include-root", "--max-bytes", "--help",
+        "--add", "--ontology", "--view", "--init", "--schema", "--standard", "--infrastructure", "--output",
+        "--standard-channels", "--no-standard-channels", "--include-root", "--max-bytes", "--help",
     ),
 }  # fmt: skip
 

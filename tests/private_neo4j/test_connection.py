@@ -518,8 +518,22 @@ def held(*ports: int) -> Iterator[list[socket.socket]]:
         sockets = [stack.enter_context(socket.socket()) for _ in ports]
         for each, port in zip(sockets, ports, strict=True):
             each.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-            each.bind(("127.0.0.1", port))
+            bind(each, port)
         yield sockets
+
+
+def bind(to_hold: socket.socket, port: int) -> None:
+    """The system closes the ports of a process a moment after it has gone."""
+    end = time.monotonic() + 10
+    while True:
+        try:
+            to_hold.bind(("127.0.0.1", port))
+        except OSError:
+            if time.monotonic() > end:
+                raise
+            time.sleep(0.01)
+        else:
+            return
 
 
 @contextmanager
@@ -528,17 +542,20 @@ def thief(listening: socket.socket) -> Iterator[bytearray]:
     heard = bytearray()
 
     def serve() -> None:
-        with suppress(OSError):
-            while True:
-                client = listening.accept()[0]
-                with client, suppress(OSError):
-                    client.settimeout(5)
-                    client.recv(20)  # the handshake: magic number and four versions
-                    client.sendall(b"\x00\x00\x04\x05")  # Bolt 5.4
-                    for _ in range(2):  # HELLO and LOGON; both get SUCCESS {server: "Neo4j/5.26.0"}
-                        heard.extend(client.recv(65536))
-                        success = b"\xb1\x70\xa2\x86server\x8cNeo4j/5.26.0\x8dconnection_id\x81x"
-                        client.sendall(len(success).to_bytes(2, "big") + success + b"\x00\x00")
+        while listening.fileno() != -1:
+            with suppress(OSError):  # it does not listen yet, or who called has gone
+                answer(listening.accept()[0])
+            time.sleep(0.01)
+
+    def answer(client: socket.socket) -> None:
+        with client:
+            client.settimeout(5)
+            client.recv(20)  # the handshake: magic number and four versions
+            client.sendall(b"\x00\x00\x04\x05")  # Bolt 5.4
+            for _ in range(2):  # HELLO and LOGON; both get SUCCESS {server: "Neo4j/5.26.0"}
+                heard.extend(client.recv(65536))
+                success = b"\xb1\x70\xa2\x86server\x8cNeo4j/5.26.0\x8dconnection_id\x81x"
+                client.sendall(len(success).to_bytes(2, "big") + success + b"\x00\x00")
 
     Thread(target=serve, daemon=True).start()
     yield heard
@@ -560,8 +577,10 @@ def test_who_waits_on_the_ports_of_the_last_start_hears_no_password(private_neo4
 
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(server, "_free_ports", then_listen)
-            again = connection.start()
-        assert private_neo4j.password.encode() not in heard
+            try:
+                again = connection.start()
+            finally:
+                assert private_neo4j.password.encode() not in heard
         assert not heard
     assert ask(again, "RETURN 1") == [1]
 

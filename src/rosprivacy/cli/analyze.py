@@ -3,91 +3,77 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from rosprivacy.cli.driver import driver_of
-from rosprivacy.cli.inputs import named
-from rosprivacy.cli.options import (
-    DecisionsFile,
-    Engine,
-    EngineChosen,
-    FailOn,
-    FleetFile,
-    Format,
-    IncludeRoot,
-    LabelFiles,
-    Master,
-    MaxBytes,
-    NoStandard,
-    Ontologies,
-    Output,
-    PathsShown,
-    Policies,
-    Server,
-    SixLists,
-    Standard,
-    View,
-    ViewChosen,
-    complete_category,
-)
-from rosprivacy.cli.output import emit, progress_of
+from rosprivacy.cli.inputs import Inputs, reads_system, refuse
+from rosprivacy.cli.options import ASKED, Engine, FailOn, Format, Output, PathsShown
+from rosprivacy.cli.output import emit
 
 if TYPE_CHECKING:
     from rosprivacy.assembly import Result
 
 
+SPARK = "Where it is computed"  # a panel of help
+
+
+@reads_system()
 def analyze(
-    policies: Policies = None,
-    labels: LabelFiles = None,
-    from_database: Annotated[
-        bool, typer.Option("--from-database", help="Analyse what is in Neo4j, and write the answer back there.")
-    ] = False,
-    neo4j: Server = None,
-    fleet: FleetFile = None,
-    engine: EngineChosen = Engine.memory,
-    master: Master = None,
+    inputs: Inputs,
+    engine: Annotated[
+        Engine,
+        typer.Option(
+            help=r"Of a fleet: in memory here, or in parts on Apache Spark (the \[spark] extra).",
+            rich_help_panel=SPARK,
+        ),
+    ] = Engine.memory,
+    master: Annotated[
+        str | None,
+        typer.Option(
+            metavar="URL",
+            show_default=False,
+            help="Spark cluster, such as spark://host:7077; by default the cores of this machine.",
+            rich_help_panel=SPARK,
+        ),
+    ] = None,
     results: Annotated[
         str | None,
-        typer.Option(metavar="DIR", help="With --engine spark: write every robot there, for load.", show_default=False),
-    ] = None,
-    add: Annotated[
-        list[str] | None,
-        typer.Option(metavar="GRAPH.json", help="Add to a graph saved before; may be repeated.", show_default=False),
+        typer.Option(
+            metavar="DIR",
+            help="With --engine spark: write every robot there, for load.",
+            show_default=False,
+            rich_help_panel=SPARK,
+        ),
     ] = None,
     save_graph: Annotated[
         Path | None, typer.Option(metavar="GRAPH.json", help="Save what the policies grant.", show_default=False)
     ] = None,
     format: Annotated[Format, typer.Option("--format", "-f", help="Of the report.")] = Format.text,  # noqa: A002 - the option's name
     output: Output = None,
-    categories: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--categories",
-            "-c",
-            metavar="NAME",
-            autocompletion=complete_category,
-            show_default=False,
-            help="Answer for this category, narrower, broader and overlapping ones only; may be repeated.",
-        ),
-    ] = None,
     article9: Annotated[
-        bool, typer.Option("--article9", help="Answer for what can fall under Article 9(1) GDPR only.")
+        bool,
+        typer.Option(
+            "--article9", help="Answer for what can fall under Article 9(1) GDPR only.", rich_help_panel=ASKED
+        ),
     ] = False,
     data_type: Annotated[
         list[str] | None,
-        typer.Option(metavar="TYPE", show_default=False, help="Answer for video, audio, … only; may be repeated."),
+        typer.Option(
+            metavar="TYPE",
+            show_default=False,
+            help="Answer for video, audio, … only; may be repeated.",
+            rich_help_panel=ASKED,
+        ),
     ] = None,
-    ontology: Ontologies = None,
-    category: SixLists = "PersonalData",
-    view: ViewChosen = View.declared,
-    paths: Annotated[PathsShown, typer.Option(help="Ways to list for each finding.")] = PathsShown.witness,
-    max_paths: Annotated[int, typer.Option(min=1, help="Bound on the listed ways of a finding.")] = 100,
-    standard_channels: Standard = "rosprivacy:standard",
-    no_standard_channels: NoStandard = False,
-    decisions: DecisionsFile = None,
+    paths: Annotated[
+        PathsShown, typer.Option(help="Ways to list for each finding.", rich_help_panel=ASKED)
+    ] = PathsShown.witness,
+    max_paths: Annotated[
+        int, typer.Option(min=1, metavar="N", help="Bound on the listed ways of a finding.", rich_help_panel=ASKED)
+    ] = 100,
     fail_on: Annotated[
         FailOn,
         typer.Option(
@@ -95,68 +81,40 @@ def analyze(
             "or on none (never, off); undetermined: as leak, and with 4 if undetermined."
         ),
     ] = FailOn.leak,
-    include_root: IncludeRoot = None,
-    max_bytes: MaxBytes = 64 * 2**20,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print the verdict only.")] = False,
     verbose: Annotated[bool, typer.Option("--verbose", "-v", help="Print every open element and notice.")] = False,
 ) -> None:
     """Find where each kind of personal data can get from its sources, and whether it reaches a leak."""
-    from rosprivacy.assembly import run
-    from rosprivacy.settings import Settings
-
-    settings = Settings(
-        add=tuple(add or ()),
-        view=view.value,
-        categories=tuple(categories or ()),
-        article9=article9,
-        data_types=tuple(data_type or ()),
-        ontologies=tuple(ontology or ()),
-        category=category,
-        standard_channels=None if no_standard_channels else standard_channels,
-        paths=paths.value,
-        max_paths=max_paths,
-        include_root=str(include_root) if include_root else None,
-        max_bytes=max_bytes,
-        progress=progress_of,
-        decisions=str(decisions) if decisions else None,
+    settings = replace(
+        inputs.settings, article9=article9, data_types=tuple(data_type or ()), paths=paths.value, max_paths=max_paths
     )
-    if fleet and (policies or labels or add or save_graph):
-        raise typer.BadParameter("--fleet takes what the fleet file names: no POLICY, --labels, --add, --save-graph")
-    if engine is Engine.spark and not fleet:
-        raise typer.BadParameter("--engine spark is for fleets: give --fleet too")
-    if engine is Engine.spark and decisions:
-        raise typer.BadParameter("--decisions are taken into account in memory only: leave out --engine spark")
-    if (master or results) and engine is not Engine.spark:
+    saved = ["--save-graph"] if save_graph else []
+    if inputs.from_database:
+        refuse("--from-database", "what is in the database", saved)
+    if inputs.fleet:
+        refuse("--fleet", "what the fleet file names", saved)
+    if engine is Engine.spark:
+        refuse("--engine spark", "a fleet that nobody has decided about", inputs.given("decisions"))
+        if not inputs.fleet:
+            raise typer.BadParameter("--engine spark is for fleets: give --fleet too")
+    elif master or results:
         raise typer.BadParameter("--master and --results are for --engine spark")
     if results and output:
         from rosprivacy.report.atomic import check_outputs
 
         check_outputs([Path(results), output])
-    if from_database:
-        if policies or labels or add or save_graph or fleet:
-            raise typer.BadParameter(
-                "--from-database takes what is in the database: no POLICY, --labels, --add, --save-graph, --fleet"
-            )
-        from rosprivacy.assembly import run_stored
-
-        with driver_of(neo4j) as driver:
-            result = run_stored(driver, settings)
-    elif fleet and engine is Engine.spark:
+    if inputs.fleet and engine is Engine.spark:
         from rosprivacy.spark.fleet_on_spark import run_on_spark
 
-        result = run_on_spark(fleet, settings, master, results)
-    elif fleet:
-        from rosprivacy.fleets import run_fleet
-
-        result = run_fleet(fleet, settings)
+        result = run_on_spark(inputs.fleet, settings, master, results)
     else:
-        result = run(named(policies, settings), tuple(labels or ()), settings)
+        result = inputs.result(settings)
     texts = {}
     if save_graph:
         from rosprivacy.ingest.policies.saved_graph import as_dict
         from rosprivacy.report.document.analysis import as_text
 
-        texts[save_graph] = as_text(as_dict(result.policies))
+        texts[save_graph] = as_text(as_dict(result.policies, result.diagnostics))
     emit(_report(result, format, colour=output is None, quiet=quiet, verbose=verbose), output, texts)
     raise typer.Exit(_exit_code(result, fail_on))
 

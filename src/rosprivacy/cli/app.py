@@ -29,27 +29,31 @@ from rosprivacy.cli import (
     unload,
     why_not,
 )
+from rosprivacy.cli.help import ANALYSE, DECIDE, LABEL, MANY, SEE, Group
 from rosprivacy.version import __version__
 
 app = typer.Typer(
     name="rosprivacy",
     help="Where personal data can go in a ROS 2 system, per kind of data.",
+    cls=Group,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-app.add_typer(db.app, name="db", help="The private Neo4j: start it, stop it, see where it is.")
-app.command()(diff.diff)
-app.command()(fleet.fleet)
-app.command()(load.load)
-app.command()(unload.unload)
-app.command()(query.query)
-app.command()(graph.graph)
-app.command()(categories.categories)
-app.command()(mitigate.mitigate)
-app.command()(decide.decide)
-app.command()(report.report)
-app.command("why-not")(why_not.why_not)
+app.command(rich_help_panel=LABEL)(labels.labels)
+app.command(rich_help_panel=LABEL)(categories.categories)
+app.command(rich_help_panel=ANALYSE)(analyze.analyze)
+app.command("why-not", rich_help_panel=ANALYSE)(why_not.why_not)
+app.command(rich_help_panel=ANALYSE)(diff.diff)
+app.command(rich_help_panel=SEE)(report.report)
+app.command(rich_help_panel=SEE)(graph.graph)
+app.command(rich_help_panel=DECIDE)(decide.decide)
+app.command(rich_help_panel=DECIDE)(mitigate.mitigate)
+app.command(rich_help_panel=MANY)(fleet.fleet)
+app.command(rich_help_panel=MANY)(load.load)
+app.command(rich_help_panel=MANY)(unload.unload)
+app.command(rich_help_panel=MANY)(query.query)
+app.add_typer(db.app, name="db", help="The private Neo4j: start it, stop it, see where it is.", rich_help_panel=MANY)
 
 
 @app.callback(invoke_without_command=True)
@@ -62,10 +66,6 @@ def root(
     if version:
         print(f"rosprivacy {__version__}")
         raise typer.Exit
-
-
-app.command()(analyze.analyze)
-app.command()(labels.labels)
 
 
 def main() -> None:

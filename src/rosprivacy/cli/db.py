@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from rosprivacy.cli.help import Group
 from rosprivacy.cli.output import emit
 
 if TYPE_CHECKING:
     from rosprivacy.private_neo4j.connection import Status
 
-app = typer.Typer(no_args_is_help=True)
+app = typer.Typer(cls=Group, no_args_is_help=True)
 
 
 @app.command()

@@ -12,9 +12,10 @@ from typing import Annotated, Any
 import typer
 
 from rosprivacy.analysis.errors import DecisionError, InputError, InputErrors, shown
-from rosprivacy.cli.options import complete_category
+from rosprivacy.cli.options import Ontologies, complete_category
 from rosprivacy.cli.output import emit
 
+PATTERN = "A pattern of findings"  # a panel of help
 SHORTEST = 4  # digits of an id, where the report says which are meant
 
 
@@ -61,17 +62,25 @@ def decide(
             autocompletion=complete_category,
             help="Of a pattern: this category and narrower ones.",
             show_default=False,
+            rich_help_panel=PATTERN,
         ),
     ] = None,
     source: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Of a pattern: name or glob.", show_default=False)
+        str | None,
+        typer.Option(metavar="NAME", help="Of a pattern: name or glob.", show_default=False, rich_help_panel=PATTERN),
     ] = None,
     leak: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Of a pattern: name or glob.", show_default=False)
+        str | None,
+        typer.Option(metavar="NAME", help="Of a pattern: name or glob.", show_default=False, rich_help_panel=PATTERN),
     ] = None,
     robot: Annotated[
         str | None,
-        typer.Option(metavar="NAME", help="Of a pattern: robot of the leak, name or glob.", show_default=False),
+        typer.Option(
+            metavar="NAME",
+            help="Of a pattern: robot of the leak, name or glob.",
+            show_default=False,
+            rich_help_panel=PATTERN,
+        ),
     ] = None,
     from_robot: Annotated[
         str | None,
@@ -79,8 +88,10 @@ def decide(
             metavar="NAME",
             help="Of a pattern: robot of the source; what goes from one robot to another needs it beside --robot.",
             show_default=False,
+            rich_help_panel=PATTERN,
         ),
     ] = None,
+    ontology: Ontologies = None,
 ) -> None:
     """Decide about findings, or about a pattern of them, in a file that analyze and mitigate take into account."""
     from rosprivacy.clock import today
@@ -109,7 +120,7 @@ def decide(
         "ticket": ticket,
     }
     said = {key: value for key, value in entry.items() if value is not None}
-    text, vocabulary = _text(decisions), load()
+    text, vocabulary = _text(decisions), load(ontologies=tuple(ontology or ()))
     for target in targets:
         remark = _remark(found, target)
         text = with_decision(str(decisions), text, {**target, **said}, remark, vocabulary)

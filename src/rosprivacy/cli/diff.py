@@ -7,18 +7,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rosprivacy.cli.options import (
-    DecisionsFile,
-    IncludeRoot,
-    LabelFiles,
-    MaxBytes,
-    NoStandard,
-    Output,
-    Standard,
-    View,
-    ViewChosen,
-)
-from rosprivacy.cli.output import emit, progress_of
+from rosprivacy.cli.inputs import Inputs, reads_system
+from rosprivacy.cli.options import READ, Output
+from rosprivacy.cli.output import emit
 
 if TYPE_CHECKING:
     from rosprivacy.report.compare.snapshot import Snapshot
@@ -44,44 +35,35 @@ class FailOnChange(StrEnum):
 State = "a policy, a folder of them, a fleet file, a saved analysis or a saved graph."
 
 
+@reads_system(
+    "what OLD and NEW name, with all categories",
+    without=("policies", "fleet", "from_database", "neo4j", "add", "categories"),
+)
 def diff(
     old: Annotated[str, typer.Argument(metavar="OLD", show_default=False, help=f"Before: {State}")],
     new: Annotated[str, typer.Argument(metavar="NEW", show_default=False, help="After.")],
-    labels: LabelFiles = None,
+    inputs: Inputs,
     old_labels: Annotated[
         list[str] | None,
-        typer.Option(metavar="FILE", help="Label file for OLD, in place of --labels.", show_default=False),
+        typer.Option(
+            metavar="FILE", help="Label file for OLD, in place of --labels.", show_default=False, rich_help_panel=READ
+        ),
     ] = None,
     format: Annotated[  # noqa: A002 - the option's name
         DiffFormat, typer.Option("--format", "-f", help="For people, for programs, for a comment on a pull request.")
     ] = DiffFormat.text,
     output: Output = None,
-    decisions: DecisionsFile = None,
-    view: ViewChosen = View.declared,
-    standard_channels: Standard = "rosprivacy:standard",
-    no_standard_channels: NoStandard = False,
     fail_on: Annotated[
         FailOnChange, typer.Option(help="Exit with 1 on a finding that is new or worse, or on any difference.")
     ] = FailOnChange.worse,
-    include_root: IncludeRoot = None,
-    max_bytes: MaxBytes = 64 * 2**20,
 ) -> None:
     """Compare two states: grants, elements and findings that are new, gone or changed.
 
     Nodes whose names change at every start (a process id, an address) are matched without these.
     """
     from rosprivacy.report.compare.difference import difference, differs
-    from rosprivacy.settings import Settings
 
-    settings = Settings(
-        view=view.value,
-        standard_channels=None if no_standard_channels else standard_channels,
-        include_root=str(include_root) if include_root else None,
-        max_bytes=max_bytes,
-        progress=progress_of,
-        decisions=str(decisions) if decisions else None,
-    )
-    given = tuple(labels or ())
+    settings, given = inputs.settings, tuple(inputs.labels or ())
     before = _snapshot(old, tuple(old_labels) if old_labels else given, settings)
     document = difference(before, _snapshot(new, given, settings))
     emit(_text(document, format), output)

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from rosprivacy.cli.options import Output
+from rosprivacy.cli.inputs import Inputs
+from rosprivacy.cli.options import DecisionsFile, Ontologies, Output
 from rosprivacy.cli.output import emit
 
 if TYPE_CHECKING:
@@ -19,12 +20,14 @@ if TYPE_CHECKING:
 def fleet(
     file: Annotated[str | None, typer.Argument(metavar="FLEET", show_default=False, help="Fleet file.")] = None,
     schema: Annotated[bool, typer.Option("--schema", help="Print the JSON Schema of fleet files.")] = False,
+    ontology: Ontologies = None,
+    decisions: DecisionsFile = None,
     output: Output = None,
 ) -> None:
     """List the robots of a fleet file, those that are alike together; or print the schema of such files."""
     from rosprivacy.ontology.vocabulary import load
 
-    vocabulary = load()
+    vocabulary = load(ontologies=tuple(ontology or ()))
     if schema == bool(file):
         raise typer.BadParameter("name a fleet file, or give --schema")
     if schema or file is None:
@@ -33,11 +36,14 @@ def fleet(
 
         emit(as_text(fleet_schema(vocabulary.categories.values())), output)
         return
+    from rosprivacy.decided import decisions_of
     from rosprivacy.ingest.fleet.alike_robots import alike
     from rosprivacy.ingest.fleet.fleet_file import read_fleet
 
     read = read_fleet(file, vocabulary)
-    emit("".join(f"{line}\n" for line in _lines(read, alike(read))), output)
+    decided = decisions_of(Inputs(decisions=decisions).settings, vocabulary)
+    groups = alike(read, decided.told_apart) if decided else alike(read)
+    emit("".join(f"{line}\n" for line in _lines(read, groups)), output)
 
 
 def _lines(fleet: Fleet, groups: tuple[Alike, ...]) -> Iterator[str]:

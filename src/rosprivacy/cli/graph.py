@@ -10,28 +10,14 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from rosprivacy.analysis.errors import DrawingError
-from rosprivacy.cli.options import (
-    FleetFile,
-    IncludeRoot,
-    LabelFiles,
-    MaxBytes,
-    NoStandard,
-    Ontologies,
-    Output,
-    Policies,
-    SixLists,
-    Standard,
-    View,
-    ViewChosen,
-    complete_category,
-)
-from rosprivacy.cli.output import emit, progress_of
+from rosprivacy.cli.inputs import Inputs, reads_system
+from rosprivacy.cli.options import Output
+from rosprivacy.cli.output import emit
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.model import Profile
     from rosprivacy.assembly import Result
     from rosprivacy.report.pictures.picture import Picture
-    from rosprivacy.settings import Settings
 
 
 class Shown(StrEnum):
@@ -67,13 +53,14 @@ class Direction(StrEnum):
     down = "down"
 
 
+DRAWN = "What is drawn of it"  # panels of help
+LAYOUT = "How it is drawn"
 SUFFIXES = {".gv": PictureFormat.dot, ".mmd": PictureFormat.mermaid}
 
 
+@reads_system("policies, saved graphs or a fleet", without=("from_database", "neo4j", "decisions"))
 def graph(
-    policies: Policies = None,
-    labels: LabelFiles = None,
-    fleet: FleetFile = None,
+    inputs: Inputs,
     show: Annotated[
         Shown | None,
         typer.Option(
@@ -86,76 +73,75 @@ def graph(
         typer.Option("--format", "-f", show_default=False, help="Of the picture; by default what --output ends in."),
     ] = None,
     output: Output = None,
-    categories: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--categories",
-            "-c",
-            metavar="NAME",
-            autocompletion=complete_category,
-            show_default=False,
-            help="Draw what this category, narrower, broader and overlapping ones reach; may be repeated.",
-        ),
-    ] = None,
     finding: Annotated[
         str | None,
-        typer.Option(metavar="ID", show_default=False, help="Draw the ways of this finding only: a privacy view."),
+        typer.Option(
+            metavar="ID",
+            show_default=False,
+            help="Draw the ways of this finding only: a privacy view.",
+            rich_help_panel=DRAWN,
+        ),
     ] = None,
     robot: Annotated[
-        str | None, typer.Option(metavar="NAME", show_default=False, help="Draw this robot and what it is joined to.")
+        str | None,
+        typer.Option(
+            metavar="NAME", show_default=False, help="Draw this robot and what it is joined to.", rich_help_panel=DRAWN
+        ),
     ] = None,
     around: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME", show_default=False, help="Draw what is near this element; may be repeated."),
+        typer.Option(
+            metavar="NAME",
+            show_default=False,
+            help="Draw what is near this element; may be repeated.",
+            rich_help_panel=DRAWN,
+        ),
     ] = None,
-    steps: Annotated[int, typer.Option(min=0, help="How near, in lines, whatever their direction.")] = 2,
+    steps: Annotated[
+        int, typer.Option(min=0, help="How near, in lines, whatever their direction.", rich_help_panel=DRAWN)
+    ] = 2,
     most: Annotated[
         int | None,
-        typer.Option(min=1, show_default=False, help="Draw the shorter ways to leaks only, up to so many elements."),
+        typer.Option(
+            min=1,
+            show_default=False,
+            help="Draw the shorter ways to leaks only, up to so many elements.",
+            rich_help_panel=DRAWN,
+        ),
     ] = None,
-    fold: Annotated[bool, typer.Option("--fold", help="Draw channels with the same ends as one.")] = False,
+    fold: Annotated[
+        bool, typer.Option("--fold", help="Draw channels with the same ends as one.", rich_help_panel=DRAWN)
+    ] = False,
     loose_ends: Annotated[
-        bool, typer.Option("--loose-ends/--no-loose-ends", help="Draw channels that only one node names.")
+        bool,
+        typer.Option(
+            "--loose-ends/--no-loose-ends", help="Draw channels that only one node names.", rich_help_panel=DRAWN
+        ),
     ] = True,
-    cluster: Annotated[Cluster, typer.Option(help="Draw together what belongs together.")] = Cluster.none,
-    direction: Annotated[Direction, typer.Option(help="Where data goes on the paper.")] = Direction.right,
+    cluster: Annotated[
+        Cluster, typer.Option(help="Draw together what belongs together.", rich_help_panel=LAYOUT)
+    ] = Cluster.none,
+    direction: Annotated[
+        Direction, typer.Option(help="Where data goes on the paper.", rich_help_panel=LAYOUT)
+    ] = Direction.right,
     seconds: Annotated[
-        float, typer.Option(min=0.1, help="For the layout; a simpler one is taken when time runs out.")
+        float,
+        typer.Option(
+            min=0.1, help="For the layout; a simpler one is taken when time runs out.", rich_help_panel=LAYOUT
+        ),
     ] = 45.0,
     draw_standard_channels: Annotated[
-        bool, typer.Option("--draw-standard-channels", help="Draw the standard ROS channels too.")
+        bool,
+        typer.Option("--draw-standard-channels", help="Draw the standard ROS channels too.", rich_help_panel=DRAWN),
     ] = False,
-    ontology: Ontologies = None,
-    category: SixLists = "PersonalData",
-    view: ViewChosen = View.declared,
-    standard_channels: Standard = "rosprivacy:standard",
-    no_standard_channels: NoStandard = False,
-    include_root: IncludeRoot = None,
-    max_bytes: MaxBytes = 64 * 2**20,
 ) -> None:
     """Draw the ROS graph, or where personal data can go in it. Gives no verdict: exit code 0 once it is drawn."""
-    from rosprivacy.settings import Settings
-
-    if fleet and (policies or labels):
-        raise typer.BadParameter("--fleet takes what the fleet file names: no POLICY, --labels")
-    if not policies and not fleet:
-        raise typer.BadParameter("name at least one policy: a file, a folder or a glob", param_hint="POLICY")
     if show is Shown.ros and (finding or most):
         raise typer.BadParameter("--finding and --most are for --show privacy")
     show = show or (Shown.privacy if finding or most else Shown.ros)
     form = _format(format, output)
-    settings = Settings(
-        view=view.value,
-        categories=tuple(categories or ()),
-        ontologies=tuple(ontology or ()),
-        category=category,
-        standard_channels=None if no_standard_channels else standard_channels,
-        include_root=str(include_root) if include_root else None,
-        max_bytes=max_bytes,
-        progress=progress_of,
-    )
-    result, own = _drawn_of(policies, labels, fleet, settings)
-    picture = _view(result, show, finding, most, carried_only=bool(categories), standard=draw_standard_channels)
+    result, own = _drawn_of(inputs)
+    picture = _view(result, show, finding, most, carried_only=bool(inputs.categories), standard=draw_standard_channels)
     if result.fleet and not finding:
         from rosprivacy.report.pictures.fleet_view import label, represented
 
@@ -170,19 +156,16 @@ def graph(
     _write(picture, form, output, "LR" if direction is Direction.right else "TB", seconds)
 
 
-def _drawn_of(
-    policies: list[str] | None, labels: list[str] | None, fleet: str | None, settings: Settings
-) -> tuple[Result, dict[str, tuple[Profile, ...]]]:
+def _drawn_of(inputs: Inputs) -> tuple[Result, dict[str, tuple[Profile, ...]]]:
     """The analysis, and of a fleet the profiles of each robot."""
-    if not fleet:
-        from rosprivacy.assembly import run
-
-        return run(tuple(policies or ()), tuple(labels or ()), settings), {}
+    settings = inputs.settings
+    if not inputs.fleet:
+        return inputs.result(settings), {}
     from rosprivacy.fleets import analysed, read_all
     from rosprivacy.ontology.vocabulary import load
 
     vocabulary = load(ontologies=settings.ontologies)
-    read = read_all(fleet, vocabulary, settings)
+    read = read_all(inputs.fleet, vocabulary, settings)
     return analysed(read, vocabulary, settings), dict(read.placed.profiles)
 
 

@@ -1,17 +1,171 @@
-"""What commands that read a system do with their arguments."""
+"""What a command reads: one set of options for all commands, and the one place where ``Settings`` are made of it.
+
+In: the options of a user. Out: ``Inputs``. A field of ``Inputs`` is an option; its annotation is what typer needs.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import inspect
+from copy import copy
+from dataclasses import dataclass, fields
+from functools import wraps
+from typing import TYPE_CHECKING, Annotated, Any, get_args, get_type_hints
 
 import typer
 
+from rosprivacy.cli.driver import driver_of
+from rosprivacy.cli.options import (
+    Categories,
+    DecisionsFile,
+    FleetFile,
+    FromDatabase,
+    IncludeRoot,
+    LabelFiles,
+    MaxBytes,
+    NoStandard,
+    Ontologies,
+    Policies,
+    SavedGraphs,
+    Server,
+    SixLists,
+    Standard,
+    View,
+    ViewChosen,
+)
+from rosprivacy.cli.output import progress_of
+
 if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Iterable
+
+    from rosprivacy.assembly import Result
     from rosprivacy.settings import Settings
 
 
-def named(policies: list[str] | None, settings: Settings) -> tuple[str, ...]:
-    """Return the policies that are named; there has to be one, or a saved graph."""
-    if not policies and not settings.add:
-        raise typer.BadParameter("name at least one policy: a file, a folder or a glob", param_hint="POLICY")
-    return tuple(policies or ())
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Inputs:
+    """What a user names of the system that is read, and how it is read."""
+
+    policies: Policies = None
+    labels: LabelFiles = None
+    fleet: FleetFile = None
+    from_database: FromDatabase = False
+    neo4j: Server = None
+    add: SavedGraphs = None
+    ontology: Ontologies = None
+    standard_channels: Standard = "rosprivacy:standard"
+    no_standard_channels: NoStandard = False
+    include_root: IncludeRoot = None
+    max_bytes: MaxBytes = 64 * 2**20
+    categories: Categories = None
+    category: SixLists = "PersonalData"
+    view: ViewChosen = View.declared
+    decisions: DecisionsFile = None
+
+    @property
+    def settings(self) -> Settings:
+        """The settings that the options mean to the library."""
+        from rosprivacy.settings import Settings
+
+        return Settings(
+            add=tuple(self.add or ()),
+            view=self.view.value,
+            categories=tuple(self.categories or ()),
+            ontologies=tuple(self.ontology or ()),
+            category=self.category,
+            standard_channels=None if self.no_standard_channels else self.standard_channels,
+            include_root=str(self.include_root) if self.include_root else None,
+            max_bytes=self.max_bytes,
+            progress=progress_of,
+            decisions=str(self.decisions) if self.decisions else None,
+        )
+
+    @property
+    def named(self) -> tuple[str, ...]:
+        """The policies that are named; there has to be one, or a saved graph."""
+        if not self.policies and not self.add:
+            raise typer.BadParameter("name at least one policy: a file, a folder or a glob", param_hint="POLICY")
+        return tuple(self.policies or ())
+
+    def given(self, *names: str) -> list[str]:
+        """Return those of some options that a user gave, as they are written."""
+        return [WRITTEN[name] for name in names if getattr(self, name) != DEFAULTS[name]]
+
+    def check(self) -> None:
+        """Refuse options that name a second system beside a first."""
+        if self.from_database:
+            refuse("--from-database", "what is in the database", self.given("policies", "labels", "add", "fleet"))
+        if self.fleet:
+            refuse("--fleet", "what the fleet file names", self.given("policies", "labels", "add"))
+
+    def result(self, settings: Settings) -> Result:
+        """Read the system and analyse it."""
+        from rosprivacy.assembly import run, run_stored
+
+        if self.from_database:
+            with driver_of(self.neo4j) as driver:
+                return run_stored(driver, settings)
+        if self.fleet:
+            from rosprivacy.fleets import run_fleet
+
+            return run_fleet(self.fleet, settings)
+        return run(self.named, tuple(self.labels or ()), settings)
+
+
+OPTIONS = get_type_hints(Inputs, include_extras=True)
+DEFAULTS = {field.name: field.default for field in fields(Inputs)}
+WRITTEN = {name: f"--{name.replace('_', '-')}" for name in DEFAULTS} | {"policies": "POLICY"}
+
+
+def refuse(who: str, takes: str, options: Iterable[str]) -> None:
+    """Refuse options that make no sense beside a command or another option."""
+    refused = ", ".join(options)
+    if refused:
+        raise typer.BadParameter(f"{who} takes {takes}: no {refused}")
+
+
+def reads_system(
+    takes: str = "", *, without: Collection[str] = ()
+) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Give a command all options of ``Inputs``, in the place of its parameter ``inputs``.
+
+    A parameter of its own with the name of such an option is kept instead.
+
+    Parameters
+    ----------
+    takes
+        What the command takes, for those who give it an option that it does not take.
+    without
+        Names of options that make no sense for the command: they are refused, and help does not show them.
+    """
+
+    def decorated(command: Callable[..., None]) -> Callable[..., None]:
+        own = inspect.signature(command, eval_str=True).parameters
+        shared = [name for name in DEFAULTS if name not in own and (name, name in without) != ("policies", True)]
+
+        @wraps(command)
+        def run(**values: Any) -> None:
+            inputs = Inputs(**{name: values.pop(name) for name in shared})
+            refuse(command.__name__.replace("_", "-"), takes, inputs.given(*without))
+            inputs.check()
+            command(inputs=inputs, **values)
+
+        parameters = []
+        for name, parameter in own.items():
+            if name == "inputs":
+                parameters += [_parameter(each, hidden=each in without) for each in shared]
+            else:
+                parameters.append(parameter.replace(kind=inspect.Parameter.KEYWORD_ONLY))
+        vars(run)["__signature__"] = inspect.Signature(parameters)  # typer reads it
+        run.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
+        return run
+
+    return decorated
+
+
+def _parameter(name: str, *, hidden: bool) -> inspect.Parameter:
+    kind, information = get_args(OPTIONS[name])
+    information = copy(information)
+    information.hidden = hidden
+    return inspect.Parameter(
+        name, inspect.Parameter.KEYWORD_ONLY, default=DEFAULTS[name], annotation=Annotated[kind, information]
+    )

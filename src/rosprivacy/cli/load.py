@@ -10,21 +10,8 @@ import typer
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.cli.driver import driver_of
-from rosprivacy.cli.options import (
-    FleetFile,
-    IncludeRoot,
-    LabelFiles,
-    MaxBytes,
-    NoStandard,
-    Ontologies,
-    Policies,
-    Server,
-    SixLists,
-    Standard,
-    View,
-    ViewChosen,
-)
-from rosprivacy.cli.output import emit, progress_of
+from rosprivacy.cli.inputs import Inputs, reads_system, refuse
+from rosprivacy.cli.output import emit
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -32,54 +19,31 @@ if TYPE_CHECKING:
     from rosprivacy.settings import Settings
 
 
+@reads_system("all that is read, as nobody has decided about it", without=("from_database", "categories", "decisions"))
 def load(
-    policies: Policies = None,
-    labels: LabelFiles = None,
+    inputs: Inputs,
     robot: Annotated[str, typer.Option(metavar="NAME", help="What the robot is called in the database.")] = "robot",
-    fleet: FleetFile = None,
     results: Annotated[
         str | None,
         typer.Option(metavar="DIR", help="Write what analyze --results has written there.", show_default=False),
     ] = None,
-    neo4j: Server = None,
-    ontology: Ontologies = None,
-    category: SixLists = "PersonalData",
-    view: ViewChosen = View.declared,
-    standard_channels: Standard = "rosprivacy:standard",
-    no_standard_channels: NoStandard = False,
-    include_root: IncludeRoot = None,
-    max_bytes: MaxBytes = 64 * 2**20,
 ) -> None:
     """Analyse policies and write the robot into Neo4j, or all robots of a fleet, in place of what was there before."""
-    from rosprivacy.assembly import robot_of, run
+    from rosprivacy.assembly import robot_of
     from rosprivacy.ingest.database import loading as database
-    from rosprivacy.settings import Settings
 
-    if fleet and (policies or labels):
-        raise typer.BadParameter("--fleet takes what the fleet file names: no POLICY, --labels")
+    settings = inputs.settings
     if results:
-        if policies or labels or fleet:
-            raise typer.BadParameter("--results takes what is in the folder: no POLICY, --labels, --fleet")
-        _load_results(results, tuple(ontology or ()), neo4j)
+        refuse("--results", "what is in the folder", inputs.given("policies", "labels", "fleet", "add"))
+        _load_results(results, settings.ontologies, inputs.neo4j)
         return
-    if not policies and not fleet:
-        raise typer.BadParameter("name at least one policy: a file, a folder or a glob", param_hint="POLICY")
-    settings = Settings(
-        view=view.value,
-        ontologies=tuple(ontology or ()),
-        category=category,
-        standard_channels=None if no_standard_channels else standard_channels,
-        include_root=str(include_root) if include_root else None,
-        max_bytes=max_bytes,
-        progress=progress_of,
-    )
-    if fleet:
-        _load_fleet(fleet, settings, neo4j)
+    if inputs.fleet:
+        _load_fleet(inputs.fleet, settings, inputs.neo4j)
         return
     name = database.check_robot_name(robot)
-    result = run(tuple(policies or ()), tuple(labels or ()), settings)
+    result = inputs.result(settings)
     rows = robot_of(name, result)
-    with driver_of(neo4j) as driver, _bar(rows.size) as advance:
+    with driver_of(inputs.neo4j) as driver, _bar(rows.size) as advance:
         done = database.load(driver, [rows], result.vocabulary, advance)
     how = "is there already, nothing to change" if done.unchanged else "is written"
     count = f"{len(rows.elements):,} elements, {len(rows.flows):,} flows, {len(rows.findings):,} findings"
@@ -92,7 +56,7 @@ def _load_fleet(file: str, settings: Settings, neo4j: str | None) -> None:
     from rosprivacy.ingest.database.fleet_rows import MOST_ACROSS
     from rosprivacy.ontology.vocabulary import load
 
-    vocabulary = load()
+    vocabulary = load(ontologies=settings.ontologies)
     read = read_all(file, vocabulary, settings)
     result = analysed(read, vocabulary, settings, every=True)
     rows = rows_of_fleet(read, result, settings)

@@ -10,22 +10,9 @@ from typing import Annotated
 import typer
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.cli.options import (
-    DecisionsFile,
-    Format,
-    IncludeRoot,
-    LabelFiles,
-    MaxBytes,
-    NoStandard,
-    Output,
-    Policies,
-    SixLists,
-    Standard,
-    View,
-    ViewChosen,
-    complete_category,
-)
-from rosprivacy.cli.output import emit, on_console, progress_of
+from rosprivacy.cli.inputs import Inputs, reads_system
+from rosprivacy.cli.options import Format, Output
+from rosprivacy.cli.output import emit, on_console
 
 
 class By(StrEnum):
@@ -36,9 +23,9 @@ class By(StrEnum):
     deny = "deny"
 
 
+@reads_system("the policies of one robot", without=("fleet", "from_database", "neo4j"))
 def mitigate(
-    policies: Policies = None,
-    labels: LabelFiles = None,
+    inputs: Inputs,
     limits: Annotated[
         Path | None,
         typer.Option(metavar="FILE", help="What may be changed, where, and at what cost.", show_default=False),
@@ -53,49 +40,17 @@ def mitigate(
     ] = None,
     format: Annotated[Format, typer.Option("--format", "-f", help="Of the answer.")] = Format.text,  # noqa: A002 - the option's name
     output: Output = None,
-    categories: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--categories",
-            "-c",
-            metavar="NAME",
-            autocompletion=complete_category,
-            show_default=False,
-            help="Remove the findings of this category, narrower, broader and overlapping ones only; may be repeated.",
-        ),
-    ] = None,
-    category: SixLists = "PersonalData",
-    decisions: DecisionsFile = None,
-    view: ViewChosen = View.declared,
-    standard_channels: Standard = "rosprivacy:standard",
-    no_standard_channels: NoStandard = False,
-    include_root: IncludeRoot = None,
-    max_bytes: MaxBytes = 64 * 2**20,
 ) -> None:
     """Propose the cheapest changes that remove the open findings, proven by a new analysis.
 
     Ends with 1 if a finding stays that no change removes.
     """
     from rosprivacy.analysis.mitigation.limits import CHANGES
-    from rosprivacy.assembly import run
     from rosprivacy.mitigation import run_mitigation
     from rosprivacy.report.document.analysis import as_text
     from rosprivacy.report.terminal.mitigation import print_mitigation
-    from rosprivacy.settings import Settings
 
-    if not policies:
-        raise typer.BadParameter("name at least one policy: a file, a folder or a glob", param_hint="POLICY")
-    settings = Settings(
-        view=view.value,
-        categories=tuple(categories or ()),
-        category=category,
-        standard_channels=None if no_standard_channels else standard_channels,
-        include_root=str(include_root) if include_root else None,
-        max_bytes=max_bytes,
-        progress=progress_of,
-        decisions=str(decisions) if decisions else None,
-    )
-    result = run(tuple(policies), tuple(labels or ()), settings)
+    result = inputs.result(inputs.settings)
     kinds = tuple(kind.value for kind in by) if by else CHANGES
     found = run_mitigation(result, str(limits) if limits else None, kinds)
     report = found.document()

@@ -68,50 +68,39 @@ def complete_category(incomplete: str) -> list[str]:
     return [name for name in load().categories if name.casefold().startswith(incomplete.casefold())]
 
 
+READ = "What is read"  # panels of help
+ASKED = "What is asked"
+
 Policies = Annotated[
     list[str] | None,
     typer.Argument(metavar="POLICY", help="SROS 2 policies: files, folders or globs.", show_default=False),
 ]
-IncludeRoot = Annotated[
-    Path | None,
-    typer.Option(help="Folder that includes may read from; by default the policy's own.", show_default=False),
-]
-MaxBytes = Annotated[int, typer.Option(min=1, help="Bound on a policy with all that it includes.")]
-Output = Annotated[Path | None, typer.Option("--output", "-o", help="Write to this file instead.", show_default=False)]
-Standard = Annotated[
-    str,
-    typer.Option("--standard-channels", metavar="FILE", help="Label file of the standard ROS channels."),
-]
-NoStandard = Annotated[bool, typer.Option("--no-standard-channels", help="Take no channel as mundane by itself.")]
 LabelFiles = Annotated[
     list[str] | None,
     typer.Option(
-        "--labels", "-l", metavar="FILE", help="Label file, YAML or JSON; may be repeated.", show_default=False
+        "--labels",
+        "-l",
+        metavar="FILE",
+        help="Label file, YAML or JSON; may be repeated.",
+        show_default=False,
+        rich_help_panel=READ,
     ),
-]
-SixLists = Annotated[
-    str, typer.Option(metavar="NAME", autocompletion=complete_category, help="What a six-list JSON is about.")
 ]
 FleetFile = Annotated[
     str | None,
-    typer.Option("--fleet", metavar="FILE", show_default=False, help="Fleet file: many robots and what they share."),
-]
-EngineChosen = Annotated[
-    Engine, typer.Option(help="Of a fleet: in memory here, or in parts on Apache Spark (the [spark] extra).")
-]
-Master = Annotated[
-    str | None,
     typer.Option(
-        "--master",
-        metavar="URL",
+        "--fleet",
+        metavar="FILE",
         show_default=False,
-        help="Spark cluster, such as spark://host:7077; by default the cores of this machine.",
+        help="Fleet file: many robots and what they share.",
+        rich_help_panel=READ,
     ),
 ]
-ViewChosen = Annotated[View, typer.Option(help="What nodes declare, or what DDS enforces per enclave.")]
-DecisionsFile = Annotated[
-    Path | None,
-    typer.Option("--decisions", metavar="FILE", help="What people have decided about findings.", show_default=False),
+FromDatabase = Annotated[
+    bool,
+    typer.Option(
+        "--from-database", help="Read what is in Neo4j; the answer is written back there.", rich_help_panel=READ
+    ),
 ]
 Server = Annotated[
     str | None,
@@ -120,6 +109,17 @@ Server = Annotated[
         metavar="URI",
         show_default=False,
         help="Neo4j to use; by default that of NEO4J_URI, else the private one. The password stands in NEO4J_PASSWORD.",
+        rich_help_panel=READ,
+    ),
+]
+SavedGraphs = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--add",
+        metavar="GRAPH.json",
+        help="Add to a graph saved before; may be repeated.",
+        show_default=False,
+        rich_help_panel=READ,
     ),
 ]
 Ontologies = Annotated[
@@ -129,5 +129,67 @@ Ontologies = Annotated[
         metavar="FILE.ttl",
         show_default=False,
         help="More categories, in Turtle, beside those that come with the program; may be repeated.",
+        rich_help_panel=READ,
     ),
+]
+Standard = Annotated[
+    str,
+    typer.Option(
+        "--standard-channels", metavar="FILE", help="Label file of the standard ROS channels.", rich_help_panel=READ
+    ),
+]
+NoStandard = Annotated[
+    bool,
+    typer.Option("--no-standard-channels", help="Take no channel as mundane by itself.", rich_help_panel=READ),
+]
+IncludeRoot = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="DIR",
+        help="Folder that includes may read from; by default the policy's own.",
+        show_default=False,
+        rich_help_panel=READ,
+    ),
+]
+MaxBytes = Annotated[
+    int,
+    typer.Option(min=1, metavar="N", help="Bound on a policy with all that it includes.", rich_help_panel=READ),
+]
+Categories = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--categories",
+        "-c",
+        metavar="NAME",
+        autocompletion=complete_category,
+        show_default=False,
+        help="Answer for this category, narrower, broader and overlapping ones only; may be repeated.",
+        rich_help_panel=ASKED,
+    ),
+]
+SixLists = Annotated[
+    str,
+    typer.Option(
+        metavar="NAME",
+        autocompletion=complete_category,
+        help="What a six-list JSON is about.",
+        rich_help_panel=READ,
+    ),
+]
+ViewChosen = Annotated[
+    View, typer.Option(help="What nodes declare, or what DDS enforces per enclave.", rich_help_panel=ASKED)
+]
+DecisionsFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--decisions",
+        metavar="FILE",
+        help="What people have decided about findings.",
+        show_default=False,
+        rich_help_panel=ASKED,
+    ),
+]
+Output = Annotated[
+    Path | None,
+    typer.Option("--output", "-o", metavar="FILE", help="Write to this file instead.", show_default=False),
 ]

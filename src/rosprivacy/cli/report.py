@@ -9,28 +9,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from rosprivacy.cli.options import (
-    DecisionsFile,
-    FleetFile,
-    IncludeRoot,
-    LabelFiles,
-    MaxBytes,
-    NoStandard,
-    Ontologies,
-    Output,
-    Policies,
-    Server,
-    SixLists,
-    Standard,
-    View,
-    ViewChosen,
-    complete_category,
-)
-from rosprivacy.cli.output import emit, progress_of
+from rosprivacy.cli.inputs import Inputs, reads_system
+from rosprivacy.cli.options import Output
+from rosprivacy.cli.output import emit
 
 if TYPE_CHECKING:
     from rosprivacy.assembly import Result
-    from rosprivacy.settings import Settings
 
 
 class ReportFormat(StrEnum):
@@ -48,18 +32,9 @@ class ReportLanguage(StrEnum):
     de = "de"
 
 
+@reads_system()
 def report(
-    policies: Policies = None,
-    labels: LabelFiles = None,
-    fleet: FleetFile = None,
-    from_database: Annotated[
-        bool, typer.Option("--from-database", help="Report on what is in Neo4j; the answer is written back there.")
-    ] = False,
-    neo4j: Server = None,
-    add: Annotated[
-        list[str] | None,
-        typer.Option(metavar="GRAPH.json", help="Add to a graph saved before; may be repeated.", show_default=False),
-    ] = None,
+    inputs: Inputs,
     format: Annotated[  # noqa: A002 - the option's name
         ReportFormat,
         typer.Option("--format", "-f", help="A page, a text, or rows for the record of processing (Article 30 GDPR)."),
@@ -81,71 +56,14 @@ def report(
         bool,
         typer.Option("--redact", help="Replace names of elements, files, robots and persons, to show it to others."),
     ] = False,
-    categories: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--categories",
-            "-c",
-            metavar="NAME",
-            autocompletion=complete_category,
-            show_default=False,
-            help="Report on this category, narrower, broader and overlapping ones only; may be repeated.",
-        ),
-    ] = None,
-    ontology: Ontologies = None,
-    decisions: DecisionsFile = None,
-    category: SixLists = "PersonalData",
-    view: ViewChosen = View.declared,
-    standard_channels: Standard = "rosprivacy:standard",
-    no_standard_channels: NoStandard = False,
-    include_root: IncludeRoot = None,
-    max_bytes: MaxBytes = 64 * 2**20,
 ) -> None:
     """Write a report for people: a page that needs no network, a text, or rows for the record of processing.
 
     It ends with 0 when the report is written, whatever that says; a gate in CI is ``analyze``.
     """
-    from rosprivacy.settings import Settings
-
-    settings = Settings(
-        add=tuple(add or ()),
-        view=view.value,
-        categories=tuple(categories or ()),
-        ontologies=tuple(ontology or ()),
-        decisions=str(decisions) if decisions else None,
-        category=category,
-        standard_channels=None if no_standard_channels else standard_channels,
-        include_root=str(include_root) if include_root else None,
-        max_bytes=max_bytes,
-        progress=progress_of,
-    )
-    if from_database and (policies or labels or add or fleet):
-        raise typer.BadParameter("--from-database takes what is in the database: no POLICY, --labels, --add, --fleet")
-    if fleet and (policies or labels or add):
-        raise typer.BadParameter("--fleet takes what the fleet file names: no POLICY, --labels, --add")
-    if not from_database and not policies and not add and not fleet:
-        raise typer.BadParameter("name at least one policy: a file, a folder or a glob", param_hint="POLICY")
-    if fleet:
-        from rosprivacy.fleets import run_fleet
-
-        result = run_fleet(fleet, settings)
-    else:
-        result = _result(policies, labels, settings, neo4j, from_database=from_database)
+    result = inputs.result(inputs.settings)
     text = _text(result, format, lang.value, title, since, redact=redact)
     emit(text.encode(), output)  # it says of itself that it is UTF-8
-
-
-def _result(
-    policies: list[str] | None, labels: list[str] | None, settings: Settings, neo4j: str | None, *, from_database: bool
-) -> Result:
-    from rosprivacy.assembly import run, run_stored
-
-    if not from_database:
-        return run(tuple(policies or ()), tuple(labels or ()), settings)
-    from rosprivacy.cli.driver import driver_of
-
-    with driver_of(neo4j) as driver:
-        return run_stored(driver, settings)
 
 
 def _text(result: Result, form: ReportFormat, language: str, title: str, since: Path | None, *, redact: bool) -> str:

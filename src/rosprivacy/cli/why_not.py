@@ -8,31 +8,18 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from rosprivacy.analysis.errors import InputError, shown
-from rosprivacy.cli.options import (
-    FleetFile,
-    IncludeRoot,
-    LabelFiles,
-    MaxBytes,
-    NoStandard,
-    Ontologies,
-    Output,
-    Policies,
-    SixLists,
-    Standard,
-    TextOrJson,
-    View,
-    ViewChosen,
-)
-from rosprivacy.cli.output import emit, progress_of
+from rosprivacy.cli.inputs import Inputs, reads_system
+from rosprivacy.cli.options import ASKED, Output, TextOrJson, complete_category
+from rosprivacy.cli.output import emit
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosprivacy.analysis.findings.why_not import WhyNot
     from rosprivacy.assembly import Result
-    from rosprivacy.settings import Settings
 
 
+@reads_system("policies, saved graphs or a fleet", without=("from_database", "neo4j", "decisions"))
 def why_not(
     source: Annotated[
         str, typer.Argument(metavar="SOURCE", help="Where data comes in: a name; of a fleet robot:name.")
@@ -40,20 +27,19 @@ def why_not(
     leak: Annotated[
         str, typer.Argument(metavar="LEAK", help="Where it should not get: a name; of a fleet robot:name.")
     ],
-    policies: Policies = None,
-    labels: LabelFiles = None,
-    fleet: FleetFile = None,
+    inputs: Inputs,
     categories: Annotated[
         list[str] | None,
-        typer.Option("--categories", "-c", metavar="NAME", show_default=False, help="Ask about this kind only."),
+        typer.Option(
+            "--categories",
+            "-c",
+            metavar="NAME",
+            autocompletion=complete_category,
+            show_default=False,
+            help="Ask about this kind only.",
+            rich_help_panel=ASKED,
+        ),
     ] = None,
-    ontology: Ontologies = None,
-    category: SixLists = "PersonalData",
-    view: ViewChosen = View.declared,
-    standard_channels: Standard = "rosprivacy:standard",
-    no_standard_channels: NoStandard = False,
-    include_root: IncludeRoot = None,
-    max_bytes: MaxBytes = 64 * 2**20,
     format: Annotated[TextOrJson, typer.Option("--format", "-f", help="Of the answer.")] = TextOrJson.text,  # noqa: A002 - the option's name
     output: Output = None,
 ) -> None:
@@ -61,33 +47,11 @@ def why_not(
     from rosprivacy.report.document.analysis import as_text
     from rosprivacy.report.document.why_not import document
     from rosprivacy.report.terminal.why_not import lines
-    from rosprivacy.settings import Settings
 
-    settings = Settings(
-        view=view.value,
-        ontologies=tuple(ontology or ()),
-        category=category,
-        standard_channels=None if no_standard_channels else standard_channels,
-        include_root=str(include_root) if include_root else None,
-        max_bytes=max_bytes,
-        progress=progress_of,
-    )
-    if bool(fleet) == bool(policies):
-        raise typer.BadParameter("name policies, or a fleet with --fleet")
-    result = _result(policies or [], labels or [], fleet, settings)
+    result = inputs.result(inputs.settings)
     answers = list(_answers(result, source, leak, tuple(categories or ())))
     text = as_text(document(answers)) if format is TextOrJson.json else "".join(f"{line}\n" for line in lines(answers))
     emit(text, output)
-
-
-def _result(policies: list[str], labels: list[str], fleet: str | None, settings: Settings) -> Result:
-    if fleet:
-        from rosprivacy.fleets import run_fleet
-
-        return run_fleet(fleet, settings)
-    from rosprivacy.assembly import run
-
-    return run(tuple(policies), tuple(labels), settings)
 
 
 def _answers(result: Result, source: str, leak: str, asked: tuple[str, ...]) -> Iterator[WhyNot]:

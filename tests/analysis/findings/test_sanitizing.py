@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import pytest
 from hypothesis import assume, given
 
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.findings.sanitizing import cleanings, makings
+from rosprivacy.analysis.kernel.roles import facts
+from rosprivacy.analysis.model import Method, Place, Statement
 from tests.helpers.graphs import care_home, factory
-from tests.helpers.systems import index, systems
+from tests.helpers.systems import HIERARCHY, index, systems
 
 if TYPE_CHECKING:
     from tests.helpers.systems import System
@@ -72,3 +75,14 @@ def test_a_category_that_is_not_asked_for_is_left_out() -> None:
     assert [(row.element.name, row.made_of, row.made) for row in makings(analysis.spread, ["FaceTemplate"])] == [
         ("/face_recognizer", "Video", "FaceTemplate")
     ]
+
+
+@pytest.mark.parametrize("stated", [True, False])
+def test_whether_a_method_is_stated_is_as_the_statement_says_that_decides(*, stated: bool) -> None:
+    """Rule S7. The case that differed: the CNIL's record asked the highest rank, the document any statement."""
+    high, low = (
+        Statement("sanitizer", ("Voice",), (rank, 0), Place("labels", rank), Method.PSEUDONYMISE, stated=told)
+        for rank, told in ((2, stated), (1, not stated))
+    )
+    assert facts("/n0", [low, high], "Voice", HIERARCHY).unstated is not stated
+    assert facts("/n0", [high, low], "Voice", HIERARCHY).unstated is not stated

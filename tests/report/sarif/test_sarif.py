@@ -208,6 +208,17 @@ def test_a_finding_that_another_covers_is_a_note_that_says_so(tmp_path: Path) ->
 # ---------------------------------------------------------------- places that are no policy line
 
 
+def test_a_source_of_a_broader_kind_is_not_the_label_of_a_narrower_one(tmp_path: Path) -> None:
+    """Rule S7, decided in roles.py: a source names what it emits. SARIF once counted the label in line 3 for both."""
+    labels = {"/a": "{source: [Biometric]}", '"/[a]"': "{source: [FaceTemplate]}"}
+    result = small_system(tmp_path, labels, last="leak: [Biometric, FaceTemplate]")
+    found = {
+        r["properties"]["category"]: r for r in checked(log_of(result, at=tmp_path))["results"] if "codeFlows" in r
+    }
+    lines = {name: physical(found[name]["relatedLocations"][0])[1] for name in ("Biometric", "FaceTemplate")}
+    assert lines == {"Biometric": 3, "FaceTemplate": 4}
+
+
 def test_a_node_that_is_source_and_leak_is_at_the_line_of_its_label(tmp_path: Path) -> None:
     result = small_system(tmp_path, {"/a": "{source: [Video], leak: [Video]}"}, last="conduit: [Video]")
     (found, *_) = checked(log_of(result, at=tmp_path))["results"]

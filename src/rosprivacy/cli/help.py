@@ -1,0 +1,40 @@
+"""How help is shown: the commands in groups, in the order of a user's way; flags without the name of a type."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from typer.core import TyperGroup
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+LABEL = "Label"
+ANALYSE = "Analyse"
+SEE = "See"
+DECIDE = "Decide"
+MANY = "Fleet and database"
+
+
+class Group(TyperGroup):
+    """Commands whose flags are shown without ``<bool>``."""
+
+    def get_params(self, ctx: Any) -> list[Any]:
+        """Return the options of the group itself."""
+        return _untyped(super().get_params(ctx))
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        """Return a command of the group, if there is one of that name."""
+        command = super().get_command(ctx, cmd_name)
+        if command is not None:
+            _untyped(command.get_params(ctx))
+        return command
+
+
+def _untyped(parameters: Iterable[Any]) -> list[Any]:
+    """A flag takes no value; an empty name of it leaves the type out."""
+    parameters = list(parameters)
+    for parameter in parameters:
+        if getattr(parameter, "is_flag", False):
+            parameter.metavar = ""
+    return parameters

@@ -1,0 +1,231 @@
+"""What commands read: the same options everywhere, and one refusal where one makes no sense (issue 14, point 3; B4)."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from shutil import copytree
+from typing import TYPE_CHECKING, Any
+
+import pytest
+import typer
+
+from rosprivacy.cli.app import app
+from rosprivacy.cli.inputs import WRITTEN, Inputs
+from rosprivacy.cli.output import progress_of
+from rosprivacy.settings import Settings
+from tests.helpers.command import cli, run
+from tests.test_docs import CATEGORIES, blocks
+
+if TYPE_CHECKING:
+    from rosprivacy.private_neo4j.connection import Connection
+    from tests.helpers.command import Cli
+
+__all__ = ["cli"]
+
+POLICY = """<policy version="0.2.0"><enclaves>
+<enclave path="/cam"><profiles><profile ns="/" node="camera">
+<topics publish="ALLOW"><topic>/video</topic></topics></profile></profiles></enclave>
+<enclave path="/up"><profiles><profile ns="/" node="uplink">
+<topics subscribe="ALLOW"><topic>/video</topic></topics></profile></profiles></enclave>
+</enclaves></policy>
+"""
+LABELS = """labels: 1
+nodes:
+  /camera: {source: [PulseCurve]}
+  /uplink: {leak: [PulseCurve]}
+"""
+FLEET = """fleet: 1
+name: clinic
+models:
+  m: {policies: [p.xml], labels: [l.yaml]}
+groups:
+  - {robots: 2, model: m}
+limits: {PulseCurve: P30D}
+"""
+DECISIONS = "decisions: 1\nfindings:\n  - {category: PulseCurve, decision: mitigate}\n"
+GROUP: Any = typer.main.get_command(app)
+READERS = ("analyze", "report", "graph", "mitigate", "diff", "load", "labels", "why-not")
+SYSTEM = ("p.xml", "-l", "l.yaml")
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A system with a category of its own, in policies, labels, a fleet, decisions and a saved graph."""
+    folder = tmp_path_factory.mktemp("made")
+    texts = {"p.xml": POLICY, "l.yaml": LABELS, "f.yaml": FLEET, "d.yaml": DECISIONS}
+    for name, text in {**texts, "o.ttl": blocks(CATEGORIES, "turtle")[0]}.items():
+        (folder / name).write_text(text)
+    done = run("analyze", *SYSTEM, "--ontology", "o.ttl", "--save-graph", "g.json", "-o", "a.txt", cwd=folder)
+    assert (done.returncode, done.stderr) == (1, "")
+    return folder
+
+
+@pytest.fixture
+def clinic(made: Path, tmp_path: Path) -> Path:
+    return Path(copytree(made, tmp_path / "clinic"))
+
+
+USES = [  # a command, its exit code, and what it then says of the own category
+    (["analyze", *SYSTEM], 1, "PulseCurve: /camera -> /uplink"),
+    (["analyze", *SYSTEM, "--decisions", "d.yaml"], 1, "PulseCurve: /camera -> /uplink"),
+    (["analyze", "--fleet", "f.yaml"], 1, "PulseCurve: m_1:/camera -> m_1:/uplink"),
+    (["report", *SYSTEM, "-f", "markdown"], 0, "pulse curve"),
+    (["report", "--fleet", "f.yaml", "-f", "markdown"], 0, "pulse curve"),
+    (["graph", *SYSTEM, "--show", "privacy"], 0, "PulseCurve"),
+    (["graph", "--fleet", "f.yaml", "--show", "privacy"], 0, "PulseCurve"),
+    (["mitigate", *SYSTEM, "--decisions", "d.yaml"], 0, "PulseCurve"),
+    (["diff", "p.xml", "p.xml", "-l", "l.yaml", "--decisions", "d.yaml"], 0, "nothing differs"),
+    (["diff", "f.yaml", "f.yaml"], 0, "nothing differs"),
+    (["why-not", "/camera", "/uplink", *SYSTEM], 0, "PulseCurve"),
+    (["decide", "mitigate", "--category", "PulseCurve", "--decisions", "new.yaml"], 0, "PulseCurve"),
+    (["fleet", "f.yaml", "--decisions", "d.yaml"], 0, "2 robots of 1 kinds"),
+    (["unload", "--fleet", "f.yaml", "--neo4j", "bolt://127.0.0.1:9"], 3, ""),
+    (["load", "--fleet", "f.yaml", "--neo4j", "bolt://127.0.0.1:9"], 3, ""),
+    (["load", *SYSTEM, "--neo4j", "bolt://127.0.0.1:9"], 3, ""),
+]
+
+
+@pytest.mark.parametrize(("arguments", "code", "said"), USES, ids=[" ".join(use[0][:3]) for use in USES])
+def test_an_own_category_is_known_to_every_command(
+    cli: Cli, clinic: Path, monkeypatch: pytest.MonkeyPatch, arguments: list[str], code: int, said: str
+) -> None:
+    monkeypatch.setenv("NEO4J_PASSWORD", "none")
+    done = cli(*arguments, cwd=clinic)
+    assert done.returncode == 2, done.stdout
+    assert "unknown category 'PulseCurve'" in done.stderr, done.stderr
+    done = cli(*arguments, "--ontology", "o.ttl", cwd=clinic)
+    assert done.returncode == code, done.stderr
+    assert said in done.stdout
+
+
+def test_a_first_label_file_and_the_schemas_name_an_own_category(cli: Cli, clinic: Path) -> None:
+    for command in (["labels", "p.xml", "--init"], ["labels", "--schema"], ["fleet", "--schema"]):
+        assert "PulseCurve" not in cli(*command, cwd=clinic).stdout
+        done = cli(*command, "--ontology", "o.ttl", cwd=clinic)
+        assert (done.returncode, done.stderr) == (0, "")
+        assert "PulseCurve" in done.stdout
+
+
+@pytest.mark.database
+def test_a_fleet_with_an_own_category_is_loaded_and_unloaded(clinic: Path, neo4j_server: Connection) -> None:  # noqa: ARG001 - the server
+    for command in ("load", "unload"):
+        done = run(command, "--fleet", "f.yaml", "--ontology", "o.ttl", cwd=clinic)
+        assert (done.returncode, done.stderr) == (0, ""), command
+
+
+def test_a_saved_graph_is_read_by_every_command_that_reads_policies(cli: Cli, clinic: Path) -> None:
+    own = ("--ontology", "o.ttl")
+    for command in (["report", "-f", "markdown"], ["graph"], ["mitigate"], ["why-not", "/camera", "/uplink"]):
+        done = cli(*command, "--add", "g.json", "-l", "l.yaml", *own, cwd=clinic)
+        direct = cli(*command, *SYSTEM, *own, cwd=clinic)
+        assert (done.returncode, done.stderr) == (direct.returncode, "")
+        assert done.stdout.replace("g.json", "p.xml") == direct.stdout
+    saved, read = (cli("labels", "--init", *of, cwd=clinic).stdout for of in (["--add", "g.json"], ["p.xml"]))
+    assert saved == read
+
+
+# ---------------------------------------------------------------- one set, one refusal
+
+
+@pytest.mark.parametrize("name", READERS)
+def test_every_command_that_reads_a_system_knows_every_option(name: str) -> None:
+    """Those that make no sense for it are hidden and refused, not unknown."""
+    known = {option for parameter in GROUP.commands[name].params for option in parameter.opts}
+    assert {option for option in WRITTEN.values() if option.startswith("--")} <= known
+
+
+def message(text: str) -> str:
+    """An error as one line, without the frame that the terminal has."""
+    return " ".join(re.sub("[─│╭╮╰╯]", " ", text).split())
+
+
+@pytest.mark.parametrize("name", READERS)
+def test_what_makes_no_sense_for_a_command_is_refused_in_one_wording(cli: Cli, clinic: Path, name: str) -> None:
+    ends = {"diff": ["p.xml", "p.xml"], "why-not": ["/camera", "/uplink", "p.xml"]}.get(name, ["p.xml"])
+    for parameter in GROUP.commands[name].params:
+        if parameter.hidden:
+            value = [] if parameter.is_flag else ["x"]
+            done = cli(name, *ends, parameter.opts[0], *value, cwd=clinic)
+            assert (done.returncode, done.stdout) == (2, "")
+            said = message(done.stderr)
+            assert re.search(rf"Invalid value: {name} takes [\w ,]+: no {parameter.opts[0]}$", said), said
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "said"),
+    [
+        (["--fleet", "f.yaml"], ["p.xml"], "--fleet takes what the fleet file names: no POLICY"),
+        (["--fleet", "f.yaml"], [*SYSTEM], "--fleet takes what the fleet file names: no POLICY, --labels"),
+        (["--fleet", "f.yaml"], ["--add", "g.json"], "--fleet takes what the fleet file names: no --add"),
+        (["--from-database"], ["--add", "g.json"], "--from-database takes what is in the database: no --add"),
+        (["--from-database"], ["--fleet", "f.yaml"], "--from-database takes what is in the database: no --fleet"),
+        ([], [], "Invalid value for POLICY: name at least one policy: a file, a folder or a glob"),
+        ([], ["-l", "l.yaml"], "Invalid value for POLICY: name at least one policy: a file, a folder or a glob"),
+    ],
+)
+def test_a_second_system_beside_a_first_is_refused_in_one_wording(
+    cli: Cli, clinic: Path, first: list[str], second: list[str], said: str
+) -> None:
+    for name in ("analyze", "report", "graph", "load", "why-not"):
+        shown = {
+            option for parameter in GROUP.commands[name].params if not parameter.hidden for option in parameter.opts
+        }
+        if {word for word in first if word.startswith("--")} <= shown:
+            ends = ["/camera", "/uplink"] if name == "why-not" else []
+            done = cli(name, *ends, *first, *second, cwd=clinic)
+            assert (done.returncode, done.stdout) == (2, "")
+            assert message(done.stderr).endswith(said), done.stderr
+
+
+def test_what_only_one_command_has_is_refused_in_the_same_wording(cli: Cli, clinic: Path) -> None:
+    for arguments, said in (
+        (
+            ["analyze", "--fleet", "f.yaml", "--save-graph", "n.json"],
+            "--fleet takes what the fleet file names: no --save-g",
+        ),
+        (
+            ["analyze", "--from-database", "--save-graph", "n.json"],
+            "--from-database takes what is in the database: no --s",
+        ),
+        (["load", "--results", "r", *SYSTEM], "--results takes what is in the folder: no POLICY, --labels"),
+        (
+            ["analyze", "--engine", "spark", "--fleet", "f.yaml", "--decisions", "d.yaml"],
+            "--engine spark takes a fleet",
+        ),
+    ):
+        done = cli(*arguments, cwd=clinic)
+        assert (done.returncode, done.stdout) == (2, "")
+        assert said in message(done.stderr)
+
+
+def test_the_options_mean_to_the_library_what_it_takes_by_itself() -> None:
+    assert Inputs().settings == Settings(progress=progress_of)
+
+
+# ---------------------------------------------------------------- help
+
+
+def test_help_shows_the_commands_in_the_order_of_a_users_way(cli: Cli) -> None:
+    shown = cli("--help").stdout
+    names = re.findall(r"^│ ([a-z][a-z-]*) ", shown, re.MULTILINE)
+    assert names == [
+        "labels", "categories", "analyze", "why-not", "diff", "report", "graph", "decide", "mitigate", "fleet", "load",
+        "unload", "query", "db",
+    ]  # fmt: skip
+    panels = re.findall(r"^╭─ ([\w ]+) ─", shown, re.MULTILINE)
+    assert panels == ["Options", "Label", "Analyse", "See", "Decide", "Fleet and database"]
+
+
+def test_help_of_every_command_shows_no_type_of_a_flag_and_no_hidden_option(cli: Cli) -> None:
+    assert "<bool>" not in cli("--help").stdout
+    for name, command in GROUP.commands.items():
+        shown = cli(name, "--help").stdout
+        assert "<bool>" not in shown
+        hidden = {option for parameter in command.params if parameter.hidden for option in parameter.opts}
+        assert not hidden & set(shown.split())
+    assert "<bool>" not in cli("db", "start", "--help").stdout
+
+
+def test_help_shows_the_extra_in_brackets(cli: Cli) -> None:
+    assert "the [spark] extra" in " ".join(cli("analyze", "--help").stdout.replace("│", " ").split())
