@@ -69,7 +69,7 @@ def kept_too_long(facts: NonRosFacts, category: str, hierarchy: Hierarchy) -> st
     for kind in sorted(hierarchy.ancestors, key=lambda kind: (kind != category, kind)):
         if category not in hierarchy.ancestors[kind]:
             continue
-        kept = _nearest(facts.retention, kind, hierarchy)
+        kept = retention_of(facts, kind, hierarchy)
         if not kept:
             return f"no retention is stated for {kind}" if facts.retention else "no retention is stated"
         for duration in kept:
@@ -84,6 +84,11 @@ def kept_too_long(facts: NonRosFacts, category: str, hierarchy: Hierarchy) -> st
 def limited(facts: NonRosFacts, category: str, hierarchy: Hierarchy) -> bool:
     """Return whether it is stated how long a category may be kept there."""
     return bool(_nearest(facts.limits, category, hierarchy))
+
+
+def retention_of(facts: NonRosFacts, category: str, hierarchy: Hierarchy) -> list[Duration]:
+    """Return how long a category is kept there, as stated of it or of the nearest broader one."""
+    return _nearest(facts.retention, category, hierarchy)
 
 
 def _nearest(stated: Iterable[tuple[str, Duration]], category: str, hierarchy: Hierarchy) -> list[Duration]:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from rosprivacy.assembly import Result
+    from rosprivacy.result import Result
 
 
 def compare(folder: Path, *, quick: bool) -> Iterator[Line]:

@@ -27,7 +27,7 @@ from rosprivacy.report.page.outline import outline
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rosprivacy.assembly import Result
+    from rosprivacy.result import Result
 
 MOST_BYTES, MOST_SECONDS = 10 * 10**6, 3.0
 SIZES = (250, 500, 1000)  # findings

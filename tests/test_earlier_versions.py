@@ -1,7 +1,7 @@
 """What commit b86d901 wrote is read today: decisions, saved analyses, saved graphs (DESIGN.md, Contracts).
 
 The files are in ``cases/earlier/``, whose README says how they were made; they lack the keys that came later. What a
-database of that version is answered with is in ``ingest/database/test_schema_version.py``.
+database of that version is answered with is in ``ingest/database/test_other_schemas.py``.
 """
 
 from __future__ import annotations
@@ -94,7 +94,8 @@ class TestDecisions:
         done = cli(*given, "--decisions", HOME / "decisions.yaml", cwd=EXAMPLES / "care-home")
         assert done.returncode == 0
 
-    def test_patterns_of_a_fleet_keep_their_ids(self, cli: Cli) -> None:
+    def test_patterns_of_a_fleet_keep_their_ids_and_what_changed_is_told(self, cli: Cli) -> None:
+        """``robot`` alone no longer accepts what goes from one robot to another: a finding again, with a warning."""
         given = ("analyze", "--fleet", "fleet.yaml", "--decisions", FLEET / "decisions.yaml")
         document = written(cli, 1, *given, cwd=EXAMPLES / "fleet")
         earlier = json.loads((FLEET / "analysis.json").read_text("utf-8"))
@@ -102,13 +103,16 @@ class TestDecisions:
         assert list(patterns) == [p["id"] for p in earlier["fleet"]["patterns"]]
         counts = {one: (len(p["robots"]), p["findings"], p.get("accepted", 0)) for one, p in patterns.items()}
         assert counts == {
-            "f2d835e951b0cc4c": (40, 468, 0),  # to be mitigated; from one robot to another
+            "f2d835e951b0cc4c": (40, 468, 0),  # from one robot to another; b86d901 took all 468 as accepted
             "489237e56570a173": (40, 40, 40),
             "c58e57ea17af860d": (40, 40, 40),
             "391ce95541a5314a": (12, 12, 12),
             "42274e88e18e8727": (24, 24, 1),  # of the lent robot only
             "54727d664c0c3084": (24, 24, 0),
         }
+        (lost,) = [said for said in document["diagnostics"] if "names no from_robot" in said["message"]]
+        assert lost["line"] == 21
+        assert lost["message"].endswith("from one robot to another, accepted before, no longer; add it")
 
     def test_mitigate_leaves_what_was_accepted(self, cli: Cli) -> None:
         given = ("mitigate", *CARE_HOME, "--decisions", HOME / "decisions.yaml")

@@ -53,7 +53,6 @@ MAY: dict[str, dict[str, set[str]]] = {
         "sarif": {""},
         "cnil": {""},
         "rdf": {"", "document"},
-        "fleet_formats": {"", "document", "pictures", "sarif", "cnil", "rdf"},
     },
     "rosprivacy": {
         "": set(),
@@ -66,6 +65,7 @@ MAY: dict[str, dict[str, set[str]]] = {
 # Names that stand twice: the same part of different wings, and what part that is.
 SAME_PART = {
     "analysis": {"report/document", "report/terminal"},  # the answer about one system, as a document and as lines
+    "answer": {"analysis", "report"},  # the answer, and the one that every format is made of
     "categories": {"cli", "report/terminal"},  # the command, and what it prints
     "decisions": {"analysis", "report/document"},  # what they mean, and how the document tells them
     "findings": {"analysis/findings", "report/rdf"},  # findings, and findings as RDF
@@ -74,6 +74,7 @@ SAME_PART = {
     "ledger": {"analysis/findings", "report/document", "report/terminal"},  # what was taken away, and how it is told
     "mitigation": {"", "report/document", "report/terminal"},  # what is told of proposals
     "non_ros": {"analysis", "report/document", "report/page"},  # what is told of non-ROS elements
+    "robots": {"report", "report/sarif"},  # which robots a finding stands for, in words and in SARIF
     "why_not": {"analysis/findings", "cli", "report/document", "report/terminal"},  # the question, and its answer
     "unknown_ends": {"analysis/findings", "report/terminal"},  # what nobody knows the end of, and how it is told
 }

@@ -20,7 +20,7 @@ from rosprivacy.analysis.answer import Analysis, Carried, Finding, Step, Verdict
 from rosprivacy.analysis.decisions import Case
 from rosprivacy.analysis.findings.arrival import shown_arrivals
 from rosprivacy.analysis.findings.concerns import concerns
-from rosprivacy.analysis.findings.further_paths import WITNESS, Between, further
+from rosprivacy.analysis.findings.further_paths import Between, further
 from rosprivacy.analysis.findings.open_questions import open_questions
 from rosprivacy.analysis.findings.unknown_ends import unknown_ends
 from rosprivacy.analysis.kernel import standard_channels
@@ -28,6 +28,7 @@ from rosprivacy.analysis.kernel.search import START, Net, Search, path_to, prese
 from rosprivacy.analysis.kernel.spread import Spread, bits_of
 from rosprivacy.analysis.kernel.spreading import spread
 from rosprivacy.analysis.model import DISCLOSURE, Diagnostic, Element, Place, Severity
+from rosprivacy.analysis.modes import Paths
 from rosprivacy.analysis.non_ros import country_unknown, on_day
 
 if TYPE_CHECKING:
@@ -68,7 +69,7 @@ class Options:
     """
 
     categories: Collection[str] | None = None
-    paths: str = WITNESS
+    paths: str = Paths.witness
     max_paths: int = MAX_PATHS
     accepts: Callable[[Case], bool] | None = None
     choose: Callable[[Spread, Sequence[Concern], int], Mapping[int, AbstractSet[Chosen]]] | None = None

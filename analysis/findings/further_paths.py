@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.kernel.spread import bits_of
+from rosprivacy.analysis.modes import Paths
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
 
 State = tuple[int, int]  # vertex, number of the category with which data arrives there
 SOURCE, LEAK = -1, -2  # in place of the category's number: the source and the leak are one state each
-WITNESS, DISJOINT, ALL = "witness", "disjoint", "all"
 SEARCHED = 10  # times the bound: so many ways of data are looked at, of which many may be one to the reader
 
 
@@ -179,11 +179,12 @@ def further(between: Between, leak: int, memory: dict[Any, Any], asked: str, mos
     most
         Bound on the list.
     """
+    mode = Paths(asked)
     disjoint, edges = between.to(leak, memory)
-    if asked == WITNESS:
+    if mode is Paths.witness:
         return FurtherPaths(len(disjoint))
     found: Iterable[list[int]] = disjoint
-    if asked == ALL:
+    if mode is Paths.all:
         import networkx as nx  # noqa: PLC0415 - as above
 
         paths = nx.shortest_simple_paths(nx.DiGraph(edges), (between.source, SOURCE), (leak, LEAK))

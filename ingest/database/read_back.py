@@ -32,6 +32,7 @@ from rosprivacy.analysis.model import (
 )
 from rosprivacy.analysis.non_ros import by_kind
 from rosprivacy.ingest.database.non_ros_properties import facts_of
+from rosprivacy.ingest.database.other_schemas import HINT, of_other_schemas
 from rosprivacy.ingest.database.schema import KIND_LABELS, ROLES
 from rosprivacy.ingest.labels.entries import EXACT, as_ranked_now
 from rosprivacy.ingest.policies.names import covers
@@ -127,6 +128,8 @@ def _read(transaction: ManagedTransaction, vocabulary: Vocabulary) -> Stored:
     robots = {record["robot"]["name"]: record["robot"] for record in transaction.run(ROBOTS)}
     if not robots:
         raise InputErrors([_problem("there is no robot in it", "load one with rosprivacy load")])
+    if others := of_other_schemas(robots.values()):
+        raise InputErrors([_problem(others, HINT)])
     reader = _Reader(vocabulary, alone=len(robots) == 1)
     reader.elements(transaction.run(ELEMENTS))
     reader.flows(transaction.run(FLOWS))

@@ -23,7 +23,7 @@ from rosprivacy.ingest.database.element_properties import (
 )
 from rosprivacy.ingest.database.ids import category_labels, element_id, enclave_id
 from rosprivacy.ingest.database.non_ros_properties import properties_of
-from rosprivacy.ingest.database.schema import KIND_LABELS, LEG, WILDCARD
+from rosprivacy.ingest.database.schema import KIND_LABELS, LEG, SCHEMA, WILDCARD
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -139,7 +139,7 @@ def rows_of(robot: str, properties: Row, parts: Mapping[str, Any]) -> RobotRows:
         "flows": len(parts["flows"]),
         "roles": sum(map(len, parts["roles"].values())),
     }
-    known = {**counts, **properties}
+    known = {"schema": SCHEMA, **counts, **properties}
     text = json.dumps([robot, known, parts], sort_keys=True)
     return RobotRows(robot, {**known, "digest": hashlib.sha256(text.encode()).hexdigest()}, **parts)
 

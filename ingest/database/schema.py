@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
+SCHEMA = 2  # raised when what a load writes gains what an answer rests on, or changes its meaning; none was stored at 1
 _IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 STRING, INTEGER, BOOLEAN, STRINGS = "STRING", "INTEGER", "BOOLEAN", "LIST<STRING>"
 
@@ -133,6 +134,7 @@ ROBOT = NodeKind(
         Property("verdict", STRING, "leak, undetermined or no-leak-found"),
         Property("view", STRING, "declared or enforced"),
         Property("version", INTEGER, "how often it was written"),
+        Property("schema", INTEGER, "version of this graph; a robot with another one has to be loaded again"),
         Property("digest", STRING, "of what was loaded; absent when the database was analysed since"),
         Property("elements", INTEGER, "how many were loaded"),
         Property("flows", INTEGER, "how many were loaded"),

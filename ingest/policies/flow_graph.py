@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import KINDS, Element, Flow, FlowGraph, Grant, Profile
+from rosprivacy.analysis.modes import View
 from rosprivacy.ingest.policies.common_names import some_name
 from rosprivacy.ingest.policies.names import covers, dds_names, endpoints, is_pattern, literal_prefix, matcher, overlaps
 
@@ -22,10 +23,8 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Policy
     from rosprivacy.ingest.policies.names import Endpoint
 
-DECLARED, ENFORCED = "declared", "enforced"
 
-
-def build(policies: Iterable[Policy], view: str = DECLARED) -> FlowGraph:
+def build(policies: Iterable[Policy], view: str = View.declared) -> FlowGraph:
     """Make the flow graph of some policies; the same whatever their order.
 
     Parameters
@@ -33,6 +32,11 @@ def build(policies: Iterable[Policy], view: str = DECLARED) -> FlowGraph:
     view
         ``declared``: each node does what its own profile says. ``enforced``: each node may do what any profile of
         its enclave may (rule S6).
+
+    Raises
+    ------
+    InputErrors
+        If the view is neither.
 
     Notes
     -----
@@ -42,7 +46,7 @@ def build(policies: Iterable[Policy], view: str = DECLARED) -> FlowGraph:
     policies = tuple(policies)
     profiles = tuple(sorted({p for policy in policies for p in policy.profiles}, key=_profile_key))
     grants = sorted({grant for policy in policies for grant in policy.grants}, key=_grant_key)
-    rights = list(_rights([grant for grant in grants if grant.allow], profiles, view))
+    rights = list(_rights([grant for grant in grants if grant.allow], profiles, View(view)))
     denials = _Denials([grant for grant in grants if not grant.allow and not grant.dead])
     drafts = _Drafts()
     for profile in profiles:
@@ -54,12 +58,12 @@ def build(policies: Iterable[Policy], view: str = DECLARED) -> FlowGraph:
         for endpoint in endpoints(grant.role, grant.kind, grant.name):
             drafts.add(node, grant, endpoint, denials)
     drafts.join()
-    return drafts.graph(profiles, view)
+    return drafts.graph(profiles, str(view))
 
 
-def _rights(grants: list[Grant], profiles: tuple[Profile, ...], view: str) -> Iterator[tuple[str, Grant]]:
+def _rights(grants: list[Grant], profiles: tuple[Profile, ...], view: View) -> Iterator[tuple[str, Grant]]:
     """(node, grant): which node may use which grant."""
-    if view == DECLARED:
+    if view is View.declared:
         yield from ((grant.node, grant) for grant in grants)
         return
     members: dict[str, list[str]] = defaultdict(list)

@@ -1,6 +1,6 @@
 """Analysis -> the file that the CNIL's PIA tool imports ('Importer un PIA'), for the person who assesses the impact.
 
-In: an ``Analysis`` and what it rests on. Out: plain dicts and lists. The questions that the graph can answer are
+In: an ``Answer``. Out: plain dicts and lists. The questions that the graph can answer are
 filled: 121 to 123, 213, 215, 227, 322, 324, and the measures. The others have no answer: the tool counts an empty one
 as work begun. All is for a person to check: no evaluation is filled, no gauge is set, the status is 'in progress'.
 
@@ -11,10 +11,12 @@ The answers are in English: the tool shows its questions in the reader's languag
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import Method
+from rosprivacy.report import robots
 from rosprivacy.report.cnil import answers as cnil_answers
 from rosprivacy.report.cnil.answers import NAMES, Known
 from rosprivacy.report.cnil.markup import Html, bullets, counted, escaped, joined, paragraph, prose
@@ -25,9 +27,9 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.findings.sanitizing import Cleaning
-    from rosprivacy.analysis.hierarchy import Hierarchy
-    from rosprivacy.analysis.model import Category, FlowGraph
-    from rosprivacy.report.cnil.answers import Stated
+    from rosprivacy.analysis.fleet.patterns import FleetView
+    from rosprivacy.analysis.model import FlowGraph
+    from rosprivacy.report.answer import Answer
 
 TITLES = {
     Method.ANONYMISE: "Anonymisation on the way",
@@ -41,36 +43,22 @@ GOVERNANCE = (
     "system: to be completed."
 )
 PLACEHOLDER = "measures.default_placeholder"  # the tool's own key
-NOTHING: Mapping[Any, Any] = {}
 
 
-def cnil_pia(
-    analysis: Analysis,
-    categories: Mapping[str, Category],
-    hierarchy: Hierarchy,
-    assumptions: Mapping[str, Any],
-    created: str,
-    accepted: Mapping[str, str] = NOTHING,
-    stated: Stated = NOTHING,
-    about: str = "",
-) -> dict[str, Any]:
+def cnil_pia(answer: Answer, created: str) -> dict[str, Any]:
     """Return the file's content.
 
     Parameters
     ----------
     created
         Time as ISO 8601; the tool sorts by it.
-    accepted
-        Id of a finding -> why a person accepted it.
-    stated
-        (robot, kind, name) of a storage or recipient -> what people stated of it: ``retention``, ``country``,
-        ``encrypted``, ``operator``, ``role``, ``basis``.
-    about
-        What a reader has to know beside it, such as which robots of a fleet are named.
     """
-    known = Known(analysis, kinds_of(analysis, categories, hierarchy), stated, accepted)
+    view, vocabulary, assumptions = answer.fleet, answer.vocabulary, answer.assumptions
+    analysis = _of_shown_robots(answer.shown, view) if view else answer.shown
+    kinds = kinds_of(analysis, vocabulary.categories, vocabulary.hierarchy)
+    known = Known(analysis, kinds, answer.stated, answer.accepted)
     measures = list(_measures(known))
-    note = _note(analysis, assumptions, about)
+    note = _note(analysis, assumptions, robots.note(view) if view else "")
     texts = {
         121: cnil_answers.data(known),
         122: joined(cnil_answers.life_cycle(known), _read(assumptions)),
@@ -102,6 +90,17 @@ def cnil_pia(
         "evaluations": [],
         "comments": [],
     }
+
+
+def _of_shown_robots(analysis: Analysis, view: FleetView) -> Analysis:
+    """Return the analysis without flows of robots that only stand beside others."""
+    graph = analysis.graph
+    beside = {v for v, element in enumerate(graph.elements) if element.robot in view.likeness.second}
+
+    def kept(flows: Any) -> Any:
+        return tuple(flow for flow in flows if flow.source not in beside and flow.target not in beside)
+
+    return replace(analysis, graph=replace(graph, flows=kept(graph.flows), denied=kept(graph.denied)))
 
 
 def _pia(assumptions: Mapping[str, Any], created: str) -> dict[str, Any]:

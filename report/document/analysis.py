@@ -18,41 +18,22 @@ from rosprivacy.report.document import ledger
 from rosprivacy.report.document.non_ros import inventory, taken_by_kind, without_backups
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Mapping
+    from collections.abc import Mapping
 
     from rosprivacy.analysis.answer import Analysis, Finding, Step
-    from rosprivacy.analysis.findings.ledger import TakenAway
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.kernel.overruled import Overruled
     from rosprivacy.analysis.model import Category, Diagnostic, Element, Flow, FlowGraph, Grant, Legal
+    from rosprivacy.report.answer import Answer
 
 FORMAT = "rosprivacy.analysis/1"
 _KEYS = {"name": "provision"}  # what the contract calls otherwise than the model
 
 
-def document(
-    analysis: Analysis,
-    categories: Mapping[str, Category],
-    hierarchy: Hierarchy,
-    diagnostics: Iterable[Diagnostic],
-    assumptions: Mapping[str, Any],
-    subjects: Mapping[int, tuple[str, ...]] | None = None,
-    taken: Collection[TakenAway] = (),
-) -> dict[str, Any]:
-    """Return the analysis as one JSON object.
-
-    Parameters
-    ----------
-    diagnostics
-        Of the inputs; the analysis' own are added.
-    assumptions
-        What the answer rests on, made by the caller who knows the files.
-    subjects
-        By vertex: whom the data of a source are about.
-    taken
-        The ledger: what was taken away on the data's side.
-    """
-    graph = analysis.graph
+def analysis_document(answer: Answer) -> dict[str, Any]:
+    """Return the analysis as one JSON object; decisions and a fleet's keys are added in ``whole.py``."""
+    analysis, taken = answer.shown, answer.taken_away
+    categories, hierarchy, graph = answer.vocabulary.categories, answer.vocabulary.hierarchy, analysis.graph
     return {
         "format": FORMAT,
         "verdict": str(analysis.verdict),
@@ -95,7 +76,7 @@ def document(
         "outside": inventory(analysis, hierarchy),
         "subjects": [
             {"element": element_dict(graph.elements[vertex]), "subjects": list(groups)}
-            for vertex, groups in sorted((subjects or {}).items())
+            for vertex, groups in sorted(answer.bound.subjects.items())
         ],
         **_treatment(analysis),
         **_inventory(analysis),
@@ -104,9 +85,9 @@ def document(
         "denied": [_denied(flow, graph) for flow in graph.denied],
         "elements": len({element.identity for element in graph.elements}),
         "standard_channels": analysis.standard_channels,
-        "diagnostics": [_diagnostic(d) for d in (*diagnostics, *analysis.diagnostics)],
+        "diagnostics": [_diagnostic(d) for d in (*answer.diagnostics, *analysis.diagnostics)],
         "assumptions": {
-            **assumptions,
+            **answer.assumptions,
             "taken_away_by": ledger.counts(taken),
             "taken_by_kind": taken_by_kind(analysis),
             "backups_taken_as_none": [element_dict(element) for element in without_backups(analysis)],

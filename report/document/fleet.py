@@ -10,29 +10,26 @@ from collections import Counter
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.fleet.counts import counted
 from rosprivacy.report.document.analysis import element_dict
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.analysis.fleet.counts import Counts
     from rosprivacy.analysis.fleet.patterns import Deviant, FleetView, Likeness, Pattern, Share
 
 ROWS = ("subjects", "sanitizers", "derivations", "unreached")  # what the whole graph tells; the rest is shown already
 
 
-def fleet_document(told: dict[str, Any], analysis: Analysis, view: FleetView) -> dict[str, Any]:
+def fleet_document(told: dict[str, Any], view: FleetView, counts: Counts) -> dict[str, Any]:
     """Return the document of a fleet.
 
     Parameters
     ----------
     told
         Of the analysis as ``FleetView.shown`` gives it.
-    analysis
-        Of the whole graph.
     """
-    numbers = counts(analysis, view.likeness)
+    numbers = asdict(counts)
     assumptions = dict(told["assumptions"])
     if assumptions["standard_channels"]:
         assumptions["standard_channels"] = {**assumptions["standard_channels"], "taken": numbers["standard_channels"]}
@@ -52,11 +49,6 @@ def _without(value: Any, likeness: Likeness) -> Any:
 def _second(item: Any, likeness: Likeness) -> bool:
     element = item.get("element", item) if isinstance(item, dict) else {}
     return element.get("robot") in likeness.second
-
-
-def counts(analysis: Analysis, likeness: Likeness) -> dict[str, int]:
-    """Return how many elements, flows and standard channels the fleet has, not its graph."""
-    return asdict(counted(analysis.graph, analysis.spread, likeness))
 
 
 def _fleet(view: FleetView) -> dict[str, Any]:

@@ -25,7 +25,7 @@ def aliases_of(document: Any, changed: Any) -> dict[Key, tuple[str, str]]:
     elif isinstance(document, dict):
         if {"robot", "kind", "name"} <= set(document):
             return {key(document)[:3]: (changed["robot"], changed["name"])}
-        parts = ((document[name], changed[name]) for name in document)
+        parts = ((document[name], changed[name]) for name in document if name in changed)
     else:
         return {}
     found: dict[Key, tuple[str, str]] = {}

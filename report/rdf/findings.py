@@ -1,20 +1,20 @@
 """Findings -> RDF: each a ``dpv:Process`` with its data, its way and its law, in the words of DPV 2.3 and our own.
 
-In: an ``Analysis``, the vocabulary, what it rests on. Out: an rdflib graph without time or chance in it (rule S14),
+In: an ``Answer``. Out: an rdflib graph without time or chance in it (rule S14),
 which ``serialise.py`` writes. Nothing here is a legal verdict: a provision is one that a person has to look at.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from rdflib import RDF, RDFS, SKOS, XSD, Graph, Literal
 from rdflib.namespace import PROV
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.report.document.analysis import document
+from rosprivacy.analysis.non_ros import EVERY
+from rosprivacy.report.document.whole import document
 from rosprivacy.report.rdf.facts import changes, emitted_by, foreign_terms, kinds_along, legal_of
 from rosprivacy.report.rdf.provenance import by_path, provenance
 from rosprivacy.report.rdf.terms import (
@@ -35,16 +35,16 @@ from rosprivacy.report.rdf.terms import (
 from rosprivacy.report.rdf.things import Things
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Iterator, Mapping
+    from collections.abc import Iterator, Mapping
     from datetime import datetime
 
     from rdflib import URIRef
     from rdflib.term import Node
 
     from rosprivacy.analysis.answer import Analysis, Finding
-    from rosprivacy.analysis.findings.ledger import TakenAway
-    from rosprivacy.analysis.model import Diagnostic, Element
-    from rosprivacy.ontology.vocabulary import Vocabulary
+    from rosprivacy.analysis.fleet.patterns import FleetView
+    from rosprivacy.analysis.model import Element, NonRosFacts
+    from rosprivacy.report.answer import Answer
     from rosprivacy.report.rdf.facts import Change
     from rosprivacy.report.rdf.things import Stated
 
@@ -52,7 +52,6 @@ PREFIXES: dict[str, object] = {
     "dpv": DPV, "risk": RISK, "pd": "https://w3id.org/dpv/pd#", "eu-gdpr": "https://w3id.org/dpv/legal/eu/gdpr#",
     "rp": OWN, "prov": PROV, "rdf": RDF, "rdfs": RDFS, "skos": SKOS, "xsd": XSD,
 }  # fmt: skip
-NOTHING: Mapping[Any, Any] = MappingProxyType({})
 STORED = "storage-limitation"
 OF_KIND = {"disclosure": DPV.Disclose, STORED: DPV.Store, "third-country-transfer": DPV.CrossBorderTransfer}
 AT_LEAK = {"storage": DPV.Store, "external-system": DPV.Transfer}
@@ -62,40 +61,21 @@ ROLES = {
 }  # fmt: skip
 
 
-def rdf_graph(
-    analysis: Analysis,
-    vocabulary: Vocabulary,
-    diagnostics: Iterable[Diagnostic],
-    assumptions: Mapping[str, Any],
-    *,
-    when: datetime | None = None,
-    stated: Stated = NOTHING,
-    accepted: Mapping[str, str] = NOTHING,
-    taken: Collection[TakenAway] = (),
-) -> Graph:
+def rdf_graph(answer: Answer, when: datetime | None = None) -> Graph:
     """Return the findings of an analysis, its verdict and where they come from, as RDF.
 
     Parameters
     ----------
-    diagnostics, assumptions
-        As for ``document``.
     when
         The time of the run, if it is to be told; None leaves every time out.
-    stated
-        (robot, kind, name) of a storage or recipient -> what people stated of it: ``retention``, ``country``,
-        ``encrypted``, ``operator``, ``role``, ``basis``.
-    accepted
-        Id of a finding -> why a person accepted it.
-    taken
-        The ledger.
 
     Notes
     -----
     Takes time linear in the hops of all witnesses and paths.
     """
-    told = document(analysis, vocabulary.categories, vocabulary.hierarchy, diagnostics, assumptions, taken=taken)
-    things = Things(vocabulary, by_path(told["assumptions"]), stated)
-    findings = _Findings.of(analysis, vocabulary, things, stated, accepted)
+    analysis, told = answer.shown, document(answer)
+    things = Things(answer.vocabulary, by_path(told["assumptions"]), answer.stated)
+    findings = _Findings.of(answer, analysis, things)
     graph = Graph(bind_namespaces="none")
     for prefix, namespace in PREFIXES.items():
         graph.bind(prefix, str(namespace))
@@ -106,7 +86,17 @@ def rdf_graph(
             graph.add(triple)
     for triple in things.descriptions():
         graph.add(triple)
+    for triple in _robots(answer.fleet) if answer.fleet else ():
+        graph.add(triple)
     return graph
+
+
+def _robots(view: FleetView) -> Iterator[Triple]:
+    """Which robots each finding stands for."""
+    for pattern in view.patterns:
+        iri = finding_iri(pattern.finding)
+        yield iri, RP.findings, Literal(pattern.count)
+        yield from ((iri, RP.onRobot, text(shown(robot))) for robot in pattern.robots)
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,14 +105,18 @@ class _Findings:
 
     Attributes
     ----------
+    analysis
+        As it is shown.
+    stated, accepted
+        Those of the answer, worked out once.
     emitted
         Source -> categories that it brings in.
     unstated, unreviewed
         (element as shown, category) where a method is not stated, or no label covers what arrives.
     """
 
+    answer: Answer
     analysis: Analysis
-    vocabulary: Vocabulary
     things: Things
     stated: Stated
     accepted: Mapping[str, str]
@@ -131,18 +125,11 @@ class _Findings:
     unreviewed: frozenset[tuple[object, str]]
 
     @classmethod
-    def of(
-        cls,
-        analysis: Analysis,
-        vocabulary: Vocabulary,
-        things: Things,
-        stated: Stated,
-        accepted: Mapping[str, str],
-    ) -> _Findings:
+    def of(cls, answer: Answer, analysis: Analysis, things: Things) -> _Findings:
         unstated = frozenset((element.shown_as, category) for element, category in analysis.unstated)
         unreviewed = frozenset((q.element.shown_as, category) for q in analysis.open for category in q.categories)
         emitted = emitted_by(analysis)
-        return cls(analysis, vocabulary, things, stated, accepted, emitted, unstated, unreviewed)
+        return cls(answer, analysis, things, answer.stated, answer.accepted, emitted, unstated, unreviewed)
 
     def triples(self, finding: Finding) -> Iterator[Triple]:
         """Everything about a finding."""
@@ -176,7 +163,7 @@ class _Findings:
         yield from self._paths(iri, finding)
 
     def _data(self, finding: Finding) -> list[Node]:
-        terms = [foreign(term) for term in foreign_terms(finding.category, self.vocabulary)]
+        terms = [foreign(term) for term in foreign_terms(finding.category, self.answer.vocabulary)]
         form = [DPV.PseudonymisedData] if finding.pseudonymised else []
         return [*self.things.categories([finding.category]), *terms, *form]
 
@@ -217,15 +204,18 @@ class _Findings:
             yield iri, DPV.hasRecipient, recipient
             yield from about(recipient, (RDF.type, [DPV.Recipient]), (RDFS.label, [text(label)]), (RP.at, [at]))
         if leak.kind == "storage":
-            condition, kept = named("storage-duration", *leak.identity), known.get("retention")
-            label = f"{name} keeps data for {shown(kept)}" if kept else f"how long {name} keeps data is not stated"
+            facts, kept = self.analysis.outside.get(leak), self.answer.retention(leak, finding.category)
+            of = () if facts is None or _alike_for_all(facts) else (finding.category,)
+            condition = named("storage-duration", *leak.identity, *of)
+            what = shown(finding.category) if of else "data"
+            label = f"{name} keeps {what} for {shown(kept)}" if kept else f"how long {name} keeps {what} is not stated"
             yield iri, DPV.hasStorageCondition, condition
             yield from about(condition, (RDF.type, [DPV.StorageDuration]), (RDFS.label, [text(label)]), (RP.at, [at]))
             yield from about(condition, (RP.stated, [Literal(bool(kept))]))
             yield from about(condition, (DPV.hasDuration, [duration(kept)] if kept else []))
 
     def _law(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:
-        for number, (legal, names) in enumerate(legal_of(finding, self.vocabulary), 1):
+        for number, (legal, names) in enumerate(legal_of(finding, self.answer.vocabulary), 1):
             link = below(iri, "law", number)
             yield iri, RP.fallsUnder, link
             yield from about(
@@ -284,3 +274,8 @@ class _Findings:
             yield from about(way, (RDF.type, [RP.Path]), (RP.position, [Literal(number)]), (RP.elements, [elements]))
         if finding.paths:
             yield iri, RP.pathsBounded, Literal(finding.bounded)
+
+
+def _alike_for_all(facts: NonRosFacts) -> bool:
+    """Whether one retention, or none, is stated for all categories."""
+    return all(category == EVERY for category, _ in facts.retention)

@@ -1,6 +1,6 @@
 """Analysis -> SARIF 2.1.0, for code scanning and editors: each finding at the line that allows it, with the way there.
 
-In: an ``Analysis``, what it rests on, and what was decided. Out: plain dicts and lists, sorted, with no time in them
+In: an ``Answer``. Out: plain dicts and lists, sorted, with no time in them
 (rule S14). Nothing is suppressed by itself: only what a person accepted, and that stays in the file.
 
 Limits are those of the viewers (GitHub: 25,000 results in a run, 10,000 locations of paths and 1,000 others in a
@@ -18,6 +18,7 @@ from rosprivacy.analysis.text import utf8
 from rosprivacy.report.places import Places, in_a_file, to_review
 from rosprivacy.report.sarif.flows import flows_between, further_ways, prose, text
 from rosprivacy.report.sarif.results import LAW, ROOT, Files, Results
+from rosprivacy.report.sarif.robots import with_robots
 from rosprivacy.report.sarif.rules import (
     FILES_NOT_READ,
     NO_VERDICT,
@@ -33,38 +34,31 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from rosprivacy.analysis.answer import Analysis
-    from rosprivacy.analysis.model import Category, Diagnostic, Legal
+    from rosprivacy.analysis.model import Diagnostic, Legal
+    from rosprivacy.report.answer import Answer
 
 SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 MAX_RESULTS = 25_000
 MAX_LOCATIONS = 200_000  # of ways in the whole file, some 120 MB
 MAX_NOTIFICATIONS = 1_000
 LEVELS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.NOTICE: "note"}
-NOTHING: Mapping[str, str] = {}
 
 
-def sarif(
-    analysis: Analysis,
-    categories: Mapping[str, Category],
-    diagnostics: Iterable[Diagnostic],
-    assumptions: Mapping[str, Any],
-    root: Path,
-    accepted: Mapping[str, str] = NOTHING,
-) -> dict[str, Any]:
-    """Return the analysis as a SARIF log of one run.
+def sarif(answer: Answer, root: Path) -> dict[str, Any]:
+    """Return the analysis as a SARIF log of one run; of a fleet with the robots of each finding.
 
     Parameters
     ----------
-    diagnostics
-        Of the inputs; the analysis' own are added.
-    assumptions
-        What the answer rests on, made by the caller who knows the files.
     root
         Absolute folder that files are shown relative to: the root of the repository.
-    accepted
-        Id of a finding -> why a person accepted it (reason, owner, until when). Only decisions that hold now.
     """
-    files, diagnostics = Files(root), tuple(diagnostics)
+    log = _log(answer, root)
+    return with_robots(log, answer.fleet, answer.fleet_counts(answer.fleet)) if answer.fleet else log
+
+
+def _log(answer: Answer, root: Path) -> dict[str, Any]:
+    analysis, categories, assumptions = answer.shown, answer.vocabulary.categories, answer.assumptions
+    files, diagnostics = Files(root), answer.diagnostics
     law = {name: strongest_first(categories[name].law) for name in analysis.emitted}
     taxa = sorted({legal.iri: legal for said in law.values() for legal in said}.values(), key=lambda legal: legal.name)
     found = (rule_of(finding.kind) for finding in analysis.findings)
@@ -79,7 +73,7 @@ def sarif(
         taxa={legal.iri: number for number, legal in enumerate(taxa)},
         rules={name: number for number, name in enumerate(rules)},
         between=flows_between(analysis),
-        accepted=accepted,
+        accepted=answer.accepted,
     )
     results = list(_within(islice(made.all(), MAX_RESULTS)))
     notices = [*_about(analysis, results), *_said((*diagnostics, *analysis.diagnostics), files)]

@@ -37,8 +37,8 @@ if TYPE_CHECKING:
     )
     from rosprivacy.analysis.model import Element
     from rosprivacy.api import analyze, analyze_fleet, parse_labels
-    from rosprivacy.assembly import Result
     from rosprivacy.ingest.labels.label_file import Labels
+    from rosprivacy.result import Result
 
 __all__ = [
     "Analysis",
@@ -72,7 +72,7 @@ _MODULES = {  # where a name that is no error stands
     "Element": "analysis.model",
     "Finding": "analysis.answer",
     "Labels": "ingest.labels.label_file",
-    "Result": "assembly",
+    "Result": "result",
     "Verdict": "analysis.answer",
     "analyze": "api",
     "analyze_fleet": "api",

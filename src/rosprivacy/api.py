@@ -7,16 +7,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from os import PathLike, fspath
-from typing import Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from rosprivacy.analysis.findings.findings import MAX_PATHS
-from rosprivacy.assembly import Result, run
+from rosprivacy.assembly import run
 from rosprivacy.fleets import run_fleet
 from rosprivacy.ingest.labels import label_file
 from rosprivacy.ingest.labels.label_file import STANDARD, Labels
 from rosprivacy.ingest.policies.xinclude import MAX_BYTES
 from rosprivacy.ontology.vocabulary import TOP, load
 from rosprivacy.settings import Settings
+
+if TYPE_CHECKING:
+    from rosprivacy.result import Result
 
 Path: TypeAlias = str | PathLike[str]
 Names: TypeAlias = str | Iterable[str]

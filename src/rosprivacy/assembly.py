@@ -6,12 +6,11 @@ In: what a user names. Out: a ``Result``.
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.analysis.findings.findings import Options, analyse
-from rosprivacy.analysis.findings.ledger import ledger
 from rosprivacy.analysis.fleet.patterns import FleetView
 from rosprivacy.analysis.model import unread
 from rosprivacy.asked import asked_for
@@ -34,83 +33,15 @@ from rosprivacy.ingest.policies.joint_policies import joint_warnings
 from rosprivacy.ingest.policies.policy_files import read_policies
 from rosprivacy.ingest.policies.saved_graph import read_saved
 from rosprivacy.ontology.vocabulary import load
-from rosprivacy.report.document.analysis import document
-from rosprivacy.report.document.decisions import with_decisions
-from rosprivacy.report.document.fleet import fleet_document
+from rosprivacy.result import Result
 
 if TYPE_CHECKING:
     from neo4j import Driver
 
-    from rosprivacy.analysis.answer import Analysis
-    from rosprivacy.analysis.decisions import Decided
-    from rosprivacy.analysis.findings.ledger import TakenAway
-    from rosprivacy.analysis.model import Bound, Diagnostic, FlowGraph, Policy
+    from rosprivacy.analysis.model import Diagnostic, FlowGraph, Policy
     from rosprivacy.ingest.database.rows import RobotRows
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.settings import Settings
-
-
-@dataclass(frozen=True, slots=True)
-class Result:
-    """An analysis and what it rests on.
-
-    Attributes
-    ----------
-    fleet
-        Which robots of the graph stand for which, and what they have in common; None for a single robot.
-    """
-
-    analysis: Analysis
-    bound: Bound
-    vocabulary: Vocabulary
-    policies: tuple[Policy, ...]
-    diagnostics: tuple[Diagnostic, ...]
-    assumptions: dict[str, Any]
-    labels: tuple[Labels, ...] = ()
-    options: Options = field(default_factory=Options)
-    decided: Decided | None = None
-    fleet: FleetView | None = None
-
-    @property
-    def shown(self) -> Analysis:
-        """The analysis as readers get it: of a fleet one finding of each pattern, one robot of those that are alike."""
-        return self.fleet.shown(self.analysis) if self.fleet else self.analysis
-
-    @property
-    def taken_away(self) -> tuple[TakenAway, ...]:
-        """The ledger: what was taken away on the data's side, and on whose word; of robots that are alike of one."""
-        rows = ledger(self.analysis, self.bound, self.vocabulary.hierarchy, self.diagnostics)
-        beside = self.fleet.likeness.second if self.fleet else ()
-        return tuple(row for row in rows if row.element is None or row.element.robot not in beside)
-
-    def document(self) -> dict[str, Any]:
-        """Return the JSON document of the contract."""
-        vocabulary = self.vocabulary
-        made = document(
-            self.shown,
-            vocabulary.categories,
-            vocabulary.hierarchy,
-            self.diagnostics,
-            self.assumptions,
-            self.bound.subjects,
-            self.taken_away,
-        )
-        made = with_decisions(made, self.decided) if self.decided else made
-        return fleet_document(made, self.analysis, self.fleet) if self.fleet else made
-
-    def linked_data(self, form: str, **more: Any) -> str:
-        """Return the findings as RDF, in ``turtle`` or ``json-ld``; ``more`` as for ``rdf_graph``."""
-        from rosprivacy.report.rdf.findings import rdf_graph  # noqa: PLC0415 - rdflib, only where it is used
-        from rosprivacy.report.rdf.serialise import SERIALISERS  # noqa: PLC0415
-
-        more = {"taken": self.taken_away, **more}
-        graph = rdf_graph(self.shown, self.vocabulary, self.diagnostics, self.assumptions, **more)
-        if self.fleet:
-            from rosprivacy.report.fleet_formats import robot_triples  # noqa: PLC0415
-
-            for triple in robot_triples(self.fleet):
-                graph.add(triple)
-        return SERIALISERS[form](graph)
 
 
 def run(policies: tuple[str, ...], labels: tuple[str | Labels, ...], settings: Settings) -> Result:
@@ -138,7 +69,9 @@ def run(policies: tuple[str, ...], labels: tuple[str | Labels, ...], settings: S
     said += joined.diagnostics if joined else ()
     rests_on = what_it_rests_on(graph, sources_of(system), files, analysis, settings, vocabulary)
     rests_on |= assumed_decisions(decisions)
-    return Result(analysis, bound, vocabulary, system, said, rests_on, tuple(files), options, joined)
+    return Result(
+        analysis, bound, vocabulary, said, rests_on, joined, policies=system, labels=tuple(files), options=options
+    )
 
 
 def run_stored(driver: Driver, settings: Settings) -> Result:
@@ -173,8 +106,7 @@ def run_stored(driver: Driver, settings: Settings) -> Result:
         own_assumptions(stored.graph, settings, vocabulary, analysis.emitted) | loaded | assumed_decisions(decisions)
     )
     view = FleetView.of(analysis, stored.likeness) if len(stored.robots) > 1 else None
-    result = Result(analysis, stored.bound, vocabulary, (), said, assumptions, options=chosen, decided=joined)
-    return replace(result, fleet=view)
+    return Result(analysis, stored.bound, vocabulary, said, assumptions, joined, view, options=chosen)
 
 
 def robot_of(name: str, result: Result) -> RobotRows:

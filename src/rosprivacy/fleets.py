@@ -15,7 +15,6 @@ from rosprivacy.analysis.fleet.patterns import FleetView
 from rosprivacy.analysis.fleet.patterns_of_pairs import Groups
 from rosprivacy.analysis.model import unread
 from rosprivacy.asked import asked_for
-from rosprivacy.assembly import Result
 from rosprivacy.assumptions import assumed_decisions, remembered, sources_of, what_it_rests_on
 from rosprivacy.clock import judged_on
 from rosprivacy.decided import accepts, decisions_of, joined_to
@@ -34,6 +33,7 @@ from rosprivacy.ingest.policies.joint_policies import joint_warnings
 from rosprivacy.ingest.policies.namespaces import as_written, pushed, told
 from rosprivacy.ingest.policies.policy_files import read_policies
 from rosprivacy.ontology.vocabulary import load
+from rosprivacy.result import Result
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.decisions import Decisions
@@ -105,7 +105,10 @@ def analysed(read: Read, vocabulary: Vocabulary, settings: Settings, *, every: b
     view = groups.view(analysis) if groups else FleetView.of(analysis, placed.likeness)
     joined = joined_to(decisions, analysis, vocabulary, asked, placed.likeness)
     said = read.diagnostics + (joined.diagnostics if joined else ())
-    return Result(analysis, placed.bound, vocabulary, system, said, assumptions, read.labels, options, joined, view)
+    return Result(
+        analysis, placed.bound, vocabulary, said, assumptions, joined, view,
+        policies=system, labels=read.labels, options=options,
+    )  # fmt: skip
 
 
 def rows_of_fleet(read: Read, result: Result, settings: Settings) -> FleetRows:

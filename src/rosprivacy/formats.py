@@ -1,122 +1,180 @@
-"""A ``Result`` -> the formats of other people's tools: SARIF, and the file that the CNIL's PIA tool imports.
+"""The formats in which an answer is written: one table of name, suffix and function.
 
-What the reports may not ask for themselves is found here: the root of the repository, the date.
+In: an ``Answer``, which holds all facts. Out: text. What reports may not ask for themselves is found here: the root of
+the repository, the date. A new format is a folder in ``report/`` and a row here.
 """
 
 from __future__ import annotations
 
 import os
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.clock import source_date
+from rosprivacy.clock import source_date, today
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Callable, Mapping
 
-    from rosprivacy.analysis.answer import Analysis
-    from rosprivacy.analysis.decisions import Decision
-    from rosprivacy.analysis.model import NonRosFacts
-    from rosprivacy.assembly import Result
+    from rosprivacy.report.answer import Answer
+    from rosprivacy.report.compare.earlier import Earlier
+    from rosprivacy.report.page.outline import Outline
+    from rosprivacy.report.pictures.picture import Key
 
-    Stated = Mapping[tuple[str, str, str], Mapping[str, str]]
+    Aliases = Mapping[Key, tuple[str, str]]
 
 
-def sarif_log(result: Result, accepted: Mapping[str, str] | None = None) -> dict[str, Any]:
-    """Return the SARIF log of an analysis.
+@dataclass(frozen=True, slots=True)
+class Style:
+    """How an answer is shown to a person.
 
-    Parameters
+    Attributes
     ----------
-    accepted
-        Id of a finding -> why a person accepted it; what the decisions of the result say by default.
+    verbose, quiet, colour
+        Of text: every open element and notice, the verdict only, for a terminal.
+    language, title
+        Of a report.
+    since
+        Document of an earlier analysis, to tell what changed; of a page and of Markdown.
+    redact
+        Whether names of elements, files, robots and persons are replaced; of a report.
     """
-    from rosprivacy.report.sarif.artifacts import repository_root  # noqa: PLC0415 - light start
-    from rosprivacy.report.sarif.log import sarif  # noqa: PLC0415
 
-    assumptions = result.assumptions
-    named = [entry["file"] for kind in ("policies", "labels") for entry in assumptions.get(kind) or ()]
-    vocabulary = result.vocabulary
-    log = sarif(
-        result.shown,
-        vocabulary.categories,
-        result.diagnostics,
-        assumptions,
-        repository_root(named),
-        accepted_of(result) if accepted is None else accepted,
-    )
-    if not result.fleet:
-        return log
-    from rosprivacy.report.fleet_formats import with_robots  # noqa: PLC0415
-
-    return with_robots(log, result.analysis, result.fleet)
+    verbose: bool = False
+    quiet: bool = False
+    colour: bool = False
+    language: str = "en"
+    title: str = ""
+    since: str | None = None
+    redact: bool = False
 
 
-def pia_file(
-    result: Result,
-    accepted: Mapping[str, str] | None = None,
-    stated: Stated | None = None,
-) -> dict[str, Any]:
-    """Return what the CNIL's PIA tool imports.
+@dataclass(frozen=True, slots=True)
+class Format:
+    """A format: its name on the command line, what its files end in, and what writes it."""
 
-    Parameters
-    ----------
-    accepted
-        Id of a finding -> why a person accepted it; what the decisions of the result say by default.
-    stated
-        (robot, kind, name) of a storage or recipient -> what people stated of it; what the analysis knows by default.
+    name: str
+    suffix: str
+    write: Callable[[Answer, Style], str]
+
+
+def written(answer: Answer, name: str, style: Style | None = None) -> str:
+    """Return an answer in one of ``FORMATS``.
 
     Raises
     ------
     InputError
-        If ``SOURCE_DATE_EPOCH`` is no time; without it the file is dated now, since the tool wants a date (rule S14).
+        If ``SOURCE_DATE_EPOCH`` is no time, or the earlier document cannot be read.
     """
-    from rosprivacy.report.cnil.pia import cnil_pia  # noqa: PLC0415 - light start
+    return FORMATS[name].write(answer, style or Style())
 
-    vocabulary, analysis, about = result.vocabulary, result.analysis, ""
-    if result.fleet:
-        from rosprivacy.report.fleet_formats import note, of_shown_robots  # noqa: PLC0415
 
-        analysis, about = of_shown_robots(analysis, result.fleet), note(result.fleet)
-    created = (source_date(os.environ) or datetime.now(UTC)).isoformat(timespec="milliseconds").replace("+00:00", "Z")
-    return cnil_pia(
-        analysis,
-        vocabulary.categories,
-        vocabulary.hierarchy,
-        result.assumptions,
-        created,
-        accepted_of(result) if accepted is None else accepted,
-        stated_of(analysis) if stated is None else stated,
-        about,
+def _text(answer: Answer, style: Style) -> str:
+    from io import StringIO
+
+    from rich.console import Console
+
+    from rosprivacy.report.document.whole import document
+    from rosprivacy.report.terminal.analysis import print_report
+
+    text = StringIO()
+    console = Console(file=text, force_terminal=style.colour and Console().is_terminal, highlight=False, emoji=False)
+    print_report(console, document(answer), verbose=style.verbose, quiet=style.quiet)
+    return text.getvalue()
+
+
+def _json(answer: Answer, _: Style) -> str:
+    from rosprivacy.report.document.analysis import as_text
+    from rosprivacy.report.document.whole import document
+
+    return as_text(document(answer))
+
+
+def _linked_data(form: str) -> Callable[[Answer, Style], str]:
+    def write(answer: Answer, _: Style) -> str:
+        from rosprivacy.report.rdf.findings import rdf_graph
+        from rosprivacy.report.rdf.serialise import SERIALISERS
+
+        return SERIALISERS[form](rdf_graph(answer, source_date(os.environ)))
+
+    return write
+
+
+def _sarif(answer: Answer, _: Style) -> str:
+    from rosprivacy.report.document.analysis import as_text
+    from rosprivacy.report.sarif.artifacts import repository_root
+    from rosprivacy.report.sarif.log import sarif
+
+    named = [entry["file"] for kind in ("policies", "labels") for entry in answer.assumptions.get(kind) or ()]
+    return as_text(sarif(answer, repository_root(named)))
+
+
+def _cnil_pia(answer: Answer, _: Style) -> str:
+    """Without ``SOURCE_DATE_EPOCH`` the file is dated now, since the tool wants a date (rule S14)."""
+    from rosprivacy.report.cnil.pia import cnil_pia
+    from rosprivacy.report.document.analysis import as_text
+
+    created = (source_date(os.environ) or datetime.now(UTC)).isoformat(timespec="milliseconds")
+    return as_text(cnil_pia(answer, created.replace("+00:00", "Z")))
+
+
+def _article30(answer: Answer, style: Style) -> str:
+    from rosprivacy.report.page.article30 import record
+
+    return record(_told(answer, style)[0], style.language)
+
+
+def _markdown(answer: Answer, style: Style) -> str:
+    from rosprivacy.report.page.markdown import markdown
+
+    return markdown(_outline(answer, style)[0])
+
+
+def _html(answer: Answer, style: Style) -> str:
+    from rosprivacy.report.page.figures import figures
+    from rosprivacy.report.page.html import html
+
+    told, aliases = _outline(answer, style)
+    return html(told, figures(answer.analysis, told, aliases))
+
+
+def _outline(answer: Answer, style: Style) -> tuple[Outline, Aliases | None]:
+    from rosprivacy.report.page.outline import outline
+
+    told, earlier, aliases = _told(answer, style)
+    made = today(os.environ)
+    entries = outline(told, style.language, title=style.title, made=made, earlier=earlier, redacted=style.redact)
+    return entries, aliases
+
+
+def _told(answer: Answer, style: Style) -> tuple[dict[str, Any], Earlier | None, Aliases | None]:
+    """The document, the earlier one if there is one, and what elements are called if names are replaced."""
+    from rosprivacy.report.compare.earlier import read_earlier
+    from rosprivacy.report.document.whole import document
+
+    told = document(answer)
+    earlier = read_earlier(style.since) if style.since else None
+    if not style.redact:
+        return told, earlier, None
+    from rosprivacy.report.page.redact import redacted
+    from rosprivacy.report.page.redacted_pictures import aliases_of
+
+    copies = redacted([told, *([earlier.document] if earlier else [])])
+    earlier = replace(earlier, document=copies[1], file="file-0") if earlier else None
+    return copies[0], earlier, aliases_of(told, copies[0])
+
+
+FORMATS = {
+    known.name: known
+    for known in (
+        Format("text", ".txt", _text),
+        Format("json", ".json", _json),
+        Format("sarif", ".sarif", _sarif),
+        Format("cnil-pia", ".json", _cnil_pia),
+        Format("turtle", ".ttl", _linked_data("turtle")),
+        Format("json-ld", ".jsonld", _linked_data("json-ld")),
+        Format("html", ".html", _html),
+        Format("markdown", ".md", _markdown),
+        Format("article30", ".csv", _article30),
     )
-
-
-def accepted_of(result: Result) -> dict[str, str]:
-    """Return the findings that a valid decision accepts: id -> reason, owner, legal basis, until when (rule S10)."""
-    if result.decided is None:
-        return {}
-    held = ((f.id, result.decided.valid(f)) for f in result.analysis.findings if f.accepted)
-    return {finding: _why(decision) for finding, decision in held if decision}
-
-
-def _why(decision: Decision) -> str:
-    more = [decision.owner, *decision.legal_basis, f"until {decision.expires}" if decision.expires else ""]
-    return f"{decision.reason} ({', '.join(part for part in more if part)})"
-
-
-def stated_of(analysis: Analysis) -> dict[tuple[str, str, str], dict[str, str]]:
-    """Return what people stated of what lies outside ROS, as texts (rule S9)."""
-    return {element.identity: dict(_stated(facts)) for element, facts in analysis.outside.items()}
-
-
-def _stated(facts: NonRosFacts) -> Iterator[tuple[str, str]]:
-    kept = ", ".join(f"{category}: {duration}" if category else str(duration) for category, duration in facts.retention)
-    backups = "in backups, nobody says for how long" if facts.backups is True else f"in backups {facts.backups} more"
-    said = {
-        "retention": ", ".join(part for part in (kept, backups if facts.backups else "") if part),
-        "country": facts.country,
-        "encrypted": "" if facts.encrypted is None else ("yes" if facts.encrypted else "no"),
-        "operator": facts.operator,
-        "role": facts.recipient,
-        "basis": facts.transfer,
-    }
-    yield from ((what, value) for what, value in said.items() if value)
+}

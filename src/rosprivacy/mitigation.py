@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.mitigation.proposals import Proposal
     from rosprivacy.analysis.model import Bound, FlowGraph, Grant
-    from rosprivacy.assembly import Result
+    from rosprivacy.result import Result
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,9 +6,8 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.findings.findings import MAX_PATHS
-from rosprivacy.analysis.findings.further_paths import WITNESS
+from rosprivacy.analysis.modes import Paths, View
 from rosprivacy.ingest.labels.label_file import STANDARD
-from rosprivacy.ingest.policies.flow_graph import DECLARED
 from rosprivacy.ingest.policies.xinclude import MAX_BYTES
 from rosprivacy.ontology.vocabulary import TOP
 
@@ -51,17 +50,22 @@ class Settings:
     """
 
     add: tuple[str, ...] = ()
-    view: str = DECLARED
+    view: str = View.declared
     categories: tuple[str, ...] = ()
     article9: bool = False
     data_types: tuple[str, ...] = ()
     ontologies: tuple[str, ...] = ()
     category: str = TOP
     standard_channels: str | None = STANDARD
-    paths: str = WITNESS
+    paths: str = Paths.witness
     max_paths: int = MAX_PATHS
     include_root: str | None = None
     max_bytes: int = MAX_BYTES
     progress: Callable[[Sequence[str]], Iterable[str]] = field(default=lambda files: files)
     decisions: str | None = None
     today: str | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse modes that there are not."""
+        View(self.view)
+        Paths(self.paths)

@@ -15,8 +15,8 @@ from tests.helpers.paths import ROOT
 if TYPE_CHECKING:
     from neo4j import Driver
 
-    from rosprivacy.assembly import Result
     from rosprivacy.ingest.database.rows import RobotRows
+    from rosprivacy.result import Result
 
 FACTORY, CARE = "examples/factory", "examples/care-home"
 

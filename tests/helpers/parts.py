@@ -24,9 +24,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
-    from rosprivacy.assembly import Result
     from rosprivacy.ingest.fleet.dds_domains import Member
     from rosprivacy.ingest.fleet.fleet_file import Robot
+    from rosprivacy.result import Result
     from rosprivacy.spark.distributed import Found
     from rosprivacy.spark.shown_robots import Shown
     from rosprivacy.spark.units import Unit

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from rosprivacy.analysis.answer import Analysis
-    from rosprivacy.assembly import Result
     from rosprivacy.report.pictures.picture import Box, Picture
+    from rosprivacy.result import Result
 
 HOSTILE = (
     "/<script>alert(1)</script>",

@@ -11,13 +11,14 @@ import pytest
 from jsonschema import Draft4Validator
 
 import rosprivacy
-from rosprivacy.formats import sarif_log
+from tests.helpers.answers import as_json
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from rosprivacy.assembly import Result
+    from rosprivacy.report.answer import Answer
+    from rosprivacy.result import Result
 
 
 EXAMPLES = ROOT / "examples"
@@ -66,10 +67,10 @@ def analyze(policies: list[str], labels: list[str], **options: Any) -> Result:
         return rosprivacy.analyze(policies, labels, **options)
 
 
-def log_of(result: Result, accepted: dict[str, str] | None = None, at: Path = EXAMPLES) -> dict[str, Any]:
+def log_of(result: Answer, at: Path = EXAMPLES) -> dict[str, Any]:
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(at)
-        return sarif_log(result, accepted)
+        return as_json(result, "sarif")
 
 
 def small_system(tmp_path: Path, nodes: dict[str, str], last: str = "leak: [Video]") -> Result:

@@ -13,8 +13,7 @@ import pytest
 import rdflib
 
 from rosprivacy.analysis.fleet.patterns import Likeness
-from rosprivacy.formats import pia_file, sarif_log
-from rosprivacy.report.fleet_formats import note
+from rosprivacy.formats import written
 from rosprivacy.report.page.figures import figures
 from rosprivacy.report.page.html import html
 from rosprivacy.report.page.markdown import markdown
@@ -23,6 +22,8 @@ from rosprivacy.report.page.redact import redacted
 from rosprivacy.report.pictures.dot import dot
 from rosprivacy.report.pictures.fleet_view import label, represented
 from rosprivacy.report.pictures.picture import PRIVACY, Box, Line, Picture
+from rosprivacy.report.robots import note
+from tests.helpers.answers import as_json
 from tests.helpers.graphs import hospital
 from tests.helpers.paths import ROOT
 from tests.helpers.pictures import fleet_privacy
@@ -30,7 +31,7 @@ from tests.helpers.pictures import fleet_privacy
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from rosprivacy.assembly import Result
+    from rosprivacy.result import Result
     from tests.helpers.command import Cli
 
 FLEET = str(ROOT / "examples" / "fleet" / "fleet.yaml")
@@ -222,7 +223,7 @@ def test_a_decision_about_one_robot_says_so(cli: Cli, tmp_path: Path) -> None:
 
 
 def test_sarif_tells_on_how_many_robots_each_finding_is() -> None:
-    (run,) = sarif_log(found())["runs"]
+    (run,) = as_json(found(), "sarif")["runs"]
     said = {result["partialFingerprints"]["rosprivacyFinding/v1"]: result for result in run["results"]}
     assert len(said) == 6
     view = found().fleet
@@ -241,7 +242,7 @@ def test_sarif_tells_on_how_many_robots_each_finding_is() -> None:
 
 
 def test_the_file_of_the_pia_tool_names_one_of_those_that_are_alike_and_says_so() -> None:
-    made = pia_file(found())
+    made = as_json(found(), "cnil-pia")
     text = json.dumps(made)
     assert not [robot for robot in ("carrier_02", "cleaner_2", "guide_02") if robot in text]
     for answer in made["answers"]:
@@ -250,7 +251,7 @@ def test_the_file_of_the_pia_tool_names_one_of_those_that_are_alike_and_says_so(
 
 
 def test_linked_data_names_the_robots_of_each_finding_and_fits_its_shapes() -> None:
-    graph = rdflib.Graph().parse(data=found().linked_data("turtle"), format="turtle")
+    graph = rdflib.Graph().parse(data=written(found(), "turtle"), format="turtle")
     rp = rdflib.Namespace("urn:x-rosprivacy:")
     view = found().fleet
     assert view
@@ -261,6 +262,13 @@ def test_linked_data_names_the_robots_of_each_finding_and_fits_its_shapes() -> N
     shapes = rdflib.Graph().parse(ROOT / "report" / "rdf" / "findings.shapes.ttl")
     conforms, _, text = pyshacl.validate(graph, shacl_graph=shapes)
     assert conforms, text
+
+
+@pytest.mark.parametrize("form", ["html", "markdown", "article30"])
+def test_a_report_to_be_shown_to_others_names_no_robot(cli: Cli, form: str) -> None:
+    done = cli("report", "--fleet", FLEET, "--format", form, "--redact")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert not [robot for robot in ("carrier_", "cleaner_", "guide_") if robot in done.stdout]
 
 
 @pytest.mark.parametrize("form", ["sarif", "cnil-pia", "turtle", "json-ld", "json", "text"])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -14,7 +13,7 @@ from rosprivacy.cli.options import ASKED, Engine, FailOn, Format, Output, PathsS
 from rosprivacy.cli.output import emit
 
 if TYPE_CHECKING:
-    from rosprivacy.assembly import Result
+    from rosprivacy.result import Result
 
 
 SPARK = "Where it is computed"  # a panel of help
@@ -85,6 +84,8 @@ def analyze(
     verbose: Annotated[bool, typer.Option("--verbose", "-v", help="Print every open element and notice.")] = False,
 ) -> None:
     """Find where each kind of personal data can get from its sources, and whether it reaches a leak."""
+    from rosprivacy.formats import Style, written
+
     settings = replace(
         inputs.settings, article9=article9, data_types=tuple(data_type or ()), paths=paths.value, max_paths=max_paths
     )
@@ -115,33 +116,9 @@ def analyze(
         from rosprivacy.report.document.analysis import as_text
 
         texts[save_graph] = as_text(as_dict(result.policies, result.diagnostics))
-    emit(_report(result, format, colour=output is None, quiet=quiet, verbose=verbose), output, texts)
+    style = Style(verbose=verbose, quiet=quiet, colour=output is None)
+    emit(written(result, format.value, style), output, texts)
     raise typer.Exit(_exit_code(result, fail_on))
-
-
-def _report(result: Result, form: Format, *, colour: bool, quiet: bool, verbose: bool) -> str:
-    from rosprivacy.report.document.analysis import as_text
-
-    if form is Format.json:
-        return as_text(result.document())
-    if form in (Format.turtle, Format.json_ld):
-        from rosprivacy.clock import source_date
-
-        return result.linked_data(form.value, when=source_date(os.environ))
-    if form in (Format.sarif, Format.cnil_pia):
-        from rosprivacy import formats
-
-        return as_text(formats.sarif_log(result) if form is Format.sarif else formats.pia_file(result))
-    from io import StringIO
-
-    from rich.console import Console
-
-    from rosprivacy.report.terminal.analysis import print_report
-
-    text = StringIO()
-    console = Console(file=text, force_terminal=colour and Console().is_terminal, highlight=False, emoji=False)
-    print_report(console, result.document(), verbose=verbose, quiet=quiet)
-    return text.getvalue()
 
 
 def _exit_code(result: Result, fail_on: FailOn) -> int:

@@ -16,8 +16,8 @@ from rosprivacy.cli.output import emit
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.model import Profile
-    from rosprivacy.assembly import Result
     from rosprivacy.report.pictures.picture import Picture
+    from rosprivacy.result import Result
 
 
 class Shown(StrEnum):

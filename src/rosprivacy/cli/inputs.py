@@ -37,7 +37,7 @@ from rosprivacy.cli.output import progress_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable
 
-    from rosprivacy.assembly import Result
+    from rosprivacy.result import Result
     from rosprivacy.settings import Settings
 
 

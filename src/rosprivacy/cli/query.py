@@ -68,6 +68,7 @@ def query(
     neo4j: Server = None,
 ) -> None:
     """Ask the database: one of the questions that come with the program, or Cypher of your own, which only reads."""
+    from rosprivacy.ingest.database.other_schemas import HINT, ROBOTS, of_other_schemas
     from rosprivacy.queries.library import find, pack
     from rosprivacy.queries.run import check_names, run
 
@@ -91,9 +92,12 @@ def query(
         if asked:
             check_names(driver, asked, parameters)
         rows = run(driver, text, parameters, limit=limit, timeout=timeout)
+        known = run(driver, ROBOTS, limit=None, timeout=timeout)
     emit(_text(rows, format, wide=output is not None), output)
     if rows.more:
         print(f"only the first {limit:,} rows are shown; --limit shows more", file=sys.stderr)
+    if others := of_other_schemas(dict(zip(known.columns, row, strict=True)) for row in known.rows):
+        print(f"warning: {others}, so rows can be missing or differ; {HINT}", file=sys.stderr)
 
 
 def _listed(queries: Iterable[Query]) -> str:

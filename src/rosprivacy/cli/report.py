@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-import os
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from rosprivacy.cli.inputs import Inputs, reads_system
 from rosprivacy.cli.options import Output
 from rosprivacy.cli.output import emit
-
-if TYPE_CHECKING:
-    from rosprivacy.assembly import Result
 
 
 class ReportFormat(StrEnum):
@@ -61,41 +57,8 @@ def report(
 
     It ends with 0 when the report is written, whatever that says; a gate in CI is ``analyze``.
     """
+    from rosprivacy.formats import Style, written
+
     result = inputs.result(inputs.settings)
-    text = _text(result, format, lang.value, title, since, redact=redact)
-    emit(text.encode(), output)  # it says of itself that it is UTF-8
-
-
-def _text(result: Result, form: ReportFormat, language: str, title: str, since: Path | None, *, redact: bool) -> str:
-    """The report; everything in it comes from the documents."""
-    from dataclasses import replace
-
-    from rosprivacy.clock import today
-    from rosprivacy.report.compare.earlier import read_earlier
-    from rosprivacy.report.page.outline import outline
-
-    document = result.document()
-    earlier = read_earlier(str(since)) if since else None
-    aliases = None
-    if redact:
-        from rosprivacy.report.page.redact import redacted
-        from rosprivacy.report.page.redacted_pictures import aliases_of
-
-        copies = redacted([document, *([earlier.document] if earlier else [])])
-        aliases = aliases_of(document, copies[0])
-        document = copies[0]
-        earlier = replace(earlier, document=copies[1], file="file-0") if earlier else None
-    if form is ReportFormat.article30:
-        from rosprivacy.report.page.article30 import record
-
-        return record(document, language)
-    made = today(os.environ)
-    told = outline(document, language, title=title, made=made, earlier=earlier, redacted=redact)
-    if form is ReportFormat.markdown:
-        from rosprivacy.report.page.markdown import markdown
-
-        return markdown(told)
-    from rosprivacy.report.page.figures import figures
-    from rosprivacy.report.page.html import html
-
-    return html(told, figures(result.analysis, told, aliases))
+    style = Style(language=lang.value, title=title, since=str(since) if since else None, redact=redact)
+    emit(written(result, format.value, style).encode(), output)  # it says of itself that it is UTF-8

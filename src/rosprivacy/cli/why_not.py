@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rosprivacy.analysis.findings.why_not import WhyNot
-    from rosprivacy.assembly import Result
+    from rosprivacy.result import Result
 
 
 @reads_system("policies, saved graphs or a fleet", without=("from_database", "neo4j", "decisions"))

@@ -7,17 +7,15 @@ from __future__ import annotations
 
 import os
 from contextlib import chdir
-from dataclasses import asdict, dataclass, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import FleetError, InputError, InputErrors, reason
 from rosprivacy.analysis.files_read import note
-from rosprivacy.analysis.fleet.counts import Counts
 from rosprivacy.analysis.model import Diagnostic, Place, Severity
 from rosprivacy.asked import asked_for
-from rosprivacy.assembly import Result
 from rosprivacy.assumptions import files_read, own_assumptions
 from rosprivacy.clock import judged_on
 from rosprivacy.fleets import Reader
@@ -26,6 +24,7 @@ from rosprivacy.ingest.fleet.fleet_file import read_fleet
 from rosprivacy.ingest.fleet.joins import joins_nothing
 from rosprivacy.ingest.labels.countries import countries
 from rosprivacy.ontology.vocabulary import load
+from rosprivacy.result import Result
 from rosprivacy.spark.distributed import Question, analyse_in_parts
 from rosprivacy.spark.parquet import check_new, write
 from rosprivacy.spark.session import scatter, session
@@ -44,31 +43,6 @@ if TYPE_CHECKING:
     from rosprivacy.spark.distributed import Found
     from rosprivacy.spark.shown_robots import Shown
     from rosprivacy.spark.units import Unit
-
-
-@dataclass(frozen=True, slots=True)
-class SparkResult(Result):
-    """The answer about a fleet of which only the robots that are shown are here.
-
-    Attributes
-    ----------
-    counts
-        Of the whole fleet.
-    open
-        How many elements of the whole fleet are.
-    """
-
-    counts: Counts = Counts()  # noqa: RUF009 - frozen
-    open: int = 0
-
-    def document(self) -> dict[str, Any]:
-        """Return the JSON document of the contract."""
-        made = super(SparkResult, self).document()
-        channels = made["assumptions"]["standard_channels"]
-        if channels:
-            taken = {**channels, "taken": self.counts.standard_channels}
-            made["assumptions"] = {**made["assumptions"], "standard_channels": taken}
-        return {**made, **asdict(self.counts)}
 
 
 def run_on_spark(file: str, settings: Settings, master: str | None = None, results: str | None = None) -> Result:
@@ -142,7 +116,7 @@ def _check_whole(question: Question) -> None:
         raise InputErrors(problems)
 
 
-def result(question: Question, found: Found, told: Shown, settings: Settings, vocabulary: Vocabulary) -> SparkResult:
+def result(question: Question, found: Found, told: Shown, settings: Settings, vocabulary: Vocabulary) -> Result:
     """Put together what a report says."""
     assumptions = {
         **own_assumptions(told.placed.graph, settings, vocabulary, told.analysis.emitted),
@@ -159,9 +133,9 @@ def result(question: Question, found: Found, told: Shown, settings: Settings, vo
     said = (*found.told.diagnostics, *joins, Diagnostic(Place("--engine spark", 0), Severity.NOTICE, bounds))
     policies = {policy.file: policy for member in told.members.values() for policy in member.policies}
     labels = {file.file: file for member in told.members.values() for file in member.files}
-    return SparkResult(
-        told.analysis, told.placed.bound, vocabulary, tuple(policies.values()), said, assumptions,
-        tuple(labels.values()), fleet=told.view, counts=found.counts, open=found.open,
+    return Result(
+        told.analysis, told.placed.bound, vocabulary, said, assumptions, fleet=told.view, counts=found.counts,
+        policies=tuple(policies.values()), labels=tuple(labels.values()),
     )  # fmt: skip
 
 

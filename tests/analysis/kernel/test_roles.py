@@ -12,7 +12,7 @@ from rosprivacy.analysis.errors import InputErrors
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from rosprivacy.assembly import Result
+    from rosprivacy.result import Result
 
 #   camera -> image -> a -> mid -> b -> out -> c
 CHAIN = ("camera>image", "a<image", "a>mid", "b<mid", "b>out", "c<out")

@@ -30,7 +30,7 @@ from tests.helpers.random_fleets import Case, fleets
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from rosprivacy.assembly import Result
+    from rosprivacy.result import Result
     from rosprivacy.spark.units import Unit
 
 __all__ = ["fleet_file"]

@@ -24,7 +24,7 @@ from tests.helpers.paths import ROOT
 from tests.helpers.schema_places import places
 
 if TYPE_CHECKING:
-    from rosprivacy.assembly import Result
+    from rosprivacy.result import Result
 
 __all__ = ["folder"]
 

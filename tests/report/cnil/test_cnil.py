@@ -20,17 +20,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import rosprivacy
+from rosprivacy.analysis.durations import parse
 from rosprivacy.analysis.findings.findings import analyse
-from rosprivacy.analysis.model import Bound, Category, Element, Flow, FlowGraph, Method, Place, Statement
+from rosprivacy.analysis.model import Bound, Category, Element, Flow, FlowGraph, Method, NonRosFacts, Place, Statement
+from rosprivacy.analysis.non_ros import EVERY
 from rosprivacy.assembly import robot_of, run_stored
-from rosprivacy.formats import pia_file
 from rosprivacy.ingest.database.loading import load as load_robots
-from rosprivacy.ontology.vocabulary import load
+from rosprivacy.ontology.vocabulary import Vocabulary, load
 from rosprivacy.private_neo4j import connection
 from rosprivacy.report.cnil import answers as cnil_answers
 from rosprivacy.report.cnil.pia import cnil_pia
 from rosprivacy.settings import Settings
 from tests.helpers.additions import ADD_STORAGE
+from tests.helpers.answers import accepting, answer_of, as_json
 from tests.helpers.paths import ROOT
 from tests.helpers.sarif import HOSTILE, analyze, checked, log_of, physical, small_system, way
 from tests.helpers.systems import HIERARCHY, PARENTS, System, analysed, systems
@@ -41,7 +43,7 @@ if TYPE_CHECKING:
     from rosprivacy.private_neo4j.connection import Connection
 
 CARE_HOME = (["care-home/care-home.policy.xml"], ["care-home/care-home.labels.yaml"])
-CATEGORIES = {n: Category(n, f"urn:{n}", n, n, n, up) for n, up in PARENTS.items()}
+VOCABULARY = Vocabulary.of(Category(n, f"urn:{n}", n, n, n, up) for n, up in PARENTS.items())
 CREATED = "2026-01-02T03:04:05.000Z"
 TEXT = (111, 112, 113, 121, 122, 123, 211, 212, 213, 214, 215, 221, 222, 223, 224, 225, 226, 227)
 LIST = tuple(10 * risk + n for risk in (32, 33, 34) for n in (1, 2, 3, 4))
@@ -185,8 +187,7 @@ def seen(tool: Tool, question: int) -> str:
 
 def file_of(policies: list[str], labels: list[str], **options: Any) -> dict[str, Any]:
     result = analyze(policies, labels, **options)
-    vocabulary = result.vocabulary
-    return cnil_pia(result.analysis, vocabulary.categories, vocabulary.hierarchy, result.assumptions, CREATED)
+    return cnil_pia(result, CREATED)
 
 
 @pytest.fixture(scope="module")
@@ -261,7 +262,7 @@ def test_what_is_not_reviewed_is_said_where_it_matters() -> None:
 
 def test_without_a_source_nothing_is_claimed(tmp_path: Path) -> None:
     result = small_system(tmp_path, {"/a": "conduit"}, last="conduit: [Video]")
-    tool = imported(pia_file(result))
+    tool = imported(as_json(result, "cnil-pia"))
     assert seen(tool, 121).startswith("No label names a source of personal data, so nothing was followed")
     assert 322 not in tool.answers
     assert "none" not in seen(tool, 121)
@@ -275,7 +276,7 @@ def test_no_word_of_it_is_a_legal_verdict(care_home: Tool) -> None:
 def test_decisions_are_told_with_their_reason() -> None:
     result = analyze(*CARE_HOME)
     first = result.analysis.findings[0].id
-    tool = imported(pia_file(result, {first: "staff & family agreed <2030>"}))
+    tool = imported(as_json(accepting(result, {first: "staff & family agreed <2030>"}), "cnil-pia"))
     assert tool.answers[322]["list"][0].endswith(f"(path to assess {first}, accepted: staff ＆ family agreed ‹2030›)")
     assert "(accepted: staff & family agreed <2030>)" in seen(tool, 122)
 
@@ -296,18 +297,18 @@ def test_storages_and_recipients_with_what_was_stated_of_them() -> None:
     vocabulary = load()
     graph, bound = FlowGraph(elements, flows, (), ()), Bound(said)
     analysis = analyse(graph, bound, vocabulary.hierarchy)
-    stated = {
-        ("", "storage", "bucket"): {"retention": "P30D", "country": "DE", "encrypted": "yes"},
-        ("", "external-system", "cloud"): {"country": "US", "basis": "standard contractual clauses"},
+    outside = {
+        elements[3]: NonRosFacts(retention=((EVERY, parse("P30D")),), country="DE", encrypted=True),
+        elements[2]: NonRosFacts(country="US", transfer="standard-clauses"),
     }
-    tool = imported(cnil_pia(analysis, vocabulary.categories, vocabulary.hierarchy, {}, CREATED, stated=stated))
+    tool = imported(cnil_pia(answer_of(analysis, vocabulary, {}, outside=outside), CREATED))
     assert "Kept in: storage bucket (P30D), storage disk (retention not stated)" in seen(tool, 121)
     assert "/blur: pseudonymise (the data is still personal), taken because the label states no method" in seen(
         tool, 122
     )
     assert "storage bucket: pseudonymised Video; retention: P30D" in seen(tool, 215)
     assert "storage disk: pseudonymised Video; retention: not stated" in seen(tool, 215)
-    assert "external-system cloud: country: US; basis of a transfer: standard contractual clauses" in seen(tool, 227)
+    assert "external-system cloud: country: US; basis of a transfer: standard-clauses" in seen(tool, 227)
     contents = {m["title"]: Page(m["content"]).seen for m in tool.measures.values()}
     assert contents["Encryption of storages"].startswith("bucket: yes")
     assert "Access control by SROS 2 policies" not in contents  # no profile, so nothing is known of it
@@ -328,13 +329,13 @@ def test_long_answers_are_bounded_and_say_so(tmp_path: Path, monkeypatch: pytest
     (tmp_path / "l.yaml").write_text("labels: 1\nnodes: {/s*: {source: [Video]}, /l*: {leak: [Video]}}\n")
     result = rosprivacy.analyze([str(tmp_path / "p.xml")], [str(tmp_path / "l.yaml")])
     assert len(result.analysis.findings) == 144
-    tool = imported(pia_file(result))
+    tool = imported(as_json(result, "cnil-pia"))
     assert len(json.dumps(tool.answers)) < 100_000
     assert tool.answers[322]["list"][100] == "44 more paths to assess"
     assert "and 94 more" in seen(tool, 122)
     assert "and 20 more" in seen(tool, 123)
     monkeypatch.setattr(cnil_answers, "NAMES", 3)
-    assert "/l0, /l1, /l10 and 9 more" in seen(imported(pia_file(result)), 121)
+    assert "/l0, /l1, /l10 and 9 more" in seen(imported(as_json(result, "cnil-pia")), 121)
 
 
 def test_a_hostile_name_harms_nothing(tmp_path: Path) -> None:
@@ -344,9 +345,9 @@ def test_a_hostile_name_harms_nothing(tmp_path: Path) -> None:
     analysis = analyse(replace(known, elements=elements), result.bound, result.vocabulary.hierarchy)
     files = {"policies": [{"file": "<img src=x onerror=alert(1)>\u202e.xml", "sha256": "0" * 64}]}
     why = {finding.id: HOSTILE for finding in analysis.findings}
-    vocabulary = result.vocabulary
-    stated = {e.identity: {"country": HOSTILE, "basis": HOSTILE} for e in elements}
-    data = cnil_pia(analysis, vocabulary.categories, vocabulary.hierarchy, files, CREATED, why, stated)
+    outside = {e: NonRosFacts(country=HOSTILE, transfer=HOSTILE) for e in elements}
+    answer = answer_of(analysis, result.vocabulary, files, outside=outside)
+    data = cnil_pia(accepting(answer, why), CREATED)
     tool = imported(data)
     assert "<script>alert(1)</script>" in seen(tool, 121)  # seen as text
     assert "‹script›" in tool.answers[322]["list"][0]
@@ -361,7 +362,7 @@ def test_any_system_with_any_names_is_taken(system: System, suffix: str) -> None
     if analysed(system) is None:
         return
     analysis = analyse(graph, system.bound(), HIERARCHY)
-    tool = imported(cnil_pia(analysis, CATEGORIES, HIERARCHY, {}, CREATED))
+    tool = imported(cnil_pia(answer_of(analysis, VOCABULARY, {}), CREATED))
     findings = [finding for finding in analysis.findings if not finding.dismissed]
     assert len(tool.answers.get(322, {"list": []})["list"]) == len(findings) + bool(analysis.open)
 
@@ -387,7 +388,7 @@ def test_the_command_dates_it_as_it_is_told() -> None:
 def test_without_being_told_it_is_dated_now(monkeypatch: pytest.MonkeyPatch) -> None:
     """The tool sorts by date, so there is one."""
     monkeypatch.delenv("SOURCE_DATE_EPOCH", raising=False)
-    made = imported(pia_file(analyze(*CARE_HOME))).pia["created_at"]
+    made = imported(as_json(analyze(*CARE_HOME), "cnil-pia")).pia["created_at"]
     assert abs((made - datetime.now(UTC)).total_seconds()) < 60
 
 
@@ -406,5 +407,5 @@ def test_what_people_added_in_the_database_is_in_both_formats(neo4j_server: Conn
     assert physical(found["locations"][0]) == ("examples/care-home/care-home.policy.xml", 118)
     last = way(found)[-1]
     assert last["message"]["text"] == "pseudonymised Video goes from /recorder to storage footage bucket."
-    tool = imported(pia_file(result))
+    tool = imported(as_json(result, "cnil-pia"))
     assert "storage footage bucket: pseudonymised Video; retention: P30D" in seen(tool, 215)

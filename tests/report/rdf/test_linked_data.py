@@ -14,6 +14,7 @@ import pytest
 from rdflib import SH, Graph, Literal
 
 import rosprivacy
+from rosprivacy.formats import written
 from rosprivacy.ingest.database.loading import load
 from rosprivacy.private_neo4j import connection
 from rosprivacy.queries.library import find
@@ -40,7 +41,7 @@ def findings() -> Graph:
     """The file of the page."""
     with chdir(ROOT):
         result = rosprivacy.analyze([f"{CARE}.policy.xml"], [f"{CARE}.labels.yaml"])
-    return Graph().parse(data=result.linked_data("turtle"), format="turtle")
+    return Graph().parse(data=written(result, "turtle"), format="turtle")
 
 
 @pytest.fixture(scope="module")

@@ -19,25 +19,31 @@ from rdflib.collection import Collection
 from rdflib.namespace import PROV
 
 import rosprivacy
+from rosprivacy.analysis.durations import parse
 from rosprivacy.analysis.findings.findings import analyse
-from rosprivacy.analysis.model import Bound, Category, Element, Flow, FlowGraph, Legal, Method
+from rosprivacy.analysis.model import Bound, Category, Element, Flow, FlowGraph, Legal, Method, NonRosFacts
+from rosprivacy.analysis.non_ros import EVERY
+from rosprivacy.formats import written
 from rosprivacy.ontology.vocabulary import Vocabulary
 from rosprivacy.report.rdf.facts import legal_of
 from rosprivacy.report.rdf.findings import rdf_graph
 from rosprivacy.report.rdf.serialise import SERIALISERS, as_turtle
 from rosprivacy.report.rdf.terms import DPV, DPV_CLASSES, DPV_PROPERTIES, RISK, RISKS, RP, element_iri, named
 from rosprivacy.report.rdf.things import STATED
+from tests.helpers.answers import accepting, answer_of
 from tests.helpers.cases import CASES
 from tests.helpers.paths import ROOT
 from tests.helpers.systems import PARENTS, System, analysed, statement, systems
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from pathlib import Path
 
     from rdflib.term import Node
 
     from rosprivacy.analysis.answer import Analysis
-    from rosprivacy.assembly import Result
+    from rosprivacy.analysis.durations import Duration
+    from rosprivacy.result import Result
 
 SHAPES = Graph().parse(ROOT / "report" / "rdf" / "findings.shapes.ttl")
 CARE_HOME = ("examples/care-home/care-home.policy.xml", "-l", "examples/care-home/care-home.labels.yaml")
@@ -52,12 +58,8 @@ def result_of(case: Path, **options: Any) -> Result:
         return rosprivacy.analyze(given_["policies"], given_["labels"], **given_.get("options", {}), **options)
 
 
-def graph_of(result: Result, **more: Any) -> Graph:
-    return rdf_graph(result.analysis, result.vocabulary, result.diagnostics, result.assumptions, **more)
-
-
-def graph_of_analysis(analysis: Analysis, **more: Any) -> Graph:
-    return rdf_graph(analysis, VOCABULARY, (), REST, **more)
+def graph_of_analysis(analysis: Analysis, outside: Mapping[Element, NonRosFacts] | None = None) -> Graph:
+    return rdf_graph(answer_of(analysis, VOCABULARY, REST, outside=outside))
 
 
 @pytest.fixture(scope="module")
@@ -68,7 +70,7 @@ def care_home() -> Result:
 
 @pytest.fixture(scope="module")
 def graph(care_home: Result) -> Graph:
-    return graph_of(care_home)
+    return rdf_graph(care_home)
 
 
 def problems(graph: Graph) -> str:
@@ -118,7 +120,7 @@ class TestTerms:
 
     @pytest.mark.parametrize("case", CASES, ids=lambda path: str(path.name))
     def test_no_other_word_of_it_is_written(self, dpv: Graph, case: Path) -> None:
-        words = {node for triple in graph_of(result_of(case)) for node in triple if "w3id.org" in str(node)}
+        words = {node for triple in rdf_graph(result_of(case)) for node in triple if "w3id.org" in str(node)}
         assert words
         assert all((word, RDF.type, None) in dpv for word in words), words
 
@@ -199,7 +201,7 @@ class TestAgainstTheDocument:
 
     def test_findings(self, case: Path, form: str) -> None:
         result = result_of(case, paths="all", max_paths=3)
-        graph, document = strict(result.linked_data(form), form), result.document()
+        graph, document = strict(written(result, form), form), result.document()
         names = {category.iri: name for name, category in result.vocabulary.categories.items()}
         told = {value(graph, iri, RP.id): iri for iri in graph.subjects(RDF.type, RP.Finding)}
         assert sorted(told) == sorted(finding["id"] for finding in document["findings"])
@@ -209,7 +211,7 @@ class TestAgainstTheDocument:
 
     def test_the_answer_what_is_open_and_what_was_assumed(self, case: Path, form: str) -> None:
         result = result_of(case)
-        graph, document = strict(result.linked_data(form), form), result.document()
+        graph, document = strict(written(result, form), form), result.document()
         (answer,) = graph.subjects(RDF.type, RP.Analysis)
         assert value(graph, answer, RP.outcome) == document["verdict"]
         assert value(graph, answer, RP.view) == document["view"]
@@ -239,7 +241,7 @@ class TestAgainstTheDocument:
 
     def test_the_files_that_were_read(self, case: Path, form: str) -> None:
         result = result_of(case)
-        graph, assumed = strict(result.linked_data(form), form), result.assumptions
+        graph, assumed = strict(written(result, form), form), result.assumptions
         (run,) = graph.subjects(RDF.type, PROV.Activity)
         used = {
             (value(graph, file, RP.readAs), value(graph, file, RP.file), value(graph, file, RP.sha256))
@@ -255,7 +257,7 @@ class TestAgainstTheDocument:
             assert value(graph, line, RP.inFile, RP.file) == value(graph, line, RP.file)
 
     def test_it_keeps_to_its_shapes(self, case: Path, form: str) -> None:
-        assert problems(strict(result_of(case, paths="all").linked_data(form), form)) == ""
+        assert problems(strict(written(result_of(case, paths="all"), form), form)) == ""
 
 
 class TestInTheWordsOfDpv:
@@ -270,7 +272,7 @@ class TestInTheWordsOfDpv:
     def test_a_category_without_terms_takes_those_of_its_nearest_broader_one(self, care_home: Result) -> None:
         findings = [f for f in care_home.analysis.findings if f.category == "FaceTemplate"]
         changed = replace(care_home.analysis, findings=tuple(replace(f, category="VoicePrint") for f in findings))
-        graph = graph_of(replace(care_home, analysis=changed))
+        graph = rdf_graph(replace(care_home, analysis=changed))
         data = set(graph.objects(self.finding(graph, "VoicePrint"), DPV.hasPersonalData))
         assert data == {RP.VoicePrint, URIRef("https://w3id.org/dpv/pd#Biometric")}
 
@@ -416,6 +418,10 @@ class TestShapesCanFail:
         assert problems(changed)
 
 
+def kept_for(stated: Mapping[str, str]) -> tuple[tuple[str, Duration], ...]:
+    return tuple((category, parse(written)) for category, written in sorted(stated.items()))
+
+
 BUCKET, CLOUD = Element("storage", "bucket"), Element("external-system", "cloud", "r1")
 
 
@@ -451,24 +457,41 @@ class TestOutsideRos:
         assert not list(graph.objects(finding, DPV.hasStorageCondition))
 
     def test_what_people_stated_is_told(self, analysis: Analysis) -> None:
-        stated = {
-            BUCKET.identity: {"retention": "P30D", "country": "DE", "encrypted": "yes"},
-            CLOUD.identity: {"operator": "Cloud Ltd", "role": "processor", "country": "US", "basis": "A46(2)(c)"},
+        outside = {
+            BUCKET: NonRosFacts(retention=kept_for({EVERY: "P30D"}), country="DE", encrypted=True),
+            CLOUD: NonRosFacts(operator="Cloud Ltd", recipient="processor", country="US", transfer="standard-clauses"),
         }
-        graph = graph_of_analysis(analysis, stated=stated)
+        graph = graph_of_analysis(analysis, outside)
         bucket, cloud = self.at(graph, BUCKET), self.at(graph, CLOUD)
         (kept,) = graph.objects(graph.value(bucket, DPV.hasStorageCondition), DPV.hasDuration)
         assert kept == Literal("P30D", datatype=XSD.duration)
         assert value(graph, bucket, DPV.hasStorageCondition, RP.stated) is True
         assert value(graph, cloud, DPV.hasRecipient, RDFS.label) == "Cloud Ltd"
         told = {what: value(graph, cloud, RP.leak, STATED[what]) for what in ("operator", "role", "country", "basis")}
-        assert told == stated[CLOUD.identity]
+        assert told == {
+            "operator": "Cloud Ltd", "role": "processor", "country": "US", "basis": "standard-clauses",
+        }  # fmt: skip
         assert problems(graph) == ""
 
-    @pytest.mark.parametrize("kept", ["P4W", "P", "PT", "forever", '"'])
-    def test_a_duration_that_xml_schema_lacks_is_told_as_it_was_written(self, analysis: Analysis, kept: str) -> None:
-        graph = graph_of_analysis(analysis, stated={BUCKET.identity: {"retention": kept}})
-        assert set(graph.objects(None, DPV.hasDuration)) == {Literal(kept)}
+    def test_a_duration_that_xml_schema_lacks_is_told_as_it_was_written(self, analysis: Analysis) -> None:
+        graph = graph_of_analysis(analysis, {BUCKET: NonRosFacts(retention=kept_for({EVERY: "P4W"}))})
+        assert set(graph.objects(None, DPV.hasDuration)) == {Literal("P4W")}
+
+    def test_backups_keep_it_longer_than_any_duration_says(self, analysis: Analysis) -> None:
+        """Rule S9: nobody may take the storage's own duration for the whole."""
+        facts = NonRosFacts(retention=kept_for({EVERY: "P30D"}), backups=True)
+        graph = graph_of_analysis(analysis, {BUCKET: facts})
+        assert set(graph.objects(None, DPV.hasDuration)) == {Literal("P30D, in backups, nobody says for how long")}
+
+    def test_how_long_one_category_is_kept_says_nothing_of_another(self, analysis: Analysis) -> None:
+        """Rules S7 and S9: what is stated of a broader category holds, what is stated of a narrower one does not."""
+        told = {}
+        for category in ("Bio", "Face", "Voice"):
+            graph = graph_of_analysis(analysis, {BUCKET: NonRosFacts(retention=kept_for({category: "P1Y"}))})
+            at = self.at(graph, BUCKET)
+            told[category] = value(graph, at, DPV.hasStorageCondition, RP.stated)
+            assert problems(graph) == ""
+        assert told == {"Bio": True, "Face": True, "Voice": False}
 
     def test_kept_too_long(self, analysis: Analysis) -> None:
         graph = graph_of_analysis(self.of_kind(analysis, "storage-limitation"))
@@ -484,7 +507,7 @@ class TestOutsideRos:
 
     def test_what_a_person_accepted(self, analysis: Analysis) -> None:
         finding = analysis.findings[0]
-        graph = graph_of_analysis(analysis, accepted={finding.id: "a contract"})
+        graph = rdf_graph(accepting(answer_of(analysis, VOCABULARY, REST), {finding.id: "a contract"}))
         assert set(graph.subject_objects(RP.accepted)) == {(named("finding", finding.id), Literal("a contract"))}
         assert problems(graph) == ""
 

@@ -17,19 +17,32 @@ from rdflib.compare import isomorphic
 
 from rosprivacy.analysis.errors import InputError
 from rosprivacy.analysis.findings.findings import analyse
-from rosprivacy.analysis.model import Bound, Category, Diagnostic, Element, Flow, FlowGraph, Grant, Place, Severity
+from rosprivacy.analysis.model import (
+    Bound,
+    Category,
+    Diagnostic,
+    Element,
+    Flow,
+    FlowGraph,
+    Grant,
+    NonRosFacts,
+    Place,
+    Severity,
+)
 from rosprivacy.clock import source_date
 from rosprivacy.ontology.vocabulary import Vocabulary
 from rosprivacy.report.rdf.findings import rdf_graph
 from rosprivacy.report.rdf.serialise import SERIALISERS
 from rosprivacy.report.rdf.terms import RP, element_iri, named
+from tests.helpers.answers import accepting, answer_of
 from tests.helpers.paths import ROOT
 from tests.helpers.systems import statement
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.report.answer import Answer
+
 
 CARE_HOME = ("examples/care-home/care-home.policy.xml", "-l", "examples/care-home/care-home.labels.yaml")
 SYNTAX = {"turtle": pyoxigraph.RdfFormat.TURTLE, "json-ld": pyoxigraph.RdfFormat.JSON_LD}
@@ -42,22 +55,24 @@ HOSTILE = [
 FORMS = pytest.mark.parametrize("form", SERIALISERS)
 
 
-def system(name: str, file: str = "") -> tuple[Analysis, Vocabulary, list[Diagnostic], dict[str, Any]]:
+def system(name: str, file: str = "") -> Answer:
     """A source and a leak, with the name wherever somebody else may choose one."""
     place = Place(file or name, 3)
     elements = (Element("node", f"/{name}", name), Element("storage", name, name), Element("topic", f"/t{name}"))
     grants = (Grant(True, "publish", "topic", f"/t{name}", f"/{name}", f"/{name}", place),)
     flows = (Flow(0, 1, "flow", grants), Flow(0, 2, "publish", grants))
     vocabulary = Vocabulary.of([Category("Kind", "urn:test:Kind", "Kind", name, name)])
-    said = {0: (statement("source", "Kind"),), 1: (statement("leak", "Kind"),)}
-    analysis = analyse(FlowGraph(elements, flows, (), ()), Bound(said), vocabulary.hierarchy)
+    roles = {0: (statement("source", "Kind"),), 1: (statement("leak", "Kind"),)}
+    analysis = analyse(FlowGraph(elements, flows, (), ()), Bound(roles), vocabulary.hierarchy)
     assumptions = {"rosprivacy": "1", "unlabelled_node": name, "policies": [{"file": file or name, "sha256": "0" * 64}]}
-    return analysis, vocabulary, [Diagnostic(place, Severity.WARNING, name)], assumptions
+    outside = {elements[1]: NonRosFacts(country=name, operator=name)}
+    said = [Diagnostic(place, Severity.WARNING, name)]
+    answer = answer_of(analysis, vocabulary, assumptions, said, outside)
+    return accepting(answer, {answer.analysis.findings[0].id: name})
 
 
 def text_of(name: str, form: str) -> str:
-    stated = {(name, "storage", name): {"retention": name, "country": name}}
-    return SERIALISERS[form](rdf_graph(*system(name), stated=stated, accepted={system(name)[0].findings[0].id: name}))
+    return SERIALISERS[form](rdf_graph(system(name)))
 
 
 def strict(text: str, form: str) -> Graph:
@@ -101,7 +116,7 @@ def test_any_name_stays_a_name(form: str, name: str) -> None:
 @pytest.mark.parametrize("name", ["\ud800", "a\udcff"], ids=["surrogate", "byte"])
 def test_what_utf_8_cannot_say_is_escaped(name: str, form: str) -> None:
     """A file's name can be any bytes."""
-    graph = strict(SERIALISERS[form](rdf_graph(*system("tame", name))), form)
+    graph = strict(SERIALISERS[form](rdf_graph(system("tame", name))), form)
     assert values(graph, RP.SourceFile, RP.file) == {name.encode("utf-8", "backslashreplace").decode()}
 
 
@@ -145,7 +160,7 @@ def test_no_blank_node_has_a_label_and_no_context_is_elsewhere(form: str) -> Non
 
 @FORMS
 def test_the_order_of_the_triples_does_not_matter(form: str) -> None:
-    graph = rdf_graph(*system("tame"))
+    graph = rdf_graph(system("tame"))
     triples = sorted(graph, key=lambda triple: [str(node) for node in triple])
     texts = set()
     for order in (triples, triples[::-1]):

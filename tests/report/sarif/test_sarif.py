@@ -18,10 +18,11 @@ from hypothesis import strategies as st
 import rosprivacy
 from rosprivacy.analysis.findings.findings import analyse
 from rosprivacy.analysis.model import Category, Place
-from rosprivacy.formats import sarif_log
+from rosprivacy.ontology.vocabulary import Vocabulary
 from rosprivacy.report.sarif import flows
 from rosprivacy.report.sarif import log as sarif_module
 from rosprivacy.report.sarif.log import sarif
+from tests.helpers.answers import accepting, answer_of, as_json
 from tests.helpers.cases import CASES
 from tests.helpers.paths import ROOT
 from tests.helpers.sarif import EXAMPLES, HOSTILE, analyze, checked, log_of, physical, small_system, way
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
 
 FINDING_KINDS = ("disclosure", "storage-limitation", "third-country-transfer")
 CARE_HOME = (["care-home/care-home.policy.xml"], ["care-home/care-home.labels.yaml"])
-CATEGORIES = {n: Category(n, f"urn:{n}", n, n, n, up) for n, up in PARENTS.items()}
+VOCABULARY = Vocabulary.of(Category(n, f"urn:{n}", n, n, n, up) for n, up in PARENTS.items())
 
 
 @pytest.fixture(scope="module")
@@ -156,7 +157,7 @@ def test_files_are_named_relative_to_the_repository_wherever_one_stands(tmp_path
     for at, policy in ((folder, "care-home.policy.xml"), (tmp_path / "repo", str(folder / "care-home.policy.xml"))):
         with pytest.MonkeyPatch.context() as patch:
             patch.chdir(at)
-            log = sarif_log(rosprivacy.analyze([policy], [str(folder / "care-home.labels.yaml")]))
+            log = as_json(rosprivacy.analyze([policy], [str(folder / "care-home.labels.yaml")]), "sarif")
         places = [
             location["physicalLocation"]["artifactLocation"] for location in checked(log)["results"][0]["locations"]
         ]
@@ -170,10 +171,7 @@ def test_a_file_outside_has_a_whole_uri(tmp_path: Path) -> None:
     outside = [str(EXAMPLES / entry["file"]) for entry in result.assumptions["policies"]]
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(EXAMPLES)
-        log = sarif(
-            result.analysis, result.vocabulary.categories,
-            (), result.assumptions, tmp_path / "repo",
-        )  # fmt: skip
+        log = sarif(replace(result, diagnostics=()), tmp_path / "repo")
     where = checked(log)["results"][0]["locations"][0]["physicalLocation"]["artifactLocation"]
     assert "uriBaseId" not in where
     assert unquote(where["uri"]) == f"file://{outside[0]}"
@@ -185,12 +183,10 @@ def test_a_file_outside_has_a_whole_uri(tmp_path: Path) -> None:
 def test_only_what_a_person_accepted_is_suppressed_and_stays_in_the_file() -> None:
     result = analyze(*CARE_HOME)
     first, *others = [finding.id for finding in result.analysis.findings]
-    run = checked(log_of(result, {first: "staff agreed (A. Person, until 2030-01-01)"}))
+    run = checked(log_of(accepting(result, {first: "staff agreed, says A. Person"})))
     suppressed = {r["partialFingerprints"]["rosprivacyFinding/v1"]: r.get("suppressions") for r in run["results"]}
     assert suppressed == {
-        first: [
-            {"kind": "external", "status": "accepted", "justification": "staff agreed (A. Person, until 2030-01-01)"}
-        ],
+        first: [{"kind": "external", "status": "accepted", "justification": "staff agreed, says A. Person"}],
         **dict.fromkeys(others),
     }
 
@@ -242,7 +238,7 @@ def test_a_finding_that_no_file_speaks_of_is_at_the_first_line_of_what_it_rests_
     analysis = analyse(graph, bound, vocabulary.hierarchy)
 
     def places(assumptions: dict[str, Any]) -> set[tuple[str, int]]:
-        log = sarif(analysis, vocabulary.categories, (), assumptions, tmp_path)
+        log = sarif(answer_of(analysis, vocabulary, assumptions), tmp_path)
         (found,) = [r for r in checked(log)["results"] if r["ruleId"] == "disclosure"]
         return {physical(found["locations"][0]), *(physical(step) for step in way(found))}
 
@@ -378,7 +374,7 @@ def log_of_system(system: System, suffix: str) -> dict[str, Any] | None:
     if analysed(system) is None:
         return None
     analysis = analyse(graph, system.bound(), HIERARCHY)
-    return sarif(analysis, CATEGORIES, (), {}, ROOT)
+    return sarif(answer_of(analysis, VOCABULARY, {}), ROOT)
 
 
 @given(systems(), st.text(max_size=20))
@@ -402,7 +398,7 @@ def test_a_hostile_name_harms_nothing(tmp_path: Path) -> None:
     graph = replace(analysis.graph, elements=tuple(replace(e, name=names[e.name]) for e in analysis.graph.elements))
     vocabulary = result.vocabulary
     spread_anew = analyse(graph, result.bound, vocabulary.hierarchy)
-    log = sarif(spread_anew, vocabulary.categories, (), {}, tmp_path)
+    log = sarif(answer_of(spread_anew, vocabulary, {}), tmp_path)
     run = checked(json.loads(json.dumps(log)))
     assert all(text.isprintable() and len(text) < 1500 for text in strings(run["results"]))
     texts = [r["message"]["text"] for r in run["results"]]
@@ -415,10 +411,9 @@ def test_a_file_name_that_is_no_text_is_a_uri_all_the_same(tmp_path: Path) -> No
     result = small_system(tmp_path, {"/a": "{source: [Video]}"})
     odd = "p\udcff[x].policy.xml"
     assumptions = {**result.assumptions, "policies": [{"file": odd, "sha256": "0" * 64}]}
-    vocabulary = result.vocabulary
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(tmp_path)
-        log = sarif(result.analysis, vocabulary.categories, (), assumptions, tmp_path)
+        log = sarif(replace(result, diagnostics=(), assumptions=assumptions), tmp_path)
     run = checked(json.loads(json.dumps(log)))
     assert run["artifacts"][0]["location"]["uri"] == "p%FF%5Bx%5D.policy.xml"
     json.dumps(log, ensure_ascii=False).encode()

@@ -1,0 +1,42 @@
+"""Modes that people choose between: a word that names none is an error with the nearest, never another mode."""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+from enum import StrEnum
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.errors import InputError, InputErrors, shown
+
+if TYPE_CHECKING:
+    from typing import NoReturn
+
+
+class Mode(StrEnum):
+    """A choice; its members are made of their words.
+
+    >>> View("enforced")
+    <View.enforced: 'enforced'>
+    """
+
+    @classmethod
+    def _missing_(cls, value: object) -> NoReturn:
+        known = [str(mode) for mode in cls]
+        near = get_close_matches(str(value).casefold(), known, n=1, cutoff=0)[0]
+        what = f"{shown(str(value))!r} is none of {', '.join(known)}"
+        raise InputErrors([InputError(f"--{cls.__name__.lower()}", 0, what, f"did you mean {near}?")])
+
+
+class View(Mode):
+    """Rule S6: each node does what its own profile says, or what any profile of its enclave says."""
+
+    declared = "declared"
+    enforced = "enforced"
+
+
+class Paths(Mode):
+    """Which paths are listed for a finding: its witness alone, paths that share no flow, or all simple paths."""
+
+    witness = "witness"
+    disjoint = "disjoint"
+    all = "all"

@@ -1,0 +1,115 @@
+"""The answer as every format gets it: the analysis, and all that a reader has to know beside it.
+
+In: what was found, and what it rests on. Out: ``Answer``. A format is a function of it, so that none can forget a fact.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.findings.ledger import ledger
+from rosprivacy.analysis.fleet.counts import Counts, counted
+from rosprivacy.analysis.non_ros import retention_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.analysis.decisions import Decided, Decision
+    from rosprivacy.analysis.durations import Duration
+    from rosprivacy.analysis.findings.ledger import TakenAway
+    from rosprivacy.analysis.fleet.patterns import FleetView
+    from rosprivacy.analysis.model import Bound, Diagnostic, Element, NonRosFacts
+    from rosprivacy.ontology.vocabulary import Vocabulary
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """An analysis and what it rests on.
+
+    Attributes
+    ----------
+    diagnostics
+        Of the inputs; the analysis' own stand there.
+    assumptions
+        What the answer rests on, made by the caller who knows the files.
+    decided
+        What people decided about the findings; None where nobody decided anything.
+    fleet
+        Which robots of the graph stand for which, and what they have in common; None for a single robot.
+    counts
+        Of the whole fleet, where the graph does not hold all of it; None where it does.
+    """
+
+    analysis: Analysis
+    bound: Bound
+    vocabulary: Vocabulary
+    diagnostics: tuple[Diagnostic, ...]
+    assumptions: dict[str, Any]
+    decided: Decided | None = None
+    fleet: FleetView | None = None
+    counts: Counts | None = None
+
+    @property
+    def shown(self) -> Analysis:
+        """The analysis as readers get it: of a fleet one finding of each pattern, one robot of those that are alike."""
+        return self.fleet.shown(self.analysis) if self.fleet else self.analysis
+
+    @property
+    def taken_away(self) -> tuple[TakenAway, ...]:
+        """The ledger: what was taken away on the data's side, and on whose word; of robots that are alike of one."""
+        rows = ledger(self.analysis, self.bound, self.vocabulary.hierarchy, self.diagnostics)
+        beside = self.fleet.likeness.second if self.fleet else ()
+        return tuple(row for row in rows if row.element is None or row.element.robot not in beside)
+
+    @property
+    def accepted(self) -> dict[str, str]:
+        """The findings that a valid decision accepts: id -> reason, owner, legal basis, until when (rule S10)."""
+        if self.decided is None:
+            return {}
+        held = ((f.id, self.decided.valid(f)) for f in self.analysis.findings if f.accepted)
+        return {finding: _why(decision) for finding, decision in held if decision}
+
+    @property
+    def stated(self) -> dict[tuple[str, str, str], dict[str, str]]:
+        """What people stated of what lies outside ROS, as texts (rule S9).
+
+        (robot, kind, name) -> ``retention``, ``country``, ``encrypted``, ``operator``, ``role``, ``basis``, whichever
+        are known.
+        """
+        return {element.identity: dict(_stated(facts)) for element, facts in self.analysis.outside.items()}
+
+    def retention(self, element: Element, category: str) -> str:
+        """Return how long an element keeps a category, with its backups; empty where nobody states it (rule S9)."""
+        facts = self.analysis.outside.get(element)
+        kept = retention_of(facts, category, self.vocabulary.hierarchy) if facts else []
+        return _with_backups(map(str, kept), facts.backups) if facts and kept else ""
+
+    def fleet_counts(self, view: FleetView) -> Counts:
+        """Return how many elements, flows and standard channels the fleet has, not its graph."""
+        return self.counts or counted(self.analysis.graph, self.analysis.spread, view.likeness)
+
+
+def _why(decision: Decision) -> str:
+    more = [decision.owner, *decision.legal_basis, f"until {decision.expires}" if decision.expires else ""]
+    said = ", ".join(part for part in more if part)
+    return f"{decision.reason} ({said})" if said else decision.reason
+
+
+def _stated(facts: NonRosFacts) -> Iterator[tuple[str, str]]:
+    kept = (f"{category}: {duration}" if category else str(duration) for category, duration in facts.retention)
+    said = {
+        "retention": _with_backups(kept, facts.backups),
+        "country": facts.country,
+        "encrypted": "" if facts.encrypted is None else ("yes" if facts.encrypted else "no"),
+        "operator": facts.operator,
+        "role": facts.recipient,
+        "basis": facts.transfer,
+    }
+    yield from ((what, value) for what, value in said.items() if value)
+
+
+def _with_backups(kept: Iterable[str], backups: Duration | bool | None) -> str:  # noqa: FBT001 - three values and a length
+    more = "in backups, nobody says for how long" if backups is True else f"in backups {backups} more"
+    return ", ".join([*kept, *([more] if backups else [])])

@@ -1,0 +1,19 @@
+"""An ``Answer`` -> the whole JSON document of the contract: the analysis, what was decided, what is told of a fleet."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.report.document.analysis import analysis_document
+from rosprivacy.report.document.decisions import with_decisions
+from rosprivacy.report.document.fleet import fleet_document
+
+if TYPE_CHECKING:
+    from rosprivacy.report.answer import Answer
+
+
+def document(answer: Answer) -> dict[str, Any]:
+    """Return the JSON document of an answer."""
+    made = analysis_document(answer)
+    made = with_decisions(made, answer.decided) if answer.decided else made
+    return fleet_document(made, answer.fleet, answer.fleet_counts(answer.fleet)) if answer.fleet else made

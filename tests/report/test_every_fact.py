@@ -1,0 +1,278 @@
+"""Every fact of the JSON document that has a term in a format appears in it: from files to text (rules S9 to S12)."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from contextlib import chdir
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+from urllib.parse import quote
+
+import pytest
+
+import rosprivacy
+from rosprivacy.formats import FORMATS, Style, written
+from rosprivacy.private_neo4j import connection
+from rosprivacy.report.page.words import Words
+from tests.helpers.paths import ROOT
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping
+    from pathlib import Path
+
+    from rosprivacy.private_neo4j.connection import Connection
+    from rosprivacy.result import Result
+
+    Document = Mapping[str, Any]
+    Term = Callable[[str], str]
+
+WORDS = Words("en")
+FLEET = "examples/fleet/fleet.yaml"
+POLICY = """<policy version="0.2.0"><enclaves><enclave path="/"><profiles>
+<profile ns="/" node="camera"><topics publish="ALLOW"><topic>raw</topic></topics></profile>
+<profile ns="/" node="blur"><topics subscribe="ALLOW"><topic>raw</topic></topics>
+<topics publish="ALLOW"><topic>blurred</topic></topics></profile>
+<profile ns="/" node="uplink"><topics subscribe="ALLOW"><topic>blurred</topic><topic>voice</topic></topics></profile>
+<profile ns="/" node="microphone"><topics publish="ALLOW"><topic>voice</topic></topics></profile>
+<profile ns="/" node="logger"><topics subscribe="ALLOW"><topic>raw</topic><topic>voice</topic></topics></profile>
+</profiles></enclave></enclaves></policy>
+"""
+LABELS = """labels: 1
+nodes:
+  /camera: {source: [Video], subjects: [residents, visitors]}
+  /microphone: {source: [Voice], subjects: [nurses]}
+  /blur: {sanitizer: [Video]}
+elements:
+  archive disk: {kind: storage, country: IE, operator: Disk Keepers, retention: {Video: P41D}, encrypted: true}
+  cloud: {kind: external-system, country: US, operator: Cloud Movers, recipient: joint-controller, transfer: derogation}
+limits: {Video: P30D}
+flows:
+  - {from: /logger, to: archive disk}
+  - {from: /uplink, to: cloud}
+"""
+REASONS = "the residents asked for it", "a limit will be set"
+
+
+def same(value: str) -> str:
+    return value
+
+
+def line_iri(place: str) -> str:
+    file, _, line = place.rpartition(":")
+    return f"line:{quote(file)}:{line}:"
+
+
+def of_elements(*keys: str) -> Callable[[Document], list[str]]:
+    return lambda document: [row[key] for row in document["outside"] for key in keys if row.get(key)]
+
+
+def durations(document: Document) -> list[str]:
+    return [one for row in document["outside"] for one in row.get("retention", {}).values()]
+
+
+def decided(*keys: str, accepted: bool = False) -> Callable[[Document], list[str]]:
+    def said(document: Document) -> list[str]:
+        rows = [f["decision"] for f in document["findings"] if f.get("decision")]
+        rows = [row for row in rows if row["choice"] == "accept"] if accepted else rows
+        values = [row[key] for row in rows for key in keys]
+        return [one for value in values for one in (value if isinstance(value, list) else [value])]
+
+    return said
+
+
+def lines(document: Document) -> list[str]:
+    grants = [grant for f in document["findings"] for step in f["steps"] for grant in step["policy"]]
+    return [f"{grant['file']}:{grant['line']}" for grant in grants]
+
+
+def subjects(document: Document) -> list[str]:
+    return [one for row in document["subjects"] for one in row["subjects"]]
+
+
+def pseudonymised(document: Document) -> list[str]:
+    return ["pseudonymised"] if any(f["pseudonymised"] for f in document["findings"]) else []
+
+
+def without_method(document: Document) -> list[str]:
+    return [row["element"]["name"] for row in document["assumptions"]["sanitizers_without_method"]]
+
+
+def no_retention(document: Document) -> list[str]:
+    kept = [f for f in document["findings"] if f["leak"]["kind"] == "storage"]
+    return [f["category"] for f in kept if f.get("reason", "").startswith("no retention")]
+
+
+PAGE = ("html", "markdown")
+RDF = ("turtle", "json-ld")
+DECIDED = dict.fromkeys(("text", "sarif", "cnil-pia", *RDF, *PAGE), same)
+MEASURE = {  # where a sanitizer states no method
+    "text": lambda name: f"sanitizer {name} states no method",
+    "cnil-pia": lambda name: f"{name}: pseudonymise (the data is still personal), taken because the label states no",
+    "turtle": lambda name: f'"pseudonymisation at {name}"@en ;',
+    "article30": lambda name: f"{name} not stated: taken as pseudonymising",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Fact:
+    """Values of the document, and how each format that has a term for them writes one."""
+
+    values: Callable[[Document], Iterable[str]]
+    terms: Mapping[str, Term]
+
+
+FACTS = {
+    "retention": Fact(
+        durations,
+        dict.fromkeys(("cnil-pia", *RDF), same) | dict.fromkeys((*PAGE, "article30"), WORDS.duration),
+    ),
+    "country": Fact(of_elements("country"), dict.fromkeys(("cnil-pia", *RDF, *PAGE), same)),
+    "operator": Fact(of_elements("operator"), dict.fromkeys((*RDF, *PAGE), same)),
+    "role": Fact(
+        of_elements("recipient"),
+        dict.fromkeys(RDF, same) | dict.fromkeys(PAGE, lambda role: WORDS(f"recipient.{role}")),
+    ),
+    "basis": Fact(of_elements("transfer"), dict.fromkeys(("cnil-pia", *RDF), same)),
+    "subjects": Fact(subjects, dict.fromkeys((*PAGE, "article30"), same)),
+    "decision with reason and basis": Fact(decided("reason", "owner", "legal_basis", accepted=True), DECIDED),
+    "decision that accepts nothing": Fact(decided("reason", "owner"), dict.fromkeys(("text", *PAGE), same)),
+    "lines of the witness": Fact(lines, dict.fromkeys(("text", "sarif", *PAGE), same) | dict.fromkeys(RDF, line_iri)),
+    "pseudonymised": Fact(pseudonymised, dict.fromkeys((name for name in FORMATS if name != "json"), same)),
+    "a method that is not stated": Fact(without_method, MEASURE),
+    "a retention that is not stated": Fact(
+        no_retention, {"turtle": lambda category: f"keeps {category} is not stated"}
+    ),
+}
+
+
+def strings(value: Any) -> Iterable[str]:
+    if isinstance(value, dict):
+        for inner in value.values():
+            yield from strings(inner)
+    elif isinstance(value, list):
+        for inner in value:
+            yield from strings(inner)
+    else:
+        yield str(value)
+
+
+def places(value: Any) -> Iterable[str]:
+    """``file:line`` of every location of SARIF."""
+    if isinstance(value, dict):
+        if "physicalLocation" in value:
+            where = value["physicalLocation"]
+            yield f"{where['artifactLocation']['uri']}:{where['region']['startLine']}"
+        for inner in value.values():
+            yield from places(inner)
+    elif isinstance(value, list):
+        for inner in value:
+            yield from places(inner)
+
+
+def read_as(result: Result, name: str) -> str:
+    """What a reader of a format sees."""
+    text = written(result, name, Style(verbose=True))
+    if name == "cnil-pia":
+        return "\n".join(strings(json.loads(text)))
+    if name == "sarif":
+        log = json.loads(text)
+        return "\n".join([*strings(log["runs"][0]["results"]), *places(log)])
+    return text
+
+
+def decisions_about(result: Result, folder: Path) -> str:
+    """A file that accepts the first finding, and wants something done about the last."""
+    document = result.document()
+    patterns = {p["finding"]: p["id"] for p in document.get("fleet", {}).get("patterns", ())}
+    first, *_, last = [patterns.get(f["id"], f["id"]) for f in document["findings"] if not f["dismissed"]]
+    said = [
+        {
+            "id": first, "decision": "accept", "reason": REASONS[0], "owner": "Ada Judge",
+            "legal_basis": ["6(1)(a)"], "expires": "2099-01-01",
+        },
+        {"id": last, "decision": "mitigate", "reason": REASONS[1], "owner": "Bob Fixer"},
+    ]  # fmt: skip
+    (folder / "decisions.json").write_text(json.dumps({"decisions": 1, "findings": said}))
+    return str(folder / "decisions.json")
+
+
+def robot_in(folder: Path) -> Path:
+    (folder / "p.policy.xml").write_text(POLICY)
+    (folder / "l.yaml").write_text(LABELS)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def robot(tmp_path_factory: pytest.TempPathFactory) -> Result:
+    folder = robot_in(tmp_path_factory.mktemp("robot"))
+    with chdir(folder):
+        first = rosprivacy.analyze(["p.policy.xml"], ["l.yaml"])
+        return rosprivacy.analyze(["p.policy.xml"], ["l.yaml"], decisions=decisions_about(first, folder))
+
+
+@pytest.fixture(scope="module")
+def fleet(tmp_path_factory: pytest.TempPathFactory) -> Result:
+    folder = tmp_path_factory.mktemp("fleet")
+    with chdir(ROOT):
+        first = rosprivacy.analyze_fleet(FLEET)
+        return rosprivacy.analyze_fleet(FLEET, decisions=decisions_about(first, folder))
+
+
+@pytest.fixture(scope="module")
+def stored(neo4j_server: Connection, tmp_path_factory: pytest.TempPathFactory) -> Result:
+    from rosprivacy.assembly import robot_of, run_stored
+    from rosprivacy.ingest.database.loading import load
+    from rosprivacy.settings import Settings
+
+    folder = robot_in(tmp_path_factory.mktemp("stored"))
+    with chdir(folder), connection.open_driver(neo4j_server) as driver:
+        driver.execute_query("MATCH (n) DETACH DELETE n")
+        first = rosprivacy.analyze(["p.policy.xml"], ["l.yaml"])
+        load(driver, [robot_of("care", first)], first.vocabulary)
+        first = run_stored(driver, Settings())
+        result = run_stored(driver, Settings(decisions=decisions_about(first, folder)))
+        driver.execute_query("MATCH (n) DETACH DELETE n")
+    return result
+
+
+@pytest.fixture(scope="module")
+def on_spark(tmp_path_factory: pytest.TempPathFactory) -> Result:
+    if not shutil.which("java"):
+        pytest.skip("no Java")
+    from rosprivacy.settings import Settings
+    from rosprivacy.spark.fleet_on_spark import run_on_spark
+
+    assert tmp_path_factory
+    with chdir(ROOT):
+        return run_on_spark(FLEET, Settings())
+
+
+SYSTEMS = [
+    "robot",
+    "fleet",
+    pytest.param("stored", marks=pytest.mark.database),
+    pytest.param("on_spark", marks=pytest.mark.slow),
+]
+
+
+@pytest.mark.parametrize("name", FORMATS)
+@pytest.mark.parametrize("system", SYSTEMS)
+def test_every_fact_that_has_a_term_is_told(system: str, name: str, request: pytest.FixtureRequest) -> None:
+    result: Result = request.getfixturevalue(system)
+    document = result.document()
+    with chdir(ROOT):
+        told = read_as(result, name)
+    for what, fact in FACTS.items():
+        term = fact.terms.get(name)
+        for value in fact.values(document) if term else ():
+            assert term
+            assert term(value) in told, f"{what}: {value}"
+
+
+def test_the_systems_have_every_fact(robot: Result, fleet: Result) -> None:
+    """Else the test above could not fail."""
+    known = {what for what, fact in FACTS.items() if list(fact.values(robot.document()))}
+    assert known == set(FACTS)
+    of_the_fleet = {what for what, fact in FACTS.items() if list(fact.values(fleet.document()))}
+    assert of_the_fleet >= {"retention", "country", "operator", "role", "decision with reason and basis"}
