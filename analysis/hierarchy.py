@@ -1,6 +1,7 @@
 """Which category is a kind of which (rule S7): ``skos:broader`` closed transitively, with distances.
 
-In: categories with their direct broader ones. Out: for each category the broader ones, nearest first.
+In: categories with their direct broader ones. Out: for each category the broader ones, nearest first, and those that it
+overlaps: with which it has a kind in common.
 """
 
 from __future__ import annotations
@@ -22,9 +23,13 @@ class Hierarchy:
     ----------
     ancestors
         Name -> names of itself (distance 0) and all broader categories, with the least number of steps up.
+    overlaps
+        Name -> names of all categories with a common same-or-narrower one: broader, narrower and overlapping ones, with
+        the least number of steps up to the first from a common one.
     """
 
     ancestors: Mapping[str, Mapping[str, int]]
+    overlaps: Mapping[str, Mapping[str, int]]
 
     @classmethod
     def of(cls, categories: Iterable[Category]) -> Hierarchy:
@@ -38,11 +43,16 @@ class Hierarchy:
         (1, ['Image'], ('Video',))
         """
         parents = {category.name: category.broader for category in categories}
-        return cls({name: _climb(name, parents) for name in parents})
+        ancestors = {name: _climb(name, parents) for name in parents}
+        return cls(ancestors, _meet(ancestors))
 
     def distance(self, category: str, broader: str) -> int | None:
         """Steps from a category up to a same or broader one; None if it is not broader."""
         return self.ancestors[category].get(broader)
+
+    def overlap(self, category: str, other: str) -> int | None:
+        """Steps up to a category from the nearest kind that is of both; None if nothing can be of both (rule S7)."""
+        return self.overlaps[category].get(other)
 
     def broader(self, category: str) -> list[str]:
         """All strictly broader categories, nearest first."""
@@ -65,3 +75,12 @@ def _climb(start: str, parents: Mapping[str, tuple[str, ...]]) -> dict[str, int]
         distance = max(steps.values()) + 1
         steps.update(dict.fromkeys(level, distance))
     return steps
+
+
+def _meet(ancestors: Mapping[str, Mapping[str, int]]) -> dict[str, dict[str, int]]:
+    found: dict[str, dict[str, int]] = {name: {} for name in ancestors}
+    for above in ancestors.values():
+        for name, steps in above.items():
+            for other in above:
+                found[name][other] = min(steps, found[name].get(other, steps))
+    return found

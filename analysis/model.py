@@ -351,6 +351,11 @@ class Category:
     translations: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
 
     @property
+    def names(self) -> tuple[str, ...]:
+        """All that it is called: a text that is one of them, in upper or lower case, means it."""
+        return tuple(filter(None, (self.name, self.iri, self.label, self.title, *self.synonyms)))
+
+    @property
     def article9(self) -> str:
         """The strongest verdict under Article 9(1) GDPR: one of ``ARTICLE_9_VERDICTS``."""
         verdicts = {legal.verdict for legal in self.law if legal.special}

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 LARGE, SMALL = 100_000, 1_000
 HERE = Place("fleet.labels.yaml", 1)
 KIND = "Video"
-HIERARCHY = Hierarchy({KIND: {KIND: 0}})
+HIERARCHY = Hierarchy({KIND: {KIND: 0}}, {KIND: {KIND: 0}})
 
 
 def compare(*, quick: bool) -> Iterator[Line]:

@@ -19,7 +19,7 @@ from rosprivacy.analysis.model import Category, Legal
 if TYPE_CHECKING:
     from pathlib import Path
 
-FORMAT = 4
+FORMAT = 5  # one more when what is kept, or what is refused, changes
 _TUPLES = ("broader", "synonyms", "data_types", "same_as", "within", "stated_of")
 
 

@@ -1,122 +1,93 @@
 """Users' own ontologies: read, checked against the shapes and against ours, each problem named with its subject.
 
-In: a Turtle file and our graph. Out: its categories, to be put beside ours. Heavy: rdflib and pyshacl.
+In: a Turtle file and what is known. Out: what is known with its categories. Heavy: rdflib and pyshacl.
 """
 
 from __future__ import annotations
 
-import re
+from dataclasses import replace
 from importlib.resources import files
 from typing import TYPE_CHECKING
 
 from rdflib import RDF, SH, SKOS, Graph, URIRef
 
 from rosprivacy.analysis.errors import InputErrors, OntologyError, shown
-from rosprivacy.ontology.turtle import RP, categories_of, local_name, read
+from rosprivacy.ontology.known import Known, Problem
+from rosprivacy.ontology.lines import Lines
+from rosprivacy.ontology.own_hierarchy import parent_problems, unfollowed
+from rosprivacy.ontology.own_names import taken_names
+from rosprivacy.ontology.turtle import RP, categories_of, read
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterator
 
     from rdflib.term import Node
 
-    from rosprivacy.analysis.model import Category
-
 SHAPES = "shapes.ttl"
-BELOW = "add skos:broader rp:PersonalData or a narrower one"
 
 
-def own_categories(data: bytes, file: str, ours: Graph, known: Iterable[Category]) -> tuple[Category, ...]:
-    """Return the categories of a user's ontology.
+def with_own(known: Known, data: bytes, file: str) -> Known:
+    """Return what is known once a user's ontology is read too.
 
     Parameters
     ----------
+    known
+        What is there before: the shipped ontology, and files before this one.
     data
         What stands in the file.
-    ours
-        The shipped graph; it is not changed.
-    known
-        Categories that are there already: the shipped ones, and those of files before.
 
     Raises
     ------
     InputErrors
-        With every problem: Turtle, a shape that is broken, a parent that is not there, a cycle, a name that is taken.
+        With every problem: Turtle, a shape that is broken, a parent that is not there, a cycle, a name that is taken,
+        a statement of the hierarchy that is not followed.
     """
-    try:
-        text = data.decode("utf-8")
-    except UnicodeDecodeError as error:
-        line = data[: error.start].count(b"\n") + 1
-        raise InputErrors([OntologyError(file, line, "not UTF-8", "save it as UTF-8")]) from None
+    text = _decoded(data, file)
     graph = read(text, file)
     subjects = sorted(set(graph.subjects(RDF.type, SKOS.Concept)), key=str)
     if not subjects:
         hint = "write each as: :Name a skos:Concept ; rp:label …"
         raise InputErrors([OntologyError(file, 0, "has no category", hint)])
-    known = list(known)
-    both = ours + graph
-    where = {subject: _line(text, str(subject)) for subject in subjects}
-
-    def problem(subject: Node, what: str, hint: str) -> OntologyError:
-        return OntologyError(file, where.get(subject, 0), f"<{shown(str(subject))}> {what}", hint)
-
-    problems = [problem(s, what, hint) for s, what, hint in _taken(graph, subjects, known)]
-    problems += [problem(s, what, hint) for s, what, hint in _parents(graph, both, subjects, known)]
-    problems += [problem(s, what, hint) for s, what, hint in _shape_problems(graph, ours, set(subjects))]
+    lines = Lines(text, graph)
+    both = known.graph + graph
+    there = {URIRef(category.iri) for category in known.categories}
+    fresh = [subject for subject in subjects if isinstance(subject, URIRef) and subject not in there]
+    categories = categories_of(both, fresh)
+    places = {**known.places, **{str(subject): f"{shown(file)}:{lines.of(subject)}" for subject in fresh}}
+    problems = [
+        *_unfit(subjects, there),
+        *taken_names(categories, replace(known, places=places)),
+        *parent_problems(graph, both, subjects, known),
+        *unfollowed(graph, subjects, known),
+        *_shape_problems(graph, known.graph, set(subjects)),
+    ]
     if problems:
-        raise InputErrors(problems)
-    return categories_of(both, subjects)
+        raise InputErrors([_error(problem, file, lines) for problem in problems])
+    return Known(both, (*known.categories, *categories), places)
 
 
-Problem = tuple["Node", str, str]
+def _decoded(data: bytes, file: str) -> str:
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError as error:
+        line = data[: error.start].count(b"\n") + 1
+        raise InputErrors([OntologyError(file, line, "not UTF-8", "save it as UTF-8")]) from None
 
 
-def _taken(graph: Graph, subjects: list[Node], known: list[Category]) -> Iterator[Problem]:
-    """Subjects that are ours, and names and labels that are taken: they would stand for two things."""
-    iris = {category.iri for category in known}
-    used = {spelling: c.iri for c in known for spelling in (c.name, c.label)}
+def _error(problem: Problem, file: str, lines: Lines) -> OntologyError:
+    subject = problem.subject
+    who = f"<{shown(str(subject))}>" if isinstance(subject, URIRef) else "[]"  # the name of a blank node is by chance
+    return OntologyError(file, lines.of(subject, problem.predicate), f"{who} {problem.what}", problem.hint)
+
+
+def _unfit(subjects: list[Node], there: set[URIRef]) -> Iterator[Problem]:
+    """Subjects that are no kind of this file's own."""
     for subject in subjects:
         if not isinstance(subject, URIRef):
-            yield subject, "has no IRI of its own", "name it, such as <urn:example:Badge>"
-            continue
-        if str(subject) in iris:
-            yield subject, "is there already", "what is there is not changed: make one of your own below it"
-            continue
-        labels = {str(label) for label in graph.objects(subject, RP.label)}
-        for name in sorted(labels | {local_name(str(subject))}):
-            if used.setdefault(name, str(subject)) != str(subject):
-                yield subject, f"and <{used[name]}> have the name or label {shown(name)!r}", "rename one"
-
-
-def _parents(graph: Graph, both: Graph, subjects: list[Node], known: list[Category]) -> Iterator[Problem]:
-    there = {URIRef(c.iri) for c in known} | {URIRef(iri) for c in known for iri in c.same_as} | set(subjects)
-    ours = {URIRef(c.iri) for c in known}
-    for subject in subjects:
-        parents = set(graph.objects(subject, SKOS.broader))
-        unknown = sorted(str(up) for up in parents - there if (up, RP.inVersion, None) not in both)
-        for iri in unknown:
-            yield (
-                subject,
-                f"has the unknown parent <{shown(iri)}>",
-                "name a category of rosprivacy categories, or your own",
-            )
-        if not parents & there and not unknown:
-            yield subject, "has no parent among the categories", BELOW
-        if _climbs_to_itself(graph, subject):
-            yield subject, "is broader than itself", "take one skos:broader of the circle away"
-        elif not unknown and not _climbs_to(both, subject, ours | {URIRef(i) for c in known for i in c.same_as}):
-            yield (
-                subject,
-                "leads to none of the shipped categories",
-                "add skos:broader rp:PersonalData or a narrower one",
-            )
-
-
-def _climbs_to_itself(graph: Graph, subject: Node) -> bool:
-    return any(subject in graph.transitive_objects(up, SKOS.broader) for up in graph.objects(subject, SKOS.broader))
-
-
-def _climbs_to(both: Graph, subject: Node, ends: set[URIRef]) -> bool:
-    return any(up in ends for up in both.transitive_objects(subject, SKOS.broader))
+            yield Problem(subject, "has no IRI of its own", "name it, such as <urn:example:Badge>")
+        elif subject in there:
+            hint = "what is there is not changed: make one of your own below it"
+            yield Problem(subject, "is there already", hint)
 
 
 def _shape_problems(graph: Graph, ours: Graph, subjects: set[Node]) -> Iterator[Problem]:
@@ -138,13 +109,5 @@ def _shape_problems(graph: Graph, ours: Graph, subjects: set[Node]) -> Iterator[
         focus = report.value(result, SH.focusNode)
         if focus in subjects:
             what, _, hint = str(report.value(result, SH.resultMessage)).partition("; ")
-            found.add((focus, what, hint or "see the shapes of the ontology"))
+            found.add(Problem(focus, what, hint or "see the shapes of the ontology"))
     yield from sorted(found, key=str)
-
-
-def _line(text: str, iri: str) -> int:
-    """The line where a subject is first written at the start of a statement; 0 if it cannot be told."""
-    name = re.escape(local_name(iri))
-    at_start = re.compile(rf"^\s*(?:[\w.-]*:{name}|<[^>\n]*{name}>)(?=[\s;,.]|$)", re.MULTILINE)
-    match = at_start.search(text)
-    return text.count("\n", 0, match.end()) + 1 if match else 0

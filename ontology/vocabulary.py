@@ -18,6 +18,7 @@ from rosprivacy.analysis.files_read import noted
 from rosprivacy.analysis.hierarchy import Hierarchy
 from rosprivacy.analysis.legal import close
 from rosprivacy.ontology import cache as kept
+from rosprivacy.ontology.known import Known
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -80,8 +81,7 @@ class Vocabulary:
             return self.categories[text]
         wanted = (self.respelt_as(text) or _whole(text)).casefold()
         for category in self.categories.values():
-            names = (category.name, category.iri, category.label, category.title, *category.synonyms, *category.same_as)
-            if wanted in {name.casefold() for name in names}:
+            if wanted in {name.casefold() for name in (*category.names, *category.same_as)}:
                 return category
         return None
 
@@ -187,15 +187,15 @@ def _parse(shipped: list[str], own: list[tuple[str, bytes]]) -> tuple[tuple[Cate
     from rosprivacy.ontology.turtle import categories_of, read, respelt_of  # noqa: PLC0415 - heavy
 
     graph = read("\n".join(shipped), "the shipped ontology")
-    categories = list(categories_of(graph))
+    known = Known(graph, categories_of(graph))
     problems = []
     for file, data in own:
-        from rosprivacy.ontology.own import own_categories  # noqa: PLC0415 - heavier
+        from rosprivacy.ontology.own import with_own  # noqa: PLC0415 - heavier
 
         try:
-            categories += own_categories(data, file, graph, categories)
+            known = with_own(known, data, file)
         except InputErrors as error:
             problems += [e for e in error.errors if isinstance(e, OntologyError)]
     if problems:
         raise InputErrors(problems)
-    return tuple(categories), respelt_of(graph)
+    return known.categories, respelt_of(graph)

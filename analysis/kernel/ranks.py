@@ -4,8 +4,8 @@ In: statements, a category, the hierarchy. Out: ``Decided``.
 
 Of statements that contradict each other the higher rank wins, then the one nearer in the hierarchy. ``mundane``,
 ``sensitive``, ``only`` and ``never`` are of one kind in this: each lets a category pass or closes the way to it. A leak
-is never outdone by a statement about a broader category, and the standard channels' file is not outdone by a glob of
-the user's whose last segment is not written out. Equals that contradict are an error.
+is never outdone by a statement about a broader or an overlapping category, and the standard channels' file is not
+outdone by a glob of the user's whose last segment is not written out. Equals that contradict are an error.
 """
 
 from __future__ import annotations
@@ -108,7 +108,7 @@ def in_words(statement: Statement) -> str:
 
 
 def _distance(statement: Statement, category: str, hierarchy: Hierarchy) -> int | None:
-    """How far the statement's category is; None if it does not apply; negative if it is narrower."""
+    """How far the statement's category is; None if it does not apply; negative if it is narrower or overlaps."""
     if not statement.categories:
         return FARTHEST
     if statement.role == "source":
@@ -119,12 +119,12 @@ def _distance(statement: Statement, category: str, hierarchy: Hierarchy) -> int 
 
 def _named_distance(statement: Statement, category: str, hierarchy: Hierarchy) -> int | None:
     up = [hierarchy.distance(category, named) for named in statement.categories]
-    down = [hierarchy.distance(named, category) for named in statement.categories]
     broader = [d for d in up if d is not None]
     if broader:
         return min(broader)
-    narrower = [d for d in down if d is not None]
-    return -min(narrower) if narrower and statement.role in MAY else None
+    down = [hierarchy.overlap(category, named) for named in statement.categories if statement.role in MAY]
+    common = [d for d in down if d is not None]
+    return -min(common) if common else None
 
 
 def _opposed(a: Statement, b: Statement, category: str, hierarchy: Hierarchy) -> bool:
@@ -155,9 +155,9 @@ def _clash(rank: Rank, statement: Statement, other_rank: Rank, other: Statement,
 
 
 def _too_broad(one: Statement, leak: Statement, hierarchy: Hierarchy) -> bool:
-    """Whether a statement is about a broader category than a leak: then it never outdoes it, whatever the ranks."""
-    narrower = (name for name in leak.categories if leak.role == "leak")
-    return any(name != a and hierarchy.distance(name, a) is not None for name in narrower for a in one.categories)
+    """Whether a statement is about more than a leak is about: then it never outdoes it, whatever the ranks."""
+    named = leak.categories if leak.role == "leak" else ()
+    return any(hierarchy.distance(a, name) is None for name in named for a in one.categories)
 
 
 def _decisive(lost: Statement, winners: Sequence[Statement]) -> Statement:

@@ -2,9 +2,10 @@
 
 In: the statements about an element, an emitted category, the hierarchy. Out: ``Facts``.
 
-A source names what it emits. A leak, a derivation and ``only`` apply if they name the same, a broader or a narrower
-category (*may*: what is emitted may be any narrower kind); a sanitizer, a conduit, ``mundane``, ``sensitive`` and
-``never`` if they name the same or a broader one (*must*). Which of them hold is decided in ``ranks.py``.
+A source names what it emits. A leak, a derivation and ``only`` apply if what they name has a common same-or-narrower
+category with what is emitted (*may*: what is emitted may be any narrower kind); a sanitizer, a conduit, ``mundane``,
+``sensitive`` and ``never`` if they name the same or a broader one (*must*). Which of them hold is decided in
+``ranks.py``.
 """
 
 from __future__ import annotations

@@ -178,7 +178,7 @@ WORDS = {
         "personal data were not looked at."
     ),
     "a.backups": "Backups are not stated, and taken to be none: {names}.",
-    "a.broader": "{data} is a part of this answer too: it is a broader kind, and may be {kinds}.",
+    "a.broader": "{data} is a part of this answer too: data of this kind may be {kinds}.",
     "a.database": "The graph of {robots} came from a database, where people can have changed it after it was loaded.",
     "a.unstated": (
         "{element} is labelled as cleaning {data}, but no label states how. It was taken as pseudonymisation: the data "
@@ -560,8 +560,8 @@ WORDS = {
     "m.4": "Kinds of data",
     "m.4.text": (
         "Kinds of data form a hierarchy. Data of a kind may be of any narrower kind: what a label says of a broader kind "
-        "as cleaned holds for the narrower; what it says of a narrower kind as let out may concern the broader. Each kind "
-        "carries what the law says of it, with the condition and the source, tied to the Data Privacy Vocabulary."
+        "as cleaned holds for the narrower; what it says of a narrower kind as let out may concern the broader, and what "
+        "it says so of another kind each one that shares a narrower kind with it. Each kind carries what the law says of it, with the condition and the source, tied to the Data Privacy Vocabulary."
     ),
     "m.5": "Pseudonymised data",
     "m.5.text": (

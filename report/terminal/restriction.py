@@ -31,7 +31,7 @@ def asked_at_verdict(report: Mapping[str, Any]) -> str:
 
 
 def may_be_asked(report: Mapping[str, Any], category: str) -> str:
-    """Return of what is asked for a broader category may be, with a space before; empty for what is asked for."""
+    """Return which of the kinds asked for data of another may be, with a space before; empty for what is asked for."""
     kinds = report["assumptions"].get("may_be_asked", {}).get(category)
     return f" (may be {named(kinds)})" if kinds else ""
 
@@ -45,5 +45,5 @@ def asked_lines(report: Mapping[str, Any]) -> Iterator[Line]:
         yield f"   only data that is {' or '.join(map(shown, said['data_types_asked']))}", ""
     if said["article9_only"]:
         yield "   only what can fall under Article 9(1) GDPR, or of which that is not known", ""
-    for category in said.get("may_be_asked", ()):
-        yield f"   and {category}, since it is broader{may_be_asked(report, category)}", ""
+    for category, kinds in said.get("may_be_asked", {}).items():
+        yield f"   and {category}, since data of this kind may be {named(kinds)}", ""

@@ -60,7 +60,7 @@ def analyze(
     view
         ``declared``: each node does what its own profile says; ``enforced``: what DDS holds its enclave to (rule S6).
     categories
-        Answer for these, narrower and broader ones only; empty for all.
+        Answer for these, narrower, broader and overlapping ones only; empty for all.
     article9
         Answer only for what can fall under Article 9(1) GDPR, or of which that is not known.
     data_types

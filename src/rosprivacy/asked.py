@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 def asked_for(vocabulary: Vocabulary, settings: Settings) -> set[str] | None:
     """Return the categories that the answer is about; None for all.
 
-    These are what the filters name, narrower kinds, and broader ones: data of these may be of the kind asked for (S7,
-    S11).
+    These are what the filters name, narrower kinds, and what is broader than one of them (so all kinds that overlap
+    what is asked for): data of these may be of the kind asked for (S7, S11).
     """
     named = _named(vocabulary, settings)
     if named is None:
@@ -31,10 +31,11 @@ def may_be(vocabulary: Vocabulary, settings: Settings, emitted: Iterable[str]) -
     named = _named(vocabulary, settings)
     if named is None:
         return {}
-    broader = {name: set(vocabulary.hierarchy.broader(name)) for name in named}
-    first = {name for name in named if not broader[name] & named}
-    found = {name: sorted(kind for kind in first if name in broader[kind]) for name in sorted(emitted)}
-    return {name: kinds for name, kinds in found.items() if kinds and name not in named}
+    above = {name: vocabulary.hierarchy.ancestors[name] for name in named}
+    first = {name for name in named if not set(above[name]) & named - {name}}
+    common = {name: [up for up in above.values() if name in up] for name in sorted(set(emitted) - named)}
+    found = {name: sorted(kind for kind in first if any(kind in up for up in both)) for name, both in common.items()}
+    return {name: kinds for name, kinds in found.items() if kinds}
 
 
 def _named(vocabulary: Vocabulary, settings: Settings) -> set[str] | None:

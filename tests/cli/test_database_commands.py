@@ -75,7 +75,7 @@ class TestLoad:
     def test_it_says_what_it_wrote_and_the_same_again_changes_nothing(self, driver: Driver) -> None:
         first = run(*LOAD)
         assert (first.returncode, first.stderr) == (0, "")
-        assert first.stdout == "robot h1 is written: 172 elements, 220 flows, 3 findings; verdict leak\n"
+        assert first.stdout == "robot h1 is written: 172 elements, 221 flows, 3 findings; verdict leak\n"
         assert "is there already, nothing to change" in run(*LOAD).stdout
         assert count(driver, "(:Finding {robot: 'h1'})") == 3
 

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.model import Place, Statement
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterator
+    from collections.abc import Callable, Collection, Iterator, Mapping
 
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.model import NonRosFacts
@@ -94,7 +94,7 @@ class Brute:
     along: set[tuple[int, int, Data]] = field(default_factory=set)  # what the last spread sent along flows
 
     def nearness(self, statement: Statement, category: str) -> int | None:
-        """S7: steps up to what is named; negative if it is narrower and the role is one of *may*."""
+        """S7: steps up to what is named; negative if the two only meet in a narrower kind and the role is of *may*."""
         if not statement.categories or (statement.role == "only" and self.closes(statement, category)):
             return 1_000_000
         if statement.role == "source":
@@ -102,8 +102,12 @@ class Brute:
         up = [d for named in statement.categories if (d := self.hierarchy.distance(category, named)) is not None]
         if up:
             return min(up)
-        down = [d for named in statement.categories if (d := self.hierarchy.distance(named, category)) is not None]
+        down = [above[category] for above in self.common(statement, category)]
         return -min(down) if down and statement.role in MAY else None
+
+    def common(self, s: Statement, category: str) -> list[Mapping[str, int]]:
+        """S7: of the kinds that data of a category may be, and that a statement is about, what is broader."""
+        return [up for up in self.hierarchy.ancestors.values() if category in up and set(s.categories) & set(up)]
 
     def named(self, vertex: int, category: str) -> list[Statement]:
         """S7: the statements of sources that name a channel for a category, and hold."""
@@ -118,8 +122,7 @@ class Brute:
     def closes(self, s: Statement, category: str) -> bool:
         """Whether a statement about a channel says that it does not carry a category."""
         if s.role == "only":
-            up, down = self.hierarchy.ancestors[category], self.hierarchy.ancestors
-            return not any(k in up or category in down[k] for k in s.categories)
+            return not self.common(s, category)
         return s.role in ("mundane", "never")
 
     def said_of(self, vertex: int, category: str) -> list[Statement]:
@@ -142,8 +145,8 @@ class Brute:
 
     def beats(self, t: Statement, s: Statement, category: str) -> bool:
         """S7: the higher rank, then the nearer; S13: a user's glob with an open end does not beat the standard file."""
-        if s.role == "leak" and self.about_a_broader_one(s, t):
-            return False  # never outdone by a statement about a broader kind, whatever the ranks
+        if s.role == "leak" and self.about_more(s, t):
+            return False  # never outdone by a statement about a broader or an overlapping kind, whatever the ranks
         if standard(s) and open_ended(t):
             return False
         if standard(t) and open_ended(s):
@@ -153,8 +156,9 @@ class Brute:
         assert other is not None
         return (*t.rank, -near) > (*s.rank, -other)
 
-    def about_a_broader_one(self, s: Statement, t: Statement) -> bool:
-        return any(k != c and k in self.hierarchy.ancestors[c] for c in s.categories for k in t.categories)
+    def about_more(self, s: Statement, t: Statement) -> bool:
+        """Whether some of what the second is about is nothing that the first is about."""
+        return any(c not in self.hierarchy.ancestors[k] for c in s.categories for k in t.categories)
 
     def holding(self, vertex: int, category: str) -> list[Statement]:
         """S7: the statements that apply, but for those that a higher or a nearer one contradicts."""
@@ -213,7 +217,8 @@ class Brute:
             for s in applying:
                 for t in applying:
                     same = not self.beats(s, t, category) and not self.beats(t, s, category)
-                    broad = {s.role, t.role} == {"leak", "conduit"} and self.about_a_broader_one(s, t)
+                    leak, other = (s, t) if s.role == "leak" else (t, s)
+                    broad = (leak.role, other.role) == ("leak", "conduit") and self.about_more(leak, other)
                     whole = {s.role, t.role} <= OF_EVERY_KIND and s.rank == t.rank
                     if self.opposed(s, t, category) and ((same and not broad) or whole):
                         return True

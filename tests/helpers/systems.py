@@ -32,12 +32,12 @@ from tests.helpers.brute import Brute
 if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Analysis
 
-#      Any
-#     /   \
-#   Bio   Loc      Deep0 > Deep1 > … 70 more, so that two planes need three words
-#   / \
-#  Face Voice
-PARENTS = {"Any": (), "Bio": ("Any",), "Loc": ("Any",), "Face": ("Bio",), "Voice": ("Bio",)}
+#        Any
+#       /   \
+#     Bio   Loc    70 more without a broader one, so that two planes need three words
+#    /   \  /
+#  Face  Track     a kind of both: data of the one may be of the other
+PARENTS = {"Any": (), "Bio": ("Any",), "Loc": ("Any",), "Face": ("Bio",), "Track": ("Bio", "Loc")}
 HIERARCHY = Hierarchy.of(Category(n, f"urn:{n}", n, n, n, up) for n, up in PARENTS.items())
 WIDE = [f"K{i:02}" for i in range(70)]
 WIDE_HIERARCHY = Hierarchy.of(Category(n, f"urn:{n}", n, n, n) for n in WIDE)

@@ -125,9 +125,21 @@ class TestOwnOntology:
         [
             ("skos:broader rp:Health", "skos:broader :PulseCurve", "is broader than itself"),
             ("skos:broader rp:Health", "skos:broader :B . :B a skos:Concept ; skos:broader :PulseCurve", "than itself"),
-            ('rp:label "WardBadge"', 'rp:label "PulseCurve"', "have the name or label 'PulseCurve'"),
-            ('rp:label "PulseCurve"', 'rp:label "Video"', "have the name or label 'Video'"),
-            (":PulseCurve a", "<urn:example:other/Video> a", "have the name or label 'Video'"),
+            (
+                'rp:label "WardBadge"',
+                'rp:label "PulseCurve"',
+                "has the name 'PulseCurve', and so has <urn:example:clinic:PulseCurve> ",
+            ),
+            (
+                'rp:label "PulseCurve"',
+                'rp:label "Video"',
+                "has the name 'Video', and so has <urn:x-rosprivacy:Video>, ",
+            ),
+            (
+                ":PulseCurve a",
+                "<urn:example:other/Video> a",
+                "has the name 'Video', and so has <urn:x-rosprivacy:Video>, ",
+            ),
             (
                 '    skos:definition "The pulse of a patient over time."@en ;\n',
                 "",

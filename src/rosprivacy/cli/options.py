@@ -163,7 +163,7 @@ Categories = Annotated[
         metavar="NAME",
         autocompletion=complete_category,
         show_default=False,
-        help="Answer for this category, narrower and broader ones only; may be repeated.",
+        help="Answer for this category, narrower, broader and overlapping ones only; may be repeated.",
         rich_help_panel=ASKED,
     ),
 ]

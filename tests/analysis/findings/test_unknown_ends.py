@@ -183,7 +183,7 @@ class TestRestrictions:
         first, *lines = done.stdout.splitlines()
         assert first == "leak: data can reach a leak; only Biometric was asked for"
         assert any(line.startswith("1. PersonalData (may be Biometric): /camera -> /uplink   [") for line in lines)
-        assert "   and PersonalData, since it is broader (may be Biometric)" in lines
+        assert "   and PersonalData, since data of this kind may be Biometric" in lines
         assert analysis(cli, "-c", "Biometric")["assumptions"]["may_be_asked"] == {"PersonalData": ["Biometric"]}
 
     @pytest.mark.parametrize(

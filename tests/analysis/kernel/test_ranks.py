@@ -29,9 +29,9 @@ def ranked(draw: st.DrawFn) -> System:
     one_file, two = st.just("a"), st.sampled_from(["a", "b"])
     where = two if draw(st.integers(0, 2)) == 0 else one_file
 
-    def placed(one: Statement, *, named: bool) -> Statement:
-        rank, naming = draw(st.sampled_from(NAMINGS)) if named else NAMINGS[0]
-        return replace(one, rank=(1, rank), naming=naming, place=Place(draw(where), 1))
+    def placed(one: Statement, vertex: int) -> Statement:
+        rank, naming = draw(st.sampled_from(NAMINGS)) if vertex not in system.facts else NAMINGS[0]
+        return replace(one, rank=(1, rank), naming=naming, place=Place(draw(where), vertex + 1))
 
     category = st.sampled_from(tuple(PARENTS))
     more = st.builds(
@@ -42,7 +42,7 @@ def ranked(draw: st.DrawFn) -> System:
     for vertex, said in system.said.items():
         extra = st.one_of(more, plain) if vertex in channels else words
         some = [*said, *draw(st.lists(extra, max_size=2))]
-        system.said[vertex] = [placed(one, named=vertex not in system.facts) for one in dict.fromkeys(some)]
+        system.said[vertex] = [placed(one, vertex) for one in dict.fromkeys(some)]
         if draw(st.booleans()) and vertex in channels:
             system.said[vertex].append(SHIPPED)
         written = [names[b].name for a, b in system.edges if a == vertex and b in channels]
