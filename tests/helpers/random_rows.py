@@ -15,7 +15,7 @@ def random_systems(count: int) -> list[System]:
     """The same each time."""
     some: list[System] = []
 
-    @settings(max_examples=2 * count, derandomize=True, database=None, phases=[Phase.generate], deadline=None)
+    @settings(max_examples=3 * count, derandomize=True, database=None, phases=[Phase.generate], deadline=None)
     @given(systems())
     def take(system: System) -> None:
         if analysed(system) is not None:

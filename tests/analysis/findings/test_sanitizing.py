@@ -81,8 +81,8 @@ def test_a_category_that_is_not_asked_for_is_left_out() -> None:
 def test_whether_a_method_is_stated_is_as_the_statement_says_that_decides(*, stated: bool) -> None:
     """Rule S7. The case that differed: the CNIL's record asked the highest rank, the document any statement."""
     high, low = (
-        Statement("sanitizer", ("Voice",), (rank, 0), Place("labels", rank), Method.PSEUDONYMISE, stated=told)
+        Statement("sanitizer", ("Face",), (rank, 0), Place("labels", rank), Method.PSEUDONYMISE, stated=told)
         for rank, told in ((2, stated), (1, not stated))
     )
-    assert facts("/n0", [low, high], "Voice", HIERARCHY).unstated is not stated
-    assert facts("/n0", [high, low], "Voice", HIERARCHY).unstated is not stated
+    assert facts("/n0", [low, high], "Face", HIERARCHY).unstated is not stated
+    assert facts("/n0", [high, low], "Face", HIERARCHY).unstated is not stated

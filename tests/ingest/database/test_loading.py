@@ -291,7 +291,7 @@ class TestNames:
 LOADER = """
 import sys
 from rosprivacy.private_neo4j import connection as database
-from rosprivacy.ingest.database import loading as neo4j as loading
+from rosprivacy.ingest.database import loading
 from rosprivacy.ontology.vocabulary import load as vocabulary
 from tests.helpers.graphs import factory, rows_of
 loading.BATCH = 1000
