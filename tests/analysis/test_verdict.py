@@ -41,8 +41,8 @@ def test_the_verdict_on_the_only_robot_is_that_on_the_system(system: System, acc
 
 def test_what_is_accepted_is_no_leak_of_a_robot_either() -> None:
     """The case that differed: the database's two copies of the rule did not know that a finding can be accepted."""
-    system = System(2, 1, [(0, 2), (2, 1)], {0: [statement("source", "Voice")], 1: [statement("leak", "Voice")]}, {})
-    system.said[2] = [statement("sensitive", "Voice")]
+    system = System(2, 1, [(0, 2), (2, 1)], {0: [statement("source", "Face")], 1: [statement("leak", "Face")]}, {})
+    system.said[2] = [statement("sensitive", "Face")]
     assert one_robot(system.analyse()) is Verdict.LEAK
     analysis = system.analyse(Options(accepts=lambda _: True))
     assert [finding.accepted for finding in analysis.findings] == [True]
@@ -68,7 +68,7 @@ def test_a_system_leaks_if_one_of_its_robots_does(system: System, data: st.DataO
 
 
 def test_a_robot_that_no_data_reaches_is_not_settled() -> None:
-    analysis = System(1, 0, [], {0: [statement("source", "Voice")]}, {}).analyse()
+    analysis = System(1, 0, [], {0: [statement("source", "Face")]}, {}).analyse()
     told = robot_verdicts(analysis, ["", "other"], lambda element: element.robot)
     assert told == {"": Verdict.NO_LEAK_FOUND, "other": Verdict.UNDETERMINED}
     assert Element("node", "/n0") in {carried.element for carried in analysis.carried}
