@@ -514,6 +514,10 @@ def test_the_schema_accepts_what_uses_every_key(tmp_path: Path) -> None:
     assert validator().is_valid(FULL)
 
 
+# What no schema says: it takes every word as a category, since synonyms are many, and compares no two lists.
+BEYOND = ("unknown category", "is under only and under never")
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("way", list(places(FULL)), ids=lambda way: ".".join(map(str, way)))
 def test_the_reader_and_the_schema_agree_on_a_wrong_type_anywhere(tmp_path: Path, way: tuple[Any, ...]) -> None:
@@ -525,10 +529,10 @@ def test_the_reader_and_the_schema_agree_on_a_wrong_type_anywhere(tmp_path: Path
             unknown = accepted = True
         except InputErrors as error:
             accepted = False
-            unknown = all("unknown category" in problem.problem for problem in error.errors)
+            unknown = all(any(word in problem.problem for word in BEYOND) for problem in error.errors)
         if accepted:
             assert validator().is_valid(document), f"read, but not valid: {shown}"
-        elif not unknown:  # the schema takes every word as a category: synonyms are many
+        elif not unknown:
             assert not validator().is_valid(document), f"valid, but not read: {shown}"
 
 
