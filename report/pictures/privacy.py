@@ -73,8 +73,12 @@ class Reached:
         """What data gets to and does not end at without leaving or getting out; of some elements, or of all."""
         for key in self._of if keys is None else keys:
             vertices = self._of[key]
-            if any(self._goes_on(vertex) for vertex in vertices):
+            if self._drawn(key, vertices):
                 yield self._box(key, vertices)
+
+    def _drawn(self, key: Key, vertices: list[int]) -> bool:
+        """Whether data goes on from there or gets out, or the element is open: a storage that cleans has a country."""
+        return bool(self._open.get(key)) or any(self._goes_on(vertex) for vertex in vertices)
 
     def _goes_on(self, vertex: int) -> int:
         found = self._found
@@ -90,6 +94,8 @@ class Reached:
             taken = found.keeps.get(target, found.all_bits) | found.leaks.get(target, 0) | self._ends.get(target, 0)
             for before, _ in found.derives.get(target, ()):
                 taken |= 1 << before
+            for category in self._open.get(self.graph.elements[target].identity, ()):
+                taken |= found.both(category)
             bits &= taken
         plain, hidden = found.planes(bits)
         return found.names(bits), bool(hidden) and not plain
@@ -104,7 +110,7 @@ class Reached:
         """
         ended, apart = [], 0
         for key, vertices in self._of.items():
-            if key[0] in beside or any(self._goes_on(vertex) for vertex in vertices):
+            if key[0] in beside or self._drawn(key, vertices):
                 continue
             if key[1] not in CHANNELS and any(self._found.arrives.get(vertex, 0) & self._mask for vertex in vertices):
                 ended.append(key[2])
