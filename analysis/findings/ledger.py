@@ -99,7 +99,7 @@ def ledger(
     --------
     >>> from rosprivacy.analysis.findings.findings import analyse
     >>> from rosprivacy.analysis.hierarchy import Hierarchy
-    >>> from rosprivacy.analysis.model import Bound, Element, Flow, FlowGraph, Place, Statement
+    >>> from rosprivacy.analysis.model import Bound, Category, Element, Flow, FlowGraph, Place, Statement
     >>> graph = FlowGraph(
     ...     (Element("node", "/camera"), Element("node", "/uplink"), Element("topic", "/image")),
     ...     (Flow(0, 2, "publish"), Flow(2, 1, "subscribe")), denied=(), profiles=(),
@@ -107,7 +107,7 @@ def ledger(
     >>> def said(role, line):
     ...     return (Statement(role, ("Video",), (1, 1), Place("labels.yaml", line)),)
     >>> bound = Bound({0: said("source", 3), 1: said("leak", 4), 2: said("never", 5)})
-    >>> hierarchy = Hierarchy({"Video": {"Video": 0}})
+    >>> hierarchy = Hierarchy.of([Category("Video", "urn:Video", "Video", "Video", "Video")])
     >>> rows = ledger(analyse(graph, bound, hierarchy), bound, hierarchy)
     >>> [(row.by, row.element.name, row.leak.name) for row in rows]
     [('never', '/image', '/uplink')]

@@ -55,6 +55,8 @@ class Result(Answer):
     def findings(self) -> Findings:
         """The findings as a table: a sequence of ``Finding``, with ``to_rows()``; of a fleet one of each pattern.
 
+        Examples
+        --------
         >>> import rosprivacy
         >>> result = rosprivacy.analyze("examples/factory/before.policy.xml", "examples/factory/run2.labels.yaml")
         >>> [(finding.source.name, finding.leak.name) for finding in result.findings]
