@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-import shutil
+import os
+import sys
 from contextlib import chdir
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -237,14 +238,14 @@ def stored(neo4j_server: Connection, tmp_path_factory: pytest.TempPathFactory) -
 
 
 @pytest.fixture(scope="module")
-def on_spark(tmp_path_factory: pytest.TempPathFactory) -> Result:
-    if not shutil.which("java"):
-        pytest.skip("no Java")
+def on_spark() -> Result:
+    pytest.importorskip("pyspark", reason="without the [spark] extra")
     from rosprivacy.settings import Settings
     from rosprivacy.spark.fleet_on_spark import run_on_spark
 
-    assert tmp_path_factory
-    with chdir(ROOT):
+    with chdir(ROOT), pytest.MonkeyPatch.context() as patch:
+        # Spark's Java lives as long as the process, with the environment of its start: workers find the tests, too.
+        patch.setenv("PYTHONPATH", os.pathsep.join([str(ROOT), *sys.path]))
         return run_on_spark(FLEET, Settings())
 
 
