@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from rosprivacy.analysis.modes import Paths
 from rosprivacy.cli.inputs import Inputs, reads_system, refuse
-from rosprivacy.cli.options import ASKED, Engine, FailOn, Format, Output, PathsShown
+from rosprivacy.cli.options import ASKED, Engine, FailOn, Format, Output
 from rosprivacy.cli.output import emit
 
 if TYPE_CHECKING:
@@ -67,9 +68,7 @@ def analyze(
             rich_help_panel=ASKED,
         ),
     ] = None,
-    paths: Annotated[
-        PathsShown, typer.Option(help="Ways to list for each finding.", rich_help_panel=ASKED)
-    ] = PathsShown.witness,
+    paths: Annotated[Paths, typer.Option(help="Ways to list for each finding.", rich_help_panel=ASKED)] = Paths.witness,
     max_paths: Annotated[
         int, typer.Option(min=1, metavar="N", help="Bound on the listed ways of a finding.", rich_help_panel=ASKED)
     ] = 100,

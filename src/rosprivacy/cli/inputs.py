@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, get_args, get_type_hints
 
 import typer
 
+from rosprivacy.analysis.modes import View
 from rosprivacy.cli.driver import driver_of
 from rosprivacy.cli.options import (
     Categories,
@@ -29,7 +30,6 @@ from rosprivacy.cli.options import (
     Server,
     SixLists,
     Standard,
-    View,
     ViewChosen,
 )
 from rosprivacy.cli.output import progress_of

@@ -8,6 +8,8 @@ from typing import Annotated
 
 import typer
 
+from rosprivacy.analysis.modes import View
+
 
 class Format(StrEnum):
     """Of the report."""
@@ -18,21 +20,6 @@ class Format(StrEnum):
     json_ld = "json-ld"
     sarif = "sarif"
     cnil_pia = "cnil-pia"
-
-
-class View(StrEnum):
-    """Rule S6."""
-
-    declared = "declared"
-    enforced = "enforced"
-
-
-class PathsShown(StrEnum):
-    """Which paths to list for a finding."""
-
-    witness = "witness"
-    disjoint = "disjoint"
-    all = "all"
 
 
 class FailOn(StrEnum):
