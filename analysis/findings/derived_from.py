@@ -67,9 +67,10 @@ def _of(net: Net, source: int) -> Iterator[Origin]:
         makers = _makers(whole, both)
         if not makers:
             continue
+        # Where the category also arrives ready-made through a leak, only the search past no leak shows that it is made.
         free = search(net, [source], found.all_bits, {v: bits & both for v, bits in found.leaks.items()})
         not_past = _makers(free, both)
-        for maker in sorted(makers):
+        for maker in sorted(makers.keys() | not_past.keys()):
             past = maker not in not_past
             way = path_to(net, whole, maker, makers[maker]) if past else path_to(net, free, maker, not_past[maker])
             vertices = tuple(vertex for _, vertex, _ in way)
