@@ -182,7 +182,7 @@ class _Run:
         wanted = [c for c in categories if question.asked is None or c in question.asked]
         mask = sum(ours.both(category) for category in wanted)
         numbers = [i for i, name in enumerate(categories) if name in wanted]
-        ways = {i: forms(i, len(categories), steps) for i in numbers}
+        ways = {i: forms(i, ours.bits, steps) for i in numbers}
         kernels = ready.map(partial(workers.kernel, forms=ways, hierarchy=question.hierarchy), keep=True)
 
         leaving = self._carry(middle, kernels, ours)
