@@ -9,7 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.kernel.search import START, Net, Search, path_to, search
+from rosprivacy.analysis.kernel.search import START, Search, path_to, search
+from rosprivacy.analysis.kernel.states import Net
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

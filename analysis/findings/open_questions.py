@@ -15,8 +15,8 @@ from rosprivacy.analysis.kernel.search import present, search
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
 
-    from rosprivacy.analysis.kernel.search import Net
     from rosprivacy.analysis.kernel.spread import Spread
+    from rosprivacy.analysis.kernel.states import Net
 
 
 def open_questions(net: Net, mask: int, unknown: Collection[int] = ()) -> tuple[OpenQuestion, ...]:

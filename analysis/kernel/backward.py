@@ -19,6 +19,7 @@ import numpy as np
 from rosprivacy.analysis.kernel.arrays import as_bits, as_numbers
 from rosprivacy.analysis.kernel.edges import Edges
 from rosprivacy.analysis.kernel.fixpoint import fixpoint
+from rosprivacy.analysis.kernel.states import back_from
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
@@ -104,13 +105,8 @@ def backward(found: Spread, places: Mapping[int, int], opened: Opened = NOTHING_
         targets.append(targets[index])
         targets[index] = number
     vertices = count + len(restricted)
-    begins = {v: bits & _taken_up(found, v, keeps) for v, bits in places.items()}
-    turned = []  # what is made there of what arrives
-    for vertex, pairs in found.derives.items():
-        for before, after in pairs:
-            turned.append((vertex, after, before))
-            if places.get(vertex, 0) >> after & 1:
-                begins[vertex] = begins.get(vertex, 0) | 1 << before
+    begins = {v: back_from(found, v, bits, opened.elements.get(v, 0)) for v, bits in places.items()}
+    turned = [(vertex, after, before) for vertex, pairs in found.derives.items() for before, after in pairs]
     passing = {n: found.flow_keeps[i] | opened.flows.get(i, 0) for n, i in enumerate(restricted, count)}
     nodes = bisect_left(graph.elements, True, key=lambda element: element.is_channel)  # channels are last
     edges = Edges.of(vertices, np.array(targets, np.int64), np.array(sources, np.int64), nodes)
@@ -121,8 +117,3 @@ def backward(found: Spread, places: Mapping[int, int], opened: Opened = NOTHING_
         np.array(turned, np.int64).reshape(-1, 3),
     )
     return Backward(as_numbers(entering[:count]), as_numbers(leaving[:count]))
-
-
-def _taken_up(found: Spread, vertex: int, keeps: Mapping[int, int]) -> int:
-    """A node is reached by all that arrives; a channel takes up only what it carries."""
-    return keeps.get(vertex, found.all_bits) if found.graph.elements[vertex].is_channel else found.all_bits

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.kernel.backward import NOTHING_OPENED, Opened
+from rosprivacy.analysis.kernel.states import back, back_from, onward
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -46,7 +47,8 @@ class Nearest:
             entering[target].append((source, passing))
         result = cls(found, opened, defaultdict(list), leaving)
         seen: dict[int, int] = defaultdict(int)
-        new = {v: result._before(v, bits, 0) for v, bits in places.items() if bits}
+        more = opened.elements
+        new = {v: back_from(found, v, bits, more.get(v, 0)) for v, bits in places.items() if bits}
         level = 0
         while new:
             further: dict[int, int] = defaultdict(int)
@@ -57,23 +59,9 @@ class Nearest:
                     result.levels[vertex].append((level, fresh))
                     for source, passing in entering.get(vertex, ()):
                         further[source] |= fresh & passing
-            new = {v: before for v, bits in further.items() if (before := result._before(v, 0, bits))}
+            new = {v: before for v, bits in further.items() if (before := back(found, v, bits, more.get(v, 0)))}
             level += 1
         return result
-
-    def _before(self, vertex: int, here: int, onward: int) -> int:
-        """The bits that have to arrive for some to be there, or to leave."""
-        keeps = self.keeps(vertex)
-        channel = self.found.graph.elements[vertex].is_channel
-        bits = (here & keeps if channel else here) | onward & keeps
-        for before, after in self.found.derives.get(vertex, ()):
-            if (here | onward) >> after & 1:
-                bits |= 1 << before
-        return bits
-
-    def keeps(self, vertex: int) -> int:
-        """The bits that pass an element as they are."""
-        return self.found.keeps.get(vertex, self.found.all_bits) | self.opened.elements.get(vertex, 0)
 
     def after(self, vertex: int, bits: int) -> int:
         """The nearest place for bits that leave an element; -1 if there is none."""
@@ -88,10 +76,8 @@ class Nearest:
             level, vertex, bits = min((self._level(v, bits) for v, bits in arriving), default=(FAR, -1, 0))
             if level in (0, FAR):
                 return vertex if level == 0 else -1
-            onward = bits & self.keeps(vertex)
-            for before, after in self.found.derives.get(vertex, ()):
-                onward |= (bits >> before & 1) << after
-            arriving = [(target, onward & passing) for target, passing in self.leaving.get(vertex, ())]
+            leaving = onward(self.found, vertex, bits, self.opened.elements.get(vertex, 0))
+            arriving = [(target, leaving & passing) for target, passing in self.leaving.get(vertex, ())]
 
     def _level(self, vertex: int, bits: int) -> tuple[int, int, int]:
         """How far some bits are from a place: the nearest of them; vertex; these bits."""

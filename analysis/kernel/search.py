@@ -15,42 +15,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from rosprivacy.analysis.kernel.spread import Spread
+    from rosprivacy.analysis.kernel.states import Net
 
 START = -1
-
-
-@dataclass(frozen=True, slots=True)
-class Net:
-    """The flows of a spread, by the vertex that they leave: (index, target, bits that pass it).
-
-    Attributes
-    ----------
-    flows
-        All.
-    inner
-        Those from what is written to a wildcard to what is read from it: one element to the reader, and so no step.
-    """
-
-    spread: Spread
-    flows: Mapping[int, list[tuple[int, int, int]]]
-    inner: Mapping[int, list[tuple[int, int, int]]]
-
-    @classmethod
-    def of(cls, spread: Spread) -> Net:
-        """Index the flows that anything leaves along."""
-        graph, everything = spread.graph, spread.all_bits
-        flows: dict[int, list[tuple[int, int, int]]] = defaultdict(list)
-        inner: dict[int, list[tuple[int, int, int]]] = defaultdict(list)
-        for index, flow in enumerate(graph.flows):
-            if spread.leaves.get(flow.source):
-                passing = spread.flow_keeps.get(index, everything)
-                if graph.elements[flow.target].is_channel:  # a channel takes up only what it carries
-                    passing &= spread.keeps.get(flow.target, everything)
-                flows[flow.source].append((index, flow.target, passing))
-                written, read = graph.elements[flow.source], graph.elements[flow.target]
-                if written.pattern and written.shown_as == read.shown_as:
-                    inner[flow.source].append((index, flow.target, passing))
-        return cls(spread, flows, inner)
 
 
 @dataclass(slots=True)

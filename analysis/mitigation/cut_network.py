@@ -12,12 +12,12 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.kernel.bits import bits_of
+from rosprivacy.analysis.kernel.states import States, made
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 
-    from rosprivacy.analysis.kernel.search import Net
-    from rosprivacy.analysis.kernel.spread import Spread
+    from rosprivacy.analysis.kernel.states import Net
 
 BEGIN, END = 0, 1  # the two states that every network has
 At = tuple[int, int]  # vertex, number of the category
@@ -101,22 +101,23 @@ class _Builder:
     """Walks forward from what the sources of one group emit, to where one category may not get."""
 
     def __init__(self, net: Net, group: Group, category: int, found: CutNetwork, *, past: bool) -> None:
-        self.net = net
-        self.spread: Spread = net.spread
-        self.bits = net.spread.bits
+        self.spread, self.bits = net.spread, net.spread.bits
         self.group = group
         self.category = category
         self.found = found
         self.past = past
+        self.own = self.bits.both(category)
+        ends = (vertex for vertex in self.spread.leaks if not past and (vertex, category) not in group.accepted)
+        self.states = States(net, self.spread.all_bits, {v: self.spread.leaks[v] & self.own for v in ends})
         self.numbers: dict[tuple[bool, int, int], int] = {}
         self.waiting: deque[tuple[bool, int, int]] = deque()
 
     def build(self) -> None:
         for source in self.group.sources:
-            for i in bits_of(self.bits.merged(self.spread.emits.get(source, 0))):
+            for i in bits_of(self.bits.merged(self.states.emitted(source))):
                 self._arc(BEGIN, self._state(True, source, i), i)
-            for index, target, passing in self.net.flows.get(source, ()):
-                for i in bits_of(self.bits.merged(self.spread.flow_emits.get(index, 0) & passing)):
+            for index, target, bits in self.states.single(source):
+                for i in bits_of(self.bits.merged(bits)):
                     self._arc(BEGIN, self._state(False, target, i), i, flow=index)
         while self.waiting:
             leaving, vertex, i = self.waiting.popleft()
@@ -135,19 +136,16 @@ class _Builder:
     def _arc(self, tail: int, head: int, category: int, flow: int = -1, channel: int = -1) -> None:
         self.found.arcs.append(Arc(tail, head, category, flow, channel))
 
-    def _stops(self, vertex: int, i: int) -> bool:
-        """Whether ways to leaks end here: at a leak of the category that is not accepted."""
-        if self.past:
-            return False
-        leaks = self.spread.leaks.get(vertex, 0) & self.bits.both(i)
-        return bool(leaks and i == self.category and (vertex, i) not in self.group.accepted)
+    def _stops(self, vertex: int, i: int) -> int:
+        """Whether paths to leaks end here: at a leak of the category that is not accepted."""
+        return self.states.stop.get(vertex, 0) & self.bits.both(i)
 
     def _open(self, vertex: int, i: int) -> bool:
         """Whether data of the category may not get here."""
         at = (vertex, i)
         if self.past:
             return i == self.category and at in self.group.others
-        return at not in self.group.kept and self._stops(vertex, i)
+        return at not in self.group.kept and bool(self._stops(vertex, i))
 
     def _arrive(self, vertex: int, i: int) -> None:
         here = self._state(False, vertex, i)
@@ -155,22 +153,21 @@ class _Builder:
             self._arc(here, END, i)
         if self._stops(vertex, i):
             return
-        channel = vertex if self.spread.graph.elements[vertex].is_channel else -1
-        if self.spread.keeps.get(vertex, self.spread.all_bits) & self.bits.both(i):
+        arriving = self.bits.both(i)
+        leaving = self.bits.merged(self.states.leaving(vertex, arriving))
+        if leaving >> i & 1:
+            channel = vertex if self.spread.graph.elements[vertex].is_channel else -1
             self._arc(here, self._state(True, vertex, i), i, channel=channel)
-        for before, after in self.spread.derives.get(vertex, ()):
-            j = self.bits.category(after)
-            if self.bits.category(before) == i and j != i:
-                if self._open(vertex, j):
-                    self._arc(here, END, j)
-                if not self._stops(vertex, j):
-                    self._arc(here, self._state(True, vertex, j), j)
+        for j in bits_of(self.bits.merged(made(self.spread, vertex, arriving) & ~arriving)):
+            if self._open(vertex, j):
+                self._arc(here, END, j)
+            if leaving >> j & 1:
+                self._arc(here, self._state(True, vertex, j), j)
 
     def _leave(self, vertex: int, i: int) -> None:
         here = self._state(True, vertex, i)
-        for index, target, passing in self.net.flows.get(vertex, ()):
-            if passing & self.bits.both(i):
-                self._arc(here, self._state(False, target, i), i, flow=index)
+        for index, target, _ in self.states.after(vertex, self.bits.both(i)):
+            self._arc(here, self._state(False, target, i), i, flow=index)
 
 
 def _pruned(found: CutNetwork) -> CutNetwork:

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.findings.findings import Options, analyse
 from rosprivacy.analysis.kernel.bits import bits_of
-from rosprivacy.analysis.kernel.search import Net
 from rosprivacy.analysis.kernel.spreading import spread
+from rosprivacy.analysis.kernel.states import Net
 from rosprivacy.analysis.mitigation.affected import affected
 from rosprivacy.analysis.mitigation.candidates import candidates, uncut
 from rosprivacy.analysis.mitigation.change_sites import ChangeSites

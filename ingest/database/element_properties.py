@@ -145,9 +145,7 @@ def flow_results(analysis: Analysis, names: Names) -> Iterator[Row]:
     for index, flow in enumerate(analysis.graph.flows):
         if flow.source not in made:
             made[flow.source] = _passed_and_made(found, flow.source)
-        moving = found.flow_keeps.get(index, found.all_bits)
-        if analysis.graph.elements[flow.target].is_channel:
-            moving &= found.keeps.get(flow.target, found.all_bits)
+        moving = found.passing(index)
         passed, makes = made[flow.source]
         begun = found.emits.get(flow.source, 0) | found.flow_emits.get(index, 0)
         yield {
