@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import LabelError
 from rosprivacy.analysis.findings.derived_from import origins
-from rosprivacy.analysis.fleet.patterns import NO_ROBOTS, pattern_id
+from rosprivacy.analysis.fleet.likeness import NO_ROBOTS, pattern_id
 from rosprivacy.analysis.kernel.roles import facts
 from rosprivacy.analysis.legal import turned_special
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import Analysis, Finding
     from rosprivacy.analysis.findings.derived_from import Origin
-    from rosprivacy.analysis.fleet.patterns import Likeness
+    from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Bound, Element, Statement
     from rosprivacy.ontology.vocabulary import Vocabulary
