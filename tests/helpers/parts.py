@@ -10,10 +10,10 @@ import pytest
 from rosprivacy.analysis.findings.findings import Options, analyse
 from rosprivacy.analysis.fleet.counts import counted
 from rosprivacy.analysis.fleet.patterns_of_pairs import Groups
-from rosprivacy.fleets import run_fleet
+from rosprivacy.fleet_system import answer_fleet
 from rosprivacy.ingest.fleet.alike_robots import alike
 from rosprivacy.settings import Settings
-from rosprivacy.spark.distributed import Question, analyse_in_parts
+from rosprivacy.spark.distributed import Task, analyse_in_parts
 from rosprivacy.spark.shown_robots import shown
 from rosprivacy.spark.workers import filled
 from tests.helpers.fleet_files import policy, write
@@ -36,10 +36,10 @@ def given_members(members: dict[str, Member]) -> Callable[[Robot], Member]:
     return lambda robot: members[robot.id]
 
 
-def question(case: Case) -> Question:
+def question(case: Case) -> Task:
     fleet = case.fleet()
     members = {robot.id: case.member(robot) for robot in fleet.robots}
-    return Question(fleet, alike(fleet), "declared", partial(given_members, members), HIERARCHY)
+    return Task(fleet, alike(fleet), "declared", partial(given_members, members), HIERARCHY)
 
 
 def rows(found: Found, told: Shown) -> Any:
@@ -149,7 +149,7 @@ PER_ROBOT = ("carries", "roles", "open", "outside")  # of the robots that are sh
 
 def documents(file: str, run: Callable[[str], Result]) -> None:
     """The same document, but that its rows for robots are those of fewer robots."""
-    expected, got = run_fleet(file, Settings()).document(), run(file).document()
+    expected, got = answer_fleet(file, Settings()).document(), run(file).document()
     assert got["assumptions"].pop("engine") == "spark"
     assert "open elements in the whole fleet: ways and distances are" in got["diagnostics"].pop()["message"]
     for key in PER_ROBOT:

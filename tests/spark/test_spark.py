@@ -17,14 +17,14 @@ from hypothesis import Phase, given, settings
 import rosprivacy
 from rosprivacy.analysis.errors import ClusterError, InputError, InputErrors
 from rosprivacy.analysis.files_read import one_run
-from rosprivacy.assembly import run_stored
-from rosprivacy.fleets import run_fleet
+from rosprivacy.fleet_system import answer_fleet
 from rosprivacy.private_neo4j import connection
 from rosprivacy.report.atomic import check_outputs
 from rosprivacy.settings import Settings
 from rosprivacy.spark import session as spark
 from rosprivacy.spark.fleet_on_spark import run_on_spark
 from rosprivacy.spark.parquet import check_new, read
+from rosprivacy.stored_system import answer_stored
 from tests.helpers.command import XI
 from tests.helpers.fleet_files import policy, write
 from tests.helpers.fleet_rows import rows as rows_in_memory
@@ -114,7 +114,7 @@ def test_what_a_fleet_must_not_lose(fleet_file: str) -> None:
         write(f"{robot}/f.xml", f'<profile><topics subscribe="ALLOW"><topic>{topic}</topic></topics></profile>')
         text = policy("/camera>/video", "/uplink").replace("</profile></profiles>", f"{INCLUDED}</profiles>")
         Path(robot, "p.xml").write_bytes(text.encode("utf-16"))
-    expected, got = run_fleet(fleet_file, Settings()).document(), run_on_spark(fleet_file, Settings()).document()
+    expected, got = answer_fleet(fleet_file, Settings()).document(), run_on_spark(fleet_file, Settings()).document()
     got["diagnostics"].pop()  # how far an answer in parts goes
     assert {"r1", "b"} <= {finding["source"]["robot"] for finding in expected["findings"]}
     assert sum("join" in said["message"] for said in expected["diagnostics"]) == 3
@@ -258,7 +258,7 @@ def test_results_are_loaded(results: str, neo4j_server: Connection, cli: Cli, mo
         first = dump(driver, without=("digest", "version"))
         again = cli("load", "--results", results, "--neo4j", neo4j_server.uri)
         assert "0 written, 42 as they were" in again.stdout
-        stored = run_stored(driver, Settings())
+        stored = answer_stored(driver, Settings())
         assert {pattern.id for pattern in stored.fleet.patterns} == patterns_of_example() if stored.fleet else False
         assert first[0]
 

@@ -10,14 +10,15 @@ import pytest
 import rosprivacy
 from rosprivacy.analysis.errors import DatabaseError, InputErrors
 from rosprivacy.analysis.findings.findings import analyse
-from rosprivacy.assembly import robot_of, run_stored
 from rosprivacy.ingest.database.loading import load
 from rosprivacy.ingest.database.read_back import read_stored
 from rosprivacy.ingest.database.rows import robot_rows
 from rosprivacy.ingest.database.write_back import write_back
 from rosprivacy.ontology.vocabulary import load as load_vocabulary
 from rosprivacy.private_neo4j import connection
+from rosprivacy.robot_system import robot_of
 from rosprivacy.settings import Settings
+from rosprivacy.stored_system import answer_stored
 from tests.helpers.additions import ADD_STORAGE
 from tests.helpers.cases import CASES
 from tests.helpers.graphs import care_home, dump, factory, rows_of
@@ -56,7 +57,7 @@ def test_the_document_is_that_of_the_files(
     result = rosprivacy.analyze(given["policies"], given["labels"], **given.get("options", {}))
     load(driver, [robot_of("r", result)], VOCABULARY)
     before = dump(driver, without=("digest", "version"))
-    document = run_stored(driver, Settings()).document()
+    document = answer_stored(driver, Settings()).document()
     assert document["assumptions"].pop("database") == {"robots": 1}
     assert document == result.document()
     assert dump(driver, without=("digest", "version")) == before
@@ -95,7 +96,7 @@ class TestWhatPeopleAdd:
         load(driver, [rows_of("care", care_home())], VOCABULARY)
         driver.execute_query(ADD_STORAGE)
         driver.execute_query("MATCH (:RosNode {name: '/recorder'})-[l:LEAKS]->() DELETE l")
-        result = run_stored(driver, Settings())
+        result = answer_stored(driver, Settings())
         found = [f for f in result.analysis.findings if f.leak.kind == "storage"]
         assert [[e.name for e in f.witness][-2:] for f in found] == [["/recorder", "footage bucket"]]
         rows = driver.execute_query(
@@ -109,7 +110,7 @@ class TestWhatPeopleAdd:
         """Rules S10 and S11."""
         load(driver, [rows_of("care", care_home())], VOCABULARY)
         driver.execute_query(ADD_STORAGE.replace(", retention: 'P30D', country: 'DE'", ""))
-        result = run_stored(driver, Settings())
+        result = answer_stored(driver, Settings())
         (kept,) = [f for f in result.analysis.findings if f.kind == "storage-limitation"]
         assert (kept.leak.name, kept.reason) == ("footage bucket", "no retention is stated")
         assert [q.element.name for q in result.analysis.open if q.missing] == ["footage bucket"]
@@ -119,9 +120,9 @@ class TestWhatPeopleAdd:
     def test_it_is_there_after_the_next_load_and_found_again(self, driver: Driver) -> None:
         load(driver, [rows_of("care", care_home())], VOCABULARY)
         driver.execute_query(ADD_STORAGE)
-        first = ways(run_stored(driver, Settings()))
+        first = ways(answer_stored(driver, Settings()))
         assert load(driver, [rows_of("care", care_home())], VOCABULARY).written == 1
-        assert ways(run_stored(driver, Settings())) == first
+        assert ways(answer_stored(driver, Settings())) == first
         assert any(way[-1] == "footage bucket" for way in first)
 
     @pytest.mark.parametrize(
@@ -137,9 +138,9 @@ class TestWhatPeopleAdd:
     )
     def test_a_changed_label_or_flow_counts(self, driver: Driver, change: str, gone: str) -> None:
         load(driver, [rows_of("care", care_home())], VOCABULARY)
-        before = ways(run_stored(driver, Settings()))
+        before = ways(answer_stored(driver, Settings()))
         driver.execute_query(change)
-        after = ways(run_stored(driver, Settings()))
+        after = ways(answer_stored(driver, Settings()))
         assert after < before
         assert {way[-1] for way in before - after} == {gone}
 
@@ -149,18 +150,18 @@ class TestWhatPeopleAdd:
         driver.execute_query(
             "MATCH (n {name: '/navigator'}), (c:DataCategory {name: 'PersonTrack'}) CREATE (n)-[:LEAKS]->(c)"
         )
-        assert ("PersonTrack", "/navigator") in {(way[0], way[-1]) for way in ways(run_stored(driver, Settings()))}
+        assert ("PersonTrack", "/navigator") in {(way[0], way[-1]) for way in ways(answer_stored(driver, Settings()))}
 
     def test_two_robots_meet_at_a_storage(self, driver: Driver) -> None:
         """Data that one writes and the other reads flows on, across robots (rule S9)."""
         load(driver, [rows_of("care", care_home()), rows_of("factory", factory(5))], VOCABULARY)
-        assert not [f for f in run_stored(driver, Settings()).analysis.findings if f.leak.robot == "factory"]
+        assert not [f for f in answer_stored(driver, Settings()).analysis.findings if f.leak.robot == "factory"]
         driver.execute_query(
             "MATCH (a:RosNode {robot: 'care', name: '/camera'}), "
             "(b:RosNode {robot: 'factory', name: '/archive_server'}) "
             "CREATE (a)-[:FLOWS_TO]->(:Storage {name: 'shared'})-[:FLOWS_TO]->(b)"
         )
-        found = [f for f in run_stored(driver, Settings()).analysis.findings if f.leak.robot == "factory"]
+        found = [f for f in answer_stored(driver, Settings()).analysis.findings if f.leak.robot == "factory"]
         assert [[(e.robot, e.name) for e in f.witness] for f in found] == [
             [("care", "/camera"), ("", "shared"), ("factory", "/archive_server")]
         ]
@@ -169,7 +170,7 @@ class TestWhatPeopleAdd:
 
     def test_the_answer_may_be_about_some_categories_but_all_are_written(self, driver: Driver) -> None:
         load(driver, [rows_of("care", care_home())], VOCABULARY)
-        result = run_stored(driver, Settings(categories=("Voice",)))
+        result = answer_stored(driver, Settings(categories=("Voice",)))
         assert {f.category for f in result.analysis.findings} == {"Voice"}
         assert driver.execute_query("MATCH (f:Finding) RETURN count(f)").records[0][0] == 3
 
@@ -215,7 +216,7 @@ class TestProblems:
         driver.execute_query(damage.replace("DELETE r", "DETACH DELETE r"))
         before = driver.execute_query("MATCH (r:Robot) RETURN collect(r.version)").records[0][0]
         with pytest.raises(InputErrors, match=message) as error:
-            run_stored(driver, Settings())
+            answer_stored(driver, Settings())
         for line in str(error.value).splitlines():
             assert line.startswith("the database:0: ") or ":" in line
         assert driver.execute_query("MATCH (r:Robot) RETURN collect(r.version)").records[0][0] == before
@@ -232,4 +233,4 @@ class TestProblems:
 
     def test_an_empty_database(self, driver: Driver) -> None:
         with pytest.raises(InputErrors, match="there is no robot in it; load one with rosprivacy load"):
-            run_stored(driver, Settings())
+            answer_stored(driver, Settings())
