@@ -79,7 +79,9 @@ class Spread:
         return self.emits.get(vertex, 0) | self.flow_begins.get(vertex, 0)
 
     def both(self, category: str) -> int:
-        """The two bits of a category, as it is and pseudonymised."""
+        """The two bits of a category, as it is and pseudonymised; none of one that nothing here emits."""
+        if category not in self.categories:
+            return 0
         i = self.categories.index(category)
         return 1 << i | 1 << i + len(self.categories)
 
