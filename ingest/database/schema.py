@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-SCHEMA = 2  # raised when what a load writes gains what an answer rests on, or changes its meaning; none was stored at 1
+SCHEMA = 3  # raised when what a load writes gains what an answer rests on, or changes its meaning; none was stored at 1
 _IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 STRING, INTEGER, BOOLEAN, STRINGS = "STRING", "INTEGER", "BOOLEAN", "LIST<STRING>"
 
@@ -232,6 +232,7 @@ FLOWS_TO = RelationshipKind(
         Property("only", STRINGS, "a label: it carries these at most"),
         Property("never", STRINGS, "a label: it does not carry these"),
         Property("naming", STRING, "of the label: glob where it names no end in full; absent else"),
+        Property("statements", STRINGS, "JSON: role, categories, rank, naming, file and line of each of these labels"),
         _OURS,
     ),
 )

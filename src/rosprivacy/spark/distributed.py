@@ -182,7 +182,7 @@ class _Run:
         wanted = [c for c in categories if task.asked is None or c in task.asked]
         mask = sum(ours.both(category) for category in wanted)
         numbers = [i for i, name in enumerate(categories) if name in wanted]
-        ways = {i: forms(i, len(categories), steps) for i in numbers}
+        ways = {i: forms(i, ours.bits, steps) for i in numbers}
         kernels = ready.map(partial(workers.kernel, forms=ways, hierarchy=task.hierarchy), keep=True)
 
         leaving = self._carry(middle, kernels, ours)

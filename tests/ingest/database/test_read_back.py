@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+import itertools
 import json
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
 import rosprivacy
-from rosprivacy.analysis.errors import DatabaseError, InputErrors
+from rosprivacy.analysis.errors import DatabaseError, InputErrors, LabelError
 from rosprivacy.analysis.findings.findings import analyse
+from rosprivacy.analysis.kernel.ranks import decided
+from rosprivacy.analysis.model import GLOB, NAME, Place, Statement
+from rosprivacy.ingest.database.flow_statements import HAND
 from rosprivacy.ingest.database.loading import load
 from rosprivacy.ingest.database.read_back import read_stored
 from rosprivacy.ingest.database.rows import robot_rows
 from rosprivacy.ingest.database.write_back import write_back
+from rosprivacy.ingest.labels.entries import EXACT
 from rosprivacy.ontology.vocabulary import load as load_vocabulary
 from rosprivacy.private_neo4j import connection
 from rosprivacy.robot_system import robot_of
@@ -26,7 +32,7 @@ from tests.helpers.random_rows import VOCABULARY as SMALL
 from tests.helpers.random_rows import random_systems
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
 
     from neo4j import Driver
@@ -85,6 +91,68 @@ def test_on_random_graphs_nothing_changes(driver: Driver) -> None:
     after = dump(driver, without=different)
     assert [set(x) ^ set(y) for x, y in zip(after, before, strict=True)] == [set(), set()]
     assert write_back(driver, read_stored(driver, SMALL), analysis, SMALL) == 0
+
+
+TO = "{ from: /camera, to: /camera/image"
+TWO_RANKS = {  # what labels of a higher and of a lower rank say of one flow
+    "a broader kind may be another narrower one": ("PersonImage", f"{TO}, never: [Video] }}", "only: [Video]"),
+    "nearer, but of lower rank": ("HomeMap", f"{TO}, never: [Location] }}", "only: [Household]"),
+    "what only names stays": ("Video", f"{TO}, only: [Video] }}", "never: [PersonImage]"),
+    "two lists": ("HomeMap", f"{TO}, only: [Location, Video] }}", "only: [Video]"),
+}
+
+
+class TestWhatIsSaidOfAFlow:
+    """A statement keeps its rank in the database, so that it decides as in the file (rule S7)."""
+
+    @pytest.fixture(params=TWO_RANKS.values(), ids=list(TWO_RANKS))
+    def result(self, request: pytest.FixtureRequest, examples: Path, tmp_path: Path) -> Any:
+        kind, high, low = request.param
+        file = tmp_path / "flow.labels.yaml"
+        low = f"{TO.replace('/camera,', '/cam*,')}, {low} }}"
+        nodes = f"{{ /camera: {{ source: [{kind}] }}, /blur: {{ leak: [{kind}] }} }}"
+        file.write_text(f"labels: 1\nnodes: {nodes}\nflows:\n  - {high}\n  - {low}\n", "utf-8")
+        return rosprivacy.analyze(examples / "care-home" / "care-home.policy.xml", file)
+
+    def test_it_is_decided_as_in_the_file(self, driver: Driver, result: Any) -> None:
+        load(driver, [robot_of("r", result)], VOCABULARY)
+        document = answer_stored(driver, Settings()).document()
+        document["assumptions"].pop("database")
+        assert document == result.document()
+
+    def test_every_word_comes_back(self, driver: Driver) -> None:
+        """Two statements about each of some flows: every pair of words, ranks and ways of naming that may stand."""
+        words = [
+            Statement(word, names, (1, rank), Place("x.labels.yaml", rank), naming=GLOB if rank < EXACT else NAME)
+            for word in ("only", "never")
+            for names in (("Video",), ("PersonImage", "Voice"), ("Household",), ("Location",))
+            for rank in (7, EXACT)
+        ]
+        pairs = [pair for pair in itertools.combinations(words, 2) if _agree(pair)]
+        home = care_home()
+        count = len(home.analysis.graph.flows)
+        for start in range(0, len(pairs), count):
+            some = pairs[start : start + count]
+            bound = replace(home.bound, flows=dict(enumerate(some)))
+            load(driver, [robot_rows("r", home.analysis, bound, VOCABULARY)], VOCABULARY)
+            assert read_stored(driver, VOCABULARY).bound.flows == bound.flows
+
+    def test_a_changed_list_is_a_later_word(self, driver: Driver) -> None:
+        """It outranks what files say by the other word, which stays."""
+        load(driver, [rows_of("care", care_home())], VOCABULARY)
+        file = next(iter(care_home().bound.flows.values()))
+        for change, words in (("f.only = ['Voice']", {"only": HAND, "never": 1}), ("f.never = NULL", {"only": HAND})):
+            driver.execute_query(f"MATCH ()-[f:FLOWS_TO]->() WHERE f.said_at IS NOT NULL SET {change}")
+            said = next(iter(read_stored(driver, VOCABULARY).bound.flows.values()))
+            assert {one.role: one.rank[0] for one in said} == words
+            assert all(one in file or one.categories == ("Voice",) for one in said)
+
+
+def _agree(pair: Sequence[Statement]) -> bool:
+    try:
+        return all(decided("x", pair, name, VOCABULARY.hierarchy) for name in VOCABULARY.categories)
+    except LabelError:
+        return False
 
 
 VIDEO = ("PersonImage", "PersonalData", "Video")  # with the broader ones
