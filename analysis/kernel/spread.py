@@ -85,8 +85,8 @@ class Spread:
         return self.emits.get(vertex, 0) | self.flow_begins.get(vertex, 0)
 
     def both(self, category: str) -> int:
-        """The two bits of a category, as it is and pseudonymised."""
-        return self.bits.both(self.categories.index(category))
+        """The two bits of a category, as it is and pseudonymised; none of one that nothing here emits."""
+        return self.bits.both(self.categories.index(category)) if category in self.categories else 0
 
     def present(self, vertex: int) -> int:
         """What arrives at or starts from an element, or is carried by a channel."""
