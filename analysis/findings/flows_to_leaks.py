@@ -1,8 +1,8 @@
-"""The ways to leaks: along which flows data can come from a source to a leak of a category (rule S10).
+"""The paths to leaks: along which flows data can come from a source to a leak of a category (rule S10).
 
-In: a spread. Out: flows. A finding shows one shortest way; a picture has to show where the data can go at all. What is
+In: a spread. Out: flows. A finding shows one shortest path; a picture has to show where the data can go at all. What is
 asked of a flow is whether it lies on a walk from a source to a leak, over states (vertex, bit) as in
-``further_paths.py``. Flows on detours that must come back to where they began are left out: no way without a circle
+``further_paths.py``. Flows on detours that must come back to where they began are left out: no path without a circle
 uses them.
 
 Source: the paper, section II-B, which colours the edges of vulnerable paths. To say of a flow exactly whether a path
@@ -32,14 +32,14 @@ Edge = tuple[State, State, int]  # before, after, flow or ``NO_FLOW``
 
 @dataclass(frozen=True, slots=True)
 class FlowsToLeaks:
-    """The flows on ways to leaks.
+    """The flows on paths to leaks.
 
     Attributes
     ----------
     flows
-        Flow -> number of flows of the shortest way through it; sorted.
+        Flow -> number of flows of the shortest path through it; sorted.
     complete
-        Whether these are all; if not, there are longer ways.
+        Whether these are all; if not, there are longer paths.
     """
 
     flows: dict[int, int]
@@ -56,27 +56,27 @@ def flows_to_leaks(
     ends: Mapping[int, int] | None = None,
     about: int | None = None,
 ) -> FlowsToLeaks:
-    """Return the flows that lie on a way of data from a source to a leak of a category.
+    """Return the flows that lie on a path of data from a source to a leak of a category.
 
     Parameters
     ----------
     net
         Of a spread.
     category
-        An emitted one: what arrives at the leaks. It may be made of others on the way.
+        An emitted one: what arrives at the leaks. It may be made of others on the path.
     sources, leaks
         Vertices to begin and to end at; None for all.
     past_leaks
-        Whether ways through other leaks of the category count, as for a dismissed finding.
+        Whether paths through other leaks of the category count, as for a dismissed finding.
     ends
         Vertex -> bits that end there; the leaks by default. Findings of other kinds end elsewhere, as at a storage.
     about
-        Take only the shorter ways, those up to a length, so that about so many flows are on them; None for all.
+        Take only the shorter paths, those up to a length, so that about so many flows are on them; None for all.
 
     Returns
     -------
     Ways
-        They hold every flow of every way (up to the length) that meets no state twice.
+        They hold every flow of every path (up to the length) that meets no state twice.
 
     Notes
     -----
@@ -99,7 +99,7 @@ def flows_to_leaks(
 
 
 def _lengths(edges: list[Edge], ahead: Mapping[State, int], back: Mapping[State, int]) -> dict[int, int]:
-    """Flow -> number of flows of the shortest way through it."""
+    """Flow -> number of flows of the shortest path through it."""
     lengths: dict[int, int] = {}
     for here, there, flow in edges:
         if flow != NO_FLOW:
@@ -109,7 +109,7 @@ def _lengths(edges: list[Edge], ahead: Mapping[State, int], back: Mapping[State,
 
 
 def _longest(lengths: Mapping[int, int], about: int) -> int:
-    """The length up to which there are no more flows than asked for; the shortest ways are always in."""
+    """The length up to which there are no more flows than asked for; the shortest paths are always in."""
     every = sorted(lengths.values())
     if len(every) <= about:
         return every[-1] if every else 0
@@ -121,11 +121,11 @@ class _Walk:
     """How data of a category, or of what it is made of, goes from state to state."""
 
     def __init__(self, net: Net, category: str, ends: Mapping[int, int] | None, *, past_leaks: bool) -> None:
-        self._found = found = net.spread
-        self._ends = found.leaks if ends is None else ends
-        number, self._both = found.categories.index(category), found.both(category)
-        relevant = found.all_bits if number in found.made else self._both
-        stop = {} if past_leaks else {v: bits & self._both for v, bits in found.leaks.items() if bits & self._both}
+        self._spread = spread = net.spread
+        self._ends = spread.leaks if ends is None else ends
+        number, self._both = spread.categories.index(category), spread.both(category)
+        relevant = spread.all_bits if number in spread.made else self._both
+        stop = {} if past_leaks else {v: bits & self._both for v, bits in spread.leaks.items() if bits & self._both}
         self._states = States(net, relevant, stop)
         self._starts: set[State] = set()
 
@@ -147,9 +147,9 @@ class _Walk:
 
     def _begin(self, starts: Collection[int], leaks: Collection[int] | None) -> Iterator[Edge]:
         """Where what comes back goes on again, or ends, it is one state with what starts: circles are seen as such."""
-        found, states = self._found, self._states
+        spread, states = self._spread, self._states
         for vertex in sorted(starts):
-            stop, keeps = states.stop.get(vertex, 0), found.keeps.get(vertex, found.all_bits)
+            stop, keeps = states.stop.get(vertex, 0), spread.keeps.get(vertex, spread.all_bits)
             alike = stop if leaks is None or vertex in leaks else 0
             alike |= keeps & ~stop
             for bit in bits_of(states.emitted(vertex)):
@@ -162,7 +162,7 @@ class _Walk:
     def _onward(self, state: State) -> Iterator[tuple[int, State]]:
         what, where, bit = state
         if what == SENT:
-            yield where, (ARRIVED, self._found.graph.flows[where].target, bit)
+            yield where, (ARRIVED, self._spread.graph.flows[where].target, bit)
             return
         leaving = self._states.leaving(where, 1 << bit) if what == ARRIVED else 0
         leaving |= 1 << bit if state in self._starts else 0
@@ -171,7 +171,7 @@ class _Walk:
 
     def _leaks(self, vertex: int, bit: int) -> bool:
         here = self._ends.get(vertex, 0) & self._both
-        return bool(here and here & (1 << bit | made(self._found, vertex, 1 << bit)))
+        return bool(here and here & (1 << bit | made(self._spread, vertex, 1 << bit)))
 
 
 def _distances(edges: list[Edge], start: State, *, forth: bool) -> dict[State, int]:

@@ -1,7 +1,7 @@
 """Further paths of a finding: how many share no flow, and which there are (the paper, section II-B).
 
 In: a search from a source. Out: counts and paths, by networkx, on the small part of the graph that lies between the
-source and the leak. A path is one over (element, category): where nothing is derived on the way, one over elements.
+source and the leak. A path is one over (element, category): where nothing is derived on the path, one over elements.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 State = tuple[int, int]  # vertex, number of the category with which data arrives there
 SOURCE, LEAK = -1, -2  # in place of the category's number: the source and the leak are one state each
-SEARCHED = 10  # times the bound: so many ways of data are looked at, of which many may be one to the reader
+SEARCHED = 10  # times the bound: so many paths of data are looked at, of which many may be one to the reader
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +98,7 @@ class Between:
         Parameters
         ----------
         memory
-            Answers for equal graphs: kinds of data often go the same ways.
+            Answers for equal graphs: kinds of data often take the same paths.
         """
         edges = self._leading_to(leak)
         # one kind of data is like another where nothing is made into it
@@ -175,14 +175,14 @@ def further(between: Between, leak: int, memory: dict[Any, Any], asked: str, mos
     disjoint, edges = between.to(leak, memory)
     if mode is Paths.witness:
         return FurtherPaths(len(disjoint))
-    found: Iterable[list[int]] = disjoint
+    chosen: Iterable[list[int]] = disjoint
     if mode is Paths.all:
         import networkx as nx  # noqa: PLC0415 - as above
 
         paths = nx.shortest_simple_paths(nx.DiGraph(edges), (between.source, SOURCE), (leak, LEAK))
-        found = ([state[0] for state in path] for path in paths)
+        chosen = ([state[0] for state in path] for path in paths)
     shown: dict[tuple[Element, ...], None] = {}
-    for number, path in enumerate(found):  # two ways of data that differs may be one way to the reader
+    for number, path in enumerate(chosen):  # two paths of data that differs may be one path to the reader
         shown[_elements(between.graph, path)] = None
         if len(shown) > most or number >= SEARCHED * most:
             return FurtherPaths(len(disjoint), tuple(shown)[:most], bounded=True)

@@ -32,23 +32,23 @@ class Nearest:
         Vertex -> (target, bits that pass the flow).
     """
 
-    found: Spread
+    spread: Spread
     opened: Opened
     levels: Mapping[int, list[tuple[int, int]]]
     leaving: Mapping[int, list[tuple[int, int]]]
 
     @classmethod
-    def of(cls, found: Spread, places: Mapping[int, int], opened: Opened = NOTHING_OPENED) -> Nearest:
+    def of(cls, spread: Spread, places: Mapping[int, int], opened: Opened = NOTHING_OPENED) -> Nearest:
         """Search back from all places at once; O(flows · levels at which bits are new)."""
         leaving: dict[int, list[tuple[int, int]]] = defaultdict(list)
         entering: dict[int, list[tuple[int, int]]] = defaultdict(list)
-        for source, target, passing in _flows(found, opened):
+        for source, target, passing in _flows(spread, opened):
             leaving[source].append((target, passing))
             entering[target].append((source, passing))
-        result = cls(found, opened, defaultdict(list), leaving)
+        result = cls(spread, opened, defaultdict(list), leaving)
         seen: dict[int, int] = defaultdict(int)
         more = opened.elements
-        new = {v: back_from(found, v, bits, more.get(v, 0)) for v, bits in places.items() if bits}
+        new = {v: back_from(spread, v, bits, more.get(v, 0)) for v, bits in places.items() if bits}
         level = 0
         while new:
             further: dict[int, int] = defaultdict(int)
@@ -59,7 +59,7 @@ class Nearest:
                     result.levels[vertex].append((level, fresh))
                     for source, passing in entering.get(vertex, ()):
                         further[source] |= fresh & passing
-            new = {v: before for v, bits in further.items() if (before := back(found, v, bits, more.get(v, 0)))}
+            new = {v: before for v, bits in further.items() if (before := back(spread, v, bits, more.get(v, 0)))}
             level += 1
         return result
 
@@ -76,7 +76,7 @@ class Nearest:
             level, vertex, bits = min((self._level(v, bits) for v, bits in arriving), default=(FAR, -1, 0))
             if level in (0, FAR):
                 return vertex if level == 0 else -1
-            leaving = onward(self.found, vertex, bits, self.opened.elements.get(vertex, 0))
+            leaving = onward(self.spread, vertex, bits, self.opened.elements.get(vertex, 0))
             arriving = [(target, leaving & passing) for target, passing in self.leaving.get(vertex, ())]
 
     def _level(self, vertex: int, bits: int) -> tuple[int, int, int]:
@@ -87,10 +87,10 @@ class Nearest:
         return FAR, vertex, 0
 
 
-def _flows(found: Spread, opened: Opened) -> Iterator[tuple[int, int, int]]:
+def _flows(spread: Spread, opened: Opened) -> Iterator[tuple[int, int, int]]:
     """Source, target, bits that pass the flow."""
-    everything = found.all_bits
-    for index, flow in enumerate(found.graph.flows):
-        yield flow.source, flow.target, found.flow_keeps.get(index, everything) | opened.flows.get(index, 0)
+    everything = spread.all_bits
+    for index, flow in enumerate(spread.graph.flows):
+        yield flow.source, flow.target, spread.flow_keeps.get(index, everything) | opened.flows.get(index, 0)
     more: Iterable[tuple[int, int]] = opened.more
     yield from ((source, target, everything) for source, target in more)

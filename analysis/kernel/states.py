@@ -89,15 +89,15 @@ class States:
                 yield index, target, bits
 
 
-def made(found: Spread, vertex: int, bits: int) -> int:
+def made(spread: Spread, vertex: int, bits: int) -> int:
     """Return the bits that an element makes of some that arrive."""
     result = 0
-    for before, after in found.derives.get(vertex, ()):
+    for before, after in spread.derives.get(vertex, ()):
         result |= (bits >> before & 1) << after
     return result
 
 
-def onward(found: Spread, vertex: int, bits: int, opened: int = 0) -> int:
+def onward(spread: Spread, vertex: int, bits: int, opened: int = 0) -> int:
     """Return the bits that leave an element when some arrive: as they are, or as what is made of them.
 
     Parameters
@@ -105,17 +105,17 @@ def onward(found: Spread, vertex: int, bits: int, opened: int = 0) -> int:
     opened
         Bits that pass although labels close the element for them.
     """
-    return bits & (found.keeps.get(vertex, found.all_bits) | opened) | made(found, vertex, bits)
+    return bits & (spread.keeps.get(vertex, spread.all_bits) | opened) | made(spread, vertex, bits)
 
 
-def back(found: Spread, vertex: int, bits: int, opened: int = 0) -> int:
+def back(spread: Spread, vertex: int, bits: int, opened: int = 0) -> int:
     """Return the bits that have to arrive at an element for some to leave it: ``onward``, turned around."""
-    result = bits & (found.keeps.get(vertex, found.all_bits) | opened)
-    for before, after in found.derives.get(vertex, ()):
+    result = bits & (spread.keeps.get(vertex, spread.all_bits) | opened)
+    for before, after in spread.derives.get(vertex, ()):
         result |= (bits >> after & 1) << before
     return result
 
 
-def back_from(found: Spread, vertex: int, bits: int, opened: int = 0) -> int:
+def back_from(spread: Spread, vertex: int, bits: int, opened: int = 0) -> int:
     """Return the bits that have to arrive for some to be there: a node has what arrives, a channel what it carries."""
-    return back(found, vertex, bits, opened) | (0 if found.graph.elements[vertex].is_channel else bits)
+    return back(spread, vertex, bits, opened) | (0 if spread.graph.elements[vertex].is_channel else bits)

@@ -109,12 +109,12 @@ class Crossed:
             if weight := likeness.weight(source.element.robot):
                 many = by_class[source.category, source.number][likeness.alike(source.element)]
                 many.add(source.element, source.unit, weight)
-        by_way: dict[tuple[str, str, Element, bytes], _Many] = defaultdict(_Many)
+        by_end: dict[tuple[str, str, Element, bytes], _Many] = defaultdict(_Many)
         for end in sorted(ends, key=lambda end: end.element.sort_key()):
             if weight := likeness.weight(end.element.robot):
-                by_way[end.kind, end.category, likeness.alike(end.element), end.how].add(end.element, end.unit, weight)
-        for (kind, category, _, ways), leaks in by_way.items():
-            for number, how in enumerate(ways):
+                by_end[end.kind, end.category, likeness.alike(end.element), end.how].add(end.element, end.unit, weight)
+        for (kind, category, _, codes), leaks in by_end.items():
+            for number, how in enumerate(codes):
                 for some in by_class.get((category, number), {}).values() if how else ():
                     for form, beside in _forms(how):
                         self._between(kind, category, form, some, leaks, beside=beside)

@@ -188,7 +188,7 @@ def origin_properties(analysis: Analysis, origin: Origin, robot: str) -> Row:
     lines = [flows[index].grants[0].place if flows[index].grants else "" for index in origin.flows]
     return {
         "category": origin.category,
-        "way": [elements[vertex].name for vertex in origin.way],
+        "way": [elements[vertex].name for vertex in origin.path],
         "policy": [str(line) for line in lines],
         "past_leak": origin.past_leak,
         "robot": robot,
