@@ -266,7 +266,10 @@ class TestProblems:
                 "CREATE (:Element:Storage {name: 'x', country: 'UK'})",
                 "storage 'x' cannot be understood: country 'UK' is not an ISO 3166-1 code; did you mean GB\\?",
             ),
-            ("CREATE (:Element:Storage {name: 'x', retention: 'long'})", "retention 'long' is not an ISO 8601 duration"),
+            (
+                "CREATE (:Element:Storage {name: 'x', retention: 'long'})",
+                "retention 'long' is not an ISO 8601 duration",
+            ),
             ("CREATE (:Element:Storage {name: 'x', limits: ['X: P1D']})", "limits names the unknown category 'X'"),
             ("CREATE (:Element:Storage {name: 'x', backups: 'some'})", "backups 'some' is not an ISO 8601 duration"),
             ("CREATE (:Element:Storage {name: 'x', transfer: 'trust'})", "transfer 'trust' is none of adequacy, "),
