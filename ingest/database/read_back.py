@@ -35,7 +35,7 @@ from rosprivacy.ingest.database.non_ros_properties import facts_of
 from rosprivacy.ingest.database.other_schemas import HINT, of_other_schemas
 from rosprivacy.ingest.database.schema import KIND_LABELS, ROLES
 from rosprivacy.ingest.labels.entries import EXACT, as_ranked_now
-from rosprivacy.ingest.policies.names import covers
+from rosprivacy.ingest.policies.names import covered
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -384,7 +384,7 @@ def _through(
         (vertex, names): tuple(
             index
             for index in leaving[vertex]
-            if any(covers(name, graph.elements[graph.flows[index].target].name) for name in names)
+            if any(covered(name, (graph.elements[graph.flows[index].target].name,)) for name in names)
         )
         for vertex, names in sorted(wanted)
     }
