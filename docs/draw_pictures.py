@@ -1,4 +1,4 @@
-"""Draw the pictures of ``views.md``, by the commands that stand there; needs the ``[views]`` extra and the corpus.
+"""Draw the pictures of ``views.md``, by the commands that stand there; needs the corpus.
 
     python docs/draw_pictures.py [NAME…]
 

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
 WORKER = "rosprivacy.report.pictures.graphviz_worker"
 MISSING = (
-    "graph:0: Graphviz is not installed, so there is no SVG and no PNG; "
-    "pip install 'rosprivacy[views]', or take --format dot, graphml or mermaid"
+    "graph:0: Graphviz is not installed, so there is no SVG and no PNG; install it with its headers "
+    "(Debian: libgraphviz-dev), then pip install pygraphviz; or take --format dot, graphml or mermaid"
 )
 
 

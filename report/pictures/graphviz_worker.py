@@ -40,7 +40,7 @@ def _part(stream: BinaryIO) -> bytes | None:
 
 
 def _draw(job: dict[str, Any], dot: str) -> bytes:
-    import pygraphviz  # noqa: PLC0415 - an extra: without it the error is an answer too
+    import pygraphviz  # noqa: PLC0415 - not everywhere: without it the error is an answer too
 
     graph = pygraphviz.AGraph(string=dot)
     for name, value in job["attributes"].items():

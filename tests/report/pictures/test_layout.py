@@ -82,7 +82,7 @@ def test_what_graphviz_refuses_is_one_line(job: Job) -> None:
 
 def test_without_graphviz_it_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch, picture: Picture) -> None:
     monkeypatch.setattr(module, "find_spec", lambda _: None)
-    with pytest.raises(DrawingError, match=r"pip install 'rosprivacy\[views\]', or take --format dot"):
+    with pytest.raises(DrawingError, match=r"libgraphviz-dev\), then pip install pygraphviz; or take --format dot"):
         drawn(picture, "svg")
 
 
