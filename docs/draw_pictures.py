@@ -65,10 +65,10 @@ SYSTEMS = {
 NEAR = "--around /recoveries_server --around /turtlebot3_laserscan --fold --no-loose-ends"
 PICTURES = (
     Drawing("factory-ros", "factory"),
-    Drawing("factory-privacy", "factory", "--show privacy --direction down"),
+    Drawing("factory-privacy", "factory", "--show privacy"),
     Drawing("factory-filtered-privacy", "factory-filtered", "--show privacy"),
     Drawing("care-home-ros", "care-home", "--fold --cluster enclave --direction down"),
-    Drawing("care-home-privacy", "care-home", "--show privacy --fold --direction down"),
+    Drawing("care-home-privacy", "care-home", "--show privacy --fold"),
     Drawing("care-home-finding", "care-home", "--show privacy --finding 59dc667b --direction down"),
     Drawing("fleet-ros", "fleet", "--robot carrier_01 --fold --cluster robot --direction down"),
     Drawing("fleet-ros-all", "fleet", "--fold --cluster robot"),

@@ -10,8 +10,11 @@ from textwrap import wrap
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.text import printable, shortened
-from rosprivacy.report.pictures.looks import INK, LINE_LOOKS, PALE, SHAPES, TEXT, Entry, box_look, legend
-from rosprivacy.report.pictures.wording import broken
+from rosprivacy.report.pictures.looks import INK, LEAK, LINE_LOOKS, SHAPES, SHORTEST, SOURCE, TEXT, box_look
+from rosprivacy.report.pictures.looks import legend as legend_of
+from rosprivacy.report.pictures.picture import PRIVACY
+from rosprivacy.report.pictures.swatches import FRAME, PACKED, box_style, line_style, swatches
+from rosprivacy.report.pictures.wording import broken, quoted
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -22,7 +25,7 @@ FONT = "Helvetica,Arial,sans-serif"
 SIZE = 11  # of letters, in points
 LONGEST_NOTE = 110
 FOLDED_NAMES = 3
-COLUMNS = 3
+STRAIGHT = 8  # how much a step of a shortest path wants to be short and straight; others 1
 WIDEST_WORDS = 34  # letters of a line on a box
 
 
@@ -34,36 +37,48 @@ def dot(picture: Picture, *, direction: str = "LR", legend: bool = True) -> str:
     direction
         ``LR`` or ``TB``: where the data goes on the paper.
     legend
-        Whether title, notes and legend stand below it.
+        Whether title and notes stand above it, and a legend below.
     """
+    entries = legend_of(picture) if legend else []
     caption = f"label=<{_caption(picture)}>, " if legend else ""
+    packed = f'pack=12, packmode="{PACKED[direction]}", ' if entries else ""
     text = f'fontname="{FONT}", fontsize={SIZE}'
-    place = f"labelloc=b, labeljust=l, rankdir={direction}, nodesep=0.22, ranksep=0.4, pad=0.1"
+    place = f"labelloc=t, labeljust=l, {packed}rankdir={direction}, nodesep=0.22, ranksep=0.4, pad=0.1"
     rows = [
         "digraph rosprivacy {",
         f'  graph [{caption}{place}, {text}, fontcolor="{INK}", charset="UTF-8", bgcolor=transparent];',
         f'  node [{text}, fontcolor="{TEXT}", color="{INK}", margin="0.1,0.05", height=0.35];',
         f'  edge [color="{INK}", arrowsize=0.7];',
     ]
+    drawn = list(_drawn(picture))
+    if entries:
+        legend_rows = swatches(entries, direction)
+        drawn = ["  subgraph cluster_drawn {", f"    {FRAME}", *drawn, "  }"]
+        drawn = [*legend_rows, *drawn] if direction == "LR" else [*drawn, *legend_rows]  # LR is packed from below
+    return "\n".join([*rows, *drawn, "}", ""])
+
+
+def _drawn(picture: Picture) -> Iterator[str]:
     groups = sorted({box.group for box in picture.boxes if box.group})
     for number, group in enumerate(groups):
-        rows.append(f"  subgraph cluster_{number} {{")
+        yield f"  subgraph cluster_{number} {{"
         name = quoted(shortened(group, 60))
-        rows.append(f'    graph [label={name}, labeljust=l, labelloc=t, color="{INK}", style=dotted, id=g{number}];')
-        rows += [f"    {_box(picture, box)}" for box in picture.boxes if box.group == group]
-        rows.append("  }")
-    rows += [f"  {_box(picture, box)}" for box in picture.boxes if not box.group]
-    rows += [f"  {_line(picture, line, number, both=both)}" for number, (line, both) in enumerate(paired(picture))]
-    return "\n".join([*rows, "}", ""])
+        style = f'label={name}, labeljust=l, labelloc=t, color="{INK}", style=dotted, peripheries=1, margin=8'
+        yield f"    graph [{style}, id=g{number}];"
+        yield from (f"    {_box(picture, box)}" for box in picture.boxes if box.group == group)
+        yield "  }"
+    yield from (f"  {_box(picture, box)}" for box in picture.boxes if not box.group)
+    if picture.view == PRIVACY:
+        yield from _sides(picture)
+    yield from (f"  {_line(picture, line, number, both=both)}" for number, (line, both) in enumerate(paired(picture)))
 
 
-def quoted(text: str) -> str:
-    r"""Return a quoted string of DOT that shows text as it is: no escape sequence, no entity.
-
-    >>> quoted('a"b' + chr(92) + "N&amp;")
-    '"a\\"b\\\\N&amp;amp;"'
-    """
-    return '"' + printable(text).replace("\\", "\\\\").replace('"', '\\"').replace("&", "&amp;") + '"'
+def _sides(picture: Picture) -> Iterator[str]:
+    """Sources on one side, leaks on the other; what is in a group stays there."""
+    for look, rank in ((SOURCE, "min"), (LEAK, "max")):
+        keys = [picture.keys[box.key] for box in picture.boxes if box.look == look and not box.group]
+        if keys:
+            yield f"  {{ rank={rank}; {'; '.join(keys)} }}"
 
 
 def _lines(texts: list[str]) -> str:
@@ -127,17 +142,10 @@ def paired(picture: Picture) -> Iterator[tuple[Line, bool]]:
 
 def _box(picture: Picture, box: Box) -> str:
     look, shape = box_look(picture.view, box.look), SHAPES[box.kind]
-    name, style = shape.graphviz
-    styles = ["filled", *([style] if style else []), *(["dashed"] if box.open or look.style == "dashed" else [])]
-    under_the_lid = [""] if look.double and name == "cylinder" else []
+    under_the_lid = [""] if look.double and shape.graphviz[0] == "cylinder" else []
     attributes = [
         f"label={_lines([*under_the_lid, *label_lines(picture, box)])}",
-        f"shape={name}",
-        f'style="{",".join(styles)}"',
-        f'fillcolor="{look.colour}"',
-        f"penwidth={look.width:g}",
-        *(["peripheries=2"] if look.double else []),
-        *([f'fontcolor="{INK}"'] if look.colour == PALE else []),
+        *box_style(look, shape, dashed=box.open),
         f"id={picture.keys[box.key]}",
         f"tooltip={quoted(hover(picture, box))}",
     ]
@@ -146,14 +154,11 @@ def _box(picture: Picture, box: Box) -> str:
 
 def _line(picture: Picture, line: Line, number: int, *, both: bool) -> str:
     look = LINE_LOOKS[line.look]
-    style = "dashed" if line.pseudonymised else look.style
     attributes = [
-        f'color="{look.colour}"',
-        *([f"style={style}"] if style != "solid" else []),
-        *([f"penwidth={look.width:g}"] if look.width != 1 else []),
-        *([f"arrowhead={look.head}"] if look.head != "normal" else []),
+        *line_style(look, dashed=line.pseudonymised),
         *(["dir=both"] if both else []),
         *([f"arrowtail={look.head}"] if both and look.head != "normal" else []),
+        *([f"weight={STRAIGHT}"] if line.look == SHORTEST else []),
         f"id=e{number}",
         f"tooltip={quoted(line_hover(line))}",
     ]
@@ -161,19 +166,11 @@ def _line(picture: Picture, line: Line, number: int, *, both: bool) -> str:
 
 
 def _caption(picture: Picture) -> str:
-    """Title, notes and legend as an HTML-like label."""
-    rows = [f'<TR><TD ALIGN="LEFT" COLSPAN="{COLUMNS * 2}"><B>{line}</B></TD></TR>' for line in _wrapped(picture.title)]
-    for note in picture.notes:
-        rows += [f'<TR><TD ALIGN="LEFT" COLSPAN="{COLUMNS * 2}">{line}</TD></TR>' for line in _wrapped(note)]
-    entries = legend(picture)
-    for at in range(0, len(entries), COLUMNS):
-        cells = [
-            f'<TD ALIGN="CENTER">{_sample(entry)}</TD><TD ALIGN="LEFT">{escape(entry.in_words)}</TD>'
-            for entry in entries[at : at + COLUMNS]
-        ]
-        cells += ["<TD></TD><TD></TD>"] * (COLUMNS - len(cells))
-        rows.append(f"<TR>{''.join(cells)}</TR>")
-    return f'<TABLE BORDER="0" CELLBORDER="0" CELLSPACING="2" CELLPADDING="2">{"".join(rows)}</TABLE>'
+    """Title and notes as an HTML-like label."""
+    lines = [f"<B>{line}</B>" for line in _wrapped(picture.title)]
+    lines += [line for note in picture.notes for line in _wrapped(note)]
+    rows = "".join(f'<TR><TD ALIGN="LEFT">{line}</TD></TR>' for line in lines)
+    return f'<TABLE BORDER="0" CELLBORDER="0" CELLSPACING="2" CELLPADDING="2">{rows}</TABLE>'
 
 
 def _wrapped(text: str) -> list[str]:
@@ -183,23 +180,3 @@ def _wrapped(text: str) -> list[str]:
             lines.append("")
         lines[-1] += f" {shortened(word, LONGEST_NOTE)}" if lines[-1] else shortened(word, LONGEST_NOTE)
     return [escape(line) for line in lines]
-
-
-def _sample(entry: Entry) -> str:
-    """A small box, or a piece of line."""
-    look = entry.look
-    bare = 'CELLBORDER="0" CELLSPACING="0" CELLPADDING="0"'
-    width = max(1, round(look.width))
-    if entry.shape is None:
-        line = f'BORDER="{width}" SIDES="B" STYLE="{look.style.upper()}" COLOR="{look.colour}"'
-        return f'<TABLE {line} {bare}><TR><TD WIDTH="30" HEIGHT="5"></TD></TR></TABLE>'
-    round_ = entry.shape.graphviz[0] in ("ellipse", "octagon", "cylinder") or entry.shape.graphviz[1] == "rounded"
-    style = ",".join((["ROUNDED"] if round_ else []) + [look.style.upper()])
-    outline = f'STYLE="{style}" COLOR="{INK}"'
-    filled = f'BGCOLOR="{look.colour}"><TR><TD WIDTH="22" HEIGHT="10"></TD></TR></TABLE>'
-    table = f'<TABLE BORDER="{width}" {bare} {outline} {filled}'
-    if look.double:
-        inner = f'<TABLE BORDER="{width}" {bare} STYLE="{style}" COLOR="{INK}" {filled}'
-        around = 'BORDER="1" CELLBORDER="0" CELLSPACING="2" CELLPADDING="0"'
-        return f"<TABLE {around} {outline}><TR><TD>{inner}</TD></TR></TABLE>"
-    return table

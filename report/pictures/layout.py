@@ -1,13 +1,15 @@
-"""Picture -> SVG or PNG within a given time: by the best layout that is done in it, and the reader is told which.
+"""Picture -> SVG or PNG, the same whatever else the machine does: the layout is chosen by the picture's size.
 
 In: a ``Picture``. Out: bytes, and what a reader has to know of how they came about.
 """
 
 from __future__ import annotations
 
+import re
 import struct
 import time
 from dataclasses import dataclass
+from math import inf
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import DrawingError
@@ -23,6 +25,9 @@ if TYPE_CHECKING:
 
 SVG, PNG = "svg", "png"
 SECONDS = 45.0
+DIRECTIONS = ("LR", "TB")
+ORDERED = "dot"  # the engine that knows a direction
+PAGE = (1100, 1400)  # points: what can be read without moving it to the side
 LESS = "--finding, --around, --most and --fold draw less"
 DOTS_PER_INCH = 144
 LARGEST_INCHES = 50  # of a PNG: 7,200 dots a side, 200 MB while it is drawn
@@ -36,27 +41,27 @@ class Way:
     ----------
     engine, attributes
         Of Graphviz.
-    share
-        Of the time that is left, at most.
+    most
+        Boxes and lines that it is taken for.
     words
         What a reader has to know of it.
     """
 
     engine: str
     attributes: Mapping[str, str]
-    share: float
+    most: float = inf
     words: str = ""
 
 
-WAYS = (
-    Way("dot", {}, 1 / 3),
+WAYS = (  # by size, never by time: the same picture on a busy machine
+    Way("dot", {}, 1_500),
     Way(
         "sfdp",
         {"overlap": "ortho_yx", "splines": "line"},
-        0.75,
+        15_000,
         "boxes stand near what they are joined to, unordered",
     ),
-    Way("sfdp", {"overlap": "true", "splines": "line", "K": "3"}, 1.0, "boxes may lie on each other"),
+    Way("sfdp", {"overlap": "true", "splines": "line", "K": "3"}, words="boxes may lie on each other"),
 )
 
 
@@ -86,35 +91,49 @@ def drawn(
     form
         ``svg`` or ``png``.
     direction
-        See ``dot``.
+        See ``dot``; empty for the one that can be drawn larger on a page.
     seconds
-        For all attempts together.
+        For all of it. The picture does not depend on it: when time runs out there is none.
 
     Raises
     ------
     DrawingError
-        If nothing is done in time, or Graphviz is not installed.
+        If it is not done in time, or Graphviz is not installed.
     """
     end = time.monotonic() + seconds
-    said: tuple[str, ...] = ()
+    way = way_of(picture, ways)
+    note = (f"Laid out by Graphviz's {way.engine}, since it is large: {way.words}; {LESS}",) if way.words else ()
+    noted = picture.noted(*note)
     with Graphviz() as graphviz:
-        for way in ways:
-            given = (end - time.monotonic()) * way.share
-            if given <= 0:
-                break
-            note = (*said, f"Laid out by Graphviz's {way.engine}: {way.words}")[-2:] if way.words else ()
-            text = dot(picture.noted(*note), direction=direction)
-            try:
-                data = graphviz.draw(Job(text, way.engine, form, {**way.attributes, **_paper(form)}), given)
-            except TooLongError:
-                said = (f"Graphviz's {way.engine} did not finish in {counted(round(given), 'second')}; {LESS}",)
-                continue
-            if form == SVG:
-                return Drawn(finished(data, picture.noted(*note)), note)
-            return Drawn(data, (*note, *_smaller(data)))
-    what = f"the layout of {counted(len(picture.boxes), 'box', 'boxes')} takes more than {seconds:g} seconds"
-    hint = "draw less (--around, --finding, --fold, --most), give it more with --seconds, or take --format dot"
-    raise DrawingError(f"graph:0: {what}; {hint}")
+
+        def draw(form: str, direction: str) -> bytes:
+            job = Job(dot(noted, direction=direction or "LR"), way.engine, form, {**way.attributes, **_paper(form)})
+            return graphviz.draw(job, end - time.monotonic())
+
+        try:
+            if not direction and way.engine == ORDERED:
+                direction = max(DIRECTIONS, key=lambda one: _scale(draw(SVG, one)))
+            data = draw(form, direction)
+        except TooLongError:
+            what = f"the layout of {counted(len(picture.boxes), 'box', 'boxes')} takes more than {seconds:g} seconds"
+            hint = "draw less (--around, --finding, --fold, --most), give it more with --seconds, or take --format dot"
+            raise DrawingError(f"graph:0: {what}; {hint}") from None
+    if form == SVG:
+        return Drawn(finished(data, noted), note)
+    return Drawn(data, (*note, *_smaller(data)))
+
+
+def way_of(picture: Picture, ways: tuple[Way, ...] = WAYS) -> Way:
+    """Return how a picture is laid out: by its size alone."""
+    size = len(picture.boxes) + len(picture.lines)
+    return next(way for way in ways if size <= way.most)
+
+
+def _scale(svg: bytes) -> float:
+    """How large a picture can be on a page; no larger than it is."""
+    sides = re.search(rb'<svg width="([\d.]+)pt" height="([\d.]+)pt"', svg)
+    assert sides
+    return min(1.0, *(page / float(side) for page, side in zip(PAGE, sides.groups(), strict=True)))
 
 
 def _paper(form: str) -> dict[str, str]:

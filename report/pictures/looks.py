@@ -30,13 +30,10 @@ class Shape:
         Name of the shape, and of the style if it has one.
     mermaid
         What opens and closes the shape.
-    words
-        For the legend, where the shape is not a simple one.
     """
 
     graphviz: tuple[str, str]
     mermaid: tuple[str, str]
-    words: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,17 +65,17 @@ class Look:
 
 
 SHAPES = {
-    "node": Shape(("ellipse", ""), ("([", "])"), "oval"),
+    "node": Shape(("ellipse", ""), ("([", "])")),
     "topic": Shape(("box", ""), ("[", "]")),
-    "service": Shape(("box", "rounded"), ("[[", "]]"), "round corners"),
-    "action": Shape(("component", ""), ("{{", "}}"), "with tabs"),
-    "storage": Shape(("cylinder", ""), ("[(", ")]"), "cylinder"),
-    "external-system": Shape(("house", ""), (">", "]"), "house"),
-    "shared-memory": Shape(("parallelogram", ""), ("[/", "/]"), "parallelogram"),
-    "side-channel": Shape(("hexagon", ""), ("[\\", "\\]"), "hexagon"),
-    "device": Shape(("box3d", ""), ("[/", "\\]"), "block"),
-    "display": Shape(("tab", ""), ("[\\", "/]"), "tab"),
-    "person": Shape(("octagon", ""), ("((", "))"), "octagon"),
+    "service": Shape(("box", "rounded"), ("[[", "]]")),
+    "action": Shape(("component", ""), ("{{", "}}")),
+    "storage": Shape(("cylinder", ""), ("[(", ")]")),
+    "external-system": Shape(("house", ""), (">", "]")),
+    "shared-memory": Shape(("parallelogram", ""), ("[/", "/]")),
+    "side-channel": Shape(("hexagon", ""), ("[\\", "\\]")),
+    "device": Shape(("box3d", ""), ("[/", "\\]")),
+    "display": Shape(("tab", ""), ("[\\", "/]")),
+    "person": Shape(("octagon", ""), ("((", "))")),
 }
 
 KIND_LOOKS = {
@@ -126,12 +123,6 @@ class Entry:
     look: Look
     words: str
     shape: Shape | None = None
-
-    @property
-    def in_words(self) -> str:
-        """With the shape in words too, for legends that cannot draw it."""
-        kind = self.look in KIND_LOOKS.values() or not self.look.words
-        return f"{self.words} ({self.shape.words})" if kind and self.shape and self.shape.words else self.words
 
 
 def box_look(view: str, look: str) -> Look:

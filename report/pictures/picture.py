@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 Key = tuple[str, str, str]  # robot, kind, name: the identity of an element, rule S1
 ROS, PRIVACY = "ros", "privacy"
+LEGIBLE = 40  # boxes of a picture that people read without being asked
 
 
 def order(key: Key) -> tuple[int, str, str]:

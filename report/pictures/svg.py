@@ -45,10 +45,11 @@ def _described(data: bytes, picture: Picture) -> etree._Element:
         title = group.find(TITLE)
         if title is None:
             continue
-        if group_of(group) in ("graph", "cluster"):  # the name of a cluster is drawn
+        tip = tips.get(str(group.get("id")))
+        if tip is None:  # of the whole, of a cluster, of the legend: what there is to say is drawn
             group.remove(title)
         else:
-            title.text = tips[str(group.get("id"))]
+            title.text = tip
     _head(root, picture)
     etree.cleanup_namespaces(root)
     return root

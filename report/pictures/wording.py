@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.text import shortened
+from rosprivacy.analysis.text import printable, shortened
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -57,3 +57,12 @@ def listed(names: Iterable[str], most: int = 3, longest: int = 60) -> str:
 def sentences(texts: Sequence[str]) -> str:
     """Join sentences."""
     return " ".join(text if text.endswith((".", "…")) else f"{text}." for text in texts)
+
+
+def quoted(text: str) -> str:
+    r"""Return a quoted string of DOT that shows text as it is: no escape sequence, no entity.
+
+    >>> quoted('a"b' + chr(92) + "N&amp;")
+    '"a\\"b\\\\N&amp;amp;"'
+    """
+    return '"' + printable(text).replace("\\", "\\\\").replace('"', '\\"').replace("&", "&amp;") + '"'

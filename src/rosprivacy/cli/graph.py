@@ -13,6 +13,7 @@ from rosprivacy.analysis.errors import DrawingError
 from rosprivacy.cli.inputs import Inputs, reads_system
 from rosprivacy.cli.options import Output
 from rosprivacy.cli.output import emit
+from rosprivacy.report.pictures.picture import LEGIBLE
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.model import Profile
@@ -113,22 +114,37 @@ def graph(
         bool, typer.Option("--fold", help="Draw channels with the same ends as one.", rich_help_panel=DRAWN)
     ] = False,
     loose_ends: Annotated[
+        bool | None,
+        typer.Option(
+            "--loose-ends/--no-loose-ends",
+            show_default=False,
+            help="Draw channels that only one node names.",
+            rich_help_panel=DRAWN,
+        ),
+    ] = None,
+    everything: Annotated[
         bool,
         typer.Option(
-            "--loose-ends/--no-loose-ends", help="Draw channels that only one node names.", rich_help_panel=DRAWN
+            "--all",
+            help=f"Draw all of it. Without this, and where nothing else here is chosen, a picture of more than "
+            f"{LEGIBLE} elements is drawn smaller and says what it leaves out; GraphML always has all.",
+            rich_help_panel=DRAWN,
         ),
-    ] = True,
+    ] = False,
     cluster: Annotated[
         Cluster, typer.Option(help="Draw together what belongs together.", rich_help_panel=LAYOUT)
     ] = Cluster.none,
     direction: Annotated[
-        Direction, typer.Option(help="Where data goes on the paper.", rich_help_panel=LAYOUT)
-    ] = Direction.right,
+        Direction | None,
+        typer.Option(
+            show_default=False,
+            help="Where data goes on the paper. By default what can be drawn larger on a page; as text, right.",
+            rich_help_panel=LAYOUT,
+        ),
+    ] = None,
     seconds: Annotated[
         float,
-        typer.Option(
-            min=0.1, help="For the layout; a simpler one is taken when time runs out.", rich_help_panel=LAYOUT
-        ),
+        typer.Option(min=0.1, help="For the layout; when time runs out, this is an error.", rich_help_panel=LAYOUT),
     ] = 45.0,
     draw_standard_channels: Annotated[
         bool,
@@ -138,6 +154,9 @@ def graph(
     """Draw the ROS graph, or where personal data can go in it. Gives no verdict: exit code 0 once it is drawn."""
     if show is Shown.ros and (finding or most):
         raise typer.BadParameter("--finding and --most are for --show privacy")
+    chosen = bool(finding or robot or around or most or fold) or loose_ends is not None
+    if everything and most:
+        raise typer.BadParameter("--all draws everything, --most does not: choose one of them")
     show = show or (Shown.privacy if finding or most else Shown.ros)
     form = _format(format, output)
     result, own = _drawn_of(inputs)
@@ -148,12 +167,18 @@ def graph(
         picture = represented(picture, result.fleet.likeness)
         own = {label(name, result.fleet.likeness): profiles for name, profiles in own.items()}
         robot = label(robot, result.fleet.likeness) if robot else None
-    picture = _narrowed(picture, robot, around, steps, most, fold=fold, loose_ends=loose_ends)
+    picture = _narrowed(picture, robot, around, steps, most, fold=fold, loose_ends=loose_ends is not False)
+    if not everything and not chosen and form is not PictureFormat.graphml:
+        from rosprivacy.report.pictures.legible import legible
+
+        picture, left = legible(picture)
+        for said in left:
+            print(said, file=sys.stderr)
     if cluster is not Cluster.none:
         from rosprivacy.report.pictures.narrow import grouped
 
         picture = grouped(picture, cluster.value, result.analysis.graph.profiles, own)
-    _write(picture, form, output, "LR" if direction is Direction.right else "TB", seconds)
+    _write(picture, form, output, direction, seconds)
 
 
 def _drawn_of(inputs: Inputs) -> tuple[Result, dict[str, tuple[Profile, ...]]]:
@@ -222,13 +247,16 @@ def _narrowed(
     return views.bounded(picture, most) if most else picture
 
 
-def _write(picture: Picture, form: PictureFormat, output: Path | None, direction: str, seconds: float) -> None:
+def _write(
+    picture: Picture, form: PictureFormat, output: Path | None, wanted: Direction | None, seconds: float
+) -> None:
+    direction = "TB" if wanted is Direction.down else "LR"
     if form in (PictureFormat.svg, PictureFormat.png):
         from rosprivacy.report.pictures.layout import drawn
 
         if output is None and sys.stdout is not None and sys.stdout.isatty():
             raise DrawingError(f"graph:0: {form.upper()} is not for a terminal; name a file with --output")
-        done = drawn(picture, form.value, direction=direction, seconds=seconds)
+        done = drawn(picture, form.value, direction=direction if wanted else "", seconds=seconds)
         for said in done.said:
             print(said, file=sys.stderr)
         emit(done.data, output)
