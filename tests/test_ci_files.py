@@ -121,6 +121,7 @@ def test_the_action_fails_when_it_is_told_to(fail_on: str, code: int, runner: di
     assert view == ("enforced" if fail_on == "never" else "declared")
 
 
+@pytest.mark.slow
 def test_bad_input_ends_the_action_with_the_problem(runner: dict[str, str], tmp_path: Path) -> None:
     *_, done = run_action({"policies": "-x; echo hello"}, runner, tmp_path)
     assert done.returncode == 2
@@ -183,6 +184,7 @@ TAKEN_FOR_COMMANDS = (
 FROM_HERE = {"PYTHONPATH": f"{os.pathsep}/nowhere"}  # as `export PYTHONPATH=$PYTHONPATH:…` makes it: the current folder
 
 
+@pytest.mark.slow
 def test_nothing_of_a_hostile_checkout_runs_in_the_action(runner: dict[str, str], tmp_path: Path) -> None:
     checkout = tmp_path / "checkout"
     shutil.copytree(FACTORY, checkout / "p")
@@ -200,6 +202,7 @@ def test_nothing_of_a_hostile_checkout_runs_in_the_action(runner: dict[str, str]
     assert json.loads((checkout / "rosprivacy.json").read_text("utf-8"))["verdict"] == "leak"
 
 
+@pytest.mark.slow
 def test_an_answer_that_the_checkout_brings_is_not_taken_for_ours(runner: dict[str, str], tmp_path: Path) -> None:
     """If the analysis fails, a later step must not find one."""
     for name in ("rosprivacy.sarif", "rosprivacy.json"):
@@ -210,6 +213,7 @@ def test_an_answer_that_the_checkout_brings_is_not_taken_for_ours(runner: dict[s
     assert not Path(runner["GITHUB_OUTPUT"]).exists()
 
 
+@pytest.mark.slow
 def test_the_action_writes_through_no_linked_folder(runner: dict[str, str], tmp_path: Path) -> None:
     shutil.copytree(FACTORY, tmp_path / "checkout" / "p")
     planted(tmp_path / "elsewhere" / "out.json", "mine")
@@ -345,6 +349,7 @@ def test_the_hook_fails_on_a_leak_and_passes_without_one(tmp_path: Path) -> None
     assert "Passed" in clean.stdout
 
 
+@pytest.mark.slow
 def test_nothing_of_a_hostile_repository_runs_in_the_hook(tmp_path: Path) -> None:
     """Its own entry, in the environment of the tests; git and its hooks are pre-commit's business."""
     hooks = tmp_path / "hooks"
@@ -395,6 +400,7 @@ def report_of(run: int) -> dict[str, Any]:
     return found
 
 
+@pytest.mark.slow
 def test_the_comment_says_what_is_new_and_what_is_gone(tmp_path: Path) -> None:
     run1, run2, run5 = report_of(1), report_of(2), report_of(5)
     new = compare(tmp_path, run1, run2)
@@ -407,6 +413,7 @@ def test_the_comment_says_what_is_new_and_what_is_gone(tmp_path: Path) -> None:
     assert "this is no legal verdict" in same
 
 
+@pytest.mark.slow
 def test_what_was_not_analysed_before_is_all_new(tmp_path: Path) -> None:
     """The report that the workflow takes in its place."""
     steps = yaml.safe_load((CI / "privacy.yml").read_text("utf-8"))["jobs"]["paths-to-assess"]["steps"]
@@ -417,6 +424,7 @@ def test_what_was_not_analysed_before_is_all_new(tmp_path: Path) -> None:
     assert "Asked otherwise" not in comment
 
 
+@pytest.mark.slow
 def test_no_name_can_link_or_mention_anybody(tmp_path: Path) -> None:
     after = report_of(2)
     for finding in after["findings"]:
@@ -430,6 +438,7 @@ def test_no_name_can_link_or_mention_anybody(tmp_path: Path) -> None:
     assert line.isprintable()
 
 
+@pytest.mark.slow
 def test_long_lists_are_cut_and_say_so(tmp_path: Path) -> None:
     after = report_of(2)
     one = after["findings"][0]
@@ -455,6 +464,7 @@ def say_what_changes(runner: dict[str, str], checkout: Path, outcome: str, **mor
     return Path(runner["GITHUB_STEP_SUMMARY"]).read_text("utf-8")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("outcome", ["failure", "success"])
 def test_a_pull_request_is_not_its_own_baseline(outcome: str, runner: dict[str, str], tmp_path: Path) -> None:
     """It brings a before.json that says that nothing is new; and an analysis that failed leaves one half done."""
@@ -470,6 +480,7 @@ def test_a_pull_request_is_not_its_own_baseline(outcome: str, runner: dict[str, 
     assert f"Verdict: `{before}` before, `leak` now." in comment
 
 
+@pytest.mark.slow
 def test_nothing_of_a_hostile_checkout_runs_while_it_is_compared(runner: dict[str, str], tmp_path: Path) -> None:
     trace = hostile(tmp_path / "checkout")
     for name in ("before.json", "after.json"):

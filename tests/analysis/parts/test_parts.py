@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.fleets import run_fleet
@@ -60,7 +60,6 @@ def test_in_parts_it_is_the_same(case: Case) -> None:
 
 
 @given(fleets())
-@settings(max_examples=30)
 def test_several_units_are_one_part(case: Case) -> None:
     same(case, partial(scattered, size=2))
     same(case, partial(scattered, size=100))

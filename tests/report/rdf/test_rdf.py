@@ -377,6 +377,7 @@ def test_random_systems_keep_to_the_shapes_and_change_data_where_labels_say_so(s
 class TestShapesCanFail:
     """A shape that accepts everything shows nothing."""
 
+    @pytest.mark.slow
     def test_without_what_is_required(self, graph: Graph) -> None:
         accepted = []
         required = {(s, p) for s, p, _ in graph if isinstance(s, URIRef) and p != RDF.type}
