@@ -19,10 +19,10 @@ from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.files_read import noted, one_run, read_as
 from rosprivacy.ingest.labels.label_file import shipped_text
 from rosprivacy.report.atomic import check_outputs, write_texts
-from tests.cli.test_cli import everything
 from tests.helpers.command import XI, Cli, refused, run
+from tests.helpers.docs import CATEGORIES, blocks
 from tests.helpers.factory import BEFORE, RUN3
-from tests.test_docs import CATEGORIES, blocks
+from tests.helpers.policies import everything
 
 if TYPE_CHECKING:
     from collections.abc import Callable
