@@ -55,7 +55,7 @@ def pytest_itemcollected(item: pytest.Item) -> None:
     if not {"corpus", "dpv"}.isdisjoint(used):
         item.add_marker("corpus")
     for group, shared in GROUPS.items():
-        if not shared.isdisjoint(used):
+        if not shared.isdisjoint(used) or (group == "neo4j" and item.get_closest_marker("database")):
             item.add_marker(pytest.mark.xdist_group(group))
 
 

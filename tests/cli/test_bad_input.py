@@ -168,6 +168,7 @@ def test_a_label_file_that_is_nested_very_deeply_does_not_end_the_process(tmp_pa
     refused(run("analyze", "p.xml", "-l", "l.yaml", cwd=tmp_path))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("policy_text", "label_text"),
     [("<policy", LABELS), (GOOD, "labels: 2"), (GOOD, "labels: 1\nnodes: {/b: conduit}")],

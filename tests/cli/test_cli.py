@@ -182,7 +182,7 @@ def test_json_is_the_document_of_the_library(cli: Cli, before: Path, runs: list[
     assert done.returncode == 1
 
 
-@pytest.mark.parametrize("form", ["text", "json"])
+@pytest.mark.parametrize("form", ["text", pytest.param("json", marks=pytest.mark.slow)])
 def test_the_same_input_gives_the_same_bytes(before: Path, runs: list[Path], form: str) -> None:  # S14
     outputs = {
         run("analyze", before, "-l", runs[1], "-f", form, PYTHONHASHSEED=seed, TZ=zone).stdout

@@ -103,8 +103,11 @@ def test_a_terminal_that_knows_ascii_only_does_not_end_the_program(tmp_path: Pat
     assert (done.returncode, done.stderr) == (0, "")
 
 
+UNLIKE = (["-f", "text"], ["-q", "--save-graph", "g.json"], ["-f", "json", "-o", "r.json"])
+
+
 @pytest.mark.parametrize(
-    "options", [["-f", "json"], ["-f", "text"], ["-q", "--save-graph", "g.json"], ["-f", "json", "-o", "r.json"]]
+    "options", [["-f", "json"], *(pytest.param(options, marks=pytest.mark.slow) for options in UNLIKE)]
 )
 def test_a_file_name_that_is_not_utf8_does_not_end_the_program(tmp_path: Path, options: list[str]) -> None:
     name = os.fsdecode(b"caf\xe9.xml")  # Latin-1, as old systems wrote it

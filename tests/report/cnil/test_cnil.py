@@ -367,6 +367,7 @@ def test_any_system_with_any_names_is_taken(system: System, suffix: str) -> None
     assert len(tool.answers.get(322, {"list": []})["list"]) == len(findings) + bool(analysis.open)
 
 
+@pytest.mark.slow
 def test_the_command_dates_it_as_it_is_told() -> None:
     command = [sys.executable, "-m", "rosprivacy", "analyze", "care-home.policy.xml", "-l", "care-home.labels.yaml"]
     outputs = []

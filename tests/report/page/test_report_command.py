@@ -38,6 +38,7 @@ def test_the_bytes_are_the_same_in_every_process(form: str) -> None:
     assert done[0].stdout == done[1].stdout
 
 
+@pytest.mark.slow
 def test_the_page_is_dated_as_the_environment_says() -> None:
     assert b"Made on 2026-09-21" in command(*SYSTEM).stdout
     refused = command(*SYSTEM, SOURCE_DATE_EPOCH="yesterday")
@@ -103,11 +104,13 @@ def test_it_is_written_to_a_file_and_compares_with_an_earlier_document(tmp_path:
     assert "What changed since the earlier report" in text
 
 
+@pytest.mark.slow
 def test_a_report_that_is_written_is_no_failure_whatever_it_says() -> None:
     assert run(3)["verdict"] == "leak"
     assert command("examples/factory/before.policy.xml", "-l", "examples/factory/run3.labels.yaml").returncode == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
