@@ -69,7 +69,7 @@ SIX = '{\n\t"source": ["/robot_camera"],\n\t"leak": ["/archive_server"],\n\t"mun
 
 
 WEEKDAYS = settings(
-    max_examples=min(100, 2 * settings.default.max_examples),
+    max_examples=min(100, 2 * settings().max_examples),
     deadline=None,
     database=None,
     derandomize=True,

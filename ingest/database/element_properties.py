@@ -115,7 +115,7 @@ def element_results(analysis: Analysis, bound: Bound, names: Names, roles: Roles
         leaks, cleans, labelled = roles.of(bound.elements.get(vertex, ()))
         properties = {
             "carries": names.broad(present),
-            "pseudonymised": names.broad(present >> len(found.categories)),
+            "pseudonymised": names.broad(found.bits.planes(present)[1]),
             "begins": names.exact(found.begins(vertex)),
             "leaks": leaks,
             "sanitizes": cleans,
@@ -135,8 +135,7 @@ def element_results(analysis: Analysis, bound: Bound, names: Names, roles: Roles
 
 def _stopped(found: Spread, kept: int) -> int:
     """Kinds that go on neither as they are nor pseudonymised."""
-    k = len(found.categories)
-    return ((1 << k) - 1) & ~(kept | kept >> k)
+    return found.all_bits & ~found.bits.in_both_forms(kept)
 
 
 def flow_results(analysis: Analysis, names: Names) -> Iterator[Row]:
@@ -162,13 +161,13 @@ def flow_results(analysis: Analysis, names: Names) -> Iterator[Row]:
 
 def _passed_and_made(found: Spread, vertex: int) -> tuple[int, int]:
     """What comes to an element and goes on, pseudonymised or not; and what it makes of what comes."""
-    k = len(found.categories)
     arrives = found.arrives.get(vertex, 0)
     passed, made = arrives & found.keeps.get(vertex, found.all_bits), 0
     for before, after in found.derives.get(vertex, ()):
         if arrives >> before & 1:
-            made |= 1 << after if (before - after) % k else 0
-            passed |= 0 if (before - after) % k else 1 << after
+            same = found.bits.category(before) == found.bits.category(after)  # pseudonymised here
+            made |= 0 if same else 1 << after
+            passed |= 1 << after if same else 0
     return passed, made
 
 

@@ -1,6 +1,6 @@
 """The way from findings to proposals: policies, labels and limits in, proven proposals and a patch out.
 
-In: a ``Result`` of ``assembly``. Out: ``Mitigation``.
+In: a ``Result`` of one robot. Out: ``Mitigation``.
 """
 
 from __future__ import annotations

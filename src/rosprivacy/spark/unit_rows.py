@@ -14,12 +14,13 @@ from rosprivacy.analysis.answer import robot_verdicts
 from rosprivacy.analysis.findings.findings import Options, analyse
 from rosprivacy.analysis.fleet.source_leak_pairs import pairs
 from rosprivacy.analysis.model import unread
-from rosprivacy.assumptions import remembered, sources_of, what_it_rests_on
+from rosprivacy.assumptions import assumptions_of, files_read, remembered
 from rosprivacy.ingest.database.fleet_rows import FleetRows
 from rosprivacy.ingest.database.rows import rows_of
 from rosprivacy.ingest.fleet.dds_domains import pseudo_robot
 from rosprivacy.ingest.fleet.fleet_graph import place_chosen
 from rosprivacy.ontology.vocabulary import load
+from rosprivacy.question import Question
 from rosprivacy.spark.shown_robots import limited
 from rosprivacy.spark.units import unit_of
 
@@ -167,8 +168,9 @@ def _fleet_rows(placed: Placed, members: Mapping[str, Member], plan: Plan, mine:
 
 
 def _more(member: Member, analysis: Analysis, plan: Plan, vocabulary: Any) -> dict[str, str]:
-    sources = sources_of(member.policies)
-    said = what_it_rests_on(analysis.graph, sources, member.files, analysis, plan.settings, vocabulary)
+    files = files_read(member.policies, member.files, plan.settings)
+    question = Question(plan.settings, None, None, plan.settings.today or "")
+    said = assumptions_of(files, analysis, question, vocabulary)
     if said["standard_channels"]:
         spread = analysis.spread
         robots = [spread.graph.elements[vertex] for vertex in spread.standard]

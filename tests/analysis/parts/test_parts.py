@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given
 
 from rosprivacy.analysis.errors import InputErrors
-from rosprivacy.fleets import run_fleet
+from rosprivacy.fleet_system import answer_fleet
 from rosprivacy.settings import Settings
 from tests.helpers.fleet_files import write
 from tests.helpers.parts import FLEET, documents, fleet_file, in_list, same, scattered
@@ -57,7 +57,7 @@ def test_bad_fleets_are_refused_alike(fleet_file: str, old: str, new: str) -> No
     """Also what only the parts know: names that are on no robot, labels that name what is not there."""
     write(fleet_file, FLEET.replace(old, new, 1))
     problems = []
-    for run in (lambda file: run_fleet(file, Settings()), in_list):
+    for run in (lambda file: answer_fleet(file, Settings()), in_list):
         with pytest.raises(InputErrors) as caught:
             run(fleet_file)
         problems.append(str(caught.value))
@@ -68,7 +68,7 @@ def test_labels_that_contradict_each_other_are_refused_alike(fleet_file: str) ->
     write("odd.yaml", "labels: 1\nnodes: {/camera: conduit}\n")
     write("eye.yaml", "labels: 1\nnodes: {/camera: {source: [Video], sanitizer: {Video: drop}}}\n")
     problems = []
-    for run in (lambda file: run_fleet(file, Settings()), in_list):
+    for run in (lambda file: answer_fleet(file, Settings()), in_list):
         with pytest.raises(InputErrors) as caught:
             run(fleet_file)
         problems.append(str(caught.value))

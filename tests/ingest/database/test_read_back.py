@@ -14,7 +14,6 @@ from rosprivacy.analysis.errors import DatabaseError, InputErrors, LabelError
 from rosprivacy.analysis.findings.findings import analyse
 from rosprivacy.analysis.kernel.ranks import decided
 from rosprivacy.analysis.model import GLOB, NAME, Place, Statement
-from rosprivacy.assembly import robot_of, run_stored
 from rosprivacy.ingest.database.flow_statements import HAND
 from rosprivacy.ingest.database.loading import load
 from rosprivacy.ingest.database.read_back import read_stored
@@ -23,7 +22,9 @@ from rosprivacy.ingest.database.write_back import write_back
 from rosprivacy.ingest.labels.entries import EXACT
 from rosprivacy.ontology.vocabulary import load as load_vocabulary
 from rosprivacy.private_neo4j import connection
+from rosprivacy.robot_system import robot_of
 from rosprivacy.settings import Settings
+from rosprivacy.stored_system import answer_stored
 from tests.helpers.additions import ADD_STORAGE
 from tests.helpers.cases import CASES
 from tests.helpers.graphs import care_home, dump, factory, rows_of
@@ -62,7 +63,7 @@ def test_the_document_is_that_of_the_files(
     result = rosprivacy.analyze(given["policies"], given["labels"], **given.get("options", {}))
     load(driver, [robot_of("r", result)], VOCABULARY)
     before = dump(driver, without=("digest", "version"))
-    document = run_stored(driver, Settings()).document()
+    document = answer_stored(driver, Settings()).document()
     assert document["assumptions"].pop("database") == {"robots": 1}
     assert document == result.document()
     assert dump(driver, without=("digest", "version")) == before
@@ -116,7 +117,7 @@ class TestWhatIsSaidOfAFlow:
 
     def test_it_is_decided_as_in_the_file(self, driver: Driver, result: Any) -> None:
         load(driver, [robot_of("r", result)], VOCABULARY)
-        document = run_stored(driver, Settings()).document()
+        document = answer_stored(driver, Settings()).document()
         document["assumptions"].pop("database")
         assert document == result.document()
 
@@ -164,7 +165,7 @@ class TestWhatPeopleAdd:
         load(driver, [rows_of("care", care_home())], VOCABULARY)
         driver.execute_query(ADD_STORAGE)
         driver.execute_query("MATCH (:RosNode {name: '/recorder'})-[l:LEAKS]->() DELETE l")
-        result = run_stored(driver, Settings())
+        result = answer_stored(driver, Settings())
         found = [f for f in result.analysis.findings if f.leak.kind == "storage"]
         assert [[e.name for e in f.witness][-2:] for f in found] == [["/recorder", "footage bucket"]]
         rows = driver.execute_query(
@@ -178,7 +179,7 @@ class TestWhatPeopleAdd:
         """Rules S10 and S11."""
         load(driver, [rows_of("care", care_home())], VOCABULARY)
         driver.execute_query(ADD_STORAGE.replace(", retention: 'P30D', country: 'DE'", ""))
-        result = run_stored(driver, Settings())
+        result = answer_stored(driver, Settings())
         (kept,) = [f for f in result.analysis.findings if f.kind == "storage-limitation"]
         assert (kept.leak.name, kept.reason) == ("footage bucket", "no retention is stated")
         assert [q.element.name for q in result.analysis.open if q.missing] == ["footage bucket"]
@@ -188,9 +189,9 @@ class TestWhatPeopleAdd:
     def test_it_is_there_after_the_next_load_and_found_again(self, driver: Driver) -> None:
         load(driver, [rows_of("care", care_home())], VOCABULARY)
         driver.execute_query(ADD_STORAGE)
-        first = ways(run_stored(driver, Settings()))
+        first = ways(answer_stored(driver, Settings()))
         assert load(driver, [rows_of("care", care_home())], VOCABULARY).written == 1
-        assert ways(run_stored(driver, Settings())) == first
+        assert ways(answer_stored(driver, Settings())) == first
         assert any(way[-1] == "footage bucket" for way in first)
 
     @pytest.mark.parametrize(
@@ -206,9 +207,9 @@ class TestWhatPeopleAdd:
     )
     def test_a_changed_label_or_flow_counts(self, driver: Driver, change: str, gone: str) -> None:
         load(driver, [rows_of("care", care_home())], VOCABULARY)
-        before = ways(run_stored(driver, Settings()))
+        before = ways(answer_stored(driver, Settings()))
         driver.execute_query(change)
-        after = ways(run_stored(driver, Settings()))
+        after = ways(answer_stored(driver, Settings()))
         assert after < before
         assert {way[-1] for way in before - after} == {gone}
 
@@ -218,18 +219,18 @@ class TestWhatPeopleAdd:
         driver.execute_query(
             "MATCH (n {name: '/navigator'}), (c:DataCategory {name: 'PersonTrack'}) CREATE (n)-[:LEAKS]->(c)"
         )
-        assert ("PersonTrack", "/navigator") in {(way[0], way[-1]) for way in ways(run_stored(driver, Settings()))}
+        assert ("PersonTrack", "/navigator") in {(way[0], way[-1]) for way in ways(answer_stored(driver, Settings()))}
 
     def test_two_robots_meet_at_a_storage(self, driver: Driver) -> None:
         """Data that one writes and the other reads flows on, across robots (rule S9)."""
         load(driver, [rows_of("care", care_home()), rows_of("factory", factory(5))], VOCABULARY)
-        assert not [f for f in run_stored(driver, Settings()).analysis.findings if f.leak.robot == "factory"]
+        assert not [f for f in answer_stored(driver, Settings()).analysis.findings if f.leak.robot == "factory"]
         driver.execute_query(
             "MATCH (a:RosNode {robot: 'care', name: '/camera'}), "
             "(b:RosNode {robot: 'factory', name: '/archive_server'}) "
             "CREATE (a)-[:FLOWS_TO]->(:Storage {name: 'shared'})-[:FLOWS_TO]->(b)"
         )
-        found = [f for f in run_stored(driver, Settings()).analysis.findings if f.leak.robot == "factory"]
+        found = [f for f in answer_stored(driver, Settings()).analysis.findings if f.leak.robot == "factory"]
         assert [[(e.robot, e.name) for e in f.witness] for f in found] == [
             [("care", "/camera"), ("", "shared"), ("factory", "/archive_server")]
         ]
@@ -238,7 +239,7 @@ class TestWhatPeopleAdd:
 
     def test_the_answer_may_be_about_some_categories_but_all_are_written(self, driver: Driver) -> None:
         load(driver, [rows_of("care", care_home())], VOCABULARY)
-        result = run_stored(driver, Settings(categories=("Voice",)))
+        result = answer_stored(driver, Settings(categories=("Voice",)))
         assert {f.category for f in result.analysis.findings} == {"Voice"}
         assert driver.execute_query("MATCH (f:Finding) RETURN count(f)").records[0][0] == 3
 
@@ -264,13 +265,16 @@ class TestProblems:
             ("MATCH ()-[f:FLOWS_TO]->({name: '/blur'}) SET f.never = 7", "a flow cannot be understood"),
             (
                 "CREATE (:Element:Storage {name: 'x', country: 'UK'})",
-                "storage 'x' cannot be understood: country 'UK' is no ISO 3166-1 code; did you mean GB\\?",
+                "storage 'x' cannot be understood: country 'UK' is not an ISO 3166-1 code; did you mean GB\\?",
             ),
-            ("CREATE (:Element:Storage {name: 'x', retention: 'long'})", "retention 'long' is no ISO 8601 duration"),
+            (
+                "CREATE (:Element:Storage {name: 'x', retention: 'long'})",
+                "retention 'long' is not an ISO 8601 duration",
+            ),
             ("CREATE (:Element:Storage {name: 'x', limits: ['X: P1D']})", "limits names the unknown category 'X'"),
-            ("CREATE (:Element:Storage {name: 'x', backups: 'some'})", "backups 'some' is no ISO 8601 duration"),
+            ("CREATE (:Element:Storage {name: 'x', backups: 'some'})", "backups 'some' is not an ISO 8601 duration"),
             ("CREATE (:Element:Storage {name: 'x', transfer: 'trust'})", "transfer 'trust' is none of adequacy, "),
-            ("CREATE (:Element:Storage {name: 'x', operator: 7})", "operator is no text"),
+            ("CREATE (:Element:Storage {name: 'x', operator: 7})", "operator is not a text"),
             ("CREATE (:Robot {name: 'other', view: 'enforced'})", "in the views declared and enforced"),
             ("MATCH (r:Robot) DELETE r", "there is no robot in it; load one"),
             (
@@ -284,7 +288,7 @@ class TestProblems:
         driver.execute_query(damage.replace("DELETE r", "DETACH DELETE r"))
         before = driver.execute_query("MATCH (r:Robot) RETURN collect(r.version)").records[0][0]
         with pytest.raises(InputErrors, match=message) as error:
-            run_stored(driver, Settings())
+            answer_stored(driver, Settings())
         for line in str(error.value).splitlines():
             assert line.startswith("the database:0: ") or ":" in line
         assert driver.execute_query("MATCH (r:Robot) RETURN collect(r.version)").records[0][0] == before
@@ -301,4 +305,4 @@ class TestProblems:
 
     def test_an_empty_database(self, driver: Driver) -> None:
         with pytest.raises(InputErrors, match="there is no robot in it; load one with rosprivacy load"):
-            run_stored(driver, Settings())
+            answer_stored(driver, Settings())

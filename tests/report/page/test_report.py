@@ -105,7 +105,7 @@ def test_each_assumption_is_told() -> None:
             {"verdict": "undetermined", "findings": [], "open": "some"},
             "Not determined: what data can pass is not reviewed",
         ),
-        ({"verdict": "no-leak-found", "findings": []}, "No way to a recipient was found under the labels given"),
+        ({"verdict": "no-leak-found", "findings": []}, "No path to a recipient was found under the labels given"),
         ({"verdict": "undetermined", "findings": [], "open": []}, "no source was named, so no data was followed"),
         ({"verdict": "undetermined", "findings": [], "categories": []}, "no source was named, so no data was followed"),
     ],

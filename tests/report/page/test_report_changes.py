@@ -39,7 +39,7 @@ def test_new_gone_and_changed_ways_are_told() -> None:
     assert [way.mark for way in report.ways] == ["changed", "new"]
     for text in texts(new, earlier=earlier(old)):
         assert gone["id"] in text
-        assert "another shortest way" in text
+        assert "another shortest path" in text
 
 
 def test_a_line_that_only_moved_is_no_change() -> None:
@@ -55,7 +55,7 @@ def test_a_way_that_is_gone_because_less_was_asked_is_no_answer() -> None:
     new["verdict"] = "no-leak-found"
     new["assumptions"] |= {"categories_asked": ["Voice"], "view": "enforced"}
     for text in texts(new, earlier=earlier(care())):
-        assert "were not made in the same way. A way that is new or gone can come from that alone" in text
+        assert "were not made in the same way. A path that is new or gone can come from that alone" in text
         assert "view: 'declared', now 'enforced'" in text
         assert "kinds asked for: all, now Voice" in text
 
@@ -76,8 +76,8 @@ def test_files_that_differ_are_named() -> None:
     ("text", "message"),
     [
         ("", ":1: cannot be read"),
-        ("[]", ":0: is no document of the format rosprivacy.analysis/1"),
-        ('{"format": "rosprivacy.analysis/2"}', ":0: is no document of the format"),
+        ("[]", ":0: is not a document of the format rosprivacy.analysis/1"),
+        ('{"format": "rosprivacy.analysis/2"}', ":0: is not a document of the format"),
         ('{"format": "rosprivacy.analysis/1"}', ":0: verdict is missing or of another type"),
         ("[" * 100_000, ":0: cannot be read"),
         ("\ud800", None),

@@ -19,19 +19,19 @@ def test_whose_data_by_kind() -> None:
     report = told(care())
     assert cells(report.subjects) == {
         "residents": {
-            "face template": "1 way to assess", "location": "–", "person track": "–",
-            "video of persons": "1 way to assess", "voice": "1 way to assess",
+            "face template": "1 path to assess", "location": "–", "person track": "–",
+            "video of persons": "1 path to assess", "voice": "1 path to assess",
         },
         "staff": {
-            "face template": "1 way to assess", "location": "–", "person track": "–",
-            "video of persons": "1 way to assess", "voice": "1 way to assess",
+            "face template": "1 path to assess", "location": "–", "person track": "–",
+            "video of persons": "1 path to assess", "voice": "1 path to assess",
         },
         "visitors": {
-            "face template": "1 way to assess", "location": "–", "person track": "–",
-            "video of persons": "1 way to assess", "voice": "–",
+            "face template": "1 path to assess", "location": "–", "person track": "–",
+            "video of persons": "1 path to assess", "voice": "–",
         },
         "persons not stated": {
-            "face template": "–", "location": "brought in, no way found", "person track": "can be made of it",
+            "face template": "–", "location": "brought in, no path found", "person track": "can be made of it",
             "video of persons": "–", "voice": "–",
         },
     }  # fmt: skip
@@ -39,15 +39,15 @@ def test_whose_data_by_kind() -> None:
 
 
 def test_who_gets_which_kind() -> None:
-    no = "no way found"
+    no = "no path found"
     assert cells(told(care()).recipients) == {
         "/recorder": {
             "face template": no, "location": no, "person track": no,
-            "video of persons": "1 way to assess, pseudonymised", "voice": no,
+            "video of persons": "1 path to assess, pseudonymised", "voice": no,
         },
         "/uplink": {
-            "face template": "1 way to assess", "location": no, "person track": no, "video of persons": no,
-            "voice": "1 way to assess",
+            "face template": "1 path to assess", "location": no, "person track": no, "video of persons": no,
+            "voice": "1 path to assess",
         },
     }  # fmt: skip
 
@@ -90,9 +90,9 @@ def test_decisions_stand_beside_their_way_with_what_they_lack() -> None:
         assert "6(1)(c)" in text
         assert "no exception of Article 9(2) is recorded" in text  # Article 6 alone does not do for a special category
         assert "to be mitigated" in text
-        assert "matches no way any more" in text
-        assert "1 way to assess accepted by a person's decision; section 4 shows each" in text
-    assert {what: number for number, what in report.numbers}["ways to assess"] == 2
+        assert "matches no path any more" in text
+        assert "1 path to assess accepted by a person's decision; section 4 shows each" in text
+    assert {what: number for number, what in report.numbers}["paths to assess"] == 2
 
 
 def test_findings_that_differ_only_in_the_robot_are_one_with_its_robots_listed() -> None:  # S10
