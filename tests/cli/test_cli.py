@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 import rosprivacy
+from rosprivacy.cli.app import main
 from tests.helpers.command import XI, Cli, refused, run
 
 if TYPE_CHECKING:
@@ -105,9 +106,10 @@ def test_the_shell_completes(words: Sequence[str], wanted: set[str]) -> None:
 @pytest.mark.parametrize(
     ("fail_on", "codes"),
     [
-        (None, {"leak": 1, "undetermined": 0, "no-leak-found": 0}),
-        ("leak", {"leak": 1, "undetermined": 0, "no-leak-found": 0}),
-        ("undetermined", {"leak": 1, "undetermined": 4, "no-leak-found": 0}),  # 4 only with --fail-on undetermined
+        (None, {"leak": 1, "undetermined": 4, "no-leak-found": 0}),
+        ("undetermined", {"leak": 1, "undetermined": 4, "no-leak-found": 0}),
+        ("undecided", {"leak": 1, "undetermined": 4, "no-leak-found": 0}),
+        ("leak", {"leak": 1, "undetermined": 0, "no-leak-found": 0}),  # a source is named: data was followed
         ("never", {"leak": 0, "undetermined": 0, "no-leak-found": 0}),
     ],
 )
@@ -125,6 +127,72 @@ def test_the_exit_code_is_the_verdict(
     chosen = ["--fail-on", fail_on] if fail_on else []
     done = cli("analyze", {"before": before, "after": after}[policy], "-l", runs[labels - 1], "-q", *chosen)
     assert (done.stdout.split(":")[0], done.returncode, done.stderr) == (verdict, codes[verdict], "")
+
+
+NOTHING_SAID = "labels: 1\nnodes:\n  /robot_camera:\nchannels:\n  /robot_video: mundane\n"
+
+
+@pytest.mark.parametrize("labels", [None, "", "labels: 1\n", NOTHING_SAID, "rosprivacy:infrastructure"])
+@pytest.mark.parametrize(("fail_on", "code"), [(None, 4), ("leak", 4), ("undetermined", 4), ("undecided", 4)])
+def test_where_no_source_is_named_no_build_is_green(
+    cli: Cli, before: Path, tmp_path: Path, labels: str | None, fail_on: str | None, code: int
+) -> None:
+    """S11, S12, the table of exit codes: nothing was looked at, whatever the build fails on."""
+    if labels == "":
+        labels = cli("labels", "--init", before).stdout  # the template, untouched
+    file = labels if labels is None or labels.startswith("rosprivacy:") else tmp_path / "l.yaml"
+    if isinstance(file, Path):
+        file.write_text(labels or "", "utf-8")
+    done = cli("analyze", before, *(["-l", str(file)] if file else []), *(["--fail-on", fail_on] if fail_on else []))
+    assert (done.stdout.partition(":")[0], done.returncode) == ("undetermined", code)
+    step = done.stdout.splitlines()[-1]
+    assert step.startswith("Next: name a source in a label file, such as nodes: {/camera: {source: [Video]}}; ")
+    assert "candidates by name: /robot_camera, /safety_camera" in step
+
+
+def test_where_no_source_of_what_is_asked_is_named_no_build_is_green(cli: Cli, before: Path, runs: list[Path]) -> None:
+    done = cli("analyze", before, "-l", runs[0], "-c", "Voice", "--fail-on", "leak")
+    assert done.returncode == 4
+    assert done.stdout.splitlines()[-1].endswith("only Voice was asked for")
+
+
+def test_the_next_step_stands_last(cli: Cli, before: Path, after: Path, runs: list[Path]) -> None:
+    last = [cli("analyze", before, "-l", labels).stdout.splitlines()[-1] for labels in runs[:2]]
+    assert last[0] == "Next: review /archive_server and 10 more, say it in a label file, repeat"
+    assert last[1].startswith("Next: decide about each finding (rosprivacy decide)")
+    assert "Next:" not in cli("analyze", after, "-l", runs[4]).stdout
+
+
+@pytest.mark.parametrize(
+    ("word", "instead"),
+    [
+        ("off", "write never"),
+        ("todo", "write leak"),
+        ("all", "leave out --decisions"),
+        ("Undetermined", "did you mean undetermined"),
+        ("nope", "one of undetermined, leak, undecided, never"),
+    ],
+)
+def test_a_word_that_fail_on_does_not_know_is_told_which_to_write(cli: Cli, word: str, instead: str) -> None:
+    done = cli("analyze", "p.xml", "--fail-on", word)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert instead in " ".join(done.stderr.replace("│", "").split())
+
+
+def test_an_error_of_our_own_is_no_finding(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], before: Path
+) -> None:
+    """Exit code 1 says 'leak'; a defect of the program is none. A defect is made here, since none is known."""
+
+    def defect(*_: object) -> int:
+        raise ZeroDivisionError
+
+    monkeypatch.setattr("rosprivacy.cli.analyze.exit_code", defect)
+    monkeypatch.setattr(sys, "argv", ["rosprivacy", "analyze", str(before)])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert ended.value.code == 70
+    assert "ZeroDivisionError" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

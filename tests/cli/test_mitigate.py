@@ -222,7 +222,8 @@ def test_a_patch_applies_and_removes_the_finding(cli: Cli, tmp_path: Path, view:
     done = cli("mitigate", *arguments, "--by", "deny", "--patch", "fix.diff", cwd=tmp_path)
     assert done.returncode == 0
     patched(tmp_path, tmp_path / "fix.diff")
-    assert run("analyze", *arguments, cwd=tmp_path).returncode == 0
+    left = {"declared": 0, "enforced": 4}  # there more is open
+    assert run("analyze", *arguments, cwd=tmp_path).returncode == left[view]
 
 
 def test_who_can_no_longer_read_in_the_enclave_is_named(cli: Cli, tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 
     from tests.helpers.command import Cli
 
+
 ESCAPE = "\x1b"
 
 
