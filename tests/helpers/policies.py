@@ -29,7 +29,6 @@ def policy(body: str, ns: str = "/", *, twice: bool = False) -> str:
     return f'<policy version="0.2.0"><enclaves>{enclave * (1 + twice)}</enclaves></policy>'
 
 
-def elements(path: Path) -> list[tuple[str, str]]:
-    result = rosprivacy.analyze([str(path)])
-    kinds = {(e.kind == "node", e.name) for e in result.analysis.graph.elements}
-    return sorted(("nodes" if is_node else "channels", name) for is_node, name in kinds)
+def elements(path: Path) -> set[tuple[str, str]]:
+    graph = rosprivacy.analyze([str(path)]).analysis.graph
+    return {(element.kind, element.name) for element in graph.elements}
