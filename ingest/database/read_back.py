@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import GraphError, InputError, InputErrors, shown
-from rosprivacy.analysis.fleet.patterns import NO_ROBOTS, Likeness
+from rosprivacy.analysis.fleet.likeness import NO_ROBOTS, Likeness
 from rosprivacy.analysis.model import (
     NAME,
     NON_ROS,

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.durations import ordered
 from rosprivacy.analysis.errors import FleetError, InputError, InputErrors, shown
-from rosprivacy.analysis.fleet.patterns import Likeness
+from rosprivacy.analysis.fleet.likeness import Likeness
 from rosprivacy.analysis.model import Element
 from rosprivacy.analysis.non_ros import by_kind
 from rosprivacy.analysis.written_names import meant
