@@ -243,5 +243,5 @@ def _unknown(analysis: Analysis) -> Iterator[TakenAway]:
 
 
 def _order(row: TakenAway) -> tuple[object, ...]:
-    ends = [element.sort_key() if element else () for element in (row.element, row.to)]
+    ends = [element.sort_key() if element else () for element in (row.element, row.to, row.leak)]
     return (BY.index(row.by), ends, [_line(place) for place in row.places], row.categories, row.note)
