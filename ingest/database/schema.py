@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-SCHEMA = 2  # raised when what a load writes gains what an answer rests on, or changes its meaning; none was stored at 1
+SCHEMA = 3  # raised when what a load writes gains what an answer rests on, or changes its meaning; none was stored at 1
 _IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 STRING, INTEGER, BOOLEAN, STRINGS = "STRING", "INTEGER", "BOOLEAN", "LIST<STRING>"
 
@@ -69,7 +69,8 @@ KIND_LABELS = {
     "display": "Display",
     "person": "Person",
 }
-LEG, WILDCARD = "Leg", "Wildcard"
+LEG, WILDCARD, INTAKE = "Leg", "Wildcard", "Intake"
+CARRIES = "CARRIES_"  # and a kind of data, as `carries` writes it
 
 _OURS = Property("robot", STRING, "whose load wrote it; absent on what people add")
 _PLACE = (
@@ -139,6 +140,7 @@ ROBOT = NodeKind(
         Property("elements", INTEGER, "how many were loaded"),
         Property("flows", INTEGER, "how many were loaded"),
         Property("roles", INTEGER, "how many relationships of labels were loaded"),
+        Property("carried", INTEGER, "how many `CARRIES_…` were loaded"),
         Property("assumptions", STRING, "JSON: what the answer rests on"),
         Property("diagnostics", STRING, "JSON: what its policies and labels were read with"),
     ),
@@ -335,7 +337,7 @@ RELATIONSHIPS = (
     ACROSS,
 )
 SUFFIXES = ("", "Source", "Leak", "Sanitizer")
-RESERVED = frozenset({kind.label for kind in NODES} | set(KIND_LABELS.values()) | {LEG, WILDCARD})
+RESERVED = frozenset({kind.label for kind in NODES} | set(KIND_LABELS.values()) | {LEG, WILDCARD, INTAKE})
 
 
 def quoted(identifier: str) -> str:

@@ -7,7 +7,7 @@ bring data to what is shared are placed along.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.answer import robot_verdicts
@@ -187,19 +187,22 @@ def _derived_at(rows: RobotRows, known: Collection[str]) -> RobotRows:
 def _ending_at(rows: RobotRows, ids: Collection[str], *, whole: bool) -> RobotRows:
     """Of what is shared, the flows, findings and what is made that end at some elements; or with all else, too."""
     parts = _parts(rows)
-    for name in ("flows", "findings", "derived"):
+    for name in ("flows", "findings", "derived", "carried"):
         parts[name] = [row for row in parts[name] if row["target"] in ids]
     found = {row["id"] for row in parts["findings"]}
     parts["across"] = [row for row in rows.across if row["source"] in found]
     if not whole:
-        parts |= {"elements": [], "enclaves": [], "memberships": [], "roles": {}}
+        parts |= {"elements": [], "intakes": [], "enclaves": [], "memberships": [], "roles": {}}
     return rows_of(rows.robot, _own(rows.properties), _with_foreign(parts, rows))
 
 
 def _with_foreign(parts: dict[str, Any], rows: RobotRows) -> dict[str, Any]:
     """Only those elements of others that the rows name."""
     named = {
-        row[end] for name in ("flows", "derived", "findings") for row in parts[name] for end in ("source", "target")
+        row[end]
+        for name in ("flows", "derived", "carried", "findings")
+        for row in parts[name]
+        for end in ("source", "target")
     }
     named |= {row["target"] for row in parts["across"]}
     return {**parts, "foreign": [row for row in rows.foreign if row["id"] in named]}
@@ -210,17 +213,19 @@ def put_together(some: Sequence[RobotRows]) -> RobotRows:
     first, *others = some
     parts = _parts(first)
     for rows in others:
-        for name in ("flows", "derived", "findings", "across", "foreign"):
+        for name in ("flows", "derived", "carried", "findings", "across", "foreign"):
             parts[name] = [*parts[name], *getattr(rows, name)]
     parts["foreign"] = sorted({row["id"]: row for row in parts["foreign"]}.values(), key=lambda row: str(row["id"]))
     return rows_of(first.robot, _own(first.properties), parts)
 
 
 def _parts(rows: RobotRows) -> dict[str, Any]:
-    names = ("elements", "enclaves", "memberships", "flows", "roles", "derived", "findings", "across", "foreign")
-    return {name: getattr(rows, name) for name in names}
+    return {
+        field.name: getattr(rows, field.name) for field in fields(rows) if field.name not in ("robot", "properties")
+    }
 
 
 def _own(properties: Row) -> Row:
     """Without what ``rows_of`` adds."""
-    return {key: value for key, value in properties.items() if key not in ("digest", "elements", "flows", "roles")}
+    added = ("digest", "elements", "flows", "roles", "carried")
+    return {key: value for key, value in properties.items() if key not in added}
