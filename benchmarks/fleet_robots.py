@@ -18,10 +18,12 @@ from turtlebot import MANY, POLICY, STEP_5, chosen_categories, label_file, six_l
 from rosprivacy.analysis.findings.concerns import concerns
 from rosprivacy.analysis.fleet.patterns_of_pairs import Groups
 from rosprivacy.analysis.kernel.spreading import spread
-from rosprivacy.fleets import analysed, read_all
+from rosprivacy.answering import answer
+from rosprivacy.fleet_system import fleet_system
 from rosprivacy.ingest.fleet.alike_robots import Alike
 from rosprivacy.ingest.fleet.fleet_graph import place
 from rosprivacy.ontology.vocabulary import load
+from rosprivacy.question import question_of
 from rosprivacy.settings import Settings
 
 if TYPE_CHECKING:
@@ -82,12 +84,12 @@ def _written(file: Path, robots: int, model: dict[str, Any], flows: list[dict[st
 
 def answered(file: str, known: Vocabulary) -> dict[str, Any]:
     """Read a fleet, analyse it, and make the report: all that a command does but start."""
-    return analysed(read_all(file, known, Settings()), known, Settings()).document()
+    return answer(fleet_system(file, Settings(), known), question_of(Settings(), known)).document()
 
 
 def as_themselves(file: str, known: Vocabulary) -> Placed:
     """The graph of a fleet in which each robot stands for itself, as if no two were alike."""
-    read = read_all(file, known, Settings())
+    read = fleet_system(file, Settings(), known)
     (member,) = read.members.values()
     groups = [Alike((robot,), joined=True) for robot in read.fleet.robots]
     return place(read.fleet, groups, {r.id: replace(member, robot=r) for r in read.fleet.robots}, "declared")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from fleet_robots import small_robots
 from measure import Line, compared, side_by_side
 
-from rosprivacy.fleets import run_fleet
+from rosprivacy.fleet_system import answer_fleet
 from rosprivacy.settings import Settings
 from rosprivacy.spark.fleet_on_spark import run_on_spark
 from rosprivacy.spark.session import session
@@ -39,7 +39,7 @@ def compare(folder: Path, *, quick: bool) -> Iterator[Line]:
             seconds = side_by_side(
                 1,
                 lambda: answers.update(spark=run_on_spark(file, Settings())),  # noqa: B023 - called within the round
-                lambda: answers.update(memory=run_fleet(file, Settings())),  # noqa: B023
+                lambda: answers.update(memory=answer_fleet(file, Settings())),  # noqa: B023
             )
             ours, other = (answers[engine] for engine in ("spark", "memory"))
             assert _said(ours) == _said(other), "both engines answer alike"

@@ -20,7 +20,7 @@ from turtlebot import POLICY, STEP_5, label_file, six_lists
 
 from rosprivacy.analysis.findings.findings import analyse
 from rosprivacy.analysis.findings.ledger import ledger
-from rosprivacy.assembly import run
+from rosprivacy.robot_system import answer_robot
 from rosprivacy.settings import Settings
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ KINDS = ["Video", "Voice", "Location", "HomeMap"]
 
 def measured(what: str, policy: str, labels: str) -> Line:
     """Time the ledger of one system against its analysis, both from the graph on."""
-    result = run((policy,), (labels,), Settings())
+    result = answer_robot((policy,), (labels,), Settings())
     graph, bound, hierarchy = result.analysis.graph, result.bound, result.vocabulary.hierarchy
     rows = ledger(result.analysis, bound, hierarchy)
     seconds = side_by_side(

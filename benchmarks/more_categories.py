@@ -11,7 +11,7 @@ from __future__ import annotations
 import sys
 from dataclasses import replace
 
-from rosprivacy import assembly
+from rosprivacy import robot_system
 from rosprivacy.cli import app
 from rosprivacy.ontology.vocabulary import TOP, Vocabulary, load
 
@@ -32,5 +32,5 @@ def extra_names(number: int) -> list[str]:
 
 if __name__ == "__main__":
     count = int(sys.argv.pop(1))
-    vars(assembly)["load"] = extended  # the name under which the program calls it
+    vars(robot_system)["load"] = extended  # the name under which the program calls it
     app.main()

@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 from dataclasses import dataclass, field
 from difflib import get_close_matches
+from functools import lru_cache
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -151,12 +152,16 @@ def load(cache: Path | None = None, ontologies: Sequence[str] = ()) -> Vocabular
     InputErrors
         If an ontology breaks a rule.
     """
-    shipped = [files("rosprivacy.ontology").joinpath(name).read_bytes() for name in SHIPPED]
-    own = [(file, _read(file)) for file in dict.fromkeys(ontologies)]
+    shipped = tuple(files("rosprivacy.ontology").joinpath(name).read_bytes() for name in SHIPPED)
+    own = tuple((file, _read(file)) for file in dict.fromkeys(ontologies))
+    return _vocabulary(cache or kept.default_folder(), shipped, own)
+
+
+@lru_cache(maxsize=8)  # of a program that asks many times
+def _vocabulary(folder: Path, shipped: tuple[bytes, ...], own: tuple[tuple[str, bytes], ...]) -> Vocabulary:
     key = hashlib.sha256(
         b"".join(hashlib.sha256(data).digest() for data in [*shipped, *(d for _, d in own)])
     ).hexdigest()
-    folder = cache or kept.default_folder()
     found = kept.get(folder, key)
     if found is None:
         found = _parse([data.decode() for data in shipped], own)
@@ -183,7 +188,7 @@ def _read(file: str) -> bytes:
         raise refused(f"cannot be read: {reason(error)}", "check the name and your rights") from None
 
 
-def _parse(shipped: list[str], own: list[tuple[str, bytes]]) -> tuple[tuple[Category, ...], dict[str, str]]:
+def _parse(shipped: list[str], own: Iterable[tuple[str, bytes]]) -> tuple[tuple[Category, ...], dict[str, str]]:
     from rosprivacy.ontology.turtle import categories_of, read, respelt_of  # noqa: PLC0415 - heavy
 
     graph = read("\n".join(shipped), "the shipped ontology")

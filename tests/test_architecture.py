@@ -44,6 +44,18 @@ def test_data_flows_one_way(room: str) -> None:
         assert imported_rooms(file) <= MAY[room] | {room}, file
 
 
+def test_one_module_knows_which_bit_is_which() -> None:
+    """Bits are numbered by how many categories are emitted; nobody else asks for that number (rule S8)."""
+    asking = set()
+    for folder in [*MAY, "src/rosprivacy", "benchmarks"]:
+        for file in (ROOT / folder).rglob("*.py"):
+            for node in ast.walk(ast.parse(file.read_text("utf-8"))):
+                if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "len":
+                    counted = ast.unparse(node.args[0]).rpartition(".")[2]
+                    asking |= {file.resolve().relative_to(ROOT).as_posix()} if counted == "categories" else set()
+    assert asking == {"analysis/kernel/spread.py"}  # where ``CategoryBits`` are made
+
+
 OPENERS = {"open", "fdopen", "read_bytes", "read_text"}
 WRITERS = {"write_bytes", "write_text", "mkstemp", "NamedTemporaryFile", "TemporaryFile", "rename", "truncate"}
 OF_ITS_OWN = {  # modules that touch files in another way, and why none of these is a user's

@@ -12,13 +12,11 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 import rosprivacy
-from tests.helpers.cases import CASES
+from tests.helpers.cases import CASES, FLEETS
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
     from pathlib import Path
-
-FLEETS = sorted(path.parent for path in (ROOT / "tests" / "cases").glob("*/fleet.json"))
 
 
 def name(element: dict[str, Any]) -> str:

@@ -44,8 +44,9 @@ MAY: dict[str, dict[str, set[str]]] = {
     "ontology": {"": set()},
     "queries": {"": set()},
     "report": {
-        "": set(),
-        "document": {""},
+        "contract": set(),
+        "": {"contract"},
+        "document": {"", "contract"},
         "terminal": {"", "document"},
         "pictures": {""},
         "compare": {"", "document"},
@@ -64,15 +65,19 @@ MAY: dict[str, dict[str, set[str]]] = {
 }
 # Names that stand twice: the same part of different wings, and what part that is.
 SAME_PART = {
-    "analysis": {"report/document", "report/terminal"},  # the answer about one system, as a document and as lines
+    "analysis": {
+        "report/contract",
+        "report/document",
+        "report/terminal",
+    },  # the answer about one system: keys, document, lines
     "answer": {"analysis", "report"},  # the answer, and the one that every format is made of
     "categories": {"cli", "report/terminal"},  # the command, and what it prints
     "decisions": {"analysis", "report/document"},  # what they mean, and how the document tells them
     "findings": {"analysis/findings", "report/rdf"},  # findings, and findings as RDF
-    "fleet": {"cli", "report/document", "report/terminal"},  # what is told of a fleet
+    "fleet": {"cli", "report/contract", "report/document", "report/terminal"},  # what is told of a fleet
     "labels": {"cli", "report/terminal"},  # the command, and what was said of labels
     "ledger": {"analysis/findings", "report/document", "report/terminal"},  # what was taken away, and how it is told
-    "mitigation": {"", "report/document", "report/terminal"},  # what is told of proposals
+    "mitigation": {"", "report/contract", "report/document", "report/terminal"},  # what is told of proposals
     "non_ros": {"analysis", "report/document", "report/page"},  # what is told of non-ROS elements
     "robots": {"report", "report/sarif"},  # which robots a finding stands for, in words and in SARIF
     "why_not": {"analysis/findings", "cli", "report/document", "report/terminal"},  # the question, and its answer

@@ -24,8 +24,8 @@ from rosprivacy.analysis.findings.further_paths import Between, further
 from rosprivacy.analysis.findings.open_questions import open_questions
 from rosprivacy.analysis.findings.unknown_ends import unknown_ends
 from rosprivacy.analysis.kernel import standard_channels
+from rosprivacy.analysis.kernel.bits import bits_of
 from rosprivacy.analysis.kernel.search import START, Net, Search, path_to, present, search
-from rosprivacy.analysis.kernel.spread import Spread, bits_of
 from rosprivacy.analysis.kernel.spreading import spread
 from rosprivacy.analysis.model import DISCLOSURE, Diagnostic, Element, Place, Severity
 from rosprivacy.analysis.modes import Paths
@@ -38,6 +38,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.findings.concerns import Concern
     from rosprivacy.analysis.hierarchy import Hierarchy
+    from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Bound, FlowGraph
 
 MAX_PATHS = 100
@@ -172,20 +173,20 @@ def _findings_of(
 
     Only disclosures are dismissed: no leak on the way cures a retention or a transfer (rule S10).
     """
-    found, k = net.spread, len(net.spread.categories)
+    found = net.spread
     between: dict[tuple[int, bool], Between] = {}
     reached = {v: bits & present(whole, v) for v, bits in leaks.items() if bits & present(whole, v)}
     accepted = _accepted(found, source, concern.kind, reached, options)
     free: dict[int, Search] = {}  # number of the category -> search that stops at other leaks of it
     for leak, bits in reached.items():
-        for i in sorted({bit % k for bit in bits_of(bits)}):
+        for i in bits_of(found.bits.merged(bits)):
             if only is not None and not {(concern.kind, leak, i, False), (concern.kind, leak, i, True)} & only:
                 continue
             if concern.kind != DISCLOSURE:
                 free[i] = whole
             elif i not in free:
                 _search_free(net, source, i, accepted, free)
-            for beside, (chosen, bit) in enumerate(_shown_forms(free[i], whole, leak, i, k)):
+            for beside, (chosen, bit) in enumerate(_shown_forms(free[i], whole, leak, found.bits.forms(i))):
                 if only is not None and (concern.kind, leak, i, bool(beside)) not in only:
                     continue
                 anyway = chosen is whole
@@ -205,23 +206,23 @@ def _accepted(found: Spread, source: int, kind: str, reached: Mapping[int, int],
     """Leak -> the bits that a person has accepted there, of those that come from a source."""
     if options.accepts is None:
         return {}
-    k = len(found.categories)
     from_, elements = found.graph.elements[source], found.graph.elements
     accepted: dict[int, int] = defaultdict(int)
     for leak, bits in reached.items():
         for name in found.names(bits):
             i, to = found.categories.index(name), elements[leak]
-            for plane in (False, True):
-                if options.accepts(Case(finding_id(name, from_, to, kind), kind, name, from_, to, plane)):
-                    accepted[leak] |= 1 << i + k * plane
+            for bit in found.bits.forms(i):
+                form = found.bits.is_pseudonymised(bit)
+                if options.accepts(Case(finding_id(name, from_, to, kind), kind, name, from_, to, form)):
+                    accepted[leak] |= 1 << bit
     return accepted
 
 
 def _search_free(net: Net, source: int, i: int, accepted: Mapping[int, int], free: dict[int, Search]) -> None:
     """Search with the leaks of category i as ends; one search serves all categories that nothing is made into."""
     found = net.spread
-    together = [i] if i in found.made else [j for j in range(len(found.categories)) if j not in found.made]
-    ends = sum(found.both(found.categories[j]) for j in together)
+    together = [i] if i in found.made else [j for j, _ in enumerate(found.categories) if j not in found.made]
+    ends = sum(map(found.bits.both, together))
     stop = {v: bits & ends & ~accepted.get(v, 0) for v, bits in found.leaks.items()}
     result = search(net, [source], found.all_bits if i in found.made else ends, stop)
     free.update(dict.fromkeys(together, result))
@@ -229,19 +230,19 @@ def _search_free(net: Net, source: int, i: int, accepted: Mapping[int, int], fre
 
 def _relevant(found: Spread, i: int) -> int:
     """Bits of what a category can be made of: its own, or for simplicity all."""
-    return found.all_bits if i in found.made else found.both(found.categories[i])
+    return found.all_bits if i in found.made else found.bits.both(i)
 
 
 def _leaks_of(found: Spread, i: int, accepted: Mapping[int, int]) -> dict[int, int]:
-    both = found.both(found.categories[i])
+    both = found.bits.both(i)
     return {v: bits & both & ~accepted.get(v, 0) for v, bits in found.leaks.items() if bits & both}
 
 
-def _shown_forms(free: Search, whole: Search, leak: int, i: int, k: int) -> list[tuple[Search, int]]:
-    """The ways to show, the best first (rule S10)."""
-    ways = [(way, bit) for way in (free, whole) for bit in (i, i + k)]
-    there = np.array([present(way, leak) >> bit & 1 for way, bit in ways], bool)
-    return [way for way, shown in zip(ways, shown_arrivals(*there), strict=True) if shown]
+def _shown_forms(free: Search, whole: Search, leak: int, forms: tuple[int, int]) -> list[tuple[Search, int]]:
+    """The search and the form to show, the best first (rule S10)."""
+    each = [(reach, bit) for reach in (free, whole) for bit in forms]
+    there = np.array([present(reach, leak) >> bit & 1 for reach, bit in each], bool)
+    return [one for one, shown in zip(each, shown_arrivals(*there), strict=True) if shown]
 
 
 def _beside(finding: Finding, options: Options) -> Finding:
@@ -255,14 +256,14 @@ def _beside(finding: Finding, options: Options) -> Finding:
 
 
 def _finding(
-    net: Net, way: Search, source: int, leak: int, bit: int, concern: Concern, accepted: Mapping[int, int], *,
+    net: Net, reach: Search, source: int, leak: int, bit: int, concern: Concern, accepted: Mapping[int, int], *,
     dismissed: bool,
 ) -> Finding:  # fmt: skip
-    found, k = net.spread, len(net.spread.categories)
+    found = net.spread
     elements = found.graph.elements
-    i = bit % k
-    own = leak == source and way.begun[source] >> bit & 1  # a finding by itself, of one element
-    path = [(START, source, bit)] if own else path_to(net, way, leak, bit)
+    i = found.bits.category(bit)
+    own = leak == source and reach.begun[source] >> bit & 1  # a finding by itself, of one element
+    path = [(START, source, bit)] if own else path_to(net, reach, leak, bit)
     through = _other_leaks(found, path, i, accepted)
     category = found.categories[i]
     shown, steps = _shown(net, path)
@@ -270,7 +271,7 @@ def _finding(
         id=finding_id(category, elements[source], elements[leak], concern.kind),
         kind=concern.kind,
         category=category,
-        pseudonymised=bit >= k,
+        pseudonymised=found.bits.is_pseudonymised(bit),
         source=elements[source],
         leak=elements[leak],
         witness=shown,
@@ -285,10 +286,10 @@ def _finding(
 
 def _other_leaks(found: Spread, path: list[tuple[int, int, int]], i: int, accepted: Mapping[int, int]) -> list[int]:
     """Leaks of a category inside a path that are not accepted, where it arrives or is made."""
-    k = len(found.categories)
-    leaks = {v: found.leaks.get(v, 0) & ~accepted.get(v, 0) for _, v, _ in path}
+    both = found.bits.both(i)
+    leaks = {v: found.leaks.get(v, 0) & both & ~accepted.get(v, 0) for _, v, _ in path}
     inside = [(v, bits) for (_, v, arriving), (_, _, leaving) in pairwise(path[1:]) for bits in [{arriving, leaving}]]
-    return [v for v, bits in inside if any(b % k == i and leaks[v] >> b & 1 for b in bits)]
+    return [v for v, bits in inside if any(leaks[v] >> b & 1 for b in bits)]
 
 
 def finding_id(category: str, source: Element, leak: Element, kind: str = DISCLOSURE, *, beside: bool = False) -> str:
@@ -306,15 +307,15 @@ def finding_id(category: str, source: Element, leak: Element, kind: str = DISCLO
 
 def _shown(net: Net, path: list[tuple[int, int, int]]) -> tuple[tuple[Element, ...], tuple[Step, ...]]:
     """Elements and steps of a path; the two sides of one wildcard are one element to the reader."""
-    graph, categories = net.spread.graph, net.spread.categories
+    graph, categories, bits = net.spread.graph, net.spread.categories, net.spread.bits
     elements = [graph.elements[path[0][1]]]
     steps: list[Step] = []
     for index, vertex, bit in path[1:]:
         flow, element = graph.flows[index], graph.elements[vertex]
         if element.shown_as == elements[-1].shown_as:
             continue
-        plane, i = divmod(bit, len(categories))
-        steps.append(Step(elements[-1], element, flow.role, categories[i], bool(plane), flow.grants))
+        form = categories[bits.category(bit)], bits.is_pseudonymised(bit)
+        steps.append(Step(elements[-1], element, flow.role, *form, flow.grants))
         elements.append(element)
     return tuple(elements), tuple(steps)
 

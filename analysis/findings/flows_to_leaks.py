@@ -15,7 +15,7 @@ from collections import defaultdict, deque
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.kernel.spread import bits_of
+from rosprivacy.analysis.kernel.bits import bits_of
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping

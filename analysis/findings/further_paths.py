@@ -10,7 +10,7 @@ from collections import defaultdict, deque
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.kernel.spread import bits_of
+from rosprivacy.analysis.kernel.bits import bits_of
 from rosprivacy.analysis.modes import Paths
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ class Between:
         self.source = source
         self.category = category
         self.relevant = relevant
-        self.k = len(net.spread.categories)
+        self.bits = net.spread.bits
         self.starts = way.begun.get(source, 0)
         self.emits = self.starts & net.spread.emits.get(source, 0)
         self.back: dict[State, set[State]] = defaultdict(set)
@@ -80,7 +80,7 @@ class Between:
             yield from (((self.source, SOURCE), state) for state in self._states(target, bits))
         for vertex, seen in way.seen.items():
             for here in self._states(vertex, seen & ~stop.get(vertex, 0)):
-                arriving = seen & ~stop.get(vertex, 0) & self._both(here[1]) if here[1] != SOURCE else 0
+                arriving = seen & ~stop.get(vertex, 0) & self.bits.both(here[1]) if here[1] != SOURCE else 0
                 leaving = arriving & spread.keeps.get(vertex, everything)
                 for before, after in spread.derives.get(vertex, ()):
                     leaving |= (arriving >> before & 1) << after
@@ -90,15 +90,10 @@ class Between:
                         moved &= ~spread.flow_emits.get(index, 0)
                     yield from ((here, state) for state in self._states(target, moved))
 
-    def _both(self, number: int) -> int:
-        return 1 << number | 1 << number + self.k
-
     def _states(self, vertex: int, bits: int) -> Iterable[State]:
         """The states that data with some bits is in at a vertex, its two planes put together."""
-        bits &= self.relevant
-        either = (bits | bits >> self.k) & ((1 << self.k) - 1)
-        for number in bits_of(either):
-            begun = vertex == self.source and self.emits >> number & 1
+        for number in bits_of(self.bits.merged(bits & self.relevant)):
+            begun = vertex == self.source and self.emits >> self.bits.plain(number) & 1
             yield (vertex, SOURCE if begun else number)
 
     def to(self, leak: int, memory: dict[Any, Any]) -> tuple[list[list[int]], list[tuple[State, State]]]:
@@ -119,7 +114,8 @@ class Between:
     def _leading_to(self, leak: int) -> list[tuple[State, State]]:
         """The edges from which a leak can be reached, sorted."""
         pairs = self.net.spread.derives.get(leak, ())
-        ends = {(leak, before % self.k) for before, after in pairs if after % self.k == self.category}
+        category = self.bits.category
+        ends = {(leak, category(before)) for before, after in pairs if category(after) == self.category}
         ends.add((leak, self.category))
         edges: set[tuple[State, State]] = set()
         reached, waiting = set(ends), list(ends)

@@ -75,23 +75,16 @@ def _first(net: Net, sources: Iterable[int], uncovered: Mapping[int, int]) -> di
     of passes its leaks.
     """
     found = net.spread
-    nodes = {v: _both_planes(b, found) for v, b in uncovered.items() if not found.graph.elements[v].is_channel}
+    nodes = {v: found.bits.in_both_forms(b) for v, b in uncovered.items() if not found.graph.elements[v].is_channel}
     asked = 0
     for bits in nodes.values():
         asked |= bits
-    made = sum(found.both(found.categories[i]) for i in found.made)
+    made = sum(map(found.bits.both, found.made))
     first: dict[int, int] = dict.fromkeys(nodes, 0)
-    for own in [asked & ~made, *(found.both(found.categories[i]) & asked for i in sorted(found.made))]:
+    for own in [asked & ~made, *(found.bits.both(i) & asked for i in sorted(found.made))]:
         if own:
             ends = {v: nodes.get(v, 0) | found.leaks.get(v, 0) & own for v in {*nodes, *found.leaks}}
             reached = search(net, sources, found.all_bits if own & made else own, ends)
             for vertex in nodes:
                 first[vertex] |= present(reached, vertex) & own
     return first
-
-
-def _both_planes(bits: int, found: Spread) -> int:
-    """A category that is open in one plane is so in the other."""
-    k = len(found.categories)
-    either = (bits | bits >> k) & ((1 << k) - 1)
-    return either | either << k

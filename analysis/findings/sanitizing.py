@@ -62,7 +62,7 @@ def cleanings(found: Spread, wanted: Collection[str]) -> tuple[Cleaning, ...]:
     rows = []
     for vertex, decided in sorted(found.facts.items()):
         leaves = found.planes(found.leaves.get(vertex, 0) & mask)
-        for category in (name for name in wanted if "sanitizer" in decided[name].roles):
+        for category in (name for name in found.categories if name in wanted and "sanitizer" in decided[name].roles):
             both = found.both(category)
             rows.append(
                 Cleaning(

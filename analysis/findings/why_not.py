@@ -77,7 +77,7 @@ class WhyNot:
     reached: int
 
 
-State = tuple[int, int]  # vertex, number of the category with which data is about to leave
+State = tuple[int, int]  # vertex, bit with which data is about to leave
 
 
 def why_not(analysis: Analysis, source: Sequence[int], leak: Sequence[int], category: str) -> WhyNot:
@@ -133,7 +133,7 @@ def _easiest(
 ) -> tuple[tuple[Element, ...], tuple[Obstacle, ...]]:
     """The path with the fewest obstacles, then the shortest; ties fall to the lower vertex (rule S14)."""
     steps = _Steps.of(found)
-    number = found.categories.index(category)
+    bit = found.bits.plain(found.categories.index(category))
     queue: list[tuple[int, int, State]] = []
     best: dict[State, tuple[int, int]] = {}
     came: dict[State, tuple[State | None, tuple[Obstacle, ...]]] = {}
@@ -144,8 +144,8 @@ def _easiest(
             heappush(queue, (*cost, state))
 
     for vertex in source:
-        obstacles = steps.begins(vertex, number)
-        reach((vertex, number), (len(obstacles), 0), None, obstacles)
+        obstacles = steps.begins(vertex, bit)
+        reach((vertex, bit), (len(obstacles), 0), None, obstacles)
     ends = set(leak)
     while queue:
         closed, length, state = heappop(queue)
@@ -196,53 +196,55 @@ class _Steps:
             flows[flow.source].append((flow.target, -1, _sorted(denial.place for denial in flow.denials)))
         return cls(found, flows)
 
-    def begins(self, vertex: int, number: int) -> tuple[Obstacle, ...]:
+    def begins(self, vertex: int, bit: int) -> tuple[Obstacle, ...]:
         """What is missing for an element to be a source."""
-        if self.found.begins(vertex) >> number & 1:
+        if self.found.begins(vertex) >> bit & 1:
             return ()
-        name = self.found.categories[number]
+        name = self._name(bit)
         return (Obstacle(NO_SOURCE, self.found.graph.elements[vertex], None, name),)
 
     def after(self, state: State, ends: set[int]) -> Iterator[tuple[State, tuple[Obstacle, ...]]]:
         """The states that follow, with the obstacles of the step and of the element where it ends."""
-        vertex, number = state
-        elements, name = self.found.graph.elements, self.found.categories[number]
+        vertex, bit = state
+        elements, name = self.found.graph.elements, self._name(bit)
         for target, index, denials in self.flows.get(vertex, ()):
             along: tuple[Obstacle, ...] = ()
             if denials:
                 along = (Obstacle("deny", elements[vertex], elements[target], name, denials),)
-            elif not self.found.flow_keeps.get(index, -1) >> number & 1:
+            elif not self.found.flow_keeps.get(index, -1) >> bit & 1:
                 lines = self.found.flow_facts[index][name].closers
                 along = (self._closed(lines, vertex, target, name),)
-            elif self._elsewhere(vertex, number, index):
+            elif self._elsewhere(vertex, bit, index):
                 along = (Obstacle(THROUGH, elements[vertex], elements[target], name),)
-            for made, here in self._arriving(target, number, end=target in ends):
+            for made, here in self._arriving(target, bit, end=target in ends):
                 yield (target, made), (*along, *here)
 
-    def _elsewhere(self, vertex: int, number: int, index: int) -> bool:
+    def _name(self, bit: int) -> str:
+        return self.found.categories[self.found.bits.category(bit)]
+
+    def _elsewhere(self, vertex: int, bit: int, index: int) -> bool:
         """Whether a source names other channels than this one for what it emits."""
         found = self.found
-        single = found.flow_begins.get(vertex, 0) >> number & 1
+        single = found.flow_begins.get(vertex, 0) >> bit & 1
         arrives = found.arrives.get(vertex, 0) | found.emits.get(vertex, 0)
-        return bool(single) and not arrives >> number & 1 and not found.flow_emits.get(index, 0) >> number & 1
+        return bool(single) and not arrives >> bit & 1 and not found.flow_emits.get(index, 0) >> bit & 1
 
-    def _arriving(self, vertex: int, number: int, *, end: bool) -> Iterator[tuple[int, tuple[Obstacle, ...]]]:
+    def _arriving(self, vertex: int, bit: int, *, end: bool) -> Iterator[tuple[int, tuple[Obstacle, ...]]]:
         """What goes on from an element that data arrives at (or ends there): as it is, and as what is made of it."""
         found = self.found
-        element, name = found.graph.elements[vertex], found.categories[number]
+        element, name = found.graph.elements[vertex], self._name(bit)
         if end:
-            leaks = found.leaks.get(vertex, 0) >> number & 1
-            yield number, () if leaks else (Obstacle(NO_LEAK, element, None, name),)
-        elif found.keeps.get(vertex, -1) >> number & 1:
-            yield number, ()
+            leaks = found.leaks.get(vertex, 0) >> bit & 1
+            yield bit, () if leaks else (Obstacle(NO_LEAK, element, None, name),)
+        elif found.keeps.get(vertex, -1) >> bit & 1:
+            yield bit, ()
         else:
             lines = found.facts[vertex].get(name, NOTHING_SAID).closers
-            yield number, (self._closed(lines, vertex, -1, name),)
-        k = len(found.categories)
+            yield bit, (self._closed(lines, vertex, -1, name),)
         for before, after in found.derives.get(vertex, ()):
-            if before == number and after < k:
+            if before == bit and not found.bits.is_pseudonymised(after):
                 leaks = not end or found.leaks.get(vertex, 0) >> after & 1
-                yield after, () if leaks else (Obstacle(NO_LEAK, element, None, found.categories[after]),)
+                yield after, () if leaks else (Obstacle(NO_LEAK, element, None, self._name(after)),)
 
     def _closed(self, lines: tuple[Statement, ...], vertex: int, target: int, name: str) -> Obstacle:
         elements = self.found.graph.elements

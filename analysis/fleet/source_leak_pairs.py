@@ -2,7 +2,7 @@
 
 In: a spread, and where each kind of finding can be. Out: pairs, as arrays. A word has 64 bits, so one pass of the
 kernel does 64 sources of a category; where the category is made of others, or pseudonymised on the way, a source takes
-a bit for each form in which its data can be. No way is looked for: that is done for the pairs that are shown.
+a bit for each form in which its data can be. No path is looked for: that is done for the pairs that are shown.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rosprivacy.analysis.findings.concerns import Concern
+    from rosprivacy.analysis.kernel.bits import CategoryBits
     from rosprivacy.analysis.kernel.spread import Spread
 
     Indices = NDArray[np.int64]
@@ -35,7 +36,7 @@ MOST_BITS = 2**28  # of all vertices in one run: 32 MB for each of the few array
 
 @dataclass(frozen=True, slots=True)
 class Pairs:
-    """The pairs of one kind and category: what a finding is without its way.
+    """The pairs of one kind and category: what a finding is without its path.
 
     Attributes
     ----------
@@ -71,12 +72,11 @@ def pairs(found: Spread, kinds: Sequence[Concern], mask: int) -> Iterator[Pairs]
     Two runs of the kernel per category and so many sources: one that stops at leaks of the category, one that does not.
     So many are ``MOST_WORDS`` times 64 for each form, fewer in a large graph.
     """
-    k = len(found.categories)
     ends = [as_bits(found, len(found.graph.elements), concern.bits, 0) for concern in kinds]
     network: GraphArrays | None = None
-    for i in range(k):
-        leaks = [np.flatnonzero(_has(bits, i)) for bits in ends]
-        if not mask >> i & 1 or not any(len(some) for some in leaks):
+    for i, _ in enumerate(found.categories):
+        leaks = [np.flatnonzero(_has(bits, found.bits.plain(i))) for bits in ends]
+        if not mask & found.bits.both(i) or not any(len(some) for some in leaks):
             continue
         network = network or GraphArrays.of(found)
         yield from _pairs_of(found, network, i, kinds, leaks)
@@ -87,18 +87,20 @@ def _has(bits: Bits, bit: int) -> Flags:
     return (bits[:, bit // WORD] >> np.uint64(bit % WORD) & np.uint64(1)).astype(bool)
 
 
-def forms(category: int, k: int, steps: Collection[tuple[int, int]]) -> tuple[int, ...]:
+def forms(category: int, bits: CategoryBits, steps: Collection[tuple[int, int]]) -> tuple[int, ...]:
     """Return the forms in which data can be on the way to a category: bits of the spread, sorted.
 
     Parameters
     ----------
-    category, k
-        Its number, and how many there are.
+    category
+        Its number.
     steps
         (bit that arrives, bit that leaves for it), wherever data is made into other data.
     """
-    back = _closure({category, category + k}, {(after, before) for before, after in steps})
-    ahead = _closure({form for form in back if form < k}, steps)  # a form that nothing turns into is none
+    back = _closure(set(bits.forms(category)), {(after, before) for before, after in steps})
+    ahead = _closure(
+        {form for form in back if not bits.is_pseudonymised(form)}, steps
+    )  # a form that nothing turns into is none
     return tuple(sorted(back & ahead))
 
 
@@ -120,12 +122,11 @@ class CategoryRun:
 
     def __init__(self, found: Spread, network: GraphArrays, category: int, forms: tuple[int, ...]) -> None:
         self._network = network
-        k = len(found.categories)
-        self._own = (category, category + k)
+        self._own = found.bits.forms(category)
         self._forms = forms
         both = sum(1 << form for form in forms)
         self.sources = np.array(sorted(v for v in found.facts if found.begins(v) & both), np.int64)
-        self._is_leak = _has(as_bits(found, len(network.keep), found.leaks, 0), category)
+        self._is_leak = _has(as_bits(found, len(network.keep), found.leaks, 0), self._own[0])
         self._passes = {form: _has(network.keep, form) for form in forms}
         self._derivations = network.derivations[np.isin(network.derivations[:, 1:], forms).all(axis=1)]
         self._begins = {source: found.begins(source) for source in self.sources.tolist()}
@@ -226,7 +227,7 @@ def _pairs_of(
 ) -> Iterator[Pairs]:
     """The pairs of each kind, of one category."""
     steps = {(before, after) for pairs in found.derives.values() for before, after in pairs}
-    category = CategoryRun(found, network, number, forms(number, len(found.categories), steps))
+    category = CategoryRun(found, network, number, forms(number, found.bits, steps))
     rows: list[list[tuple[Indices, Indices, Flags, Flags, Flags]]] = [[] for _ in kinds]
     disclosed = next(number for number, concern in enumerate(kinds) if concern.kind == DISCLOSURE)
     everywhere = np.unique(np.concatenate(leaks))
@@ -236,8 +237,8 @@ def _pairs_of(
         free = _reached(category, sources, leaks[disclosed], stop=True) if len(leaks[disclosed]) else through
         for at, concern in enumerate(kinds):
             if len(leaks[at]):
-                ways = (free, through) if concern.kind == DISCLOSURE else (through, through)
-                rows[at].append(_rows(sources, leaks[at], *ways))
+                reached = (free, through) if concern.kind == DISCLOSURE else (through, through)
+                rows[at].append(_rows(sources, leaks[at], *reached))
     for concern, some in zip(kinds, rows, strict=True):
         if some:
             columns = [np.concatenate(column) for column in zip(*some, strict=True)]
@@ -280,7 +281,7 @@ def _rows(
     through: tuple[Flags, Flags, Indices],
 ) -> tuple[Indices, Indices, Flags, Flags, Flags]:
     """The pairs, as a finding would be shown."""
-    there = [_of(way, plane, leaks) for way in (free, through) for plane in (0, 1)]
+    there = [_of(reached, plane, leaks) for reached in (free, through) for plane in (0, 1)]
     plain, hidden, plain_through, hidden_through = shown_arrivals(*there)
     source, leak = np.nonzero(np.logical_or.reduce(there).T)
     at, dismissed = (leak, source), ~(plain | hidden)

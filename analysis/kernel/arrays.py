@@ -87,7 +87,7 @@ class GraphArrays:
 
 def as_bits(found: Spread, count: int, numbers: Mapping[int, int], otherwise: int) -> Bits:
     """Return sets of bits by vertex as rows of words; those that are not given are all alike."""
-    words = max(1, -(-2 * len(found.categories) // WORD))
+    words = max(1, -(-found.all_bits.bit_length() // WORD))
     rows = np.empty((count, words), np.uint64)
     rows[:] = np.array(_words(otherwise, words), np.uint64)
     for vertex, bits in numbers.items():

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator
+from rosprivacy.analysis.kernel.bits import CategoryBits, bits_of
 
+if TYPE_CHECKING:
     from rosprivacy.analysis.kernel.overruled import Overruled
     from rosprivacy.analysis.kernel.roles import Facts
     from rosprivacy.analysis.model import FlowGraph
@@ -20,7 +20,11 @@ class Spread:
     Attributes
     ----------
     categories
-        Emitted ones, sorted; they give the bits their numbers.
+        Emitted ones, sorted; their order is that of their numbers.
+    bits
+        Which bits they have.
+    all_bits
+        Every one of these.
     facts
         Vertex -> category -> what it does with it; labelled vertices only.
     flow_facts
@@ -51,6 +55,8 @@ class Spread:
 
     graph: FlowGraph
     categories: tuple[str, ...]
+    bits: CategoryBits = field(init=False)
+    all_bits: int = field(init=False)
     facts: dict[int, dict[str, Facts]] = field(default_factory=dict)
     flow_facts: dict[int, dict[str, Facts]] = field(default_factory=dict)
     emits: dict[int, int] = field(default_factory=dict)
@@ -69,19 +75,18 @@ class Spread:
     leaves: dict[int, int] = field(default_factory=dict)
     sent: dict[int, int] = field(default_factory=dict)
 
-    @property
-    def all_bits(self) -> int:
-        """Every bit of both planes."""
-        return (1 << 2 * len(self.categories)) - 1
+    def __post_init__(self) -> None:
+        """Number the bits."""
+        self.bits = CategoryBits(len(self.categories))
+        self.all_bits = self.bits.all
 
     def begins(self, vertex: int) -> int:
         """Bits that a vertex emits, along all of its flows or single ones."""
         return self.emits.get(vertex, 0) | self.flow_begins.get(vertex, 0)
 
     def both(self, category: str) -> int:
-        """The two bits of a category, as it is and pseudonymised."""
-        i = self.categories.index(category)
-        return 1 << i | 1 << i + len(self.categories)
+        """The two bits of a category, as it is and pseudonymised; none of one that nothing here emits."""
+        return self.bits.both(self.categories.index(category)) if category in self.categories else 0
 
     def present(self, vertex: int) -> int:
         """What arrives at or starts from an element, or is carried by a channel."""
@@ -102,23 +107,9 @@ class Spread:
 
     def names(self, bits: int) -> tuple[str, ...]:
         """The categories of some bits, planes put together, in order."""
-        k = len(self.categories)
-        either = (bits | bits >> k) & ((1 << k) - 1)
-        return tuple(self.categories[i] for i in bits_of(either))
+        return tuple(self.categories[i] for i in bits_of(self.bits.merged(bits)))
 
     def planes(self, bits: int) -> tuple[tuple[str, ...], tuple[str, ...]]:
         """The categories of some bits, as they are and pseudonymised."""
-        k = len(self.categories)
-        return self.names(bits & ((1 << k) - 1)), self.names(bits >> k)
-
-
-def bits_of(number: int) -> Iterator[int]:
-    """The positions of the bits that are set, lowest first.
-
-    >>> list(bits_of(0b10010))
-    [1, 4]
-    """
-    while number:
-        lowest = number & -number
-        yield lowest.bit_length() - 1
-        number ^= lowest
+        plain, pseudonymised = self.bits.planes(bits)
+        return self.names(plain), self.names(pseudonymised)

@@ -1,8 +1,7 @@
 """Graph + labels -> what every element does with every category, and what arrives where (rules S7, S8).
 
 In: a ``FlowGraph``, the statements bound to it, the hierarchy. Out: a ``Spread``: sets of bits per vertex, as Python
-integers, which have as many bits as are needed. Bit i is the i-th emitted category as it is, bit i + k the same in
-the pseudonymised plane, where k is the number of emitted categories.
+integers, which have as many bits as are needed (``bits.py``).
 """
 
 from __future__ import annotations
@@ -15,7 +14,7 @@ from rosprivacy.analysis.kernel.fixpoint import fixpoint
 from rosprivacy.analysis.kernel.named_channels import keep_named, named, stated_flows
 from rosprivacy.analysis.kernel.overruled import overruled
 from rosprivacy.analysis.kernel.roles import NOTHING_SAID, Facts, facts
-from rosprivacy.analysis.kernel.spread import Spread, bits_of
+from rosprivacy.analysis.kernel.spread import Spread
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
@@ -118,30 +117,31 @@ def _set_vertex(found: Spread, vertex: int, bound: Bound, stated: Mapping[int, C
     decided = found.facts[vertex]
     if any(fact.standard for fact in decided.values()):
         found.standard.add(vertex)
-    k = len(found.categories)
+    number = {category: i for i, category in enumerate(found.categories)}
     found.keeps[vertex] = _bits(found, decided, lambda fact: fact.passes)
     found.leaks[vertex] = _bits(found, decided, lambda fact: fact.leaks)
     found.covered[vertex] = _bits(found, decided, lambda fact: fact.covered)
     for to in {to for fact in decided.values() for to in fact.derives}:  # who makes it knows of it
         found.covered[vertex] |= found.both(to)
-    number = {category: i for i, category in enumerate(found.categories)}
     made = _closed({c: decided[c].derives for c in found.categories if c in decided})
     pairs: set[tuple[int, int]] = set()
     emits = 0
     for category, i in number.items():
         fact = decided.get(category, NOTHING_SAID)
-        after = sum(1 << number[to] for to in made.get(category, ()))
-        pairs.update((i + plane, j + plane) for j in bits_of(after) for plane in (0, k))
-        found.made.update(bits_of(after))
+        plain, pseudonymised = found.bits.forms(i)
+        after = {number[to] for to in made.get(category, ())}
+        for j in after:
+            pairs.update(zip((plain, pseudonymised), found.bits.forms(j), strict=True))
+        found.made.update(after)
         if fact.pseudonymises:
-            pairs.add((i, i + k))
-            found.keeps[vertex] |= 1 << i + k  # what is pseudonymised already goes on so (rule S8)
-        if fact.emits:
-            emits |= after  # what a node makes of its own data leaves it like what it makes of others'
-            emits |= 0 if fact.through else 1 << i
+            pairs.add((plain, pseudonymised))
+            found.keeps[vertex] |= 1 << pseudonymised  # what is pseudonymised already goes on so (rule S8)
+        if fact.emits:  # what a node makes of its own data leaves it like what it makes of others'
+            emits |= sum(1 << found.bits.plain(j) for j in after)
+            emits |= 0 if fact.through else 1 << plain
         for flow in {*bound.through.get((vertex, fact.through), ()), *stated.get(vertex, ())} if fact.through else ():
-            found.flow_emits[flow] = found.flow_emits.get(flow, 0) | 1 << i
-            found.flow_begins[vertex] = found.flow_begins.get(vertex, 0) | 1 << i
+            found.flow_emits[flow] = found.flow_emits.get(flow, 0) | 1 << plain
+            found.flow_begins[vertex] = found.flow_begins.get(vertex, 0) | 1 << plain
     found.derives[vertex] = tuple(sorted(pairs))
     found.emits[vertex] = emits
 

@@ -10,7 +10,6 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.mitigation.cut_network import merged
 from rosprivacy.analysis.mitigation.limits import DENY, FILTER, REVIEW
 
 if TYPE_CHECKING:
@@ -126,7 +125,7 @@ def _reviews(places: ChangeSites, by_channel: Mapping[int, set[int]]) -> Iterato
             parts[element.identity].append(vertex)
     for identity in dict.fromkeys(elements[v].identity for v in sorted(by_channel) if not elements[v].pattern):
         vertices = parts[identity]
-        covered = [merged(spread.covered.get(v, 0) | spread.named.get(v, 0), places.k) for v in vertices]
+        covered = [spread.bits.merged(spread.covered.get(v, 0) | spread.named.get(v, 0)) for v in vertices]
         passed = {i for v in vertices for i in by_channel.get(v, ())}
         open_ = frozenset(i for i in passed if not any(bits >> i & 1 for bits in covered))
         factor = places.factor(REVIEW, frozenset(), frozenset(vertices))

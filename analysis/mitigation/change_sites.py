@@ -8,9 +8,8 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.kernel.spread import bits_of
+from rosprivacy.analysis.kernel.bits import bits_of
 from rosprivacy.analysis.mitigation.changed_system import opens
-from rosprivacy.analysis.mitigation.cut_network import merged
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -41,7 +40,6 @@ class ChangeSites:
         self.wild = wild
         self.spread = analysis.spread
         self.graph = analysis.graph
-        self.k = len(self.spread.categories)
         self.limits = limits
         self.leaks = frozenset(leaks)
         self.out: dict[int, list[int]] = defaultdict(list)
@@ -51,7 +49,7 @@ class ChangeSites:
 
     def along(self, flow: int) -> int:
         """The categories that go along a flow, its planes put together."""
-        return merged(self.spread.along(flow), self.k)
+        return self.spread.bits.merged(self.spread.along(flow))
 
     def readers(self, flow: int, categories: int | None = None) -> set[int]:
         """Who gets what goes along a flow, next after the channel: of some categories, or of all there is."""
@@ -77,7 +75,7 @@ class ChangeSites:
         for index, flow in enumerate(self.graph.flows if self.limits.critical else ()):
             if self.along(index):
                 incoming[flow.target].append(index)
-        late = {(v, i) for v in self.limits.critical for i in range(self.k)}
+        late = {(v, i) for v in self.limits.critical for i, _ in enumerate(self.spread.categories)}
         waiting = sorted(late)
         while waiting:
             vertex, i = waiting.pop()
@@ -91,14 +89,14 @@ class ChangeSites:
 
     def _made_into(self, vertex: int, i: int) -> Iterator[int]:
         """The categories that leave a vertex as i when they arrive there; not where it or they leak."""
-        leaks = merged(self.spread.leaks.get(vertex, 0), self.k)
-        if leaks >> i & 1:
+        bits, leaks = self.spread.bits, self.spread.leaks.get(vertex, 0)
+        if leaks & bits.both(i):
             return
-        if merged(self.spread.keeps.get(vertex, self.spread.all_bits), self.k) >> i & 1:
+        if self.spread.keeps.get(vertex, self.spread.all_bits) & bits.both(i):
             yield i
         for before, after in self.spread.derives.get(vertex, ()):
-            if after % self.k == i and not leaks >> before % self.k & 1:
-                yield before % self.k
+            if bits.category(after) == i and not leaks >> before & 1:
+                yield bits.category(before)
 
     def delays(self, flow: int) -> bool:
         """Whether what goes along a flow goes on to a time-critical node."""

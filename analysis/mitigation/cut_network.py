@@ -11,7 +11,7 @@ from collections import defaultdict, deque
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.kernel.spread import bits_of
+from rosprivacy.analysis.kernel.bits import bits_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
@@ -75,11 +75,6 @@ class CutNetwork:
     past: set[int] = field(default_factory=set)
 
 
-def merged(bits: int, k: int) -> int:
-    """Put the two planes of k categories together."""
-    return (bits | bits >> k) & ((1 << k) - 1)
-
-
 def cut_network(net: Net, groups: Iterable[Group], categories: Collection[int]) -> CutNetwork:
     """Return the network of all ways from the sources of each group to its open findings.
 
@@ -108,7 +103,7 @@ class _Builder:
     def __init__(self, net: Net, group: Group, category: int, found: CutNetwork, *, past: bool) -> None:
         self.net = net
         self.spread: Spread = net.spread
-        self.k = len(net.spread.categories)
+        self.bits = net.spread.bits
         self.group = group
         self.category = category
         self.found = found
@@ -118,10 +113,10 @@ class _Builder:
 
     def build(self) -> None:
         for source in self.group.sources:
-            for i in bits_of(merged(self.spread.emits.get(source, 0), self.k)):
+            for i in bits_of(self.bits.merged(self.spread.emits.get(source, 0))):
                 self._arc(BEGIN, self._state(True, source, i), i)
             for index, target, passing in self.net.flows.get(source, ()):
-                for i in bits_of(merged(self.spread.flow_emits.get(index, 0) & passing, self.k)):
+                for i in bits_of(self.bits.merged(self.spread.flow_emits.get(index, 0) & passing)):
                     self._arc(BEGIN, self._state(False, target, i), i, flow=index)
         while self.waiting:
             leaving, vertex, i = self.waiting.popleft()
@@ -144,7 +139,7 @@ class _Builder:
         """Whether ways to leaks end here: at a leak of the category that is not accepted."""
         if self.past:
             return False
-        leaks = merged(self.spread.leaks.get(vertex, 0), self.k) >> i & 1
+        leaks = self.spread.leaks.get(vertex, 0) & self.bits.both(i)
         return bool(leaks and i == self.category and (vertex, i) not in self.group.accepted)
 
     def _open(self, vertex: int, i: int) -> bool:
@@ -161,11 +156,11 @@ class _Builder:
         if self._stops(vertex, i):
             return
         channel = vertex if self.spread.graph.elements[vertex].is_channel else -1
-        if merged(self.spread.keeps.get(vertex, self.spread.all_bits), self.k) >> i & 1:
+        if self.spread.keeps.get(vertex, self.spread.all_bits) & self.bits.both(i):
             self._arc(here, self._state(True, vertex, i), i, channel=channel)
         for before, after in self.spread.derives.get(vertex, ()):
-            j = after % self.k
-            if before % self.k == i and j != i:
+            j = self.bits.category(after)
+            if self.bits.category(before) == i and j != i:
                 if self._open(vertex, j):
                     self._arc(here, END, j)
                 if not self._stops(vertex, j):
@@ -174,7 +169,7 @@ class _Builder:
     def _leave(self, vertex: int, i: int) -> None:
         here = self._state(True, vertex, i)
         for index, target, passing in self.net.flows.get(vertex, ()):
-            if merged(passing, self.k) >> i & 1:
+            if passing & self.bits.both(i):
                 self._arc(here, self._state(False, target, i), i, flow=index)
 
 

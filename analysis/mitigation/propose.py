@@ -14,14 +14,14 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.findings.findings import Options, analyse
+from rosprivacy.analysis.kernel.bits import bits_of
 from rosprivacy.analysis.kernel.search import Net
-from rosprivacy.analysis.kernel.spread import bits_of
 from rosprivacy.analysis.kernel.spreading import spread
 from rosprivacy.analysis.mitigation.affected import affected
 from rosprivacy.analysis.mitigation.candidates import candidates, uncut
 from rosprivacy.analysis.mitigation.change_sites import ChangeSites
 from rosprivacy.analysis.mitigation.changed_system import opened, with_changes
-from rosprivacy.analysis.mitigation.cut_network import Group, a_way, cut_network, merged, open_ends
+from rosprivacy.analysis.mitigation.cut_network import Group, a_way, cut_network, open_ends
 from rosprivacy.analysis.mitigation.limits import DENY, FILTER, REVIEW, Limits
 from rosprivacy.analysis.mitigation.min_cut import BUDGET, cheapest
 from rosprivacy.analysis.mitigation.proposals import ITSELF, NOT_ALLOWED, Kept, Proposal, ProposedStep
@@ -159,13 +159,12 @@ class _Work:
                 others |= {at} if not finding.accepted and len(finding.witness) > 1 else set()
             elif finding.accepted:
                 accepted.add(at)
-        begun = merged(self.analysis.spread.begins(source), len(self.number))
+        begun = self.analysis.spread.bits.merged(self.analysis.spread.begins(source))
         itself = {(source, i) for i in bits_of(begun) if self._leaks((source, i))}
         return Group((source,), frozenset(accepted), frozenset(itself), frozenset(others))
 
     def _leaks(self, at: At) -> bool:
-        leaks = merged(self.analysis.spread.leaks.get(at[0], 0), len(self.number))
-        return bool(leaks >> at[1] & 1)
+        return bool(self.analysis.spread.leaks.get(at[0], 0) & self.analysis.spread.bits.both(at[1]))
 
     def _kept(self, group: Group, options: Sequence[Candidate]) -> Iterable[Kept]:
         """The findings of one source that no change removes, with a way on which none can be made."""

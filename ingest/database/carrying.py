@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.kernel.spread import bits_of
+from rosprivacy.analysis.kernel.bits import bits_of
 from rosprivacy.ingest.database.ids import carries
 
 if TYPE_CHECKING:
@@ -62,18 +62,18 @@ def goes_along(analysis: Analysis, index: int) -> int:
 
 def passed_and_made(found: Spread, vertex: int) -> tuple[int, int]:
     """Return what comes to an element and goes on, pseudonymised or not; and what it makes of what comes."""
-    k = len(found.categories)
     arrives = found.arrives.get(vertex, 0)
     passed, made = arrives & found.keeps.get(vertex, found.all_bits), 0
     for before, after in found.derives.get(vertex, ()):
         if arrives >> before & 1:
-            made |= 1 << after if (before - after) % k else 0
-            passed |= 0 if (before - after) % k else 1 << after
+            same = found.bits.category(before) == found.bits.category(after)  # pseudonymised here
+            made |= 0 if same else 1 << after
+            passed |= 1 << after if same else 0
     return passed, made
 
 
 class Carrying:
-    """Where each kind goes; a kind is the number of a bit, as it is and pseudonymised put together.
+    """Where each kind goes; kinds are sets of numbers, as they are and pseudonymised put together.
 
     Parameters
     ----------
@@ -91,6 +91,7 @@ class Carrying:
     def __init__(self, analysis: Analysis, labels: Sequence[Sequence[str]], stems: Mapping[str, str]) -> None:
         self._analysis = analysis
         self._found = analysis.spread
+        self._merged = analysis.spread.bits.merged
         self._sources = {stems[name] + "Source": 1 << i for i, name in enumerate(self._found.categories)}
         self._types = [carries(stems[name]) for name in self._found.categories]
         self._stems = [stems[name] for name in self._found.categories]
@@ -109,16 +110,16 @@ class Carrying:
         if not labelled:
             return
         found = self._found
-        passed, made = map(self._kinds, passed_and_made(found, vertex))
-        own, everywhere = self._kinds(found.begins(vertex)), self._kinds(found.emits.get(vertex, 0))
+        passed, made = map(self._merged, passed_and_made(found, vertex))
+        own, everywhere = self._merged(found.begins(vertex)), self._merged(found.emits.get(vertex, 0))
         differ = (passed & ~(everywhere | made)) | ((own | made) & ~passed)
         apart = made & own & ~everywhere
-        if kinds := labelled & self._kinds(found.arrives[vertex]) & differ | apart:
+        if kinds := labelled & self._merged(found.arrives[vertex]) & differ | apart:
             self.intakes[vertex], self._made_apart[vertex] = kinds, apart
 
     def labels(self, vertex: int) -> list[str]:
         """Return the labels of an ``Intake``: of leaks; of a source where what it makes goes further."""
-        leaks = self.intakes[vertex] & self._kinds(self._found.leaks.get(vertex, 0))
+        leaks = self.intakes[vertex] & self._merged(self._found.leaks.get(vertex, 0))
         said = (("Source", self._made_apart[vertex]), ("Leak", leaks))
         return [self._stems[i] + suffix for suffix, kinds in said for i in bits_of(kinds)]
 
@@ -127,7 +128,7 @@ class Carrying:
         """(from, to, types of relationships), sorted; one from an element to itself where it is source and leak."""
         steps: dict[tuple[End, End], int] = defaultdict(int)
         for flow, some in zip(self._analysis.graph.flows, moving(self._analysis), strict=True):
-            passed, begun, made = self._kinds(some.passed), self._kinds(some.begun), self._kinds(some.made)
+            passed, begun, made = self._merged(some.passed), self._merged(some.begun), self._merged(some.made)
             split, reached = self.intakes.get(flow.source, 0), self.intakes.get(flow.target, 0)
             apart = self._made_apart.get(flow.source, 0)
             for end, kinds in (
@@ -137,16 +138,12 @@ class Carrying:
                 steps[end, (flow.target, False)] |= kinds & ~reached
                 steps[end, (flow.target, INTAKE)] |= kinds & reached
         for vertex, bits in self._found.leaks.items():
-            leaks, made = self._kinds(bits), self._kinds(passed_and_made(self._found, vertex)[1])
+            leaks, made = self._merged(bits), self._merged(passed_and_made(self._found, vertex)[1])
             apart = self._made_apart.get(vertex, 0)
-            own = self._kinds(self._found.begins(vertex)) | made & ~apart
+            own = self._merged(self._found.begins(vertex)) | made & ~apart
             steps[(vertex, False), (vertex, False)] |= own & leaks
             steps[(vertex, INTAKE), (vertex, INTAKE)] |= made & apart & leaks
         return [(*ends, self._named(kinds)) for ends, kinds in sorted(steps.items()) if kinds]
-
-    def _kinds(self, bits: int) -> int:
-        k = len(self._found.categories)
-        return (bits | bits >> k) & ((1 << k) - 1)
 
     def _named(self, kinds: int) -> list[str]:
         if kinds not in self._lists:

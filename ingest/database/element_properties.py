@@ -116,7 +116,7 @@ def element_results(analysis: Analysis, bound: Bound, names: Names, roles: Roles
         leaks, cleans, labelled = roles.of(bound.elements.get(vertex, ()))
         properties = {
             "carries": names.broad(present),
-            "pseudonymised": names.broad(present >> len(found.categories)),
+            "pseudonymised": names.broad(found.bits.planes(present)[1]),
             "begins": names.exact(found.begins(vertex)),
             "leaks": leaks,
             "sanitizes": cleans,
@@ -136,8 +136,7 @@ def element_results(analysis: Analysis, bound: Bound, names: Names, roles: Roles
 
 def _stopped(found: Spread, kept: int) -> int:
     """Kinds that go on neither as they are nor pseudonymised."""
-    k = len(found.categories)
-    return ((1 << k) - 1) & ~(kept | kept >> k)
+    return found.all_bits & ~found.bits.in_both_forms(kept)
 
 
 def flow_results(analysis: Analysis, names: Names) -> Iterator[Row]:

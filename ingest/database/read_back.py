@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.errors import GraphError, InputError, InputErrors, shown
 from rosprivacy.analysis.fleet.patterns import NO_ROBOTS, Likeness
 from rosprivacy.analysis.model import (
-    GLOB,
     NAME,
     NON_ROS,
     SEGMENT,
@@ -31,6 +30,7 @@ from rosprivacy.analysis.model import (
     Statement,
 )
 from rosprivacy.analysis.non_ros import by_kind
+from rosprivacy.ingest.database.flow_statements import DATABASE, HAND, names_of, statements_of
 from rosprivacy.ingest.database.non_ros_properties import facts_of
 from rosprivacy.ingest.database.other_schemas import HINT, of_other_schemas
 from rosprivacy.ingest.database.schema import KIND_LABELS, ROLES
@@ -45,9 +45,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import NonRosFacts
     from rosprivacy.ontology.vocabulary import Vocabulary
 
-DATABASE = "the database"
 ADDED = "flow"  # the role of a flow that a person added
-HAND = 2  # the tier of a role that a person added: above every file
 MATCHES = "matches"
 _FLOW_ROLES = {"publish", "subscribe", "request", "reply", "call", "execute", MATCHES}
 _KIND_OF = {label: kind for kind, label in KIND_LABELS.items()}
@@ -216,12 +214,10 @@ class _Reader:
             said = record["properties"]
             try:
                 _grants(said, ADDED, ends[0])
-                unknown = {name for role in ("only", "never") for name in _names(said, role)} - set(
-                    self._vocabulary.categories
-                )
+                unknown = names_of(said) - set(self._vocabulary.categories)
             except (KeyError, TypeError, ValueError, AttributeError) as error:
-                way = f"{shown(ends[0].name)} -> {shown(ends[1].name)}"
-                what = f"a flow cannot be understood: {way}: {shown(str(error))}"
+                which = f"{shown(ends[0].name)} -> {shown(ends[1].name)}"
+                what = f"a flow cannot be understood: {which}: {shown(str(error))}"
                 self.problems.append(_problem(what, "see docs/database.md for what a flow has"))
                 continue
             for name in sorted(unknown):
@@ -265,7 +261,7 @@ class _Reader:
         for vertex in outside:
             statements[vertex] = (*statements.get(vertex, ()), *by_kind(elements[vertex]))
         statements = dict(sorted(statements.items()))
-        restrictions = {i: tuple(_restrictions(row[4])) for i, row in enumerate(allowed)}
+        restrictions = {i: statements_of(row[4], self._vocabulary.hierarchy) for i, row in enumerate(allowed)}
         return Stored(
             graph,
             Bound(
@@ -319,12 +315,6 @@ def _denied(row: tuple[int, int, str, str, Mapping[str, Any]], elements: tuple[E
     return replace(flow, denials=_lines(lines, row[2], channel, allow=False))
 
 
-def _place(text: str) -> Place:
-    """A place as ``str`` writes it."""
-    file, _, line = str(text).rpartition(":")
-    return Place(file, int(line)) if line.isdecimal() else Place(str(text), 0)
-
-
 def _grants(said: Mapping[str, Any], role: str, channel: Element) -> tuple[Grant, ...]:
     """The policy lines behind a flow."""
     lines = [said] if said.get("file") else []
@@ -347,28 +337,12 @@ def _lines(lines: Iterable[Mapping[str, Any]], role: str, channel: Element, *, a
     )
 
 
-def _names(said: Mapping[str, Any], role: str) -> tuple[str, ...]:
-    names = said.get(role) or []
-    if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
-        raise TypeError(f"{role} is not a list of names")
-    return tuple(sorted(names))
-
-
 def _subjects(properties: Mapping[str, Any]) -> tuple[str, ...]:
     """Whom the data of a source are about."""
     groups = properties.get("subjects") or []
     if not isinstance(groups, list) or not all(isinstance(group, str) for group in groups):
         raise TypeError("subjects is not a list of texts")
     return tuple(sorted(set(groups)))
-
-
-def _restrictions(said: Mapping[str, Any]) -> Iterator[Statement]:
-    """``only`` and ``never`` of a flow."""
-    place = next((_place(text) for text in said.get("said_at") or ()), Place(DATABASE, 0))
-    for role in ("only", "never"):
-        if names := _names(said, role):
-            naming = GLOB if said.get("naming") == GLOB else NAME
-            yield Statement(role, names, (HAND, EXACT), place, naming=naming)
 
 
 def _facts(role: str, category: str, said: Mapping[str, Any]) -> tuple[Any, ...]:

@@ -11,7 +11,6 @@ import json
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.model import GLOB
 from rosprivacy.analysis.non_ros import BY_KIND
 from rosprivacy.ingest.database.carrying import Carrying
 from rosprivacy.ingest.database.element_properties import (
@@ -22,6 +21,7 @@ from rosprivacy.ingest.database.element_properties import (
     flow_results,
     origin_rows,
 )
+from rosprivacy.ingest.database.flow_statements import as_properties
 from rosprivacy.ingest.database.ids import category_labels, element_id, enclave_id, intake_id
 from rosprivacy.ingest.database.non_ros_properties import properties_of
 from rosprivacy.ingest.database.schema import INTAKE, KIND_LABELS, LEG, SCHEMA, WILDCARD
@@ -226,7 +226,7 @@ def _flows(robot: str, analysis: Analysis, bound: Bound, names: Names, ids: Sequ
 
 def allowed(result: Row, said: Sequence[Statement], vocabulary: Vocabulary) -> Row:
     """Return the properties of an allowed flow."""
-    return {"decision": "allow", **result, **_restrictions(said, vocabulary)}
+    return {"decision": "allow", **result, **as_properties(said, vocabulary.hierarchy)}
 
 
 def denied(flow: Flow) -> Row:
@@ -249,28 +249,6 @@ def flow_row(robot: str, flow: Flow, source: str, target: str, properties: Row) 
 def _grant(grant: Grant) -> Row:
     place = grant.place
     return {"file": place.file, "line": place.line, "enclave": grant.enclave, "profile": grant.node}
-
-
-def _restrictions(said: Sequence[Statement], vocabulary: Vocabulary) -> Row:
-    """What labels say of a flow, in two lists of one rank that mean the same (rule S7).
-
-    ``never`` of a lower rank than ``only`` says nothing that this does not say; of a higher rank it takes names out of
-    it, and where none is left nothing goes along the flow.
-    """
-    ranked = [statement for statement in said if statement.role == "only"]
-    only = max(ranked, key=lambda statement: statement.rank, default=None)
-    nevers = [s for s in said if s.role == "never" and (only is None or s.rank >= only.rank)]
-    never = {name for statement in nevers for name in statement.categories}
-    globs = {s.naming for s in (*nevers, *([only] if only else ()))} == {GLOB}
-    places = sorted({str(s.place) for s in (*nevers, *([only] if only else ()))})
-    row: Row = {"never": sorted(never) or None, "only": None, "naming": GLOB if globs else None}
-    row["said_at"] = places or None
-    if only is None:
-        return row
-    above = {name for s in nevers if s.rank > only.rank for name in s.categories}
-    left = [name for name in only.categories if not above & set(vocabulary.hierarchy.ancestors[name])]
-    never |= set() if left else {name for name, category in vocabulary.categories.items() if not category.broader}
-    return {**row, "never": sorted(never) or None, "only": sorted(left) or None}
 
 
 def _roles(robot: str, bound: Bound, vocabulary: Vocabulary, ids: Sequence[str]) -> dict[str, list[Row]]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-SCHEMA = 3  # raised when what a load writes gains what an answer rests on, or changes its meaning; none was stored at 1
+SCHEMA = 4  # raised when what a load writes gains what an answer rests on, or changes its meaning; none was stored at 1
 _IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 STRING, INTEGER, BOOLEAN, STRINGS = "STRING", "INTEGER", "BOOLEAN", "LIST<STRING>"
 
@@ -120,7 +120,9 @@ ELEMENT = NodeKind(
         Property("line", INTEGER, "outside ROS: where it is stated"),
     ),
     f"the kind, one of {', '.join(f'`{label}`' for label in KIND_LABELS.values())}; `{LEG}` on the request and the "
-    f"response of a service or action, `{WILDCARD}` on a name with wildcards. And for each category, here `Biometric`: "
+    f"response of a service or action, `{WILDCARD}` on a name with wildcards; `{INTAKE}` on what stands beside an "
+    f"element at the end of `{CARRIES}…`, where what comes to it goes on another way than what begins there. And for "
+    "each category, here `Biometric`: "
     "`Biometric` where it gets to, `BiometricSource` where it begins (at a source, or at a node that makes it of other "
     "data), `BiometricLeak`, `BiometricSanitizer`; the labels of broader categories too",
 )
@@ -234,8 +236,17 @@ FLOWS_TO = RelationshipKind(
         Property("only", STRINGS, "a label: it carries these at most"),
         Property("never", STRINGS, "a label: it does not carry these"),
         Property("naming", STRING, "of the label: glob where it names no end in full; absent else"),
+        Property("statements", STRINGS, "JSON: role, categories, rank, naming, file and line of each of these labels"),
         _OURS,
     ),
+)
+CARRIED = RelationshipKind(
+    f"{CARRIES}BIOMETRIC",
+    "Element",
+    "Element",
+    "Data of the category goes this step; one type for each category that a source brings in or a node makes, and a "
+    "broader one does not stand for it. From an element to itself where it is both source and leak. Followed from a "
+    "source to a leak, it finds what the analysis finds, dismissed findings included.",
 )
 ROLES = {
     "source": RelationshipKind(
@@ -325,6 +336,7 @@ ACROSS = RelationshipKind(
 )
 RELATIONSHIPS = (
     FLOWS_TO,
+    CARRIED,
     *ROLES.values(),
     DERIVES_FROM,
     RelationshipKind("OF_ROBOT", "Element", "Robot", "Whose element it is."),

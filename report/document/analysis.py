@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from rosprivacy.analysis.findings.sanitizing import cleanings, makings
 from rosprivacy.analysis.kernel.ranks import in_words
@@ -20,17 +20,38 @@ from rosprivacy.report.document.non_ros import inventory, taken_by_kind, without
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from rosprivacy.analysis.answer import Analysis, Finding, Step
+    from rosprivacy.analysis.answer import Analysis, Finding, OpenQuestion, Step
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.kernel.overruled import Overruled
     from rosprivacy.analysis.model import Category, Diagnostic, Element, Flow, FlowGraph, Grant, Legal
     from rosprivacy.report.answer import Answer
+    from rosprivacy.report.contract.analysis import AnalysisDocument, Given
+    from rosprivacy.report.contract.records import (
+        DeniedEntry,
+        DiagnosticEntry,
+        ElementEntry,
+        EnclaveEntry,
+        FindingEntry,
+        FindingMore,
+        GrantEntry,
+        LawEntry,
+        OpenEntry,
+        StepEntry,
+    )
+    from rosprivacy.report.contract.stated import (
+        CategoryEntry,
+        DerivationEntry,
+        OverruledEntry,
+        ProvisionEntry,
+        SanitizerEntry,
+        Texts,
+    )
 
 FORMAT = "rosprivacy.analysis/1"
 _KEYS = {"name": "provision"}  # what the contract calls otherwise than the model
 
 
-def analysis_document(answer: Answer) -> dict[str, Any]:
+def analysis_document(answer: Answer) -> AnalysisDocument:
     """Return the analysis as one JSON object; decisions and a fleet's keys are added in ``whole.py``."""
     analysis, taken = answer.shown, answer.taken_away
     categories, hierarchy, graph = answer.vocabulary.categories, answer.vocabulary.hierarchy, analysis.graph
@@ -40,16 +61,7 @@ def analysis_document(answer: Answer) -> dict[str, Any]:
         "view": graph.view,
         "categories": [_category(categories[name], hierarchy) for name in analysis.emitted],
         "findings": [_finding(finding, categories) for finding in analysis.findings],
-        "open": [
-            {
-                "element": element_dict(question.element),
-                "categories": list(question.categories),
-                "distance": question.distance,
-                "frontier": question.frontier,
-                **({"missing": list(question.missing)} if question.missing else {}),
-            }
-            for question in analysis.open
-        ],
+        "open": [_open(question) for question in analysis.open],
         "unknown_ends": [
             {
                 "element": element_dict(end.element),
@@ -78,8 +90,10 @@ def analysis_document(answer: Answer) -> dict[str, Any]:
             {"element": element_dict(graph.elements[vertex]), "subjects": list(groups)}
             for vertex, groups in sorted(answer.bound.subjects.items())
         ],
-        **_treatment(analysis),
-        **_inventory(analysis),
+        "sanitizers": _sanitizers(analysis),
+        "derivations": _derivations(analysis),
+        "unreached": _unreached(analysis),
+        "enclaves": _enclaves(graph),
         "flows": len(graph.flows),
         "denied_flows": len(graph.denied),
         "denied": [_denied(flow, graph) for flow in graph.denied],
@@ -87,7 +101,7 @@ def analysis_document(answer: Answer) -> dict[str, Any]:
         "standard_channels": analysis.standard_channels,
         "diagnostics": [_diagnostic(d) for d in (*answer.diagnostics, *analysis.diagnostics)],
         "assumptions": {
-            **answer.assumptions,
+            **cast("Given", answer.assumptions),
             "taken_away_by": ledger.counts(taken),
             "taken_by_kind": taken_by_kind(analysis),
             "backups_taken_as_none": [element_dict(element) for element in without_backups(analysis)],
@@ -120,14 +134,14 @@ def as_text(value: Any) -> str:
     return utf8(json.dumps(value, indent=2, ensure_ascii=False) + "\n")
 
 
-def element_dict(element: Element) -> dict[str, Any]:
+def element_dict(element: Element) -> ElementEntry:
     """Return E of the contract.
 
     >>> from rosprivacy.analysis.model import Element
     >>> element_dict(Element("service", "/add", leg="request"))
     {'robot': '', 'kind': 'service', 'name': '/add', 'leg': 'request'}
     """
-    shown: dict[str, Any] = {"robot": element.robot, "kind": element.kind, "name": element.name}
+    shown: ElementEntry = {"robot": element.robot, "kind": element.kind, "name": element.name}
     if element.leg:
         shown["leg"] = element.leg
     if element.pattern:
@@ -135,7 +149,7 @@ def element_dict(element: Element) -> dict[str, Any]:
     return shown
 
 
-def _overruled(one: Overruled) -> dict[str, Any]:
+def _overruled(one: Overruled) -> OverruledEntry:
     """A source or leak that another statement takes away."""
     return {
         "role": one.role,
@@ -147,49 +161,46 @@ def _overruled(one: Overruled) -> dict[str, Any]:
     }
 
 
-def _treatment(analysis: Analysis) -> dict[str, Any]:
-    """Who cleans data, and who makes one kind of another."""
-    return {
-        "sanitizers": [
-            {
-                "element": element_dict(cleaning.element),
-                "category": cleaning.category,
-                "method": cleaning.method,
-                "stated": cleaning.stated,
-                "reached": cleaning.reached,
-                "leaves": list(cleaning.leaves),
-                "leaves_pseudonymised": list(cleaning.pseudonymised),
-                "beside": [element_dict(element) for element in cleaning.beside],
-            }
-            for cleaning in cleanings(analysis.spread, analysis.emitted)
-        ],
-        "derivations": [
-            {
-                "element": element_dict(making.element),
-                "from": making.made_of,
-                "to": making.made,
-                "reached": making.reached,
-            }
-            for making in makings(analysis.spread, analysis.emitted)
-        ],
-    }
+def _sanitizers(analysis: Analysis) -> list[SanitizerEntry]:
+    """Who cleans data."""
+    return [
+        {
+            "element": element_dict(cleaning.element),
+            "category": cleaning.category,
+            "method": cleaning.method,
+            "stated": cleaning.stated,
+            "reached": cleaning.reached,
+            "leaves": list(cleaning.leaves),
+            "leaves_pseudonymised": list(cleaning.pseudonymised),
+            "beside": [element_dict(element) for element in cleaning.beside],
+        }
+        for cleaning in cleanings(analysis.spread, analysis.emitted)
+    ]
 
 
-def _inventory(analysis: Analysis) -> dict[str, Any]:
-    """Enclaves, and the elements that no data gets to: with ``carries`` all that there is."""
-    graph = analysis.graph
+def _derivations(analysis: Analysis) -> list[DerivationEntry]:
+    """Who makes one kind of another."""
+    return [
+        {"element": element_dict(making.element), "from": making.made_of, "to": making.made, "reached": making.reached}
+        for making in makings(analysis.spread, analysis.emitted)
+    ]
+
+
+def _unreached(analysis: Analysis) -> list[ElementEntry]:
+    """The elements that no data gets to: with ``carries`` all that there is."""
     reached = {carried.element.identity for carried in analysis.carried}
-    rest = {element.identity: element for element in graph.elements if element.identity not in reached}
+    rest = {element.identity: element for element in analysis.graph.elements if element.identity not in reached}
+    return [element_dict(replace(element, leg="")) for element in rest.values()]
+
+
+def _enclaves(graph: FlowGraph) -> list[EnclaveEntry]:
     nodes: dict[str, set[str]] = {}
     for profile in graph.profiles:
         nodes.setdefault(profile.enclave, set()).add(profile.node)
-    return {
-        "unreached": [element_dict(replace(element, leg="")) for element in rest.values()],
-        "enclaves": [{"enclave": enclave, "nodes": sorted(inside)} for enclave, inside in sorted(nodes.items())],
-    }
+    return [{"enclave": enclave, "nodes": sorted(inside)} for enclave, inside in sorted(nodes.items())]
 
 
-def _category(category: Category, hierarchy: Hierarchy) -> dict[str, Any]:
+def _category(category: Category, hierarchy: Hierarchy) -> CategoryEntry:
     return {
         "name": category.name,
         "iri": category.iri,
@@ -205,29 +216,18 @@ def _category(category: Category, hierarchy: Hierarchy) -> dict[str, Any]:
     }
 
 
-def _translations(texts: Mapping[str, Mapping[str, str]]) -> dict[str, dict[str, str]]:
+def _translations(texts: Mapping[str, Mapping[str, str]]) -> Texts:
     """Language -> texts in it; English stands where the facts are."""
     said = {language: {what: text for what, text in sorted(of.items()) if text} for language, of in texts.items()}
     return {language: said[language] for language in sorted(said) if said[language]}
 
 
-def _law(finding: Finding, categories: Mapping[str, Category]) -> dict[str, Any]:
-    """Return what a person has to look up about a finding's data: no verdict on the system.
-
-    ``article9`` is the strongest of the verdicts under Article 9(1) GDPR, ``special_from`` the element that makes a
-    special category of data that were none.
-    """
-    category, turned = categories[finding.category], turned_special(finding, categories)
-    return {
-        "article9": category.article9,
-        "special_from": element_dict(turned) if turned else None,
-        "law": [
-            {"provision": legal.name, "verdict": legal.verdict, "condition": legal.condition} for legal in category.law
-        ],
-    }
+def _law(category: Category) -> list[LawEntry]:
+    """Return what a person has to look up about a finding's data: no verdict on the system."""
+    return [{"provision": legal.name, "verdict": legal.verdict, "condition": legal.condition} for legal in category.law]
 
 
-def _legal(legal: Legal) -> dict[str, Any]:
+def _legal(legal: Legal) -> ProvisionEntry:
     return {
         "provision": legal.name,
         "iri": legal.iri,
@@ -246,8 +246,24 @@ def _legal(legal: Legal) -> dict[str, Any]:
     }
 
 
-def _finding(finding: Finding, categories: Mapping[str, Category]) -> dict[str, Any]:
-    shown = {
+def _open(question: OpenQuestion) -> OpenEntry:
+    shown: OpenEntry = {
+        "element": element_dict(question.element),
+        "categories": list(question.categories),
+        "distance": question.distance,
+        "frontier": question.frontier,
+    }
+    if question.missing:
+        shown["missing"] = list(question.missing)
+    return shown
+
+
+def _finding(finding: Finding, categories: Mapping[str, Category]) -> FindingEntry:
+    """A finding; its data became a special category at ``special_from``, where that was none before."""
+    category, turned = categories[finding.category], turned_special(finding, categories)
+    reason: FindingMore = {"reason": finding.reason} if finding.reason else {}
+    beside: FindingMore = {"beside_pseudonymised": True} if finding.beside else {}
+    shown: FindingEntry = {
         "id": finding.id,
         "kind": finding.kind,
         "category": finding.category,
@@ -259,10 +275,12 @@ def _finding(finding: Finding, categories: Mapping[str, Category]) -> dict[str, 
         "disjoint_paths": finding.disjoint_paths,
         "through": [element_dict(element) for element in finding.through],
         "dismissed": finding.dismissed,
-        **_law(finding, categories),
-        **({"reason": finding.reason} if finding.reason else {}),
+        "article9": category.article9,
+        "special_from": element_dict(turned) if turned else None,
+        "law": _law(category),
+        **reason,
         "accepted": finding.accepted,
-        **({"beside_pseudonymised": True} if finding.beside else {}),
+        **beside,
     }
     if finding.paths:
         shown["paths"] = [[element_dict(element) for element in path] for path in finding.paths]
@@ -270,7 +288,7 @@ def _finding(finding: Finding, categories: Mapping[str, Category]) -> dict[str, 
     return shown
 
 
-def _step(step: Step) -> dict[str, Any]:
+def _step(step: Step) -> StepEntry:
     return {
         "role": step.role,
         "category": step.category,
@@ -279,7 +297,7 @@ def _step(step: Step) -> dict[str, Any]:
     }
 
 
-def _denied(flow: Flow, graph: FlowGraph) -> dict[str, Any]:
+def _denied(flow: Flow, graph: FlowGraph) -> DeniedEntry:
     """What one line allows and another denies (rule S5)."""
     return {
         "source": element_dict(graph.elements[flow.source]),
@@ -290,15 +308,17 @@ def _denied(flow: Flow, graph: FlowGraph) -> dict[str, Any]:
     }
 
 
-def _grant(grant: Grant) -> dict[str, Any]:
+def _grant(grant: Grant) -> GrantEntry:
     return {"file": grant.place.file, "line": grant.place.line, "enclave": grant.enclave, "profile": grant.node}
 
 
-def _diagnostic(diagnostic: Diagnostic) -> dict[str, Any]:
-    return {
+def _diagnostic(diagnostic: Diagnostic) -> DiagnosticEntry:
+    shown: DiagnosticEntry = {
         "file": diagnostic.place.file,
         "line": diagnostic.place.line,
         "severity": str(diagnostic.severity),
         "message": diagnostic.message,
-        **({"code": diagnostic.code} if diagnostic.code else {}),
     }
+    if diagnostic.code:
+        shown["code"] = diagnostic.code
+    return shown

@@ -5,7 +5,7 @@ In: a document and decisions joined to its findings. Out: the document with ``de
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from rosprivacy.analysis.decisions import Choice, State
 from rosprivacy.analysis.errors import shown
@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from rosprivacy.analysis.decisions import Decided, Decision
+    from rosprivacy.report.contract.analysis import AnalysisDocument
+    from rosprivacy.report.contract.records import DecisionEntry, FindingEntry, ListedDecision, Target
 
 DONE = {
     Choice.ACCEPT: "accepted",
@@ -23,19 +25,19 @@ DONE = {
 }
 
 
-def with_decisions(document: Mapping[str, Any], decided: Decided) -> dict[str, Any]:
+def with_decisions(document: AnalysisDocument, decided: Decided) -> AnalysisDocument:
     """Return a document with what was decided about its findings."""
     decisions = decided.decisions
     on = {key: _decision(entry, decisions.state(entry)) for key, entry in decided.on.items()}
-    findings = [{**finding, "decision": on.get(finding["id"])} for finding in document["findings"]]
-    entries = [
+    findings: list[FindingEntry] = [{**finding, "decision": on.get(finding["id"])} for finding in document["findings"]]
+    entries: list[ListedDecision] = [
         {**_decision(entry, state), "target": _target(entry), "findings": list(about)}
         for entry, about, state in zip(decisions.entries, decided.about, decided.states, strict=True)
     ]
     return {**document, "findings": findings, "decisions": entries}
 
 
-def _decision(entry: Decision, state: State) -> dict[str, Any]:
+def _decision(entry: Decision, state: State) -> DecisionEntry:
     return {
         "choice": str(entry.choice),
         "state": str(state),
@@ -50,10 +52,10 @@ def _decision(entry: Decision, state: State) -> dict[str, Any]:
     }
 
 
-def _target(entry: Decision) -> dict[str, Any]:
+def _target(entry: Decision) -> Target:
     """What an entry says that it is about."""
     keys = ("id", "category", "source", "leak", "robot", "from_robot", "kind")
-    said: dict[str, Any] = {key: getattr(entry, key) for key in keys if getattr(entry, key)}
+    said = cast("Target", {key: getattr(entry, key) for key in keys if getattr(entry, key)})
     if entry.pseudonymised is not None:
         said["pseudonymised"] = entry.pseudonymised
     return said

@@ -7,7 +7,6 @@ counts of the whole fleet.
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.report.document.analysis import element_dict
@@ -17,24 +16,33 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.fleet.counts import Counts
     from rosprivacy.analysis.fleet.patterns import Deviant, FleetView, Likeness, Pattern, Share
+    from rosprivacy.report.contract.analysis import AnalysisDocument, StandardFile
+    from rosprivacy.report.contract.fleet import DeviantEntry, FleetEntry, PatternEntry, ShareEntry
 
-ROWS = ("subjects", "sanitizers", "derivations", "unreached")  # what the whole graph tells; the rest is shown already
 
-
-def fleet_document(told: dict[str, Any], view: FleetView, counts: Counts) -> dict[str, Any]:
-    """Return the document of a fleet.
+def fleet_document(told: AnalysisDocument, view: FleetView, counts: Counts) -> AnalysisDocument:
+    """Return the document of a fleet; what the whole graph tells, it tells of one robot of those that are alike.
 
     Parameters
     ----------
     told
         Of the analysis as ``FleetView.shown`` gives it.
     """
-    numbers = asdict(counts)
-    assumptions = dict(told["assumptions"])
-    if assumptions["standard_channels"]:
-        assumptions["standard_channels"] = {**assumptions["standard_channels"], "taken": numbers["standard_channels"]}
-    shown = {key: _without(told[key], view.likeness) for key in ROWS}
-    return {**told, **shown, **numbers, "assumptions": assumptions, "fleet": _fleet(view)}
+    standard, likeness = told["assumptions"]["standard_channels"], view.likeness
+    taken: StandardFile | None = {**standard, "taken": counts.standard_channels} if standard else None
+    return {
+        **told,
+        "subjects": _without(told["subjects"], likeness),
+        "sanitizers": _without(told["sanitizers"], likeness),
+        "derivations": _without(told["derivations"], likeness),
+        "unreached": _without(told["unreached"], likeness),
+        "elements": counts.elements,
+        "flows": counts.flows,
+        "denied_flows": counts.denied_flows,
+        "standard_channels": counts.standard_channels,
+        "assumptions": {**told["assumptions"], "standard_channels": taken},
+        "fleet": _fleet(view),
+    }
 
 
 def _without(value: Any, likeness: Likeness) -> Any:
@@ -51,7 +59,7 @@ def _second(item: Any, likeness: Likeness) -> bool:
     return element.get("robot") in likeness.second
 
 
-def _fleet(view: FleetView) -> dict[str, Any]:
+def _fleet(view: FleetView) -> FleetEntry:
     likeness = view.likeness
     models = Counter(dict.fromkeys(sorted(set(likeness.models.values())), 0))
     for robot, model in likeness.models.items():
@@ -68,7 +76,7 @@ def _fleet(view: FleetView) -> dict[str, Any]:
     }
 
 
-def _pattern(pattern: Pattern) -> dict[str, Any]:
+def _pattern(pattern: Pattern) -> PatternEntry:
     return {
         "id": pattern.id,
         "finding": pattern.finding.id,
@@ -81,7 +89,7 @@ def _pattern(pattern: Pattern) -> dict[str, Any]:
     }
 
 
-def _deviant(deviant: Deviant) -> dict[str, Any]:
+def _deviant(deviant: Deviant) -> DeviantEntry:
     return {
         "robots": list(deviant.robots),
         "model": deviant.model,
@@ -92,7 +100,7 @@ def _deviant(deviant: Deviant) -> dict[str, Any]:
     }
 
 
-def _shares(shares: Iterable[Share]) -> list[dict[str, Any]]:
+def _shares(shares: Iterable[Share]) -> list[ShareEntry]:
     return [
         {
             "pattern": s.pattern,

@@ -5,7 +5,7 @@ In: ``TakenAway`` rows. Out: plain dicts, in their order.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.findings.ledger import BY
 
@@ -14,14 +14,15 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.findings.ledger import TakenAway
     from rosprivacy.analysis.model import Element
+    from rosprivacy.report.contract.records import ElementEntry, LedgerRow
 
-    Shown = Callable[[Element], dict[str, Any]]
+    Shown = Callable[[Element], ElementEntry]
 
 
-def rows(taken: Collection[TakenAway], element_dict: Shown) -> list[dict[str, Any]]:
+def rows(taken: Collection[TakenAway], element_dict: Shown) -> list[LedgerRow]:
     """Return the rows as the contract has them."""
 
-    def shown(element: Element | None) -> dict[str, Any] | None:
+    def shown(element: Element | None) -> ElementEntry | None:
         return element_dict(element) if element else None
 
     return [

@@ -12,20 +12,32 @@ from rosprivacy.analysis.model import DISCLOSURE
 from rosprivacy.report.document.analysis import element_dict
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Callable, Iterable
 
     from rosprivacy.analysis.answer import Analysis, Finding
     from rosprivacy.analysis.mitigation.affected import Affected, Shown
     from rosprivacy.analysis.mitigation.limits import Limits
     from rosprivacy.analysis.mitigation.proposals import Proposal, ProposedStep
     from rosprivacy.analysis.model import Element, Grant
+    from rosprivacy.report.contract.analysis import AnalysisDocument
+    from rosprivacy.report.contract.mitigation import (
+        AffectedEntry,
+        ChangedGrant,
+        MarkedElement,
+        Marks,
+        MitigationDocument,
+        NamedElement,
+        ProposalEntry,
+        ProposedStepEntry,
+        StatementEntry,
+    )
 
 FORMAT = "rosprivacy.mitigation/1"
 SECTIONS = {"topic": "topics", "service": "services", "action": "actions"}
 
 
 def mitigation_document(
-    report: Mapping[str, Any],
+    report: AnalysisDocument,
     analysis: Analysis,
     limits: Limits,
     proposals: Iterable[Proposal],
@@ -33,7 +45,7 @@ def mitigation_document(
     why_no_patch: str,
     unmatched: Iterable[str],
     notes: Iterable[str] = (),
-) -> dict[str, Any]:
+) -> MitigationDocument:
     """Return the proposals as one JSON object.
 
     Parameters
@@ -69,12 +81,13 @@ def mitigation_document(
     }
 
 
-def _proposal(proposal: Proposal, critical: set[Element]) -> dict[str, Any]:
+def _proposal(proposal: Proposal, critical: set[Element]) -> ProposalEntry:
     leaks = {finding.leak for finding in proposal.removed}
 
-    def element(one: Element) -> dict[str, Any]:
-        marks = {"leak": one in leaks, "time_critical": one in critical}
-        return {**element_dict(one), **{mark: True for mark, holds in marks.items() if holds}}
+    def element(one: Element) -> MarkedElement:
+        leak: Marks = {"leak": True} if one in leaks else {}
+        time_critical: Marks = {"time_critical": True} if one in critical else {}
+        return {**element_dict(one), **leak, **time_critical}
 
     return {
         "categories": list(proposal.categories),
@@ -104,7 +117,7 @@ def _findings(proposal: Proposal) -> tuple[Finding, ...]:
     return (*proposal.removed, *(kept.finding for kept in proposal.kept))
 
 
-def _statement(finding: Finding) -> dict[str, Any]:
+def _statement(finding: Finding) -> StatementEntry:
     """What a person could state or arrange at the end of a way, so that no flow has to change (rule S10)."""
     return {
         "finding": finding.id,
@@ -115,7 +128,7 @@ def _statement(finding: Finding) -> dict[str, Any]:
     }
 
 
-def _step(step: ProposedStep, element: Any) -> dict[str, Any]:
+def _step(step: ProposedStep, element: Callable[[Element], MarkedElement]) -> ProposedStepEntry:
     return {
         "kind": step.kind,
         "cost": step.cost,
@@ -136,14 +149,14 @@ def _label(step: ProposedStep) -> dict[str, Any] | None:
     return {SECTIONS[step.channel.kind]: {step.channel.name: {"never": list(step.categories)}}}
 
 
-def _grant(grant: Grant) -> dict[str, Any]:
+def _grant(grant: Grant) -> ChangedGrant:
     return {
         "file": grant.place.file, "line": grant.place.line, "enclave": grant.enclave, "profile": grant.node,
         "role": grant.role, "kind": grant.kind, "name": grant.name,
     }  # fmt: skip
 
 
-def _affected(less: Affected, element: Any) -> dict[str, Any]:
+def _affected(less: Affected, element: Callable[[Element], MarkedElement]) -> AffectedEntry:
     return {
         "element": element(less.element),
         "filtered": [{"from": _named(at), "categories": list(names)} for at, names in less.filtered],
@@ -153,6 +166,9 @@ def _affected(less: Affected, element: Any) -> dict[str, Any]:
     }
 
 
-def _named(at: Shown) -> dict[str, str]:
+def _named(at: Shown) -> NamedElement:
     robot, kind, name, leg = at
-    return {"robot": robot, "kind": kind, "name": name, **({"leg": leg} if leg else {})}
+    named: NamedElement = {"robot": robot, "kind": kind, "name": name}
+    if leg:
+        named["leg"] = leg
+    return named

@@ -13,23 +13,25 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.model import Element, NonRosFacts
+    from rosprivacy.report.contract.stated import NonRosEntry, NonRosNotKnown, NonRosStated
 
 
-def inventory(analysis: Analysis, hierarchy: Hierarchy) -> list[dict[str, Any]]:
+def inventory(analysis: Analysis, hierarchy: Hierarchy) -> list[NonRosEntry]:
     """Return every element outside ROS with its facts (rule S9)."""
     found = analysis.spread
     numbers = {element: i for i, element in enumerate(analysis.graph.elements)}
-    rows = []
+    rows: list[NonRosEntry] = []
     for element, facts in analysis.outside.items():
         holds = found.names(found.present(numbers[element]))
-        row = {
+        row: NonRosEntry = {
             "element": {"robot": element.robot, "kind": element.kind, "name": element.name},
             "file": facts.place.file,
             "line": facts.place.line,
             **_facts(facts),
             "holds": list(holds),
+            **_not_known(element, facts, holds, hierarchy),
         }
-        rows.append(row | _not_known(element, facts, holds, hierarchy))
+        rows.append(row)
     return rows
 
 
@@ -43,30 +45,37 @@ def without_backups(analysis: Analysis) -> list[Element]:
     return [e for e, facts in analysis.outside.items() if e.kind == "storage" and facts.backups is None]
 
 
-def _facts(facts: NonRosFacts) -> dict[str, Any]:
-    said = {
-        "retention": _durations(facts.retention),
-        "backups": facts.backups if facts.backups is None or isinstance(facts.backups, bool) else str(facts.backups),
-        "encrypted": facts.encrypted,
-        "country": facts.country,
-        "area": facts.area,
-        "operator": facts.operator,
-        "recipient": facts.recipient,
-        "transfer": facts.transfer,
-    }
-    return {key: value for key, value in said.items() if value is not None and value not in ("", {})}
+def _facts(facts: NonRosFacts) -> NonRosStated:
+    said: NonRosStated = {}
+    if facts.retention:
+        said["retention"] = _durations(facts.retention)
+    if facts.backups is not None:
+        said["backups"] = facts.backups if isinstance(facts.backups, bool) else str(facts.backups)
+    if facts.encrypted is not None:
+        said["encrypted"] = facts.encrypted
+    if facts.country:
+        said["country"] = facts.country
+    if facts.area:
+        said["area"] = facts.area
+    if facts.operator:
+        said["operator"] = facts.operator
+    if facts.recipient:
+        said["recipient"] = facts.recipient
+    if facts.transfer:
+        said["transfer"] = facts.transfer
+    return said
 
 
 def _durations(stated: tuple[tuple[str, Any], ...]) -> dict[str, str]:
     return {category or "every": str(duration) for category, duration in stated}
 
 
-def _not_known(element: Element, facts: NonRosFacts, holds: tuple[str, ...], hierarchy: Hierarchy) -> dict[str, Any]:
+def _not_known(element: Element, facts: NonRosFacts, holds: tuple[str, ...], hierarchy: Hierarchy) -> NonRosNotKnown:
     """What the answer could not judge: the country, or a retention without a limit to hold it against."""
-    found: dict[str, Any] = {}
+    found: NonRosNotKnown = {}
     if country_unknown(element, facts):
         found["missing"] = ["country"]
-    if element.kind == "storage" and facts.retention:
-        without = [name for name in holds if not limited(facts, name, hierarchy)]
-        found |= {"without_limit": without} if without else {}
+    judged = element.kind == "storage" and facts.retention
+    if judged and (without := [name for name in holds if not limited(facts, name, hierarchy)]):
+        found["without_limit"] = without
     return found

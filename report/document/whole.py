@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from rosprivacy.report.document.analysis import analysis_document
 from rosprivacy.report.document.decisions import with_decisions
@@ -10,9 +10,10 @@ from rosprivacy.report.document.fleet import fleet_document
 
 if TYPE_CHECKING:
     from rosprivacy.report.answer import Answer
+    from rosprivacy.report.contract.analysis import AnalysisDocument
 
 
-def document(answer: Answer) -> dict[str, Any]:
+def document(answer: Answer) -> AnalysisDocument:
     """Return the JSON document of an answer."""
     made = analysis_document(answer)
     made = with_decisions(made, answer.decided) if answer.decided else made

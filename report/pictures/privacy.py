@@ -54,7 +54,7 @@ class Reached:
         self._mask = sum(found.both(category) for category in wanted)
         if categories is not None and any(found.categories.index(category) in found.made for category in wanted):
             self._mask = found.all_bits
-        self._several = self._mask.bit_count() > 2  # noqa: PLR2004 - one category has two bits
+        self._several = len(found.names(self._mask)) > 1
         self._of: dict[Key, list[int]] = defaultdict(list)
         for vertex, element in enumerate(self.graph.elements):
             self._of[element.identity].append(vertex)

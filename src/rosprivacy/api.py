@@ -10,12 +10,12 @@ from os import PathLike, fspath
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from rosprivacy.analysis.findings.findings import MAX_PATHS
-from rosprivacy.assembly import run
-from rosprivacy.fleets import run_fleet
+from rosprivacy.fleet_system import answer_fleet
 from rosprivacy.ingest.labels import label_file
 from rosprivacy.ingest.labels.label_file import STANDARD, Labels
 from rosprivacy.ingest.policies.xinclude import MAX_BYTES
 from rosprivacy.ontology.vocabulary import TOP, load
+from rosprivacy.robot_system import answer_robot
 from rosprivacy.settings import Settings
 
 if TYPE_CHECKING:
@@ -122,7 +122,7 @@ def analyze(
         decisions=_path(decisions),
         today=today,
     )
-    return run(_paths(policies), _labels(labels), settings)
+    return answer_robot(_paths(policies), _labels(labels), settings)
 
 
 def analyze_fleet(
@@ -187,7 +187,7 @@ def analyze_fleet(
         decisions=_path(decisions),
         today=today,
     )
-    return run_fleet(fspath(file), settings)
+    return answer_fleet(fspath(file), settings)
 
 
 def parse_labels(

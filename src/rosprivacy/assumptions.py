@@ -9,9 +9,9 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.model import Diagnostic, Place, Severity
-from rosprivacy.asked import may_be
 from rosprivacy.ingest.database.robot_notices import diagnostics_of, diagnostics_text
 from rosprivacy.ingest.labels.countries import countries
+from rosprivacy.question import may_be
 from rosprivacy.version import __version__
 
 if TYPE_CHECKING:
@@ -19,26 +19,41 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.decisions import Decisions
-    from rosprivacy.analysis.model import FlowGraph, Policy
+    from rosprivacy.analysis.model import Policy
     from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.ontology.vocabulary import Vocabulary
+    from rosprivacy.question import Question
     from rosprivacy.settings import Settings
 
 
-def own_assumptions(
-    graph: FlowGraph, settings: Settings, vocabulary: Vocabulary, emitted: Iterable[str]
+def assumptions_of(
+    rests_on: Mapping[str, Any], analysis: Analysis, question: Question, vocabulary: Vocabulary
 ) -> dict[str, Any]:
-    """Return what is assumed whatever is read.
+    """Return the assumptions of a report (rule S12).
 
     Parameters
     ----------
-    emitted
-        The categories that the answer is about.
+    rests_on
+        As of ``System``.
+    analysis
+        Its channels that the file of standard channels takes as mundane are counted.
     """
-    broader = may_be(vocabulary, settings, emitted)
+    standard = rests_on["standard_channels"]
+    return {
+        **_of_question(analysis, question.settings, vocabulary),
+        **({"countries_as_of": countries().as_of} if any(f.country for f in analysis.outside.values()) else {}),
+        **rests_on,
+        "standard_channels": {**standard, "taken": analysis.standard_channels} if standard else None,
+        **_decisions(question.decisions),
+    }
+
+
+def _of_question(analysis: Analysis, settings: Settings, vocabulary: Vocabulary) -> dict[str, Any]:
+    """What is assumed whatever is read."""
+    broader = may_be(vocabulary, settings, analysis.emitted)
     return {
         "rosprivacy": __version__,
-        "view": graph.view,
+        "view": analysis.graph.view,
         "ontologies": [{"file": name, "sha256": digest} for name, digest in vocabulary.sources],
         "law_as_of": vocabulary.law_as_of,
         "unlabelled_node": "conduit, not reviewed",
@@ -52,25 +67,14 @@ def own_assumptions(
     }
 
 
-def what_it_rests_on(
-    graph: FlowGraph,
-    sources: Iterable[tuple[str, str]],
-    files: Iterable[Labels],
-    analysis: Analysis,
-    settings: Settings,
-    vocabulary: Vocabulary,
-) -> dict[str, Any]:
-    """Return the assumptions of a report (rule S12)."""
+def files_read(policies: Iterable[Policy], files: Iterable[Labels], settings: Settings) -> dict[str, Any]:
+    """Return which files were read; of several robots' each once."""
     labels = ((file.file, file.sha256, file.shipped) for file in files)
-    return {
-        **own_assumptions(graph, settings, vocabulary, analysis.emitted),
-        **_adequacy(analysis),
-        **files_read(sources, labels, settings, analysis.standard_channels),
-    }
+    return named_files(sources_of(policies), labels, settings)
 
 
-def files_read(
-    sources: Iterable[tuple[str, str]], labels: Iterable[tuple[str, str, bool]], settings: Settings, taken: int
+def named_files(
+    sources: Iterable[tuple[str, str]], labels: Iterable[tuple[str, str, bool]], settings: Settings
 ) -> dict[str, Any]:
     """Return which files were read.
 
@@ -80,8 +84,6 @@ def files_read(
         (file, SHA-256) of policies.
     labels
         (file, SHA-256, whether it comes with the program) of label files.
-    taken
-        Channels that the file of standard channels takes as mundane.
     """
     distinct = {(file, digest): shipped for file, digest, shipped in labels}  # one of several robots is named once
     hashes = [(shipped, {"file": file, "sha256": digest}) for (file, digest), shipped in distinct.items()]
@@ -89,7 +91,7 @@ def files_read(
     return {
         "policies": [{"file": name, "sha256": digest} for name, digest in sources],
         "labels": [entry for _, entry in hashes if entry not in standard],
-        "standard_channels": {**standard[0], "taken": taken} if standard else None,
+        "standard_channels": standard[0] if standard else None,
     }
 
 
@@ -98,13 +100,8 @@ def sources_of(system: Iterable[Policy]) -> list[tuple[str, str]]:
     return sorted({source for policy in system for source in policy.sources})
 
 
-def _adequacy(analysis: Analysis) -> dict[str, str]:
-    """The date of the list of countries, where it counts (rule S10)."""
-    return {"countries_as_of": countries().as_of} if any(facts.country for facts in analysis.outside.values()) else {}
-
-
-def assumed_decisions(decisions: Decisions | None) -> dict[str, Any]:
-    """Return which decisions an answer takes into account, and on which day."""
+def _decisions(decisions: Decisions | None) -> dict[str, Any]:
+    """Which decisions an answer takes into account, and on which day."""
     if decisions is None:
         return {}
     return {"decisions": {"file": decisions.file, "sha256": decisions.sha256, "today": decisions.today}}
@@ -118,10 +115,8 @@ def remembered(assumptions: Mapping[str, Any], diagnostics: Iterable[Diagnostic]
     }
 
 
-def put_together(
-    robots: Iterable[Mapping[str, Any]], analysis: Analysis
-) -> tuple[tuple[Diagnostic, ...], dict[str, Any]]:
-    """Return what the robots of a database were loaded with, put together (rule S12)."""
+def put_together(robots: Iterable[Mapping[str, Any]]) -> tuple[tuple[Diagnostic, ...], dict[str, Any]]:
+    """Return what the robots of a database were loaded with, put together (rule S12): diagnostics, what it rests on."""
     robots = list(robots)
     loaded = [json.loads(robot["assumptions"]) for robot in robots if robot.get("assumptions")]
     count = sum(bool(robot.get("assumptions")) and not robot.get("shared") for robot in robots)
@@ -134,13 +129,8 @@ def put_together(
     distinct = {(entry["file"], entry["sha256"]) for entry in standard if entry}
     taken = [{"file": name, "sha256": digest} for name, digest in sorted(distinct)]
     diagnostics = {said for robot in robots for said in diagnostics_of(robot)}
-    assumptions = {
-        **_adequacy(analysis),
-        **files,
-        "standard_channels": {**taken[0], "taken": analysis.standard_channels} if taken else None,
-        "database": {"robots": count},
-    }
+    rests_on = {**files, "standard_channels": taken[0] if taken else None, "database": {"robots": count}}
     if len(taken) > 1 or (taken and not all(standard)):
         message = "robots were loaded with different files of standard channels; one of them is named"
         diagnostics.add(Diagnostic(Place("the database", 0), Severity.WARNING, message))
-    return tuple(sorted(diagnostics, key=lambda d: (d.place.file, d.place.line, d.message))), assumptions
+    return tuple(sorted(diagnostics, key=lambda d: (d.place.file, d.place.line, d.message))), rests_on

@@ -15,7 +15,7 @@ from rosprivacy.clock import judged_on, today
 from rosprivacy.ontology.special import special_provision
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Collection
 
     from rosprivacy.analysis.answer import Analysis, Finding
     from rosprivacy.analysis.decisions import Decided, Decisions
@@ -47,7 +47,7 @@ def joined_to(
     decisions: Decisions | None,
     analysis: Analysis,
     vocabulary: Vocabulary,
-    asked: set[str] | None,
+    asked: Collection[str] | None,
     likeness: Likeness = NO_ROBOTS,
 ) -> Decided | None:
     """Join decisions to findings; where only some categories were asked for, none is called orphaned."""

@@ -150,7 +150,7 @@ def _outline(answer: Answer, style: Style) -> tuple[Outline, Aliases | None]:
     return entries, aliases
 
 
-def _told(answer: Answer, style: Style) -> tuple[dict[str, Any], Earlier | None, Aliases | None]:
+def _told(answer: Answer, style: Style) -> tuple[Mapping[str, Any], Earlier | None, Aliases | None]:
     """The document, the earlier one if there is one, and what elements are called if names are replaced."""
     from rosprivacy.report.compare.earlier import read_earlier
     from rosprivacy.report.document.whole import document

@@ -1,12 +1,12 @@
 """The way from findings to proposals: policies, labels and limits in, proven proposals and a patch out.
 
-In: a ``Result`` of ``assembly``. Out: ``Mitigation``.
+In: a ``Result`` of one robot. Out: ``Mitigation``.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.mitigation.limits import CHANGES, DENY, Limits
 from rosprivacy.analysis.mitigation.propose import System, mitigate
@@ -17,12 +17,14 @@ from rosprivacy.ingest.mitigation.limits_file import read_limits
 from rosprivacy.ingest.mitigation.open_wildcards import open_ended
 from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.report.document.mitigation import mitigation_document
+from rosprivacy.report.document.whole import document
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable
 
     from rosprivacy.analysis.mitigation.proposals import Proposal
     from rosprivacy.analysis.model import Bound, FlowGraph, Grant
+    from rosprivacy.report.contract.mitigation import MitigationDocument
     from rosprivacy.result import Result
 
 
@@ -56,10 +58,10 @@ class Mitigation:
         """Whether nothing is open, or all that is open is removed by a proposal that is proven."""
         return all(proposal.proven and not proposal.kept for proposal in self.proposals)
 
-    def document(self) -> dict[str, Any]:
+    def document(self) -> MitigationDocument:
         """Return the JSON document."""
         return mitigation_document(
-            self.result.document(), self.result.analysis, self.limits, self.proposals, self.patch.diff,
+            document(self.result), self.result.analysis, self.limits, self.proposals, self.patch.diff,
             self.patch.why_not, self.unmatched, self.notes,
         )  # fmt: skip
 

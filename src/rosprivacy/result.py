@@ -66,7 +66,7 @@ class Result(Answer):
 
     def document(self) -> dict[str, Any]:
         """Return the JSON document of the contract."""
-        return document(self)
+        return dict(document(self))
 
     def to(
         self,

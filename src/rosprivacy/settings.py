@@ -66,6 +66,9 @@ class Settings:
     today: str | None = None
 
     def __post_init__(self) -> None:
-        """Refuse modes that there are not."""
+        """Refuse modes that there are not; one name where several may stand is a list of one."""
         View(self.view)
         Paths(self.paths)
+        for name in ("add", "categories", "data_types", "ontologies"):
+            if isinstance(getattr(self, name), str):
+                object.__setattr__(self, name, (getattr(self, name),))

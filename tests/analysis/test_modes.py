@@ -42,6 +42,13 @@ def test_a_word_that_is_no_mode_is_an_error_with_the_nearest(word: str) -> None:
         assert str(refused.value).startswith(message)
 
 
+def test_one_name_in_settings_made_by_hand_is_a_list_of_one() -> None:
+    """It was read letter by letter."""
+    for name in ("add", "categories", "data_types", "ontologies"):
+        one: dict[str, Any] = {name: "Video"}
+        assert getattr(Settings(**one), name) == ("Video",)
+
+
 @pytest.mark.parametrize("mode", [View, Paths])
 def test_every_word_of_a_mode_is_taken(mode: type[Mode]) -> None:
     assert [mode(str(one)) for one in mode] == list(mode)

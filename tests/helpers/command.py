@@ -10,15 +10,18 @@ import os
 import re
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 from typing import Protocol
 
 import pytest
+import typer.main
 
 from rosprivacy.cli.app import main
 
 Done = subprocess.CompletedProcess[str]
 LINE = re.compile(r"^.+:\d+: .+; .+$")  # file:line: what is wrong; what to do
+BUILT = cache(typer.main.get_command)  # the command line is built once, not for every run
 UNSET = ("FORCE_COLOR", "NO_COLOR", "CLICOLOR_FORCE", "PY_COLORS", "GITHUB_ACTIONS", "COLUMNS", "TERM")
 
 
@@ -46,6 +49,7 @@ def cli(request: pytest.FixtureRequest, capsys: pytest.CaptureFixture[str], monk
         words = [str(argument) for argument in arguments]
         with monkeypatch.context() as patch:
             patch.setattr(sys, "argv", ["rosprivacy", *words])
+            patch.setattr(typer.main, "get_command", BUILT)
             patch.chdir(cwd or Path.cwd())
             with pytest.raises(SystemExit) as ended:
                 main()

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosprivacy.fleets import analysed, read_all, rows_of_fleet
+from rosprivacy.answering import answer
+from rosprivacy.fleet_system import fleet_system, rows_of_fleet
 from rosprivacy.ontology.vocabulary import load as load_vocabulary
+from rosprivacy.question import question_of
 from rosprivacy.settings import Settings
 
 if TYPE_CHECKING:
@@ -15,5 +18,6 @@ VOCABULARY = load_vocabulary()
 
 
 def rows(file: str) -> FleetRows:
-    read = read_all(file, VOCABULARY, Settings())
-    return rows_of_fleet(read, analysed(read, VOCABULARY, Settings(), every=True), Settings())
+    system = fleet_system(file, Settings(), VOCABULARY)
+    question = replace(question_of(Settings(), VOCABULARY), every=True)
+    return rows_of_fleet(system, question, answer(system, question))

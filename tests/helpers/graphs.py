@@ -7,7 +7,7 @@ from contextlib import chdir
 from typing import TYPE_CHECKING, Any
 
 import rosprivacy
-from rosprivacy.fleets import run_fleet
+from rosprivacy.fleet_system import answer_fleet
 from rosprivacy.ingest.database.rows import robot_rows
 from rosprivacy.settings import Settings
 from tests.helpers.paths import ROOT
@@ -34,7 +34,7 @@ def care_home() -> Result:
 def hospital() -> Result:
     """The fleet of the examples."""
     with chdir(ROOT):
-        return run_fleet("examples/fleet/fleet.yaml", Settings())
+        return answer_fleet("examples/fleet/fleet.yaml", Settings())
 
 
 def analysed(policy: str, labels: str) -> Result:

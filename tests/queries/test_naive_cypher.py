@@ -7,6 +7,7 @@ those of the findings once ``DERIVES_FROM`` says of which source it is made.
 from __future__ import annotations
 
 import json
+import re
 from typing import TYPE_CHECKING
 
 import pytest
@@ -18,9 +19,12 @@ from rosprivacy.ingest.database.ids import carries
 from rosprivacy.ingest.database.loading import load
 from rosprivacy.ingest.database.rows import robot_rows
 from rosprivacy.private_neo4j import connection
+from rosprivacy.queries.run import run
 from tests.analysis.findings.test_findings import wildcards
 from tests.analysis.kernel.test_ranks import ranked
 from tests.helpers.cases import CASES
+from tests.helpers.graphs import care_home, rows_of
+from tests.helpers.paths import ROOT
 from tests.helpers.random_rows import VOCABULARY, random_systems
 from tests.helpers.systems import systems
 
@@ -59,10 +63,10 @@ def asked(driver: Driver, vocabulary: Vocabulary) -> set[Pair]:
     for name, category in vocabulary.categories.items():
         made: dict[tuple[str, str], set[str]] = {}
         for query in (BEGINS, MADE):
-            for robot, element, sources in driver.execute_query(query, category=name).records:  # type: ignore[arg-type]
+            for robot, element, sources in driver.execute_query(query, category=name).records:
                 made.setdefault((robot, element), set()).update(sources)
         query = NAIVE.format(category.label, carries(category.label))
-        for robot, start, leak in driver.execute_query(query).records:  # type: ignore[arg-type]
+        for robot, start, leak in driver.execute_query(query).records:
             sources = made.get((robot, start), {f"nothing begins at {start}"})
             pairs |= {(robot, name, source, leak) for source in sources}
     return pairs
@@ -94,3 +98,20 @@ def test_on_the_examples(empty: Driver, case: Path, examples: Path, monkeypatch:
     found = [row for row in result.document()["findings"] if row["kind"] == DISCLOSURE]
     expected = {("r", row["category"], row["source"]["name"], row["leak"]["name"]) for row in found}
     assert asked(empty, result.vocabulary) == expected
+
+
+def test_the_cypher_of_the_documentation(empty: Driver) -> None:
+    """Each block of docs/database.md that only reads gives rows; those of video give the pairs of the findings."""
+    result = care_home()
+    load(empty, [rows_of("care-home", result)], result.vocabulary)
+    found = [row for row in result.document()["findings"] if (row["kind"], row["category"]) == (DISCLOSURE, "Video")]
+    text = (ROOT / "docs" / "database.md").read_text("utf-8")
+    blocks = re.findall(r"```cypher\n(.*?)```", text, re.DOTALL)
+    reading = [block for block in blocks if "CREATE" not in block]
+    paths = [run(empty, block).rows for block in reading if "CARRIES_VIDEO" in block]
+    assert len(paths) == 3
+    for rows in paths:
+        ends = {(path[0]["name"], path[-1]["name"]) for (path,) in rows}
+        assert ends == {(row["source"]["name"], row["leak"]["name"]) for row in found}
+    for block in reading:
+        run(empty, block)

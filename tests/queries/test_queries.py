@@ -14,7 +14,6 @@ import pytest
 
 from rosprivacy.analysis.findings.findings import analyse
 from rosprivacy.analysis.model import Category, Element, Flow, FlowGraph, Legal
-from rosprivacy.assembly import read_system
 from rosprivacy.ingest.database.loading import load
 from rosprivacy.ingest.database.rows import robot_rows
 from rosprivacy.ingest.labels.binding import bind
@@ -24,6 +23,7 @@ from rosprivacy.ontology.vocabulary import Vocabulary
 from rosprivacy.private_neo4j import connection
 from rosprivacy.queries.library import COLUMN_TYPES, find, pack
 from rosprivacy.queries.run import run
+from rosprivacy.robot_system import read_system
 from rosprivacy.settings import Settings
 from tests.helpers.paths import ROOT
 

@@ -222,17 +222,18 @@ def fleet(tmp_path_factory: pytest.TempPathFactory) -> Result:
 
 @pytest.fixture(scope="module")
 def stored(neo4j_server: Connection, tmp_path_factory: pytest.TempPathFactory) -> Result:
-    from rosprivacy.assembly import robot_of, run_stored
     from rosprivacy.ingest.database.loading import load
+    from rosprivacy.robot_system import robot_of
     from rosprivacy.settings import Settings
+    from rosprivacy.stored_system import answer_stored
 
     folder = robot_in(tmp_path_factory.mktemp("stored"))
     with chdir(folder), connection.open_driver(neo4j_server) as driver:
         driver.execute_query("MATCH (n) DETACH DELETE n")
         first = rosprivacy.analyze(["p.policy.xml"], ["l.yaml"])
         load(driver, [robot_of("care", first)], first.vocabulary)
-        first = run_stored(driver, Settings())
-        result = run_stored(driver, Settings(decisions=decisions_about(first, folder)))
+        first = answer_stored(driver, Settings())
+        result = answer_stored(driver, Settings(decisions=decisions_about(first, folder)))
         driver.execute_query("MATCH (n) DETACH DELETE n")
     return result
 

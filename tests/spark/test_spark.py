@@ -17,14 +17,14 @@ from hypothesis import Phase, given, settings
 import rosprivacy
 from rosprivacy.analysis.errors import ClusterError, InputError, InputErrors
 from rosprivacy.analysis.files_read import one_run
-from rosprivacy.assembly import run_stored
-from rosprivacy.fleets import run_fleet
+from rosprivacy.fleet_system import answer_fleet
 from rosprivacy.private_neo4j import connection
 from rosprivacy.report.atomic import check_outputs
 from rosprivacy.settings import Settings
 from rosprivacy.spark import session as spark
 from rosprivacy.spark.fleet_on_spark import run_on_spark
 from rosprivacy.spark.parquet import check_new, read
+from rosprivacy.stored_system import answer_stored
 from tests.helpers.command import XI
 from tests.helpers.fleet_files import policy, write
 from tests.helpers.fleet_rows import rows as rows_in_memory
@@ -32,6 +32,7 @@ from tests.helpers.graphs import dump
 from tests.helpers.parts import FLEET, documents, fleet_file, same
 from tests.helpers.paths import ROOT
 from tests.helpers.random_fleets import Case, fleets
+from tests.helpers.written_systems import Written, written
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -83,6 +84,45 @@ def test_random_fleets(session: SparkSession) -> None:
     assert seen == 4
 
 
+OF_TWO = """fleet: 1
+robots:
+  one: {policies: one.xml, labels: one.yaml}
+  two: {policies: two.xml, labels: two.yaml}
+elements: {cloud: {kind: external-system, country: US}}
+flows: [{from: "*:/n1", to: cloud}, {from: cloud, to: "two:/n2"}]
+"""
+
+
+@pytest.mark.usefixtures("session")
+def test_the_document_of_random_fleets(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Findings, patterns, assumptions, diagnostics and verdict are those in memory."""
+    monkeypatch.chdir(tmp_path)
+    write("f.yaml", OF_TWO)
+    seen = 0
+
+    @settings(max_examples=12, derandomize=True, database=None, phases=[Phase.generate], deadline=None)
+    @given(written(), written())
+    def check(one: Written, two: Written) -> None:
+        nonlocal seen
+        one.write(tmp_path, "one")
+        two.write(tmp_path, "two")
+        try:
+            answer_fleet("f.yaml", Settings())
+        except InputErrors:
+            return
+        documents("f.yaml", partial(run_on_spark, settings=Settings()))
+        seen += 1
+
+    check()
+    assert seen >= 4
+
+
+@pytest.mark.usefixtures("session")
+def test_decisions_are_refused(fleet_file: str) -> None:
+    with pytest.raises(InputError, match=r"^--decisions:0: on Spark no decisions are taken into account"):
+        run_on_spark(fleet_file, Settings(decisions="d.yaml"))
+
+
 @pytest.mark.usefixtures("session")
 def test_problems_that_workers_meet_are_told_as_in_memory(fleet_file: str) -> None:
     write(fleet_file, FLEET.replace("policies: hall.xml", "policies: wall.xml", 1))
@@ -114,7 +154,7 @@ def test_what_a_fleet_must_not_lose(fleet_file: str) -> None:
         write(f"{robot}/f.xml", f'<profile><topics subscribe="ALLOW"><topic>{topic}</topic></topics></profile>')
         text = policy("/camera>/video", "/uplink").replace("</profile></profiles>", f"{INCLUDED}</profiles>")
         Path(robot, "p.xml").write_bytes(text.encode("utf-16"))
-    expected, got = run_fleet(fleet_file, Settings()).document(), run_on_spark(fleet_file, Settings()).document()
+    expected, got = answer_fleet(fleet_file, Settings()).document(), run_on_spark(fleet_file, Settings()).document()
     got["diagnostics"].pop()  # how far an answer in parts goes
     assert {"r1", "b"} <= {finding["source"]["robot"] for finding in expected["findings"]}
     assert sum("join" in said["message"] for said in expected["diagnostics"]) == 3
@@ -258,7 +298,7 @@ def test_results_are_loaded(results: str, neo4j_server: Connection, cli: Cli, mo
         first = dump(driver, without=("digest", "version"))
         again = cli("load", "--results", results, "--neo4j", neo4j_server.uri)
         assert "0 written, 42 as they were" in again.stdout
-        stored = run_stored(driver, Settings())
+        stored = answer_stored(driver, Settings())
         assert {pattern.id for pattern in stored.fleet.patterns} == patterns_of_example() if stored.fleet else False
         assert first[0]
 

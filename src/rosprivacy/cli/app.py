@@ -1,4 +1,4 @@
-"""The command line: options in, ``assembly`` called, a report out, an exit code.
+"""The command line: options in, a ``System`` read and ``answer`` called, a report out, an exit code.
 
 Exit codes: 0 no leak found, 1 leak, 2 bad input or usage, 3 database or cluster unreachable, 4 undetermined (only with
 ``--fail-on undetermined``). Heavy imports stand in the commands, so that ``--version`` and completion are quick.

@@ -87,9 +87,9 @@ def _snapshot(state: str, labels: tuple[str, ...], settings: Settings) -> Snapsh
     """Read a state, whatever it is."""
     from dataclasses import replace
 
-    from rosprivacy.assembly import run
-    from rosprivacy.fleets import run_fleet
+    from rosprivacy.fleet_system import answer_fleet
     from rosprivacy.report.compare.snapshot import snapshot
+    from rosprivacy.robot_system import answer_robot
 
     kind = _kind(state)
     if kind == "analysis":
@@ -97,11 +97,11 @@ def _snapshot(state: str, labels: tuple[str, ...], settings: Settings) -> Snapsh
 
         return snapshot(read_earlier(state).document, None)
     if kind == "fleet":
-        result = run_fleet(state, settings)
+        result = answer_fleet(state, settings)
     elif kind == "graph":
-        result = run((), labels, replace(settings, add=(state,)))
+        result = answer_robot((), labels, replace(settings, add=(state,)))
     else:
-        result = run((state,), labels, settings)
+        result = answer_robot((state,), labels, settings)
     return snapshot(result.document(), result.policies)
 
 

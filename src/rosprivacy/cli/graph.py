@@ -161,12 +161,14 @@ def _drawn_of(inputs: Inputs) -> tuple[Result, dict[str, tuple[Profile, ...]]]:
     settings = inputs.settings
     if not inputs.fleet:
         return inputs.result(settings), {}
-    from rosprivacy.fleets import analysed, read_all
+    from rosprivacy.answering import answer
+    from rosprivacy.fleet_system import fleet_system
     from rosprivacy.ontology.vocabulary import load
+    from rosprivacy.question import question_of
 
     vocabulary = load(ontologies=settings.ontologies)
-    read = read_all(inputs.fleet, vocabulary, settings)
-    return analysed(read, vocabulary, settings), dict(read.placed.profiles)
+    system = fleet_system(inputs.fleet, settings, vocabulary)
+    return answer(system, question_of(settings, vocabulary)), dict(system.placed.profiles)
 
 
 def _format(given: PictureFormat | None, output: Path | None) -> PictureFormat:

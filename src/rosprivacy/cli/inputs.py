@@ -99,16 +99,18 @@ class Inputs:
 
     def result(self, settings: Settings) -> Result:
         """Read the system and analyse it."""
-        from rosprivacy.assembly import run, run_stored
-
         if self.from_database:
-            with driver_of(self.neo4j) as driver:
-                return run_stored(driver, settings)
-        if self.fleet:
-            from rosprivacy.fleets import run_fleet
+            from rosprivacy.stored_system import answer_stored
 
-            return run_fleet(self.fleet, settings)
-        return run(self.named, tuple(self.labels or ()), settings)
+            with driver_of(self.neo4j) as driver:
+                return answer_stored(driver, settings)
+        if self.fleet:
+            from rosprivacy.fleet_system import answer_fleet
+
+            return answer_fleet(self.fleet, settings)
+        from rosprivacy.robot_system import answer_robot
+
+        return answer_robot(self.named, tuple(self.labels or ()), settings)
 
 
 OPTIONS = get_type_hints(Inputs, include_extras=True)

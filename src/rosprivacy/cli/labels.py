@@ -35,13 +35,13 @@ def labels(
 
 
 def _labels_text(inputs: Inputs, *, init: bool, schema: bool, standard: bool) -> str:
-    from rosprivacy.assembly import read_system, standard_channels
     from rosprivacy.ingest.labels.label_file import shipped_text
     from rosprivacy.ingest.labels.label_schema import label_schema
     from rosprivacy.ingest.labels.label_template import template
     from rosprivacy.ingest.policies.flow_graph import build
     from rosprivacy.ontology.vocabulary import load
     from rosprivacy.report.document.analysis import as_text
+    from rosprivacy.robot_system import read_system, standard_channels
 
     settings = inputs.settings
     vocabulary = load(ontologies=settings.ontologies)

@@ -29,7 +29,6 @@ def load(
     ] = None,
 ) -> None:
     """Analyse policies and write the robot into Neo4j, or all robots of a fleet, in place of what was there before."""
-    from rosprivacy.assembly import robot_of
     from rosprivacy.ingest.database import loading as database
 
     settings = inputs.settings
@@ -40,6 +39,8 @@ def load(
     if inputs.fleet:
         _load_fleet(inputs.fleet, settings, inputs.neo4j)
         return
+    from rosprivacy.robot_system import robot_of
+
     name = database.check_robot_name(robot)
     result = inputs.result(settings)
     rows = robot_of(name, result)
@@ -51,18 +52,23 @@ def load(
 
 
 def _load_fleet(file: str, settings: Settings, neo4j: str | None) -> None:
-    from rosprivacy.fleets import analysed, read_all, rows_of_fleet
+    from dataclasses import replace
+
+    from rosprivacy.answering import answer
+    from rosprivacy.fleet_system import fleet_system, rows_of_fleet
     from rosprivacy.ingest.database import loading as database
     from rosprivacy.ingest.database.fleet_rows import MOST_ACROSS
     from rosprivacy.ontology.vocabulary import load
+    from rosprivacy.question import question_of
 
     vocabulary = load(ontologies=settings.ontologies)
-    read = read_all(file, vocabulary, settings)
-    result = analysed(read, vocabulary, settings, every=True)
-    rows = rows_of_fleet(read, result, settings)
+    question = replace(question_of(settings, vocabulary), every=True)
+    system = fleet_system(file, settings, vocabulary)
+    result = answer(system, question)
+    rows = rows_of_fleet(system, question, result)
     with driver_of(neo4j) as driver, _bar(None) as advance:
         done = database.load(driver, rows, vocabulary, advance)
-    robots = len(read.fleet.robots)
+    robots = len(system.fleet.robots)
     what = f"fleet {shown(file)}: {robots:,} robots and what they share"
     emit(
         f"{what}: {done.written:,} written, {done.unchanged:,} as they were; verdict {result.analysis.verdict}\n", None

@@ -53,7 +53,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Question:
+class Task:
     """What is analysed, and what is asked.
 
     Attributes
@@ -124,7 +124,7 @@ class Found:
         return {piece.graph.elements[vertex]: facts for vertex, facts in piece.bound.outside.items()}
 
 
-def analyse_in_parts(question: Question, scatter: Callable[[Sequence[Any]], Parts[Any]]) -> Found:
+def analyse_in_parts(task: Task, scatter: Callable[[Sequence[Any]], Parts[Any]]) -> Found:
     """Analyse a fleet.
 
     Parameters
@@ -137,59 +137,59 @@ def analyse_in_parts(question: Question, scatter: Callable[[Sequence[Any]], Part
     InputErrors
         With every problem of the input, one line each.
     """
-    return _Run(question, scatter).found()
+    return _Run(task, scatter).found()
 
 
 class _Run:
     """One analysis, step by step."""
 
-    def __init__(self, question: Question, scatter: Callable[[Sequence[Any]], Parts[Any]]) -> None:
-        self._question = question
-        self._fleet = question.fleet
-        self._likeness = likeness(question.groups)
+    def __init__(self, task: Task, scatter: Callable[[Sequence[Any]], Parts[Any]]) -> None:
+        self._task = task
+        self._fleet = task.fleet
+        self._likeness = likeness(task.groups)
         self._scatter = scatter
         self._needed: set[str] = set()
 
     def found(self) -> Found:
-        question, fleet = self._question, self._fleet
-        fixed, units = split(question.groups)
+        task, fleet = self._task, self._fleet
+        fixed, units = split(task.groups)
         alone = replace(fleet, robots=(), infrastructure=())  # what every part needs of it
-        read = question.reader()
+        read = task.reader()
         members = [replace(read(group.robots[0]), robot=robot) for group in fixed for robot in group.placed]
-        core = place_some(fleet, members, question.view, own=True)
+        core = place_some(fleet, members, task.view, own=True)
         built = self._scatter(units).map(
-            partial(building.built, fleet=alone, view=question.view, reader=question.reader),
+            partial(building.built, fleet=alone, view=task.view, reader=task.reader),
             keep=True,
         )
         told = _together([building.told_of(core, members), *built.map(building.told).collect()])
         self._check(told, core, built)
         at = border(core, (lines for lines, side in told.named if side == 0))
         categories = sorted(told.emitted | emitted(core.part.elements.values()))
-        piece, gates = core_piece(core, at, question.view)
+        piece, gates = core_piece(core, at, task.view)
         piece = with_limits(piece, fleet, told.limits)
-        piece = replace(piece, bound=replace(piece.bound, outside=on_day(piece.bound.outside, question.today)))
-        ours = meaning(piece.graph, piece.bound, question.hierarchy, categories)
+        piece = replace(piece, bound=replace(piece.bound, outside=on_day(piece.bound.outside, task.today)))
+        ours = meaning(piece.graph, piece.bound, task.hierarchy, categories)
         network = GraphArrays.of(ours)
         middle = Core(network, np.array(gates, np.int64), np.array(piece.border, np.int64))
         ready = built.map(
             partial(
-                workers.ready, fleet=alone, at=at, view=question.view, categories=categories,
-                hierarchy=question.hierarchy, today=question.today,
+                workers.ready, fleet=alone, at=at, view=task.view, categories=categories,
+                hierarchy=task.hierarchy, today=task.today,
             ),
             keep=True,
         )  # fmt: skip
         steps = self._steps(ours, ready)
-        wanted = [c for c in categories if question.asked is None or c in question.asked]
+        wanted = [c for c in categories if task.asked is None or c in task.asked]
         mask = sum(ours.both(category) for category in wanted)
         numbers = [i for i, name in enumerate(categories) if name in wanted]
-        ways = {i: forms(i, len(categories), steps) for i in numbers}
-        kernels = ready.map(partial(workers.kernel, forms=ways, hierarchy=question.hierarchy), keep=True)
+        ways = {i: forms(i, ours.bits, steps) for i in numbers}
+        kernels = ready.map(partial(workers.kernel, forms=ways, hierarchy=task.hierarchy), keep=True)
 
         leaving = self._carry(middle, kernels, ours)
-        classes = Classes(ours, piece, middle, ways, question.hierarchy)
+        classes = Classes(ours, piece, middle, ways, task.hierarchy)
         classes.number(kernels.map(workers.classes).collect())
         classes.carry(kernels)
-        asked = workers.Asked(leaving, classes.leaving, classes.numbers, classes.counts, mask, question.hierarchy)
+        asked = workers.Asked(leaving, classes.leaving, classes.numbers, classes.counts, mask, task.hierarchy)
         answers = ready.map(partial(workers.answered, forms=ways, asked=asked)).collect()
         return self._put_together(answers, classes, told, at, piece, ours, wanted, mask, leaving, ready)
 
@@ -256,7 +256,7 @@ class _Run:
         open_at, count, kinds = _opened(answers, self._likeness)
         mine = {v: e for v, e in enumerate(piece.graph.elements) if e.robot in (HUB, GATE)}
         core_open = workers.open_elements(replace(piece, border=tuple(mine)), ours, mask)
-        unit = unit_of(split(self._question.groups)[1])
+        unit = unit_of(split(self._task.groups)[1])
         needed = self._needed | classes.bringers(groups, sources)
         needed |= {unit[robot] for robot in kinds if robot in unit}
         ends = (element.robot for group in groups for element in (group.source, group.leak))

@@ -1,6 +1,6 @@
 """The way of a fleet through Apache Spark: fleet file -> units on partitions -> the answer of ``fleet_on_spark.py``.
 
-In: a fleet file. Out: a ``Result`` like that of ``run_fleet``, in whose graph are the robots that are shown.
+In: a fleet file. Out: a ``Result`` like that of ``answer_fleet``, in whose graph are the robots that are shown.
 """
 
 from __future__ import annotations
@@ -14,23 +14,25 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import FleetError, InputError, InputErrors, reason
 from rosprivacy.analysis.files_read import note
+from rosprivacy.analysis.findings.findings import Options
 from rosprivacy.analysis.model import Diagnostic, Place, Severity
-from rosprivacy.asked import asked_for
-from rosprivacy.assumptions import files_read, own_assumptions
+from rosprivacy.answering import concluded
+from rosprivacy.assumptions import named_files
 from rosprivacy.clock import judged_on
-from rosprivacy.fleets import Reader
+from rosprivacy.fleet_system import Reader
 from rosprivacy.ingest.fleet.alike_robots import alike
 from rosprivacy.ingest.fleet.fleet_file import read_fleet
 from rosprivacy.ingest.fleet.joins import joins_nothing
 from rosprivacy.ingest.labels.countries import countries
 from rosprivacy.ontology.vocabulary import load
-from rosprivacy.result import Result
-from rosprivacy.spark.distributed import Question, analyse_in_parts
+from rosprivacy.question import question_of
+from rosprivacy.spark.distributed import Task, analyse_in_parts
 from rosprivacy.spark.parquet import check_new, write
 from rosprivacy.spark.session import scatter, session
 from rosprivacy.spark.shown_robots import shown
 from rosprivacy.spark.unit_rows import Plan
 from rosprivacy.spark.units import crossing_lines, split
+from rosprivacy.system import System
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -38,6 +40,8 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.fleet.dds_domains import Member
     from rosprivacy.ingest.fleet.fleet_file import Robot
     from rosprivacy.ontology.vocabulary import Vocabulary
+    from rosprivacy.question import Question
+    from rosprivacy.result import Result
     from rosprivacy.settings import Settings
     from rosprivacy.spark.building import Read
     from rosprivacy.spark.distributed import Found
@@ -62,23 +66,28 @@ def run_on_spark(file: str, settings: Settings, master: str | None = None, resul
     ClusterError
         If there is no Spark, or something fails there.
     """
+    if settings.decisions:
+        raise InputError(
+            "--decisions", 0, "on Spark no decisions are taken into account", "leave them out, or analyse in memory"
+        )
     vocabulary = load(ontologies=settings.ontologies)
     fleet = read_fleet(file, vocabulary)
     plain = replace(settings, progress=unchanged, today=settings.today or judged_on(os.environ))
-    question = Question(
+    question = question_of(plain, vocabulary)
+    task = Task(
         fleet, alike(fleet), settings.view, partial(file_reader, plain, str(Path.cwd())), vocabulary.hierarchy,
-        asked_for(vocabulary, settings), plain.today or "",
+        question.asked, question.today,
     )  # fmt: skip
     if results:
         check_new(results)
-        _check_whole(question)
+        _check_whole(task)
     with session(master) as spark:
-        found = analyse_in_parts(question, partial(scatter, spark))
+        found = analyse_in_parts(task, partial(scatter, spark))
         _note_what_workers_read(found)
-        told = shown(question, found, settings.paths, settings.max_paths)
-        answer = result(question, found, told, settings, vocabulary)
+        told = shown(task, found, settings.paths, settings.max_paths)
+        answer = result(task, found, told, question, vocabulary)
         if results:
-            plan, units = plan_of(question, found, answer, plain)
+            plan, units = plan_of(task, found, answer, plain)
             write(spark, results, units, plan, answer.document())
         return answer
 
@@ -90,53 +99,54 @@ def _note_what_workers_read(found: Found) -> None:
             note(name, Path(name).stat())
 
 
-def plan_of(question: Question, found: Found, answer: Result, settings: Settings) -> tuple[Plan, tuple[Unit, ...]]:
+def plan_of(task: Task, found: Found, answer: Result, settings: Settings) -> tuple[Plan, tuple[Unit, ...]]:
     """Return what the rows of units are made with, and the units."""
-    fixed, units = split(question.groups)
+    fixed, units = split(task.groups)
     examples = tuple(unit for unit in units if unit.name in found.examples)
-    fleet = replace(question.fleet, robots=(), infrastructure=())
+    fleet = replace(task.fleet, robots=(), infrastructure=())
     assumptions = answer.assumptions
-    joins = joins_nothing(question.fleet, question.groups, found.told.met)
-    plan = Plan(fleet, fixed, examples, found.shared, found.leaking, assumptions, settings, question.reader, joins)
+    joins = joins_nothing(task.fleet, task.groups, found.told.met)
+    plan = Plan(fleet, fixed, examples, found.shared, found.leaking, assumptions, settings, task.reader, joins)
     return plan, units
 
 
-def _check_whole(question: Question) -> None:
+def _check_whole(task: Task) -> None:
     """Refuse results that would not say everything, or have a flow for each pair of robots."""
     problems: list[InputError] = []
-    if question.asked is not None:
+    if task.asked is not None:
         what = "results are about all categories"
         hint = "leave out --categories, --article9 and --data-type, or --results"
         problems.append(FleetError("--results", 0, what, hint))
-    for line in sorted(crossing_lines(question.fleet)):
-        place = question.fleet.flows[line].place
+    for line in sorted(crossing_lines(task.fleet)):
+        place = task.fleet.flows[line].place
         what = "results have no flows from robots to robots, one for each pair"
         problems.append(FleetError(place.file, place.line, what, "let them meet at an element of the fleet file"))
     if problems:
         raise InputErrors(problems)
 
 
-def result(question: Question, found: Found, told: Shown, settings: Settings, vocabulary: Vocabulary) -> Result:
+def result(task: Task, found: Found, told: Shown, question: Question, vocabulary: Vocabulary) -> Result:
     """Put together what a report says."""
-    assumptions = {
-        **own_assumptions(told.placed.graph, settings, vocabulary, told.analysis.emitted),
+    rests_on = {
         **({"countries_as_of": countries().as_of} if found.told.countries else {}),
-        **files_read(sorted(found.told.sources), sorted(found.told.labels), settings, 0),
-        "fleet": [{"file": name, "sha256": digest} for name, digest in question.fleet.sources],
+        **named_files(sorted(found.told.sources), sorted(found.told.labels), question.settings),
+        "fleet": [{"file": name, "sha256": digest} for name, digest in task.fleet.sources],
         "engine": "spark",
     }
     bounds = (
         f"analysed in parts, {found.open:,} open elements in the whole fleet: ways and distances are the shortest "
-        "among the robots that are shown, and open elements and unknown ends are listed of these"
+        "among the robots that are shown, and what is told element by element is told of these: open elements, "
+        "unknown ends, what is denied, sanitized, derived, taken away or not stated"
     )
-    joins = joins_nothing(question.fleet, question.groups, found.told.met)
+    joins = joins_nothing(task.fleet, task.groups, found.told.met)
     said = (*found.told.diagnostics, *joins, Diagnostic(Place("--engine spark", 0), Severity.NOTICE, bounds))
     policies = {policy.file: policy for member in told.members.values() for policy in member.policies}
     labels = {file.file: file for member in told.members.values() for file in member.files}
-    return Result(
-        told.analysis, told.placed.bound, vocabulary, said, assumptions, fleet=told.view, counts=found.counts,
-        policies=tuple(policies.values()), labels=tuple(labels.values()),
+    system = System(
+        told.placed.graph, told.placed.bound, vocabulary, said, rests_on,
+        tuple(policies.values()), tuple(labels.values()), found.likeness, is_fleet=True,
     )  # fmt: skip
+    return concluded(system, question, told.analysis, told.view, Options(), found.counts)
 
 
 def file_reader(settings: Settings, folder: str) -> Read:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Bound, Element, NonRosFacts
     from rosprivacy.ingest.fleet.dds_domains import Member
     from rosprivacy.ingest.fleet.fleet_graph import Placed
-    from rosprivacy.spark.distributed import Found, Question
+    from rosprivacy.spark.distributed import Found, Task
 
 Wanted = dict[int, set[tuple[str, int, int, bool]]]
 
@@ -47,7 +47,7 @@ class Shown:
     members: dict[str, Member]
 
 
-def shown(question: Question, found: Found, paths: str, max_paths: int) -> Shown:
+def shown(task: Task, found: Found, paths: str, max_paths: int) -> Shown:
     """Look for the ways of what is shown.
 
     Notes
@@ -55,12 +55,12 @@ def shown(question: Question, found: Found, paths: str, max_paths: int) -> Shown
     A way is a shortest one among the robots that are placed here: those at its ends, those that bring data to what is
     shared, and what is shared.
     """
-    fixed, units = split(question.groups)
+    fixed, units = split(task.groups)
     needed = found.needed or {unit.name for unit in units[:1]}
     groups = [*fixed, *(group for unit in units if unit.name in needed for group in unit.groups)]
-    read = question.reader()
+    read = task.reader()
     members = {group.robots[0].id: read(group.robots[0]) for group in groups}
-    placed = place_chosen(question.fleet, groups, members, question.view)
+    placed = place_chosen(task.fleet, groups, members, task.view)
     placed = replace(placed, bound=limited(placed, found.shared))
 
     def choose(spread: Spread, kinds: Sequence[Concern], mask: int) -> Wanted:
@@ -72,8 +72,8 @@ def shown(question: Question, found: Found, paths: str, max_paths: int) -> Shown
             wanted[vertex[group.source]].add((group.kind, vertex[group.leak], category, group.beside))
         return dict(wanted)
 
-    options = Options(question.asked, paths, max_paths, choose=choose, today=question.today)
-    analysis = analyse(placed.graph, placed.bound, question.hierarchy, options)
+    options = Options(task.asked, paths, max_paths, choose=choose, today=task.today)
+    analysis = analyse(placed.graph, placed.bound, task.hierarchy, options)
     view = FleetView(found.likeness, patterns_of(found.groups, analysis), found.deviants)
     analysis = replace(analysis, verdict=found.verdict, emitted=found.emitted)
     return Shown(analysis, view, placed, members)

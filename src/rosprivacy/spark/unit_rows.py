@@ -14,17 +14,18 @@ from rosprivacy.analysis.answer import robot_verdicts
 from rosprivacy.analysis.findings.findings import Options, analyse
 from rosprivacy.analysis.fleet.source_leak_pairs import pairs
 from rosprivacy.analysis.model import unread
-from rosprivacy.assumptions import remembered, sources_of, what_it_rests_on
+from rosprivacy.assumptions import assumptions_of, files_read, remembered
 from rosprivacy.ingest.database.fleet_rows import FleetRows
 from rosprivacy.ingest.database.rows import rows_of
 from rosprivacy.ingest.fleet.dds_domains import pseudo_robot
 from rosprivacy.ingest.fleet.fleet_graph import place_chosen
 from rosprivacy.ontology.vocabulary import load
+from rosprivacy.question import Question
 from rosprivacy.spark.shown_robots import limited
 from rosprivacy.spark.units import unit_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.findings.concerns import Concern
@@ -92,7 +93,7 @@ def core_rows(plan: Plan) -> list[RobotRows]:
     fleet_rows = _fleet_rows(placed, members, plan, unit_of(()))
     core = _core(plan)
     made = [rows for owner in core for rows in fleet_rows.of(owner)]
-    mine = {row["id"] for rows in made for row in rows.elements}
+    mine = _ids(made)
     return [_ending_at(rows, mine, whole=True) for rows in made]
 
 
@@ -101,11 +102,16 @@ def _rows(units: Sequence[Unit], plan: Plan, read: Read) -> Iterator[RobotRows]:
     fleet_rows = _fleet_rows(placed, members, plan, unit_of(units))
     core = _core(plan)
     made = [rows for owner in sorted(unit_of(units)) for rows in fleet_rows.of(owner)]
-    mine = {row["id"] for rows in made for row in rows.elements}
-    shared = {row["id"] for owner in core for rows in fleet_rows.of(owner) for row in rows.elements}
+    mine = _ids(made)
+    shared = {key for owner in core for key in _ids(fleet_rows.of(owner))}
     yield from (_derived_at(rows, mine | shared) for rows in made)
     for owner in core:
         yield from (_ending_at(rows, mine, whole=False) for rows in fleet_rows.of(owner))
+
+
+def _ids(some: Iterable[RobotRows]) -> set[str]:
+    """The ids of elements, and of their intakes."""
+    return {row["id"] for rows in some for row in (*rows.elements, *rows.intakes)}
 
 
 def _core(plan: Plan) -> list[str]:
@@ -167,8 +173,9 @@ def _fleet_rows(placed: Placed, members: Mapping[str, Member], plan: Plan, mine:
 
 
 def _more(member: Member, analysis: Analysis, plan: Plan, vocabulary: Any) -> dict[str, str]:
-    sources = sources_of(member.policies)
-    said = what_it_rests_on(analysis.graph, sources, member.files, analysis, plan.settings, vocabulary)
+    files = files_read(member.policies, member.files, plan.settings)
+    question = Question(plan.settings, None, None, plan.settings.today or "")
+    said = assumptions_of(files, analysis, question, vocabulary)
     if said["standard_channels"]:
         spread = analysis.spread
         robots = [spread.graph.elements[vertex] for vertex in spread.standard]

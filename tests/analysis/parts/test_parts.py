@@ -14,12 +14,13 @@ import pytest
 from hypothesis import given, settings
 
 from rosprivacy.analysis.errors import InputErrors
-from rosprivacy.fleets import run_fleet
+from rosprivacy.fleet_system import answer_fleet
 from rosprivacy.ingest.fleet.alike_robots import alike
 from rosprivacy.ingest.fleet.fleet_file import read_fleet
 from rosprivacy.ontology.vocabulary import load
+from rosprivacy.question import Question
 from rosprivacy.settings import Settings
-from rosprivacy.spark.distributed import Question, analyse_in_parts
+from rosprivacy.spark.distributed import Task, analyse_in_parts
 from rosprivacy.spark.fleet_on_spark import file_reader, result
 from rosprivacy.spark.shown_robots import shown
 from tests.helpers.fleet_files import write
@@ -69,11 +70,11 @@ def test_several_units_are_one_part(case: Case) -> None:
 def in_list(file: str, size: int = 1) -> Result:
     vocabulary = load()
     fleet = read_fleet(file, vocabulary)
-    asked = Question(
+    asked = Task(
         fleet, alike(fleet), "declared", partial(file_reader, Settings(), str(Path.cwd())), vocabulary.hierarchy
     )
     found = analyse_in_parts(asked, partial(scattered, size=size))
-    return result(asked, found, shown(asked, found, "witness", 100), Settings(), vocabulary)
+    return result(asked, found, shown(asked, found, "witness", 100), Question(Settings(), None, None, ""), vocabulary)
 
 
 @pytest.mark.parametrize("size", [1, 3])
@@ -100,7 +101,7 @@ def test_bad_fleets_are_refused_alike(fleet_file: str, old: str, new: str) -> No
     """Also what only the parts know: names that are on no robot, labels that name what is not there."""
     write(fleet_file, FLEET.replace(old, new, 1))
     problems = []
-    for run in (lambda file: run_fleet(file, Settings()), in_list):
+    for run in (lambda file: answer_fleet(file, Settings()), in_list):
         with pytest.raises(InputErrors) as caught:
             run(fleet_file)
         problems.append(str(caught.value))
@@ -111,7 +112,7 @@ def test_labels_that_contradict_each_other_are_refused_alike(fleet_file: str) ->
     write("odd.yaml", "labels: 1\nnodes: {/camera: conduit}\n")
     write("eye.yaml", "labels: 1\nnodes: {/camera: {source: [Video], sanitizer: {Video: drop}}}\n")
     problems = []
-    for run in (lambda file: run_fleet(file, Settings()), in_list):
+    for run in (lambda file: answer_fleet(file, Settings()), in_list):
         with pytest.raises(InputErrors) as caught:
             run(fleet_file)
         problems.append(str(caught.value))

@@ -2,22 +2,29 @@
 
 from __future__ import annotations
 
+import itertools
 import json
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
 import rosprivacy
-from rosprivacy.analysis.errors import DatabaseError, InputErrors
+from rosprivacy.analysis.errors import DatabaseError, InputErrors, LabelError
 from rosprivacy.analysis.findings.findings import analyse
-from rosprivacy.assembly import robot_of, run_stored
+from rosprivacy.analysis.kernel.ranks import decided
+from rosprivacy.analysis.model import GLOB, NAME, Place, Statement
+from rosprivacy.ingest.database.flow_statements import HAND
 from rosprivacy.ingest.database.loading import load
 from rosprivacy.ingest.database.read_back import read_stored
 from rosprivacy.ingest.database.rows import robot_rows
 from rosprivacy.ingest.database.write_back import write_back
+from rosprivacy.ingest.labels.entries import EXACT
 from rosprivacy.ontology.vocabulary import load as load_vocabulary
 from rosprivacy.private_neo4j import connection
+from rosprivacy.robot_system import robot_of
 from rosprivacy.settings import Settings
+from rosprivacy.stored_system import answer_stored
 from tests.helpers.additions import ADD_STORAGE
 from tests.helpers.cases import CASES
 from tests.helpers.graphs import care_home, dump, factory, rows_of
@@ -25,7 +32,7 @@ from tests.helpers.random_rows import VOCABULARY as SMALL
 from tests.helpers.random_rows import random_systems
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
 
     from neo4j import Driver
@@ -56,7 +63,7 @@ def test_the_document_is_that_of_the_files(
     result = rosprivacy.analyze(given["policies"], given["labels"], **given.get("options", {}))
     load(driver, [robot_of("r", result)], VOCABULARY)
     before = dump(driver, without=("digest", "version"))
-    document = run_stored(driver, Settings()).document()
+    document = answer_stored(driver, Settings()).document()
     assert document["assumptions"].pop("database") == {"robots": 1}
     assert document == result.document()
     assert dump(driver, without=("digest", "version")) == before
@@ -86,6 +93,68 @@ def test_on_random_graphs_nothing_changes(driver: Driver) -> None:
     assert write_back(driver, read_stored(driver, SMALL), analysis, SMALL) == 0
 
 
+TO = "{ from: /camera, to: /camera/image"
+TWO_RANKS = {  # what labels of a higher and of a lower rank say of one flow
+    "a broader kind may be another narrower one": ("PersonImage", f"{TO}, never: [Video] }}", "only: [Video]"),
+    "nearer, but of lower rank": ("HomeMap", f"{TO}, never: [Location] }}", "only: [Household]"),
+    "what only names stays": ("Video", f"{TO}, only: [Video] }}", "never: [PersonImage]"),
+    "two lists": ("HomeMap", f"{TO}, only: [Location, Video] }}", "only: [Video]"),
+}
+
+
+class TestWhatIsSaidOfAFlow:
+    """A statement keeps its rank in the database, so that it decides as in the file (rule S7)."""
+
+    @pytest.fixture(params=TWO_RANKS.values(), ids=list(TWO_RANKS))
+    def result(self, request: pytest.FixtureRequest, examples: Path, tmp_path: Path) -> Any:
+        kind, high, low = request.param
+        file = tmp_path / "flow.labels.yaml"
+        low = f"{TO.replace('/camera,', '/cam*,')}, {low} }}"
+        nodes = f"{{ /camera: {{ source: [{kind}] }}, /blur: {{ leak: [{kind}] }} }}"
+        file.write_text(f"labels: 1\nnodes: {nodes}\nflows:\n  - {high}\n  - {low}\n", "utf-8")
+        return rosprivacy.analyze(examples / "care-home" / "care-home.policy.xml", file)
+
+    def test_it_is_decided_as_in_the_file(self, driver: Driver, result: Any) -> None:
+        load(driver, [robot_of("r", result)], VOCABULARY)
+        document = answer_stored(driver, Settings()).document()
+        document["assumptions"].pop("database")
+        assert document == result.document()
+
+    def test_every_word_comes_back(self, driver: Driver) -> None:
+        """Two statements about each of some flows: every pair of words, ranks and ways of naming that may stand."""
+        words = [
+            Statement(word, names, (1, rank), Place("x.labels.yaml", rank), naming=GLOB if rank < EXACT else NAME)
+            for word in ("only", "never")
+            for names in (("Video",), ("PersonImage", "Voice"), ("Household",), ("Location",))
+            for rank in (7, EXACT)
+        ]
+        pairs = [pair for pair in itertools.combinations(words, 2) if _agree(pair)]
+        home = care_home()
+        count = len(home.analysis.graph.flows)
+        for start in range(0, len(pairs), count):
+            some = pairs[start : start + count]
+            bound = replace(home.bound, flows=dict(enumerate(some)))
+            load(driver, [robot_rows("r", home.analysis, bound, VOCABULARY)], VOCABULARY)
+            assert read_stored(driver, VOCABULARY).bound.flows == bound.flows
+
+    def test_a_changed_list_is_a_later_word(self, driver: Driver) -> None:
+        """It outranks what files say by the other word, which stays."""
+        load(driver, [rows_of("care", care_home())], VOCABULARY)
+        file = next(iter(care_home().bound.flows.values()))
+        for change, words in (("f.only = ['Voice']", {"only": HAND, "never": 1}), ("f.never = NULL", {"only": HAND})):
+            driver.execute_query(f"MATCH ()-[f:FLOWS_TO]->() WHERE f.said_at IS NOT NULL SET {change}")
+            said = next(iter(read_stored(driver, VOCABULARY).bound.flows.values()))
+            assert {one.role: one.rank[0] for one in said} == words
+            assert all(one in file or one.categories == ("Voice",) for one in said)
+
+
+def _agree(pair: Sequence[Statement]) -> bool:
+    try:
+        return all(decided("x", pair, name, VOCABULARY.hierarchy) for name in VOCABULARY.categories)
+    except LabelError:
+        return False
+
+
 VIDEO = ("PersonImage", "PersonalData", "Video")  # with the broader ones
 
 
@@ -95,7 +164,7 @@ class TestWhatPeopleAdd:
         load(driver, [rows_of("care", care_home())], VOCABULARY)
         driver.execute_query(ADD_STORAGE)
         driver.execute_query("MATCH (:RosNode {name: '/recorder'})-[l:LEAKS]->() DELETE l")
-        result = run_stored(driver, Settings())
+        result = answer_stored(driver, Settings())
         found = [f for f in result.analysis.findings if f.leak.kind == "storage"]
         assert [[e.name for e in f.witness][-2:] for f in found] == [["/recorder", "footage bucket"]]
         rows = driver.execute_query(
@@ -109,7 +178,7 @@ class TestWhatPeopleAdd:
         """Rules S10 and S11."""
         load(driver, [rows_of("care", care_home())], VOCABULARY)
         driver.execute_query(ADD_STORAGE.replace(", retention: 'P30D', country: 'DE'", ""))
-        result = run_stored(driver, Settings())
+        result = answer_stored(driver, Settings())
         (kept,) = [f for f in result.analysis.findings if f.kind == "storage-limitation"]
         assert (kept.leak.name, kept.reason) == ("footage bucket", "no retention is stated")
         assert [q.element.name for q in result.analysis.open if q.missing] == ["footage bucket"]
@@ -119,9 +188,9 @@ class TestWhatPeopleAdd:
     def test_it_is_there_after_the_next_load_and_found_again(self, driver: Driver) -> None:
         load(driver, [rows_of("care", care_home())], VOCABULARY)
         driver.execute_query(ADD_STORAGE)
-        first = ways(run_stored(driver, Settings()))
+        first = ways(answer_stored(driver, Settings()))
         assert load(driver, [rows_of("care", care_home())], VOCABULARY).written == 1
-        assert ways(run_stored(driver, Settings())) == first
+        assert ways(answer_stored(driver, Settings())) == first
         assert any(way[-1] == "footage bucket" for way in first)
 
     @pytest.mark.parametrize(
@@ -137,9 +206,9 @@ class TestWhatPeopleAdd:
     )
     def test_a_changed_label_or_flow_counts(self, driver: Driver, change: str, gone: str) -> None:
         load(driver, [rows_of("care", care_home())], VOCABULARY)
-        before = ways(run_stored(driver, Settings()))
+        before = ways(answer_stored(driver, Settings()))
         driver.execute_query(change)
-        after = ways(run_stored(driver, Settings()))
+        after = ways(answer_stored(driver, Settings()))
         assert after < before
         assert {way[-1] for way in before - after} == {gone}
 
@@ -149,18 +218,18 @@ class TestWhatPeopleAdd:
         driver.execute_query(
             "MATCH (n {name: '/navigator'}), (c:DataCategory {name: 'PersonTrack'}) CREATE (n)-[:LEAKS]->(c)"
         )
-        assert ("PersonTrack", "/navigator") in {(way[0], way[-1]) for way in ways(run_stored(driver, Settings()))}
+        assert ("PersonTrack", "/navigator") in {(way[0], way[-1]) for way in ways(answer_stored(driver, Settings()))}
 
     def test_two_robots_meet_at_a_storage(self, driver: Driver) -> None:
         """Data that one writes and the other reads flows on, across robots (rule S9)."""
         load(driver, [rows_of("care", care_home()), rows_of("factory", factory(5))], VOCABULARY)
-        assert not [f for f in run_stored(driver, Settings()).analysis.findings if f.leak.robot == "factory"]
+        assert not [f for f in answer_stored(driver, Settings()).analysis.findings if f.leak.robot == "factory"]
         driver.execute_query(
             "MATCH (a:RosNode {robot: 'care', name: '/camera'}), "
             "(b:RosNode {robot: 'factory', name: '/archive_server'}) "
             "CREATE (a)-[:FLOWS_TO]->(:Storage {name: 'shared'})-[:FLOWS_TO]->(b)"
         )
-        found = [f for f in run_stored(driver, Settings()).analysis.findings if f.leak.robot == "factory"]
+        found = [f for f in answer_stored(driver, Settings()).analysis.findings if f.leak.robot == "factory"]
         assert [[(e.robot, e.name) for e in f.witness] for f in found] == [
             [("care", "/camera"), ("", "shared"), ("factory", "/archive_server")]
         ]
@@ -169,7 +238,7 @@ class TestWhatPeopleAdd:
 
     def test_the_answer_may_be_about_some_categories_but_all_are_written(self, driver: Driver) -> None:
         load(driver, [rows_of("care", care_home())], VOCABULARY)
-        result = run_stored(driver, Settings(categories=("Voice",)))
+        result = answer_stored(driver, Settings(categories=("Voice",)))
         assert {f.category for f in result.analysis.findings} == {"Voice"}
         assert driver.execute_query("MATCH (f:Finding) RETURN count(f)").records[0][0] == 3
 
@@ -215,7 +284,7 @@ class TestProblems:
         driver.execute_query(damage.replace("DELETE r", "DETACH DELETE r"))
         before = driver.execute_query("MATCH (r:Robot) RETURN collect(r.version)").records[0][0]
         with pytest.raises(InputErrors, match=message) as error:
-            run_stored(driver, Settings())
+            answer_stored(driver, Settings())
         for line in str(error.value).splitlines():
             assert line.startswith("the database:0: ") or ":" in line
         assert driver.execute_query("MATCH (r:Robot) RETURN collect(r.version)").records[0][0] == before
@@ -232,4 +301,4 @@ class TestProblems:
 
     def test_an_empty_database(self, driver: Driver) -> None:
         with pytest.raises(InputErrors, match="there is no robot in it; load one with rosprivacy load"):
-            run_stored(driver, Settings())
+            answer_stored(driver, Settings())

@@ -257,6 +257,11 @@ def test_an_accepted_leak_no_longer_hides_what_lies_behind_it(cli: Cli, chain: P
         assert document["verdict"] == "leak"
 
 
+def test_the_document_says_from_which_robot_a_decision_is(cli: Cli, chain: Path) -> None:
+    (entry,) = answer(cli, chain, "leak: /relay, from_robot: a, decision: mitigate")["decisions"]
+    assert entry["target"] == {"leak": "/relay", "from_robot": "a"}
+
+
 def test_an_accepted_leak_is_said_to_be_accepted_not_absent(cli: Cli, chain: Path) -> None:
     answer(cli, chain, f"category: Video, decision: accept, expires: 2099-01-01, {SIGNED}")
     done = cli("analyze", "p.xml", "-l", "l.yaml", "--decisions", "d.yaml", cwd=chain)

@@ -14,10 +14,12 @@ from jsonschema import Draft202012Validator
 
 import rosprivacy
 from rosprivacy.analysis.errors import FleetError, InputErrors
-from rosprivacy.fleets import analysed, read_all, run_fleet
+from rosprivacy.answering import answer
+from rosprivacy.fleet_system import answer_fleet, fleet_system
 from rosprivacy.ingest.fleet.alike_robots import alike
 from rosprivacy.ingest.fleet.fleet_schema import fleet_schema
 from rosprivacy.ontology.vocabulary import load
+from rosprivacy.question import Question
 from rosprivacy.settings import Settings
 from tests.helpers.fleet_files import MODELS, folder, policy, read, write
 from tests.helpers.paths import ROOT
@@ -36,7 +38,7 @@ INCLUDE = '<xi:include xmlns:xi="http://www.w3.org/2001/XInclude" href="f.xml"><
 
 def run(text: str, **options: Any) -> Result:
     write("f.yaml", "fleet: 1\n" + MODELS + text)
-    return run_fleet("f.yaml", Settings(**options))
+    return answer_fleet("f.yaml", Settings(**options))
 
 
 def found(text: str, **options: Any) -> dict[str, int]:
@@ -63,7 +65,7 @@ def test_a_document_names_one_robot_for_those_that_are_alike() -> None:
 
 def refused(text: str) -> list[str]:
     with pytest.raises(InputErrors) as caught:
-        run_fleet(_written(text), Settings())
+        answer_fleet(_written(text), Settings())
     lines = str(caught.value).splitlines()
     assert all(re.fullmatch(r"\S+:\d+: .+; .+", line) for line in lines)
     assert all(isinstance(error, FleetError) for error in caught.value.errors)
@@ -101,7 +103,7 @@ class TestRobots:
 
     def test_files_are_looked_for_beside_the_fleet_file(self) -> None:
         write("site/f.yaml", "fleet: 1\nrobots: {a: {policies: ../eye.xml}}\n")
-        assert [p.file for p in run_fleet("site/f.yaml", Settings()).policies] == ["site/../eye.xml"]
+        assert [p.file for p in answer_fleet("site/f.yaml", Settings()).policies] == ["site/../eye.xml"]
 
     def test_includes_are_one_with_the_file(self) -> None:
         write("site/models.yaml", "fleet: 1\nmodels: {eye: {policies: ../eye.xml}}\nlimits: {Video: P1D}\n")
@@ -116,7 +118,7 @@ class TestRobots:
         write("eye.yaml", "labels: 1\nnodes: {/camera: {source: [Video], leak: [Video]}, /uplink: {leak: [Video]}}\n")
         write("own.yaml", "labels: 1\nnodes: {/uplink: {leak: none, conduit: [Video]}}\n")
         write("f.yaml", f"fleet: 1\n{MODELS}robots: {{a: {{model: eye}}, b: {{model: eye, labels: own.yaml}}}}\n")
-        result = analysed(read_all("f.yaml", load(), Settings()), load(), Settings(), every=True)
+        result = answer(fleet_system("f.yaml", Settings(), load()), Question(Settings(), None, None, "", every=True))
         assert [(f.leak.robot, f.leak.name) for f in result.analysis.findings] == [
             ("a", "/camera"), ("a", "/uplink"), ("b", "/camera"),
         ]  # fmt: skip
@@ -400,7 +402,7 @@ class TestRefusals:
         text = self.ROBOT + "include: g.yaml\nelements: {b: {kind: storage, country: FR}}\n"
         assert refused(text) == ["g.yaml:2: element 'b' again, with other facts than at f.yaml:5; define it once"]
         write("g.yaml", "fleet: 1\nelements: {b: {kind: storage, country: FR}}\n")
-        assert run_fleet(_written(text), Settings())
+        assert answer_fleet(_written(text), Settings())
 
     def test_a_ring_of_includes(self) -> None:
         write("g.yaml", "fleet: 1\ninclude: h.yaml\n")

@@ -24,13 +24,14 @@ from rosprivacy.analysis.durations import parse
 from rosprivacy.analysis.findings.findings import analyse
 from rosprivacy.analysis.model import Bound, Category, Element, Flow, FlowGraph, Method, NonRosFacts, Place, Statement
 from rosprivacy.analysis.non_ros import EVERY
-from rosprivacy.assembly import robot_of, run_stored
 from rosprivacy.ingest.database.loading import load as load_robots
 from rosprivacy.ontology.vocabulary import Vocabulary, load
 from rosprivacy.private_neo4j import connection
 from rosprivacy.report.cnil import answers as cnil_answers
 from rosprivacy.report.cnil.pia import cnil_pia
+from rosprivacy.robot_system import robot_of
 from rosprivacy.settings import Settings
+from rosprivacy.stored_system import answer_stored
 from tests.helpers.additions import ADD_STORAGE
 from tests.helpers.answers import accepting, answer_of, as_json
 from tests.helpers.paths import ROOT
@@ -400,7 +401,7 @@ def test_what_people_added_in_the_database_is_in_both_formats(neo4j_server: Conn
         driver.execute_query("MATCH (n) DETACH DELETE n")
         load_robots(driver, [robot_of("care", analyze(*CARE_HOME))], vocabulary)
         driver.execute_query(ADD_STORAGE)
-        result = run_stored(driver, Settings())
+        result = answer_stored(driver, Settings())
         driver.execute_query("MATCH (n) DETACH DELETE n")
     run = checked(log_of(result))
     (found,) = [r for r in run["results"] if "storage footage bucket" in r["message"]["text"]]

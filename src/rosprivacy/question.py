@@ -1,20 +1,71 @@
-"""What is asked for: the filters of the command line -> categories."""
+"""What is asked of a system: about which categories, how many paths, under which decisions, on which day.
+
+In: what a user names. Out: ``Question``, for ``answering``.
+"""
 
 from __future__ import annotations
 
+import os
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputErrors, OntologyError, shown
+from rosprivacy.clock import judged_on
+from rosprivacy.decided import decisions_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from rosprivacy.analysis.decisions import Decisions
     from rosprivacy.analysis.model import Category
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.settings import Settings
 
 
-def asked_for(vocabulary: Vocabulary, settings: Settings) -> set[str] | None:
+@dataclass(frozen=True, slots=True)
+class Question:
+    """What is asked.
+
+    Attributes
+    ----------
+    settings
+        As a user named it.
+    asked
+        Emitted categories that the answer is about; None for all.
+    decisions
+        What people decided; None where nobody decided anything.
+    today
+        Day on which adequacy decisions hold or have ended, ``YYYY-MM-DD``.
+    every
+        Make every finding of a fleet, not one of each pattern.
+    """
+
+    settings: Settings
+    asked: frozenset[str] | None
+    decisions: Decisions | None
+    today: str
+    every: bool = False
+
+    @property
+    def every_finding(self) -> bool:
+        """Whether one finding of each pattern is not enough: decisions are about single robots, too."""
+        return self.every or self.decisions is not None
+
+
+def question_of(settings: Settings, vocabulary: Vocabulary) -> Question:
+    """Return what a user asks, with the decisions that are named.
+
+    Raises
+    ------
+    InputErrors
+        If a category or a kind of data is not known, or with every problem of the decisions.
+    """
+    asked = asked_for(vocabulary, settings)
+    decisions = decisions_of(settings, vocabulary)
+    return Question(settings, asked, decisions, settings.today or judged_on(os.environ))
+
+
+def asked_for(vocabulary: Vocabulary, settings: Settings) -> frozenset[str] | None:
     """Return the categories that the answer is about; None for all.
 
     These are what the filters name, narrower kinds, and what is broader than one of them (so all kinds that overlap
@@ -23,7 +74,7 @@ def asked_for(vocabulary: Vocabulary, settings: Settings) -> set[str] | None:
     named = _named(vocabulary, settings)
     if named is None:
         return None
-    return named.union(*(vocabulary.hierarchy.broader(name) for name in named))
+    return frozenset(named).union(*(vocabulary.hierarchy.broader(name) for name in named))
 
 
 def may_be(vocabulary: Vocabulary, settings: Settings, emitted: Iterable[str]) -> dict[str, list[str]]:

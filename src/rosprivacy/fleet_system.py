@@ -1,23 +1,17 @@
-"""The way of a fleet through the house: fleet file -> each kind of robot once -> one graph -> analysis.
+"""A fleet: fleet file -> each kind of robot once -> one graph -> ``System``.
 
-In: a fleet file. Out: a ``Result`` with ``fleet``. Robots that are alike are read and analysed once.
+In: a fleet file. Out: ``FleetSystem``. Robots that are alike are read once.
 """
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors
-from rosprivacy.analysis.findings.findings import Options, analyse
-from rosprivacy.analysis.fleet.patterns import FleetView
-from rosprivacy.analysis.fleet.patterns_of_pairs import Groups
 from rosprivacy.analysis.model import unread
-from rosprivacy.asked import asked_for
-from rosprivacy.assumptions import assumed_decisions, remembered, sources_of, what_it_rests_on
-from rosprivacy.clock import judged_on
-from rosprivacy.decided import accepts, decisions_of, joined_to
+from rosprivacy.answering import answer
+from rosprivacy.assumptions import assumptions_of, files_read, remembered
 from rosprivacy.ingest.database.fleet_rows import FleetRows
 from rosprivacy.ingest.fleet.alike_robots import Alike, alike
 from rosprivacy.ingest.fleet.dds_domains import Member, stripped, with_grants
@@ -33,18 +27,21 @@ from rosprivacy.ingest.policies.joint_policies import joint_warnings
 from rosprivacy.ingest.policies.namespaces import as_written, pushed, told
 from rosprivacy.ingest.policies.policy_files import read_policies
 from rosprivacy.ontology.vocabulary import load
-from rosprivacy.result import Result
+from rosprivacy.question import question_of
+from rosprivacy.system import System
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.decisions import Decisions
     from rosprivacy.analysis.model import Diagnostic, Policy
     from rosprivacy.ontology.vocabulary import Vocabulary
+    from rosprivacy.question import Question
+    from rosprivacy.result import Result
     from rosprivacy.settings import Settings
 
 
-@dataclass(frozen=True, slots=True)
-class Read:
-    """A fleet that was read, before it is analysed.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FleetSystem(System):
+    """A system of many robots.
 
     Attributes
     ----------
@@ -58,14 +55,11 @@ class Read:
     groups: tuple[Alike, ...]
     members: dict[str, Member]
     placed: Placed
-    labels: tuple[Labels, ...]
-    diagnostics: tuple[Diagnostic, ...]
-    joins: tuple[Diagnostic, ...] = ()
-    decisions: Decisions | None = None
+    joins: tuple[Diagnostic, ...]
 
 
-def run_fleet(file: str, settings: Settings) -> Result:
-    """Read a fleet, analyse it, and keep what the answer rests on.
+def answer_fleet(file: str, settings: Settings) -> Result:
+    """Read a fleet file and what it names, and analyse it.
 
     Raises
     ------
@@ -73,72 +67,19 @@ def run_fleet(file: str, settings: Settings) -> Result:
         With every problem of the input, one line each.
     """
     vocabulary = load(ontologies=settings.ontologies)
-    return analysed(read_all(file, vocabulary, settings), vocabulary, settings)
+    question = question_of(settings, vocabulary)
+    return answer(fleet_system(file, settings, vocabulary, question.decisions), question)
 
 
-def analysed(read: Read, vocabulary: Vocabulary, settings: Settings, *, every: bool = False) -> Result:
-    """Analyse a fleet that was read.
-
-    Parameters
-    ----------
-    every
-        Make every finding of the graph, not one of each pattern.
-
-    Raises
-    ------
-    InputErrors
-        If labels contradict each other, or a category that is asked for is not known.
-    """
-    asked = asked_for(vocabulary, settings)
-    placed = read.placed
-    decisions = read.decisions
-    groups = None if every or decisions else Groups(placed.likeness)
-    accepted, not_read = accepts(decisions, placed.likeness), unread(read.diagnostics)
-    day = settings.today or judged_on(os.environ)
-    options = Options(asked, settings.paths, settings.max_paths, accepted, groups, today=day, unread=not_read)
-    analysis = analyse(placed.graph, placed.bound, vocabulary.hierarchy, options)
-    policies = [policy for member in read.members.values() for policy in member.policies]
-    assumptions = what_it_rests_on(placed.graph, sources_of(policies), read.labels, analysis, settings, vocabulary)
-    assumptions |= assumed_decisions(decisions)
-    assumptions["fleet"] = [{"file": name, "sha256": digest} for name, digest in read.fleet.sources]
-    system = tuple({policy.file: policy for policy in policies}.values())
-    view = groups.view(analysis) if groups else FleetView.of(analysis, placed.likeness)
-    joined = joined_to(decisions, analysis, vocabulary, asked, placed.likeness)
-    said = read.diagnostics + (joined.diagnostics if joined else ())
-    return Result(
-        analysis, placed.bound, vocabulary, said, assumptions, joined, view,
-        policies=system, labels=read.labels, options=options,
-    )  # fmt: skip
-
-
-def rows_of_fleet(read: Read, result: Result, settings: Settings) -> FleetRows:
-    """Return the rows of all robots for the database; with each goes what its part of the answer rests on.
-
-    Parameters
-    ----------
-    result
-        With every finding, about all categories.
-    """
-    more = {}
-    for group in read.groups:
-        member = read.members[group.robots[0].id]
-        said = what_it_rests_on(
-            result.analysis.graph,
-            sources_of(member.policies),
-            member.files,
-            result.analysis,
-            settings,
-            result.vocabulary,
-        )
-        more[group.robots[0].id] = remembered(said, member.diagnostics)
-    everything = {**result.assumptions, "policies": [], "labels": []}
-    more[read.fleet.name] = remembered(everything, read.joins)
-    not_read = [name for name, member in read.members.items() if unread(member.diagnostics)]
-    return FleetRows(read.placed, result.analysis, result.vocabulary, more, not_read=not_read)
-
-
-def read_all(file: str, vocabulary: Vocabulary, settings: Settings) -> Read:
+def fleet_system(
+    file: str, settings: Settings, vocabulary: Vocabulary, decisions: Decisions | None = None
+) -> FleetSystem:
     """Read a fleet file and what it names, each kind of robot once.
+
+    Parameters
+    ----------
+    decisions
+        Robots about which somebody decided by name are alike to no other.
 
     Raises
     ------
@@ -146,7 +87,6 @@ def read_all(file: str, vocabulary: Vocabulary, settings: Settings) -> Read:
         With every problem of the input, one line each.
     """
     fleet = read_fleet(file, vocabulary)
-    decisions = decisions_of(settings, vocabulary)
     groups = alike(fleet, decisions.told_apart) if decisions else alike(fleet)
     reader = Reader(vocabulary, settings)
     members = {}
@@ -162,7 +102,33 @@ def read_all(file: str, vocabulary: Vocabulary, settings: Settings) -> Read:
     labels = tuple(sorted(reader.labels.values(), key=lambda labels: (labels.file, labels.own)))
     joins = joins_nothing(fleet, groups, placed.met)
     diagnostics = dict.fromkeys((*(d for member in members.values() for d in member.diagnostics), *joins))
-    return Read(fleet, groups, members, placed, labels, tuple(diagnostics), joins, decisions)
+    policies = [policy for member in members.values() for policy in member.policies]
+    files = [{"file": name, "sha256": digest} for name, digest in fleet.sources]
+    return FleetSystem(
+        placed.graph, placed.bound, vocabulary, tuple(diagnostics),
+        {**files_read(policies, labels, settings), "fleet": files},
+        tuple({policy.file: policy for policy in policies}.values()), labels, placed.likeness, is_fleet=True,
+        fleet=fleet, groups=groups, members=members, placed=placed, joins=joins,
+    )  # fmt: skip
+
+
+def rows_of_fleet(system: FleetSystem, question: Question, result: Result) -> FleetRows:
+    """Return the rows of all robots for the database; with each goes what its part of the answer rests on.
+
+    Parameters
+    ----------
+    result
+        With every finding, about all categories.
+    """
+    more = {}
+    for name, member in system.members.items():
+        files = files_read(member.policies, member.files, question.settings)
+        said = assumptions_of(files, result.analysis, question, system.vocabulary)
+        more[name] = remembered(said, member.diagnostics)
+    everything = {**result.assumptions, "policies": [], "labels": []}
+    more[system.fleet.name] = remembered(everything, system.joins)
+    not_read = [name for name, member in system.members.items() if unread(member.diagnostics)]
+    return FleetRows(system.placed, result.analysis, system.vocabulary, more, not_read=not_read)
 
 
 class Reader:

@@ -1,0 +1,125 @@
+"""The document ``rosprivacy.analysis/1``, and what the answer rests on."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NotRequired, TypedDict
+
+from rosprivacy.report.contract.records import FileEntry
+
+if TYPE_CHECKING:
+    from rosprivacy.report.contract.fleet import FleetEntry
+    from rosprivacy.report.contract.records import (
+        DeniedEntry,
+        DiagnosticEntry,
+        ElementEntry,
+        EnclaveEntry,
+        FindingEntry,
+        LedgerRow,
+        ListedDecision,
+        OpenEntry,
+        Reached,
+        UnknownEnd,
+    )
+    from rosprivacy.report.contract.stated import (
+        Carried,
+        CategoryEntry,
+        DerivationEntry,
+        NonRosEntry,
+        OverruledEntry,
+        RolesEntry,
+        SanitizerEntry,
+        SubjectsEntry,
+    )
+
+
+class NoMethod(TypedDict):
+    """A sanitizer whose method nobody states."""
+
+    element: ElementEntry
+    category: str
+    taken_as: str
+
+
+class DatabaseEntry(TypedDict):
+    """The database that was read."""
+
+    robots: int
+
+
+class StandardFile(FileEntry):
+    """The file of standard channels, and how many it takes as mundane."""
+
+    taken: int
+
+
+class DecisionsFile(FileEntry):
+    """The file of decisions, and the day that they are looked at."""
+
+    today: str
+
+
+class Given(TypedDict):
+    """What an answer rests on, as far as it comes from the files and the question."""
+
+    rosprivacy: str
+    view: str
+    ontologies: list[FileEntry]
+    law_as_of: str
+    unlabelled_node: str
+    unlabelled_channel: str
+    categories_asked: str | list[str]
+    article9_only: bool
+    data_types_asked: str | list[str]
+    may_be_asked: NotRequired[dict[str, list[str]]]
+    paths: str
+    max_paths: int
+    countries_as_of: NotRequired[str]
+    policies: list[FileEntry]
+    labels: list[FileEntry]
+    fleet: NotRequired[list[FileEntry]]
+    standard_channels: StandardFile | None
+    database: NotRequired[DatabaseEntry]
+    decisions: NotRequired[DecisionsFile]
+    engine: NotRequired[str]
+
+
+class Assumptions(Given):
+    """What an answer rests on."""
+
+    taken_away_by: NotRequired[dict[str, int]]
+    taken_by_kind: dict[str, str]
+    backups_taken_as_none: NotRequired[list[ElementEntry]]
+    sanitizers_without_method: list[NoMethod]
+    standard_channels_reached: NotRequired[list[Reached]]
+    standard_channels_unchanged: NotRequired[list[ElementEntry]]
+    overruled: NotRequired[list[OverruledEntry]]
+
+
+class AnalysisDocument(TypedDict):
+    """``rosprivacy.analysis/1``."""
+
+    format: str
+    verdict: str
+    view: str
+    categories: list[CategoryEntry]
+    findings: list[FindingEntry]
+    open: list[OpenEntry]
+    unknown_ends: NotRequired[list[UnknownEnd]]
+    taken_away: NotRequired[list[LedgerRow]]
+    carries: list[Carried]
+    roles: NotRequired[list[RolesEntry]]
+    outside: list[NonRosEntry]
+    subjects: list[SubjectsEntry]
+    sanitizers: list[SanitizerEntry]
+    derivations: list[DerivationEntry]
+    unreached: list[ElementEntry]
+    enclaves: list[EnclaveEntry]
+    flows: int
+    denied_flows: NotRequired[int]
+    denied: NotRequired[list[DeniedEntry]]
+    elements: int
+    standard_channels: int
+    diagnostics: list[DiagnosticEntry]
+    assumptions: Assumptions
+    decisions: NotRequired[list[ListedDecision]]
+    fleet: NotRequired[FleetEntry]

@@ -1,0 +1,184 @@
+"""What stands in the rows of a document: elements, files, lines, findings, decisions, open questions, the ledger."""
+
+from __future__ import annotations
+
+from typing import NotRequired, TypedDict
+
+
+class ElementEntry(TypedDict):
+    """An element."""
+
+    robot: str
+    kind: str
+    name: str
+    leg: NotRequired[str]
+    pattern: NotRequired[bool]
+
+
+class FileEntry(TypedDict):
+    """A file that was read."""
+
+    file: str
+    sha256: str
+
+
+class PlaceEntry(TypedDict):
+    """A line of a file."""
+
+    file: str
+    line: int
+
+
+class GrantEntry(PlaceEntry):
+    """A line of a policy."""
+
+    enclave: str
+    profile: str
+
+
+class Reached(TypedDict):
+    """An element, and the categories there."""
+
+    element: ElementEntry
+    categories: list[str]
+
+
+class StepEntry(TypedDict):
+    """A step of a witness."""
+
+    role: str
+    category: str
+    pseudonymised: bool
+    policy: list[GrantEntry]
+
+
+class DecisionEntry(TypedDict):
+    """What was decided."""
+
+    choice: str
+    state: str
+    reason: str
+    owner: str
+    legal_basis: list[str]
+    date: str | None
+    expires: str | None
+    ticket: str | None
+    file: str
+    line: int
+
+
+class LawEntry(TypedDict):
+    """A provision that a finding's data can fall under."""
+
+    provision: str
+    verdict: str
+    condition: str
+
+
+class FindingMore(TypedDict, total=False):
+    """What only some findings have."""
+
+    reason: str
+    beside_pseudonymised: bool
+    paths: list[list[ElementEntry]]
+    paths_bounded: bool
+    decision: DecisionEntry | None
+
+
+class FindingEntry(FindingMore):
+    """A finding."""
+
+    id: str
+    kind: str
+    category: str
+    pseudonymised: bool
+    source: ElementEntry
+    leak: ElementEntry
+    witness: list[ElementEntry]
+    steps: NotRequired[list[StepEntry]]
+    disjoint_paths: int
+    through: list[ElementEntry]
+    dismissed: bool
+    article9: str
+    special_from: ElementEntry | None
+    law: list[LawEntry]
+    accepted: bool
+
+
+class Target(TypedDict, total=False):
+    """What a decision says that it is about."""
+
+    id: str
+    category: str
+    source: str
+    leak: str
+    robot: str
+    from_robot: str
+    kind: str
+    pseudonymised: bool
+
+
+class ListedDecision(DecisionEntry):
+    """An entry of the decisions file, and the findings that it is about."""
+
+    target: Target
+    findings: list[str]
+
+
+class OpenEntry(TypedDict):
+    """An element that nobody has reviewed."""
+
+    element: ElementEntry
+    categories: list[str]
+    distance: int
+    frontier: bool
+    missing: NotRequired[list[str]]
+
+
+class UnknownEnd(TypedDict):
+    """An end where nobody is known."""
+
+    element: ElementEntry
+    unknown: str
+    categories: list[str]
+
+
+class DiagnosticEntry(PlaceEntry):
+    """A problem of an input."""
+
+    severity: str
+    message: str
+    code: NotRequired[str]
+
+
+class EnclaveEntry(TypedDict):
+    """An enclave of the policies."""
+
+    enclave: str
+    nodes: list[str]
+
+
+class DeniedEntry(TypedDict):
+    """A flow that one line allows and another denies."""
+
+    source: ElementEntry
+    target: ElementEntry
+    role: str
+    allowed_by: list[GrantEntry]
+    denied_by: list[GrantEntry]
+
+
+class LedgerRow(TypedDict):
+    """What was taken away, and on whose word."""
+
+    by: str
+    element: ElementEntry | None
+    to: ElementEntry | None
+    categories: list[str]
+    places: list[PlaceEntry]
+    glob: bool
+    leak: ElementEntry | None
+    open: ElementEntry | None
+    itself: bool
+    perhaps: bool
+    note: str

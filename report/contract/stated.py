@@ -1,0 +1,119 @@
+"""What is stated, as a document tells it: of categories by the ontology, of nodes and non-ROS elements by labels."""
+
+from __future__ import annotations
+
+from typing import TypedDict
+
+from rosprivacy.report.contract.records import ElementEntry, LawEntry, PlaceEntry, Reached
+
+Texts = dict[str, dict[str, str]]  # language -> what -> text
+
+
+class ProvisionEntry(LawEntry):
+    """A provision that data of a category can fall under."""
+
+    iri: str
+    meaning: str
+    stated_of: str
+    sources: list[str]
+    as_of: str
+    translations: Texts
+
+
+class CategoryEntry(TypedDict):
+    """A category that is emitted."""
+
+    name: str
+    iri: str
+    broader: list[str]
+    title: str
+    definition: str
+    data_types: list[str]
+    gdpr: str
+    article9: str
+    reason: str
+    law: list[ProvisionEntry]
+    translations: Texts
+
+
+class Carried(Reached):
+    """An element, and what it carries."""
+
+    pseudonymised: list[str]
+
+
+class RolesEntry(TypedDict):
+    """What labels say of a node and a category."""
+
+    element: ElementEntry
+    category: str
+    roles: list[str]
+
+
+class SubjectsEntry(TypedDict):
+    """Whom the data of a source is about."""
+
+    element: ElementEntry
+    subjects: list[str]
+
+
+class SanitizerEntry(TypedDict):
+    """Who cleans a category, and what passes all the same."""
+
+    element: ElementEntry
+    category: str
+    method: str
+    stated: bool
+    reached: bool
+    leaves: list[str]
+    leaves_pseudonymised: list[str]
+    beside: list[ElementEntry]
+
+
+DerivationEntry = TypedDict(
+    "DerivationEntry", {"element": ElementEntry, "from": str, "to": str, "reached": bool}
+)  # 'from' is a word of Python
+
+
+class NonRosNotKnown(TypedDict, total=False):
+    """What could not be judged of a non-ROS element."""
+
+    missing: list[str]
+    without_limit: list[str]
+
+
+class NonRosStated(TypedDict, total=False):
+    """What is stated of a non-ROS element."""
+
+    retention: dict[str, str]
+    backups: bool | str
+    encrypted: bool
+    country: str
+    area: str
+    operator: str
+    recipient: str
+    transfer: str
+
+
+class NonRosEntry(NonRosStated, NonRosNotKnown):
+    """A non-ROS element."""
+
+    element: ElementEntry
+    file: str
+    line: int
+    holds: list[str]
+
+
+class OverruledBy(PlaceEntry):
+    """The label that takes a source or leak away, and what it says."""
+
+    says: str
+
+
+class OverruledEntry(PlaceEntry):
+    """A source or leak that another label takes away."""
+
+    role: str
+    categories: list[str]
+    elements: list[str]
+    by: OverruledBy

@@ -1,0 +1,89 @@
+"""The one way from a system and a question to the answer, whatever the system was read from.
+
+In: ``System`` and ``Question``. Out: ``Result``. Who computes the analysis elsewhere (Spark) begins at ``concluded``.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.findings.findings import Options, analyse
+from rosprivacy.analysis.fleet.patterns import FleetView
+from rosprivacy.analysis.fleet.patterns_of_pairs import Groups
+from rosprivacy.analysis.model import unread
+from rosprivacy.assumptions import assumptions_of
+from rosprivacy.decided import accepts, joined_to
+from rosprivacy.result import Result
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.analysis.fleet.counts import Counts
+    from rosprivacy.ingest.labels.label_file import Labels
+    from rosprivacy.question import Question
+    from rosprivacy.system import System
+
+
+def answer(system: System, question: Question) -> Result:
+    """Analyse a system and keep what the answer rests on.
+
+    Raises
+    ------
+    InputErrors
+        If labels contradict each other.
+    """
+    groups = Groups(system.likeness) if system.is_fleet and not question.every_finding else None
+    options = Options(
+        categories=question.asked,
+        paths=question.settings.paths,
+        max_paths=question.settings.max_paths,
+        accepts=accepts(question.decisions, system.likeness),
+        choose=groups,
+        today=question.today,
+        unread=unread(system.diagnostics),
+    )
+    analysis = analyse(system.graph, system.bound, system.vocabulary.hierarchy, options)
+    view = groups.view(analysis) if groups else FleetView.of(analysis, system.likeness) if system.is_fleet else None
+    return concluded(system, question, analysis, view, options)
+
+
+def concluded(
+    system: System,
+    question: Question,
+    analysis: Analysis,
+    view: FleetView | None,
+    options: Options,
+    counts: Counts | None = None,
+) -> Result:
+    """Join decisions to an analysis, and say what it rests on.
+
+    Parameters
+    ----------
+    analysis, view
+        Of the system, under ``options``.
+    counts
+        As of ``Answer``.
+    """
+    joined = joined_to(question.decisions, analysis, system.vocabulary, question.asked, system.likeness)
+    return Result(
+        analysis,
+        system.bound,
+        system.vocabulary,
+        system.diagnostics + (joined.diagnostics if joined else ()),
+        assumptions_of(system.rests_on, analysis, question, system.vocabulary),
+        joined,
+        view,
+        counts,
+        policies=system.policies,
+        labels=system.labels,
+        options=options,
+        again=partial(_again, system.under, question) if system.under else None,
+    )
+
+
+def _again(
+    under: Callable[[tuple[str | Labels, ...]], System], question: Question, labels: tuple[str | Labels, ...]
+) -> Result:
+    return answer(under(labels), question)

@@ -1,0 +1,87 @@
+"""Random systems as people write them: a policy, labels, decisions; and an answer as something to compare."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from hypothesis import strategies as st
+
+from tests.helpers.fleet_files import policy
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from rosprivacy.result import Result
+
+NODES = tuple(f"/n{i}" for i in range(5))
+TOPICS = ("/a", "/b", "/c", "/a*", "/parameter_events")
+ROLES = (
+    "{source: [Video]}", "{source: [Voice], leak: [Video]}", "{leak: [Biometric]}", "{leak: [Video, Voice]}",
+    "{sanitizer: {Video: pseudonymise}}", "{sanitizer: {Voice: drop}}", "conduit",
+    "{derives: [{from: Video, to: FaceTemplate}]}",
+)  # fmt: skip
+CHANNEL = ("mundane", "sensitive", "{only: [Video]}", "{never: [Voice]}")
+
+
+@dataclass(frozen=True)
+class Written:
+    """The texts of a policy and of a label file, and which leaks somebody accepts."""
+
+    policy: str
+    labels: str
+    accepted: tuple[str, ...]
+
+    def write(self, folder: Path, name: str) -> tuple[str, str]:
+        """Return the names of the two files."""
+        (folder / f"{name}.xml").write_text(self.policy, "utf-8")
+        (folder / f"{name}.yaml").write_text(self.labels, "utf-8")
+        return f"{name}.xml", f"{name}.yaml"
+
+    @property
+    def decisions(self) -> str:
+        """The text of a decisions file."""
+        said = {"decision": "accept", "reason": "agreed", "owner": "Ada Judge"}
+        return json.dumps({"decisions": 1, "findings": [{"leak": leak, **said} for leak in self.accepted]})
+
+
+@st.composite
+def written(draw: st.DrawFn) -> Written:
+    """A storage behind a node, DENYs, a wildcard, a standard channel."""
+    names = st.sets(st.sampled_from((*TOPICS, "!/b")), max_size=3).map(lambda some: ",".join(sorted(some)))
+    profiles = {node: f"{node}>{draw(names)}<{draw(names)}" for node in NODES}
+    roles = {node: draw(st.sampled_from(ROLES)) for node in draw(st.sets(st.sampled_from(NODES), min_size=3))}
+    roles["/n0"] = ROLES[0]
+    used = sorted({name for text in profiles.values() for name in TOPICS[:3] if name in text.replace("/a*", "")})
+    channels = {name: draw(st.sampled_from(CHANNEL)) for name in used if draw(st.booleans())}
+    behind = draw(st.sampled_from(NODES))
+    country = draw(st.sampled_from(("DE", "US")))
+    lines = ["labels: 1", "nodes:", *(f"  {name}: {said}" for name, said in sorted(roles.items()))]
+    lines += ["channels:", *(f"  {name}: {said}" for name, said in channels.items())] if channels else []
+    lines += ["elements:", f"  disk: {{kind: storage, country: {country}, retention: P3D}}"]
+    lines += ["flows:", f"  - {{from: {behind}, to: disk}}"]
+    accepted = draw(st.sets(st.sampled_from((*NODES, "disk")), min_size=2, max_size=4))
+    return Written(policy(*profiles.values()), "\n".join([*lines, ""]), tuple(sorted(accepted)))
+
+
+def told(result: Result) -> dict[str, Any]:
+    """The document, without which robot it is about and how it was read."""
+    document = result.document()
+    patterns = {row["finding"]: row["id"] for row in (document.pop("fleet", None) or {}).get("patterns", ())}
+    assumptions = document["assumptions"]
+    for way in ("fleet", "database"):
+        assumptions.pop(way, None)
+    document["diagnostics"] = sorted(document["diagnostics"], key=json.dumps)
+    plain: dict[str, Any] = _plain(document, patterns)
+    for decision in plain.get("decisions", ()):  # sorted by ids, which hold the robot's name
+        decision["findings"] = sorted(decision["findings"])
+    return plain
+
+
+def _plain(value: Any, ids: dict[str, str]) -> Any:
+    if isinstance(value, dict):
+        return {key: "" if key == "robot" else _plain(inner, ids) for key, inner in value.items()}
+    if isinstance(value, list):
+        return [_plain(inner, ids) for inner in value]
+    return ids.get(value, value) if isinstance(value, str) else value
