@@ -74,13 +74,13 @@ def parse(text: str) -> Duration:
     import isodate  # noqa: PLC0415 - light start
 
     if not text.startswith("P") or text.endswith(("P", "T")):
-        raise ValueError("no ISO 8601 duration")
+        raise ValueError("not an ISO 8601 duration")
     try:
         read = isodate.parse_duration(text, as_timedelta_if_possible=False)
     except OverflowError:
         raise ValueError("longer than a thousand years") from None
     except (isodate.ISO8601Error, ValueError, ArithmeticError):
-        raise ValueError("no ISO 8601 duration") from None
+        raise ValueError("not an ISO 8601 duration") from None
     months = read.years * 12 + read.months
     if months != int(months):
         raise ValueError("a part of a month, which has no length of its own")

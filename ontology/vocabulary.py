@@ -178,7 +178,7 @@ def _read(file: str) -> bytes:
 
     try:
         if not path.is_file():
-            raise refused("is no file", "name a Turtle file")
+            raise refused("is not a file", "name a Turtle file")
         if path.stat().st_size > LARGEST:
             size = f"{path.stat().st_size / 2**20:.0f} MB are too large"
             raise refused(size, f"an ontology of categories has at most {LARGEST // 2**20} MB")

@@ -11,7 +11,7 @@
 // returns denied_by: list of string, file:line of the DENY
 // returns allowed_by: string, file:line of the ALLOW that it takes back; empty where the DENY takes a name out of a wildcard
 // returns reached: boolean, whether data of that kind gets to the leak anyway
-// returns path: list of string, names on a shortest way from the start to the leak
+// returns path: list of string, names on a shortest path from the start to the leak
 // order: robot, category, start, end, leak
 MATCH (c:DataCategory)<-[:SOURCE_OF|DERIVES]-(:Element)
 WITH collect(DISTINCT c.name) AS emitted

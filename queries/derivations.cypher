@@ -1,13 +1,13 @@
 // name: derivations
 // kind: path
-// description: Which node makes one kind of data of another, from which source, along which way?
+// description: Which node makes one kind of data of another, from which source, along which path?
 // param robot: robot, only this robot; all of them if it is empty, default ""
 // returns robot: string, name of the robot
 // returns category: string, the kind of data that is made
 // returns of: list of string, the categories of which labels say that the node makes it
 // returns node: string, who makes it
 // returns source: string, where that comes in of which it is made
-// returns behind_leak: boolean, whether every way there goes through a leak of the category that is made
+// returns behind_leak: boolean, whether every path there goes through a leak of the category that is made
 // returns path: list of string, names in the order of the flow, from the source to the node
 // returns policy: list of string, file:line of the policy line behind each step
 // order: robot, category, node, source

@@ -10,8 +10,8 @@
 // returns source: string, where the data comes in
 // returns leak: string, where it gets out
 // returns pseudonymised: boolean, whether it arrives in pseudonymised form only
-// returns dismissed: boolean, whether every way goes through another leak of the category
-// returns disjoint_paths: integer, how many ways share no flow
+// returns dismissed: boolean, whether every path goes through another leak of the category
+// returns disjoint_paths: integer, how many paths share no flow
 // returns pattern: string, the same on every robot that has this finding
 // order: robot, category, source, leak, kind
 MATCH (f:Finding)

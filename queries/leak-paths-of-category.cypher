@@ -1,6 +1,6 @@
 // name: leak-paths-of-category
 // kind: path
-// description: Which sources of a category, or of a narrower one, reach which leaks, and along which shortest way?
+// description: Which sources of a category, or of a narrower one, reach which leaks, and along which shortest path?
 // param category: category, a category's name, such as Biometric
 // returns robot: string, name of the source's robot
 // returns category: string, the kind of data that arrives

@@ -1,6 +1,6 @@
 // name: leak-paths
 // kind: path
-// description: Which sources reach which leaks, and along which shortest way? One for each finding that was loaded.
+// description: Which sources reach which leaks, and along which shortest path? One for each finding that was loaded.
 // param category: category, only this category and narrower ones; all of them if it is empty, default ""
 // param robot: robot, only this robot; all of them if it is empty, default ""
 // returns robot: string, name of the source's robot

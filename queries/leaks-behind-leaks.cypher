@@ -6,7 +6,7 @@
 // returns category: string, the kind of data that arrives
 // returns source: string, where the data comes in
 // returns leak: string, the leak behind
-// returns through: list of string, the leaks of the category that it goes through before, on the shortest way
+// returns through: list of string, the leaks of the category that it goes through before, on the shortest path
 // returns path: list of string, names in the order of the flow, source first
 // returns pseudonymised: boolean, whether it arrives in pseudonymised form only
 // order: robot, category, source, leak

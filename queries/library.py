@@ -169,7 +169,7 @@ def parse(stem: str, text: str) -> Query:
     for line in header:
         match = _LINE.fullmatch(line)
         if not match:
-            problem(f"{line!r} is no line of a header; see queries/library.py")
+            problem(f"{line!r} is not a line of a header; see queries/library.py")
             continue
         key, kind, name, rest = match.groups()
         if key:

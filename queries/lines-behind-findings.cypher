@@ -1,6 +1,6 @@
 // name: lines-behind-findings
 // kind: table
-// description: Which policy lines stand behind the shortest ways of the most findings?
+// description: Which policy lines stand behind the shortest paths of the most findings?
 // param robot: robot, only this robot; all of them if it is empty, default ""
 // returns findings: integer, how many findings, without dismissed ones
 // returns policy: string, file:line of the policy line

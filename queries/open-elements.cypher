@@ -2,7 +2,7 @@
 // kind: table
 // description: Which elements does personal data get to that no label covers, those on the most leak paths first?
 // param robot: robot, only this robot; all of them if it is empty, default ""
-// returns findings: integer, how many findings have it on their shortest way, without dismissed ones
+// returns findings: integer, how many findings have it on their shortest path, without dismissed ones
 // returns frontier: boolean, whether data gets to it before any other open node
 // returns distance: integer, flows from the nearest source
 // returns robot: string, name of the robot

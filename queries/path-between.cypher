@@ -1,12 +1,12 @@
 // name: path-between
 // kind: path
-// description: Is there a way from one element to another along what the policies allow, whatever goes along it?
+// description: Is there a path from one element to another along what the policies allow, whatever goes along it?
 // param from: element, name of the element where it starts
 // param to: element, name of the element where it ends
 // param mundane: boolean, also through channels that a label calls mundane, such as /parameter_events, default false
 // param robot: robot, only this robot; all of them if it is empty, default ""
 // returns robot: string, name of the robot of the start
-// returns steps: integer, flows on a shortest way
+// returns steps: integer, flows on a shortest path
 // returns path: list of string, names in the order of the flow
 // returns carries: list of string, for each step the kinds of data that go along it, broader ones too; empty for none
 // returns policy: list of string, file:line of the policy line behind each step

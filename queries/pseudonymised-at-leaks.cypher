@@ -6,7 +6,7 @@
 // returns category: string, the kind of data that arrives
 // returns source: string, where the data comes in
 // returns leak: string, where it gets out
-// returns by: list of string, who pseudonymises it on the shortest way
+// returns by: list of string, who pseudonymises it on the shortest path
 // returns path: list of string, names in the order of the flow, source first
 // order: robot, category, source, leak
 MATCH (f:Finding {kind: 'disclosure', pseudonymised: true, dismissed: false})-[a:ACROSS]->(e:Element)

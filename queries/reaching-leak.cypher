@@ -7,9 +7,9 @@
 // returns category: string, the kind of data that arrives
 // returns source: string, where the data comes in
 // returns pseudonymised: boolean, whether it arrives in pseudonymised form only
-// returns dismissed: boolean, whether every way goes through another leak of the category
-// returns disjoint_paths: integer, how many ways share no flow
-// returns path: list of string, names on a shortest way in the order of the flow, source first
+// returns dismissed: boolean, whether every path goes through another leak of the category
+// returns disjoint_paths: integer, how many paths share no flow
+// returns path: list of string, names on a shortest path in the order of the flow, source first
 // order: robot, category, source
 MATCH (f:Finding {kind: 'disclosure', leak: $leak})-[a:ACROSS]->(e:Element)
 WHERE $robot = '' OR f.robot = $robot

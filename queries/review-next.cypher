@@ -3,7 +3,7 @@
 // description: Which open nodes should a person review next, as data gets to them before any other open node?
 // param robot: robot, only this robot; all of them if it is empty, default ""
 // returns distance: integer, flows from the nearest source
-// returns findings: integer, how many findings have it on their shortest way, without dismissed ones
+// returns findings: integer, how many findings have it on their shortest path, without dismissed ones
 // returns kind: string, kind of the element
 // returns element: string, name of the element
 // returns categories: list of string, kinds of data that no label covers there

@@ -1,9 +1,9 @@
 // name: shared-channels
 // kind: table
-// description: Which channels lie on the shortest ways of several findings, so that a change there closes most?
+// description: Which channels lie on the shortest paths of several findings, so that a change there closes most?
 // param least: integer, fewest findings, default 2
 // param robot: robot, only this robot; all of them if it is empty, default ""
-// returns findings: integer, how many findings have it on their shortest way, without dismissed ones
+// returns findings: integer, how many findings have it on their shortest path, without dismissed ones
 // returns robot: string, name of the robot
 // returns kind: string, topic, service or action
 // returns channel: string, name of the channel

@@ -1,6 +1,6 @@
 // name: sources-of-element
 // kind: path
-// description: From which sources does the data come that gets to one element, and along which way?
+// description: From which sources does the data come that gets to one element, and along which path?
 // param element: element, name of a node, topic, service, action or other element
 // param robot: robot, only this robot; all of them if it is empty, default ""
 // returns robot: string, name of the element's robot

@@ -1,6 +1,6 @@
 // name: wildcards-on-leak-paths
 // kind: table
-// description: Which names with wildcards lie on the shortest ways of findings, and which policy line grants them?
+// description: Which names with wildcards lie on the shortest paths of findings, and which policy line grants them?
 // param robot: robot, only this robot; all of them if it is empty, default ""
 // returns findings: integer, how many findings, without dismissed ones
 // returns robot: string, name of the robot

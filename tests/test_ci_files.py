@@ -109,10 +109,11 @@ def test_the_action_writes_sarif_json_a_summary_and_outputs(runner: dict[str, st
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("fail_on", "code"), [("never", 0), ("leak", 0), ("undetermined", 4)])
+@pytest.mark.parametrize(("fail_on", "code"), [("never", 0), ("leak", 0), ("undetermined", 4), ("", 4)])
 def test_the_action_fails_when_it_is_told_to(fail_on: str, code: int, runner: dict[str, str], tmp_path: Path) -> None:
     shutil.copytree(FACTORY, tmp_path / "p")
-    inputs = {"policies": "p/before.policy.xml", "labels": "p/run1.labels.yaml", "fail-on": fail_on}
+    inputs = {"policies": "p/before.policy.xml", "labels": "p/run1.labels.yaml"}
+    inputs |= {"fail-on": fail_on} if fail_on else {}  # else as it is by default
     inputs |= {"options": "--view\nenforced" if fail_on == "never" else "", "json": "out.json"}
     *_, done = run_action(inputs, runner, tmp_path)
     assert done.returncode == code, done.stderr

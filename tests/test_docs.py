@@ -17,6 +17,7 @@ import pytest
 import typer
 
 from rosprivacy.cli.app import app
+from rosprivacy.cli.exit_code import CODES
 from rosprivacy.cli.inputs import WRITTEN
 from rosprivacy.cli.options import ASKED, READ
 from rosprivacy.ingest.database.schema import NODES, RELATIONSHIPS, Property
@@ -45,9 +46,12 @@ HEAD = """\
 
 Written by `python -m tests.test_docs` from the program; do not edit.
 
-Exit codes: 0 no leak found, 1 leak, 2 bad input or usage, 3 database unreachable, 4 undetermined (only with
-`--fail-on undetermined`). Shell completion: `rosprivacy --install-completion`.
+Shell completion: `rosprivacy --install-completion`.
+
 """
+EXIT_CODES = "\n".join(
+    ["| code | meaning |", "| --- | --- |", *(f"| {code} | {meaning} |" for code, meaning in CODES.items()), ""]
+)
 
 MATRIX = """
 ## What is read
@@ -60,7 +64,7 @@ The same options mean the same in every command. Where one makes no sense, the c
 def command_line() -> str:
     """The options of every command, as the program knows them."""
     group: Any = typer.main.get_command(app)
-    text = HEAD + matrix(group.commands)
+    text = HEAD + EXIT_CODES + matrix(group.commands)
     for name, command in group.commands.items():
         if hasattr(command, "commands"):
             rows = [f"| `rosprivacy {name} {n}` | {c.help} |" for n, c in sorted(command.commands.items())]
@@ -250,6 +254,10 @@ def test_what_holds_a_promise_is_there() -> None:
     for file, test in named:
         assert not test or f"def {test}(" in (ROOT / file).read_text("utf-8"), (file, test)
         assert (ROOT / file).is_file(), file
+
+
+def test_the_readme_has_the_table_of_exit_codes() -> None:
+    assert EXIT_CODES in (ROOT / "README.md").read_text("utf-8")
 
 
 def test_no_registry_is_named() -> None:

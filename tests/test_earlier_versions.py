@@ -191,7 +191,7 @@ class TestSavedGraph:
         ("graph", "labels", "policy", "code"),
         [
             (HOME / "graph.json", "care-home/care-home.labels.yaml", "care-home/care-home.policy.xml", 1),
-            (FACTORY / "before.graph.json", "factory/run1.labels.yaml", "factory/before.policy.xml", 0),
+            (FACTORY / "before.graph.json", "factory/run1.labels.yaml", "factory/before.policy.xml", 4),
             (FACTORY / "before.graph.json", "factory/run3.labels.yaml", "factory/before.policy.xml", 1),
         ],
         ids=["care-home", "factory-run1", "factory-run3"],

@@ -271,5 +271,5 @@ def test_a_small_file_is_answered_soon(tmp_path: Path, topic: str, label: str) -
     (tmp_path / "l.json").write_text(json.dumps({"labels": 1, "topics": {label: "mundane", "/x": None, "*": None}}))
     command = [sys.executable, "-m", "rosprivacy", "analyze", "p.xml", "-l", "l.json"]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=30, check=False)
-    assert done.returncode in (0, 2)
+    assert done.returncode in (0, 2, 4)
     assert "Traceback" not in done.stderr

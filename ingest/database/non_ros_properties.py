@@ -45,7 +45,7 @@ def facts_of(said: Mapping[str, Any], categories: Collection[str]) -> NonRosFact
     """
     country, recipient, transfer = (_text(said, key) for key in ("country", "recipient", "transfer"))
     if country and country not in countries().areas:
-        raise ValueError(f"country {country!r} is no ISO 3166-1 code; {countries().hint(country)}")
+        raise ValueError(f"country {country!r} is not an ISO 3166-1 code; {countries().hint(country)}")
     if recipient and recipient not in RECIPIENTS:
         raise ValueError(f"recipient {recipient!r} is none of {', '.join(RECIPIENTS)}")
     if transfer and transfer not in (*TRANSFERS, "none"):
@@ -99,5 +99,5 @@ def _backups(written: Any) -> Duration | bool | None:
 def _text(said: Mapping[str, Any], key: str) -> str:
     value = said.get(key)
     if not (value is None or isinstance(value, str)):
-        raise ValueError(f"{key} is no text")
+        raise ValueError(f"{key} is not a text")
     return value or ""

@@ -201,8 +201,8 @@ FINDING = NodeKind(
         Property("source", STRING, "name of the source"),
         Property("leak", STRING, "name of the leak"),
         Property("pseudonymised", BOOLEAN, "it arrives in pseudonymised form only"),
-        Property("dismissed", BOOLEAN, "every way goes through another leak of the category"),
-        Property("disjoint_paths", INTEGER, "ways that share no flow"),
+        Property("dismissed", BOOLEAN, "every path goes through another leak of the category"),
+        Property("disjoint_paths", INTEGER, "paths that share no flow"),
         Property("special_from", STRING, "element that makes a special category of other data; absent if none does"),
     ),
 )
@@ -297,8 +297,8 @@ DERIVES_FROM = RelationshipKind(
     (
         Property("category", STRING, "name of the category that is made"),
         Property("way", STRINGS, "names of the elements from the source to it, both included"),
-        Property("policy", STRINGS, "file:line of the policy line behind each step of the way"),
-        Property("past_leak", BOOLEAN, "every way there goes through a leak of that category"),
+        Property("policy", STRINGS, "file:line of the policy line behind each step of the path"),
+        Property("past_leak", BOOLEAN, "every path there goes through a leak of that category"),
         _OURS,
     ),
 )
@@ -328,7 +328,7 @@ ACROSS = RelationshipKind(
     "An element of its shortest way.",
     (
         Property("step", INTEGER, "0 for the source"),
-        Property("category", STRING, "the kind of data with which the way gets here"),
+        Property("category", STRING, "the kind of data with which the path gets here"),
         Property("pseudonymised", BOOLEAN, "in which form"),
         Property("file", STRING, "of the policy line behind the step to here"),
         Property("line", INTEGER, "of the policy line behind the step to here"),

@@ -180,7 +180,7 @@ class _Reader(FileReader):
 
     def _date(self, value: Value, key: str) -> str:
         if not is_date(value.text):
-            self.problem(value.line, f"{key} {shown(value.text or value.kind)!r} is no date", "write YYYY-MM-DD")
+            self.problem(value.line, f"{key} {shown(value.text or value.kind)!r} is not a date", "write YYYY-MM-DD")
             return ""
         return value.text
 

@@ -66,7 +66,7 @@ def alike(fleet: Fleet, told_apart: Callable[[str], object] = lambda _: None) ->
     Parameters
     ----------
     told_apart
-        Robots of which this is not the same are not alike, such as those that a decision names.
+        Robots for which this function returns different values are kept apart, such as those that a decision names.
 
     Notes
     -----

@@ -45,7 +45,7 @@ def fleet_schema(categories: Iterable[Category]) -> dict[str, Any]:
             "include": {**_files(), "description": "Other fleet files, relative to this one."},
             "models": _section("spec", "What robots of a model have in common."),
             "robots": _section("robot", "Robots by id; what they name is added to their model's."),
-            "infrastructure": _section("robot", "What has policies and is no robot, such as a base station."),
+            "infrastructure": _section("robot", "What has policies and is not a robot, such as a base station."),
             "groups": {"type": ["array", "null"], "items": {"$ref": "#/$defs/group"}},
             **non_ros_sections(),
             "note": {"type": "string"},

@@ -160,7 +160,7 @@ class _Facts:
         if value.text in countries().areas:  # YAML takes NO for 'no', so the text counts
             self._texts |= countries().place(value.text)
         else:
-            what = f"{_written(value)} is no ISO 3166-1 country code"
+            what = f"{_written(value)} is not an ISO 3166-1 country code"
             self._reader.problem(value.line, what, countries().hint(value.text))
 
     def _take_text(self, key: str, value: Value) -> None:

@@ -124,7 +124,7 @@ class _Reader(FileReader):
             if item.kind == "text" and item.text in CHANGES:
                 yield item.text
             else:
-                what = f"{shown(item.text or item.kind)!r} is no kind of change"
+                what = f"{shown(item.text or item.kind)!r} is not a kind of change"
                 self.problem(item.line, what, f"write all, or a list of {', '.join(CHANGES)}")
 
     def _number(self, value: Value, what: str) -> int:

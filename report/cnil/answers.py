@@ -99,7 +99,7 @@ def life_cycle(known: Known) -> Html:
     parts = [part for kind in known.kinds for part in _life_of(kind)]
     findings = known.findings()
     if findings:
-        parts.append(paragraph(strong(Html("Shortest way to each recipient"))))
+        parts.append(paragraph(strong(Html("Shortest path to each recipient"))))
         parts.append(bullets(_bounded([_way(finding, known) for finding in findings[:WAYS]], len(findings))))
     parts.append(paragraph(Html("What happens outside the analysed system, archiving and erasure: to be completed.")))
     return joined(*parts) if known.kinds else NOTHING_FOLLOWED

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 SHOWN = 20  # of a list; a comment has a limit
 LONGEST = 120  # characters of a name
-LISTS = (("New ways to assess", "new", "after"), ("Gone", "gone", "before"), ("Changed", "changed", "after"))
+LISTS = (("New paths to assess", "new", "after"), ("Gone", "gone", "before"), ("Changed", "changed", "after"))
 COUNTED = ("robots", "grants", "elements")
 KINDS = {"storage-limitation": "kept too long: ", "third-country-transfer": "leaves the EEA: "}
 FORMS = (("dismissed", "only through another recipient"), ("accepted", "accepted"), ("pseudonymised", "pseudonymised"))
@@ -39,7 +39,7 @@ def _lines(document: Mapping[str, Any]) -> Iterator[str]:
         rows = findings[what] if what == "changed" else [row for row in findings[what] if not row[state]["dismissed"]]
         yield from _listed(title, rows, state)
     if not any(findings.values()):
-        yield "\nNo way to assess is new, gone or changed."
+        yield "\nNo path to assess is new, gone or changed."
     yield ""
     yield " ".join(_counted(document))
     yield ""

@@ -66,7 +66,7 @@ def read_earlier(file: str) -> Earlier:
     try:
         path = Path(file)
         if not path.is_file():
-            raise InputError(file, 0, "is no file", HINT)
+            raise InputError(file, 0, "is not a file", HINT)
         if path.stat().st_size > LARGEST:
             raise InputError(file, 0, f"{path.stat().st_size / 2**20:.0f} MB are too large", HINT)
         with path.open("rb") as opened:
@@ -76,7 +76,7 @@ def read_earlier(file: str) -> Earlier:
         line = getattr(error, "lineno", 0)
         raise InputError(file, line, f"cannot be read: {reason(error)}", HINT) from None
     if not isinstance(document, dict) or document.get("format") != FORMAT:
-        raise InputError(file, 0, f"is no document of the format {FORMAT}", HINT)
+        raise InputError(file, 0, f"is not a document of the format {FORMAT}", HINT)
     if wrong := _wrong(document, DOCUMENT | _more(document), ""):
         raise InputError(file, 0, f"{shown(wrong)} is missing or of another type", HINT)
     for category in document["categories"]:

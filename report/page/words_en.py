@@ -1,4 +1,4 @@
-"""The words of reports in English. Ways to assess, recipients, conditions: no verdict of law, no promise."""
+"""The words of reports in English. Paths to assess, recipients, conditions: no verdict of law, no promise."""
 
 WORDS = {
     "thousands": ",",
@@ -19,8 +19,8 @@ WORDS = {
     "more": "and {n} more",
     "wildcard": "wildcard",
     # --- things, counted
-    "way.one": "{n} way to assess",
-    "way.many": "{n} ways to assess",
+    "way.one": "{n} path to assess",
+    "way.many": "{n} paths to assess",
     "element.one": "{n} element",
     "element.many": "{n} elements",
     "flow.one": "{n} flow",
@@ -84,7 +84,7 @@ WORDS = {
     "h.assumptions": "What the result rests on",
     "h.changes": "What changed since the earlier report",
     "h.tables": "Whose data, and who can get them",
-    "h.findings": "Ways to assess",
+    "h.findings": "Paths to assess",
     "h.outside": "Storages and other things outside ROS",
     "h.sanitizers": "What is cleaned, and what passes beside",
     "h.questions": "Open questions",
@@ -95,21 +95,21 @@ WORDS = {
     # --- result
     "verdict.leak": "Personal data can reach a place that a person has to assess",
     "verdict.undetermined": "Not determined: what data can pass is not reviewed in full",
-    "verdict.no-leak-found": "No way to a recipient was found under the labels given",
+    "verdict.no-leak-found": "No path to a recipient was found under the labels given",
     "verdict.nothing": "Not determined: no source was named, so no data was followed",
     "verdict.code": "Verdict of the program",
     "verdict.leak.means": (
         "At least one kind of personal data can get from where it is brought in to an element that lets it out of the "
-        "system, keeps it too long, or lies in a third country. Such a way can be lawful and intended. A person has to "
+        "system, keeps it too long, or lies in a third country. Such a path can be lawful and intended. A person has to "
         "assess each: is it wanted, on which legal basis, who is the recipient?"
     ),
     "verdict.undetermined.means": (
-        "No way to a recipient was found, but data can get to {open} that no label speaks of. Until these are reviewed, "
+        "No path to a recipient was found, but data can get to {open} that no label speaks of. Until these are reviewed, "
         "nothing can be concluded: one of them may let data out."
     ),
     "verdict.ends": "Unknown ends ({ends}): it is not known who reads or what flows in; see section {section}.",
     "verdict.no-leak-found.means": (
-        "Under the labels given, no way leads from a source to a recipient, and everything on the way was reviewed. "
+        "Under the labels given, no path leads from a source to a recipient, and everything on the way was reviewed. "
         "This holds only as far as the labels and policies are true. It says nothing about what lies outside them."
     ),
     "verdict.nothing.means": (
@@ -120,17 +120,17 @@ WORDS = {
         "This report is no legal verdict. It shows where data can go under the policies, and what people said of the "
         "elements. Whether that is permitted is for a person to decide."
     ),
-    "n.ways": "ways to assess",
+    "n.ways": "paths to assess",
     "n.special": "of them with data that can fall under Article 9 GDPR",
     "n.recipients": "places that data can reach",
     "n.open": "elements not reviewed",
     "n.accepted": "accepted by decision",
-    "n.dismissed": "ways only through another recipient",
+    "n.dismissed": "paths only through another recipient",
     "t.kinds": "Kinds of personal data in the system",
     "c.kind": "Kind of data",
     "c.article9": "Article 9(1) GDPR",
     "c.sources": "Brought in or made by",
-    "c.ways": "Ways to assess",
+    "c.ways": "Paths to assess",
     "c.places": "Places reached",
     "c.open": "Not reviewed",
     "made.by": "makes it of {data}",
@@ -230,14 +230,14 @@ WORDS = {
     "ch.none": "Nothing changed in what was found.",
     "ch.verdict": "The verdict was '{before}' and is now '{now}'.",
     "ch.verdict.same": "The verdict is the same as before: '{now}'.",
-    "ch.new": "New ways",
-    "ch.gone": "Ways that are gone",
-    "ch.changed": "Ways that changed",
+    "ch.new": "New paths",
+    "ch.gone": "Paths that are gone",
+    "ch.changed": "Paths that changed",
     "ch.open.new": "Newly open elements",
     "ch.open.gone": "Elements that are no longer open",
     "ch.kinds.new": "Kinds of data that are new: {names}",
     "ch.kinds.gone": "Kinds of data that are no longer followed: {names}",
-    "ch.scope": ("The two reports were not made in the same way. A way that is new or gone can come from that alone:"),
+    "ch.scope": ("The two reports were not made in the same way. A path that is new or gone can come from that alone:"),
     "ch.scope.view": "view: '{before}', now '{now}'",
     "ch.scope.categories_asked": "kinds asked for: {before}, now {now}",
     "ch.scope.data_types_asked": "types of data asked for: {before}, now {now}",
@@ -248,11 +248,11 @@ WORDS = {
     "ch.scope.ontologies": "ontologies of the user: {before}, now {now}",
     "ch.files": "Files that differ: {names}.",
     "ch.files.same": "All policy and label files are the same.",
-    "ch.what.witness": "another shortest way",
+    "ch.what.witness": "another shortest path",
     "ch.what.pseudonymised": "in another form (pseudonymised or not)",
     "ch.what.dismissed": "now or no longer only through another recipient",
     "ch.what.accepted": "another decision",
-    "ch.what.disjoint_paths": "another number of separate ways",
+    "ch.what.disjoint_paths": "another number of separate paths",
     "ch.what.article9": "another statement on Article 9",
     "ch.what.robots": "on other robots",
     "ch.what.law": "other provisions",
@@ -270,7 +270,7 @@ WORDS = {
     ),
     "t.recipients.intro": (
         "Rows are elements that let data out, keep it, or lie outside ROS. A cell says whether data of that kind can get "
-        "there, and links to the first way."
+        "there, and links to the first path."
     ),
     "t.subjects.missing": (
         "Labels do not say whom the data of these sources are about; 'subjects' in a label file says it: {names}."
@@ -278,24 +278,24 @@ WORDS = {
     "c.subject": "Persons",
     "c.recipient": "Recipient or place",
     "subject.unknown": "persons not stated",
-    "cell.brought": "brought in, no way found",
+    "cell.brought": "brought in, no path found",
     "cell.made": "can be made of it",
     "cell.through": "only through another recipient",
     "cell.gets": "gets there",
-    "cell.no": "no way found",
+    "cell.no": "no path found",
     "cell.none": "–",
     "cell.hidden": "pseudonymised",
     "cell.accepted": "accepted",
     "t.subjects.legend": "'–': no source that brings in or leads to data of this kind is labelled with these persons.",
-    "table.legend": "'no way found' holds under the labels given, and only if nothing on the way is left to review.",
+    "table.legend": "'no path found' holds under the labels given, and only if nothing on the way is left to review.",
     # --- findings
     "f.intro": (
-        "Each entry is one way to assess: one kind of data, from one source, to one place. The list below each heading "
-        "is a shortest way; each step names the policy line that allows it. To close a way, change one of these lines, or "
+        "Each entry is one path to assess: one kind of data, from one source, to one place. The list below each heading "
+        "is a shortest path; each step names the policy line that allows it. To close a path, change one of these lines, or "
         "put an element in between that cleans the data. Questions for each: is the disclosure wanted? On which basis of "
         "Article 6, and of Article 9(2) where the data are special? Who is the recipient, and in which role?"
     ),
-    "f.none": "There is no way to assess.",
+    "f.none": "There is no path to assess.",
     "f.filter": "Find and filter",
     "f.search": "Search in names, lines and ids",
     "f.all": "all",
@@ -316,29 +316,29 @@ WORDS = {
     "f.third-country-transfer": "{data} from {source} can get to {leak}, outside the EEA, without a stated basis.",
     "f.single": "{data} is brought in and let out at {source} itself.",
     "f.pseudonymised": (
-        "On these ways the data arrives pseudonymised only. That is still personal data for whoever can tell the persons "
+        "On these paths the data arrives pseudonymised only. That is still personal data for whoever can tell the persons "
         "(recital 26 GDPR). To be answered: can this recipient do so, alone or with what others hold?"
     ),
-    "f.dismissed": "Every way to it goes through {names}, which has an entry of its own. Assess that one first.",
+    "f.dismissed": "Every path to it goes through {names}, which has an entry of its own. Assess that one first.",
     "f.beside": "Past it, the data gets there pseudonymised only: that is an entry of its own.",
     "f.special": "{element} makes data of this kind, which can be a special category, of data that are none.",
-    "f.ways": "{n} ways share no step; closing one leaves the others.",
-    "f.paths": "Further ways",
-    "f.bounded": "There are more ways than the {n} that are listed.",
+    "f.ways": "{n} paths share no step; closing one leaves the others.",
+    "f.paths": "Further paths",
+    "f.bounded": "There are more paths than the {n} that are listed.",
     "f.robots": "The same on {robots}. The policy lines are those of the first.",
     "f.reason": "Reason",
     "f.id": "id",
-    "f.way": "Shortest way",
-    "f.picture": "Picture of the way: {way}",
-    "f.picture.part": "Only the shorter ways are drawn; for all of them, with the files of this report: {command}",
+    "f.way": "Shortest path",
+    "f.picture": "Picture of the path: {way}",
+    "f.picture.part": "Only the shorter paths are drawn; for all of them, with the files of this report: {command}",
     "f.picture.none": "Not drawn here; for a picture, with the files of this report: {command}",
     "f.picture.left": (
-        "{n} of the ways below have no picture here, so that the file stays one that can be mailed, or because Graphviz "
+        "{n} of the paths below have no picture here, so that the file stays one that can be mailed, or because Graphviz "
         "could not draw them. Each of them says how to get it."
     ),
     "f.picture.extra": (
         "There are no pictures, because Graphviz was not installed where the report was made. With "
-        "pip install 'rosprivacy[views]' it draws one of each way."
+        "pip install 'rosprivacy[views]' it draws one of each path."
     ),
     "p.legend": "How to read the pictures",
     "p.shapes": (
@@ -361,19 +361,19 @@ WORDS = {
     "p.look.sanitizer": "cleans, but not all",
     "p.look.reviewed": "reviewed: passes on what it gets",
     "p.look.open": "not reviewed: passes on what it gets, as far as is known",
-    "p.look.shortest": "step of the shortest way",
-    "p.look.way": "step of a longer way",
+    "p.look.shortest": "step of the shortest path",
+    "p.look.way": "step of a longer path",
     "p.look.hidden": "only pseudonymised data",
     "f.now": "from here: {data}",
     "f.data": "{data} (pseudonymised)",
     "f.from.to": "{source} to {leak}",
-    "f.number": "Way {n}",
-    "f.kind.none": "No way to assess was found for this kind.",
+    "f.number": "Path {n}",
+    "f.kind.none": "No path to assess was found for this kind.",
     # --- fleets
     "h.fleet": "The robots of the fleet",
     "fl.intro": (
         "The fleet has {robots}: {kinds}, told apart by their policies and labels. Robots of one kind are alike, so one of them "
-        "is shown for all, here and on each way. How many robots a way is on stands with it; the numbers of elements and "
+        "is shown for all, here and on each path. How many robots a path is on stands with it; the numbers of elements and "
         "flows are those of the whole fleet. Infrastructure, and what the robots share, counts as no robot."
     ),
     "t.robots": "Robots that are alike",
@@ -395,7 +395,7 @@ WORDS = {
     "fl.fewer_open": "not reviewed: {names}",
     "f.fleet": "On {n} of {all}.",
     "f.fleet.none": "It begins and ends outside the robots.",
-    "f.fleet.across": "From one robot to another; {n} such ways in the fleet.",
+    "f.fleet.across": "From one robot to another; {n} such paths in the fleet.",
     "f.fleet.dismissed": "{n} of {all} like it lead only through another recipient.",
     "f.fleet.accepted": "{n} of {all} like it are accepted by a decision.",
     "f.pattern": "pattern",
@@ -419,11 +419,11 @@ WORDS = {
     "d.state": "State",
     "d.state.valid": "in force",
     "d.state.expired": "expired: it no longer counts",
-    "d.state.orphaned": "matches no way any more",
+    "d.state.orphaned": "matches no path any more",
     "d.none": "No decision is recorded.",
     "d.basis.missing": "No legal basis of Article 6 is recorded.",
     "d.special.missing": "The data can be a special category, and no exception of Article 9(2) is recorded.",
-    "d.orphans": "Decisions that match no way",
+    "d.orphans": "Decisions that match no path",
     # --- outside ROS
     "o.none": (
         "No label file states a storage, server or other thing outside ROS. That there are none is not shown by this: what "
@@ -465,7 +465,7 @@ WORDS = {
     "c.method": "Method",
     "c.leaves": "Leaves it all the same",
     "c.beside": "Get it beside",
-    "c.past": "Ways past it",
+    "c.past": "Paths past it",
     "method.anonymise": "anonymises",
     "method.aggregate": "aggregates",
     "method.drop": "drops",
@@ -555,7 +555,7 @@ WORDS = {
     "m.3.text": (
         "From policies and labels it builds a directed graph and follows every kind of data from its sources to every "
         "place that it can get to. It takes the cautious side: an element that nobody reviewed passes on all that gets to "
-        "it. Whether data really goes a way, and how often, a policy does not tell; the report says what is allowed."
+        "it. Whether data really goes a path, and how often, a policy does not tell; the report says what is allowed."
     ),
     "m.4": "Kinds of data",
     "m.4.text": (
@@ -568,15 +568,15 @@ WORDS = {
         "Only anonymous data leave the law of data protection. Data that were pseudonymised are followed on, marked as "
         "such (recital 26). Where a label does not state how an element cleans, pseudonymising is assumed."
     ),
-    "m.6": "Ways to assess",
+    "m.6": "Paths to assess",
     "m.6.text": (
-        "For each kind of data, source and place there is one entry, with a shortest way as proof and the number of ways "
-        "that share no step. A way that leads only through another recipient of the same kind is listed as such, since "
+        "For each kind of data, source and place there is one entry, with a shortest path as proof and the number of paths "
+        "that share no step. A path that leads only through another recipient of the same kind is listed as such, since "
         "that one has to be assessed first. The id of an entry stays the same as long as kind, source and place do."
     ),
     "m.7": "Verdict",
     "m.7.text": (
-        "'leak': there is a way to assess. 'undetermined': there is none, but elements on the way are not reviewed, or no "
+        "'leak': there is a path to assess. 'undetermined': there is none, but elements on the way are not reviewed, or no "
         "source was named. 'no-leak-found': there is none, and nothing is open. None of these is a statement of law."
     ),
     "m.8": "What the report cannot know",

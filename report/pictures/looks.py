@@ -113,8 +113,8 @@ LINE_LOOKS = {
     MATCHES: Look("the wildcard covers it", INK, style="dotted"),
     DENIED: Look("denied", QUIET, style="dashed", head="tee"),
     DATA: Look("data can go here", INK),
-    WAY: Look("on a way to a leak", RED, width=2.2),
-    SHORTEST: Look("on the shortest way to a leak", RED, width=4.5),
+    WAY: Look("on a path to a leak", RED, width=2.2),
+    SHORTEST: Look("on the shortest path to a leak", RED, width=4.5),
 }
 PSEUDONYMISED = "dashed: only pseudonymised"
 

@@ -29,9 +29,9 @@ def finished(data: bytes, picture: Picture) -> bytes:
 
 def alt_text(picture: Picture) -> str:
     """Return what a picture shows, for people who do not see it."""
-    ways = [f"Way to a leak: {way}" for way in picture.ways[:MOST_WAYS]]
+    ways = [f"Path to a leak: {way}" for way in picture.ways[:MOST_WAYS]]
     if len(picture.ways) > MOST_WAYS:
-        ways.append(f"And {len(picture.ways) - MOST_WAYS} more ways")
+        ways.append(f"And {len(picture.ways) - MOST_WAYS} more paths")
     return printable(sentences([*picture.notes, *ways])) or "Nothing is drawn."
 
 

@@ -34,11 +34,11 @@ if TYPE_CHECKING:
 VERDICTS = {
     Verdict.LEAK: "data can reach a leak",
     Verdict.UNDETERMINED: "no leak reached, but not everything on the way is reviewed",
-    Verdict.NO_LEAK_FOUND: "no way to a leak found",
+    Verdict.NO_LEAK_FOUND: "no path to a leak found",
 }
 PER_BOX = 12  # flows that are looked at for each box: channels with the same ends will be one
 NOTHING = "No data was followed: no label names a source. So this says nothing about the system."
-LONGER = "Not drawn: ways of more"
+LONGER = "Not drawn: paths of more"
 BOTH_WAYS = {"request", "reply", "call", "execute"}
 
 
@@ -276,7 +276,7 @@ class FindingViews:
             through = listed((element.name for element in finding.through), longest=60)
             notes.append(f"Only through {through}, which has a finding of its own")
         if finding.disjoint_paths > 1:
-            notes.append(f"{finding.disjoint_paths} ways share no flow")
+            notes.append(f"{finding.disjoint_paths} paths share no flow")
         if not found.complete:
             notes.append(f"{LONGER} than {counted(max(lengths.values()), 'step')}")
         ordered = sorted_boxes(boxes.values())
@@ -296,12 +296,12 @@ def bounded(picture: Picture, most: int) -> Picture:
     if len(picture.boxes) <= most:
         return picture
     lines = [line for line in picture.lines if line.look == SHORTEST]
-    what = "the shortest ways"
+    what = "the shortest paths"
     for length in sorted({line.length for line in picture.lines if line.length}):
         longer = [line for line in picture.lines if 0 < line.length <= length or line.look == SHORTEST]
         if len(_joined(longer) | picture.core) > most:
             break
-        lines, what = longer, f"the ways of up to {counted(length, 'step')}"
+        lines, what = longer, f"the paths of up to {counted(length, 'step')}"
     kept = _joined(lines) | picture.core
     left = len(picture.boxes) - len(kept)
     if not left and len(lines) == len(picture.lines):

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Analysis, OpenQuestion
     from rosprivacy.report.rdf.things import Things
 
-NO_VERDICT = "Labels are a person's word, and a way can be lawful. This is no legal verdict."
+NO_VERDICT = "Labels are a person's word, and a path can be lawful. This is no legal verdict."
 
 
 def files_read(assumptions: Mapping[str, Any]) -> list[tuple[str, str, str]]:

@@ -95,7 +95,7 @@ def flows_of(
 
 
 def _about(number: int) -> str:
-    return "A shortest way." if number == 0 else "Another way."
+    return "A shortest path." if number == 0 else "Another path."
 
 
 def _others(finding: Finding) -> list[tuple[Element, ...]]:

@@ -166,10 +166,10 @@ def _about(analysis: Analysis, results: Sequence[Mapping[str, Any]]) -> Iterator
     ways = sum(1 + further_ways(finding) for finding in analysis.findings)
     ways -= sum(len(result.get("codeFlows", ())) for result in results)
     if ways:
-        yield _notice("note", "bound", f"{ways} ways of findings are left out; --format json lists them.")
+        yield _notice("note", "bound", f"{ways} paths of findings are left out; --format json lists them.")
     bounded = sum(finding.bounded for finding in analysis.findings)
     if bounded:
-        yield _notice("note", "bound", f"{bounded} findings have more ways than were looked for (--max-paths).")
+        yield _notice("note", "bound", f"{bounded} findings have more paths than were looked for (--max-paths).")
 
 
 def _said(diagnostics: Sequence[Diagnostic], files: Files) -> Iterator[dict[str, Any]]:

@@ -199,9 +199,9 @@ def _message(finding: Finding, law: Sequence[Legal], turned: Element | None, pla
         said.append(f"{named(turned)} makes such data of other data.")
     if finding.dismissed:
         through = ", ".join(named(element) for element in finding.through)
-        said.append(f"Every way there goes through {through}, which has a finding of its own.")
+        said.append(f"Every path there goes through {through}, which has a finding of its own.")
     if finding.disjoint_paths > 1:
-        said.append(f"{finding.disjoint_paths} ways share no step.")
+        said.append(f"{finding.disjoint_paths} paths share no step.")
     said += _to_check(law)
     if place == NOWHERE:
         said.append("No file says so: it stands in the database.")

@@ -20,7 +20,7 @@ NO_VERDICT = "The labels are a person's word, and a path can be lawful: this is 
 DECIDE = "If the path is to stay, write down who decided so, why, and on which legal basis."
 CLEAN = "Can the data be cleaned before: anonymised, aggregated, dropped? Label the node that does it as sanitizer."
 ASSESS = (
-    "Read the way step by step: is each label right, and is each step needed?",
+    "Read the path step by step: is each label right, and is each step needed?",
     "If a step is not needed, take the grant out of the policy, or deny it.",
     CLEAN,
     DECIDE,

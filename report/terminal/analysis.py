@@ -20,6 +20,7 @@ from rosprivacy.report.terminal.denied import denied_lines
 from rosprivacy.report.terminal.fleet import fleet_lines, robots_of
 from rosprivacy.report.terminal.labels import overruled_lines, standard_lines
 from rosprivacy.report.terminal.ledger import ledger_lines, taken_away_lines
+from rosprivacy.report.terminal.next_step import next_lines
 from rosprivacy.report.terminal.restriction import asked_at_verdict, asked_lines, may_be_asked
 from rosprivacy.report.terminal.unknown_ends import end_lines, ends_at_verdict
 
@@ -94,6 +95,7 @@ def _lines(report: Mapping[str, Any], *, verbose: bool, quiet: bool) -> Iterator
         yield from ledger_lines(report)
     yield from _assumed(report, verbose=verbose)
     yield from _diagnostics(report, verbose=verbose)
+    yield from next_lines(report)
 
 
 def _summary(report: Mapping[str, Any]) -> str:

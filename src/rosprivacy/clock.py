@@ -31,7 +31,7 @@ def source_date(environment: Mapping[str, str]) -> datetime | None:
         return datetime.fromtimestamp(int(given), UTC)
     except (ValueError, OverflowError, OSError):
         hint = "give whole seconds since 1970, or unset it"
-        raise InputError(VARIABLE, 0, f"{shown(given)!r} is no time", hint) from None
+        raise InputError(VARIABLE, 0, f"{shown(given)!r} is not a time", hint) from None
 
 
 def judged_on(environment: Mapping[str, str]) -> str:

@@ -179,7 +179,7 @@ def test_limits_decide_what_is_proposed(cli: Cli, tmp_path: Path, text: str, ste
         ("limits: 1\nweights: {node: 99999999999999999999}", "2: node is '99999999999999999999'"),
         ("limits: 1\nweights: {fliter: 3}", "2: unknown key 'fliter'; did you mean 'filter'?"),
         ("limits: 1\nplaces: [{at: /a, from: /b, never: all}]", "2: a place needs at, or from and to"),
-        ("limits: 1\nplaces: [{at: /new_pose, never: [cut]}]", "2: 'cut' is no kind of change"),
+        ("limits: 1\nplaces: [{at: /new_pose, never: [cut]}]", "2: 'cut' is not a kind of change"),
         ("limits: 1\nplaces: [{at: /new_pose}]", "2: a place without never or factor says nothing"),
         ("limits: 1\nplaces: [{from: /new_pose, to: /safety_camera, never: all}]", "2: no flow goes from '/new_pose'"),
         ("limits: 1\nplaces: [/a]", "2: a place is a map, not a text"),
@@ -222,7 +222,8 @@ def test_a_patch_applies_and_removes_the_finding(cli: Cli, tmp_path: Path, view:
     done = cli("mitigate", *arguments, "--by", "deny", "--patch", "fix.diff", cwd=tmp_path)
     assert done.returncode == 0
     patched(tmp_path, tmp_path / "fix.diff")
-    assert run("analyze", *arguments, cwd=tmp_path).returncode == 0
+    left = {"declared": 0, "enforced": 4}  # there more is open
+    assert run("analyze", *arguments, cwd=tmp_path).returncode == left[view]
 
 
 def test_who_can_no_longer_read_in_the_enclave_is_named(cli: Cli, tmp_path: Path) -> None:

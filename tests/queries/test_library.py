@@ -51,7 +51,7 @@ def test_the_pack_is_sorted_by_name() -> None:
         ("returns name: string,", "returns name: text,", "the type is one of"),
         ("default 2", "default two", "the default is no integer"),
         ("default false", 'default "false"', "the default is no boolean"),
-        ("// order", "// odd", "no line of a header"),
+        ("// order", "// odd", "not a line of a header"),
     ],
 )
 def test_each_fault_is_found(old: str, new: str, message: str) -> None:

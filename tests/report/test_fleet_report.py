@@ -81,7 +81,7 @@ def test_each_way_says_on_how_many_robots_it_is_and_lists_them() -> None:
     for way in told().ways:
         assert list(way.robots) == patterns[way.id]["robots"]
         assert way.spread.startswith(f"On {len(way.robots)} of 40 robots.")
-        assert ("From one robot to another; 468 such ways" in way.spread) == patterns[way.id]["across"]
+        assert ("From one robot to another; 468 such paths" in way.spread) == patterns[way.id]["across"]
     (video,) = (way for way in told().ways if way.leak == "base:reviewer")
     assert video.spread == "On 24 of 40 robots. In 23 of 24 like it the data are pseudonymised."
     assert len(told().ways) == len(document()["findings"]) == 6  # patterns, not put together a second time

@@ -316,7 +316,8 @@ def test_it_listens_on_this_machine_only(session: SparkSession) -> None:
 
 
 def test_what_is_no_master_is_told() -> None:
-    with pytest.raises(InputError, match=r"^--master:0: 'moon' is no Spark master; write local"), spark.session("moon"):
+    told = r"^--master:0: 'moon' is not a Spark master; write local"
+    with pytest.raises(InputError, match=told), spark.session("moon"):
         pass
 
 

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from rosprivacy.analysis.modes import Paths
+from rosprivacy.cli.exit_code import FailOn, exit_code
 from rosprivacy.cli.inputs import Inputs, reads_system, refuse
-from rosprivacy.cli.options import ASKED, Engine, FailOn, Format, Output
+from rosprivacy.cli.options import ASKED, Engine, Format, Output
 from rosprivacy.cli.output import emit
-
-if TYPE_CHECKING:
-    from rosprivacy.result import Result
-
 
 SPARK = "Where it is computed"  # a panel of help
 
@@ -75,10 +72,10 @@ def analyze(
     fail_on: Annotated[
         FailOn,
         typer.Option(
-            help="Exit with 1 on a finding that is not accepted (leak, todo) or not decided (undecided), on any (all), "
-            "or on none (never, off); undetermined: as leak, and with 4 if undetermined."
+            help="Exit with 1 on a finding that is not accepted, and with 4 if undetermined. leak: not with 4, unless "
+            "no data was followed; undecided: with 1 only where nobody has decided; never: with 0."
         ),
-    ] = FailOn.leak,
+    ] = FailOn.undetermined,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print the verdict only.")] = False,
     verbose: Annotated[bool, typer.Option("--verbose", "-v", help="Print every open element and notice.")] = False,
 ) -> None:
@@ -117,15 +114,4 @@ def analyze(
         texts[save_graph] = as_text(as_dict(result.policies, result.diagnostics))
     style = Style(verbose=verbose, quiet=quiet, colour=output is None)
     emit(written(result, format.value, style), output, texts)
-    raise typer.Exit(_exit_code(result, fail_on))
-
-
-def _exit_code(result: Result, fail_on: FailOn) -> int:
-    analysis, decided = result.analysis, result.decided
-    findings = [finding for finding in analysis.findings if not finding.dismissed]
-    left = [finding for finding in findings if not finding.accepted]
-    undecided = [finding for finding in left if not (decided and decided.valid(finding))]
-    counted = {FailOn.never: [], FailOn.off: [], FailOn.undecided: undecided, FailOn.all: findings}.get(fail_on, left)
-    if counted:
-        return 1
-    return 4 if analysis.verdict == "undetermined" and fail_on is FailOn.undetermined else 0
+    raise typer.Exit(exit_code(result, fail_on))

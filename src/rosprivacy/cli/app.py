@@ -1,12 +1,13 @@
 """The command line: options in, a ``System`` read and ``answer`` called, a report out, an exit code.
 
-Exit codes: 0 no leak found, 1 leak, 2 bad input or usage, 3 database or cluster unreachable, 4 undetermined (only with
-``--fail-on undetermined``). Heavy imports stand in the commands, so that ``--version`` and completion are quick.
+``exit_code.py`` has the table of exit codes. Heavy imports stand in the commands, so that ``--version`` and
+completion are quick.
 """
 
 from __future__ import annotations
 
 import sys
+import traceback
 from typing import Annotated
 
 import typer
@@ -29,6 +30,7 @@ from rosprivacy.cli import (
     unload,
     why_not,
 )
+from rosprivacy.cli.exit_code import OWN_ERROR
 from rosprivacy.cli.help import ANALYSE, DECIDE, LABEL, MANY, SEE, Group
 from rosprivacy.version import __version__
 
@@ -69,9 +71,15 @@ def root(
 
 
 def main() -> None:
-    """Run the command line; a problem that we raise is one line each on standard error, never a traceback."""
+    """Run the command line; a problem that we raise is one line each on standard error, never a traceback.
+
+    An error of our own is no finding: Python would end with 1, which says 'leak'.
+    """
     try:
         app()
     except RosPrivacyError as error:
         print(error, file=sys.stderr)
         sys.exit(error.exit_code)
+    except Exception:  # noqa: BLE001 - whatever it is, it is an error of our own
+        traceback.print_exc()
+        sys.exit(OWN_ERROR)

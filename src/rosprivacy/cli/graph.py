@@ -78,7 +78,7 @@ def graph(
         typer.Option(
             metavar="ID",
             show_default=False,
-            help="Draw the ways of this finding only: a privacy view.",
+            help="Draw the paths of this finding only: a privacy view.",
             rich_help_panel=DRAWN,
         ),
     ] = None,
@@ -105,7 +105,7 @@ def graph(
         typer.Option(
             min=1,
             show_default=False,
-            help="Draw the shorter ways to leaks only, up to so many elements.",
+            help="Draw the shorter paths to leaks only, up to so many elements.",
             rich_help_panel=DRAWN,
         ),
     ] = None,

@@ -1,10 +1,16 @@
-"""How help is shown: the commands in groups, in the order of a user's way; flags without the name of a type."""
+"""How help is shown: the commands in groups, in the order of a user's way; flags without the name of a type.
+
+What is wrong in a command's words is told with what to write instead.
+"""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import typer
 from typer.core import TyperGroup
+
+from rosprivacy.cli.wrong_values import with_nearest
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -29,6 +35,13 @@ class Group(TyperGroup):
         if command is not None:
             _untyped(command.get_params(ctx))
         return command
+
+    def invoke(self, ctx: Any) -> Any:
+        """Read the words of a command and run it."""
+        try:
+            return super().invoke(ctx)
+        except typer.BadParameter as error:
+            raise with_nearest(error) from None
 
 
 def _untyped(parameters: Iterable[Any]) -> list[Any]:

@@ -22,18 +22,6 @@ class Format(StrEnum):
     cnil_pia = "cnil-pia"
 
 
-class FailOn(StrEnum):
-    """What ends with an exit code other than 0: verdicts, or what is decided about findings."""
-
-    leak = "leak"
-    undetermined = "undetermined"
-    never = "never"
-    off = "off"
-    undecided = "undecided"
-    todo = "todo"
-    all = "all"
-
-
 class TextOrJson(StrEnum):
     """For people, or for programs."""
 

@@ -2,7 +2,7 @@
 
 In: what each part says of its sources, and the core. Out: for each class what leaves the border, from which each part
 sees what gets to its leaks; and what gets to those of the core. Sources that bring the same to the same places are one
-class, so it is no matter how many robots there are.
+class, so the number of robots does not matter.
 """
 
 from __future__ import annotations

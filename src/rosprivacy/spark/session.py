@@ -106,7 +106,7 @@ def session(master: str | None) -> Iterator[SparkSession]:
     master = master or LOCAL
     if not MASTERS.fullmatch(master):
         raise InputError(
-            "--master", 0, f"{shown(master)!r} is no Spark master", "write local[4], spark://host:7077, yarn"
+            "--master", 0, f"{shown(master)!r} is not a Spark master", "write local[4], spark://host:7077, yarn"
         )
     try:
         from pyspark.sql import SparkSession  # noqa: PLC0415 - an extra

@@ -264,13 +264,16 @@ class TestProblems:
             ("MATCH ()-[f:FLOWS_TO]->({name: '/blur'}) SET f.never = 7", "a flow cannot be understood"),
             (
                 "CREATE (:Element:Storage {name: 'x', country: 'UK'})",
-                "storage 'x' cannot be understood: country 'UK' is no ISO 3166-1 code; did you mean GB\\?",
+                "storage 'x' cannot be understood: country 'UK' is not an ISO 3166-1 code; did you mean GB\\?",
             ),
-            ("CREATE (:Element:Storage {name: 'x', retention: 'long'})", "retention 'long' is no ISO 8601 duration"),
+            (
+                "CREATE (:Element:Storage {name: 'x', retention: 'long'})",
+                "retention 'long' is not an ISO 8601 duration",
+            ),
             ("CREATE (:Element:Storage {name: 'x', limits: ['X: P1D']})", "limits names the unknown category 'X'"),
-            ("CREATE (:Element:Storage {name: 'x', backups: 'some'})", "backups 'some' is no ISO 8601 duration"),
+            ("CREATE (:Element:Storage {name: 'x', backups: 'some'})", "backups 'some' is not an ISO 8601 duration"),
             ("CREATE (:Element:Storage {name: 'x', transfer: 'trust'})", "transfer 'trust' is none of adequacy, "),
-            ("CREATE (:Element:Storage {name: 'x', operator: 7})", "operator is no text"),
+            ("CREATE (:Element:Storage {name: 'x', operator: 7})", "operator is not a text"),
             ("CREATE (:Robot {name: 'other', view: 'enforced'})", "in the views declared and enforced"),
             ("MATCH (r:Robot) DELETE r", "there is no robot in it; load one"),
             (

@@ -343,18 +343,18 @@ ACCEPT_ALL = f"category: Video, decision: accept, {SIGNED}"
 
 @pytest.mark.parametrize(
     ("entries", "codes"),
-    [  # off, undecided, todo, all, and today's: never, leak, undetermined
-        ([], (0, 1, 1, 1, 0, 1, 1)),
-        ([ACCEPT_RELAY], (0, 1, 1, 1, 0, 1, 1)),  # the cloud is open now
-        ([ACCEPT_RELAY, MITIGATE_CLOUD], (0, 0, 1, 1, 0, 1, 1)),
-        ([ACCEPT_ALL], (0, 0, 0, 1, 0, 0, 0)),
-        (["category: Video, decision: delegate"], (0, 0, 1, 1, 0, 1, 1)),
-        ([ACCEPT_ALL.replace("accept,", "accept, expires: 2020-01-01,")], (0, 1, 1, 1, 0, 1, 1)),
+    [  # never, undecided, leak, undetermined
+        ([], (0, 1, 1, 1)),
+        ([ACCEPT_RELAY], (0, 1, 1, 1)),  # the cloud is open now
+        ([ACCEPT_RELAY, MITIGATE_CLOUD], (0, 0, 1, 1)),
+        ([ACCEPT_ALL], (0, 0, 0, 0)),
+        (["category: Video, decision: delegate"], (0, 0, 1, 1)),
+        ([ACCEPT_ALL.replace("accept,", "accept, expires: 2020-01-01,")], (0, 1, 1, 1)),
     ],
 )
 def test_fail_on_looks_at_what_is_decided(cli: Cli, chain: Path, entries: list[str], codes: tuple[int, ...]) -> None:
     answer(cli, chain, *entries)
-    levels = ("off", "undecided", "todo", "all", "never", "leak", "undetermined")
+    levels = ("never", "undecided", "leak", "undetermined")
     arguments = ("analyze", "p.xml", "-l", "l.yaml", "--decisions", "d.yaml", "--fail-on")
     assert tuple(cli(*arguments, level, cwd=chain).returncode for level in levels) == codes
 

@@ -372,9 +372,9 @@ class TestRefusals:
             ("include: f.yaml\n", "4: f.yaml includes itself, on a ring; remove one of the includes"),
             ("include: [1]\n", "4: include: a number; name fleet files"),
             # elements
-            ("elements: {b: {kind: storage, retention: 1 month}}\n", "4: '1 month' is no ISO 8601 duration"),
-            ("elements: {b: {kind: storage, country: Germany}}\n", "4: 'Germany' is no ISO 3166-1 country code"),
-            ("limits: {Video: x}\n", "4: 'x' is no ISO 8601 duration"),
+            ("elements: {b: {kind: storage, retention: 1 month}}\n", "4: '1 month' is not an ISO 8601 duration"),
+            ("elements: {b: {kind: storage, country: Germany}}\n", "4: 'Germany' is not an ISO 3166-1 country code"),
+            ("limits: {Video: x}\n", "4: 'x' is not an ISO 8601 duration"),
             # flows
             ("flows: [{from: 'b:/uplink', to: 'a:/camera'}]\n", "4: a flow names the robot 'b', which is not there"),
             ("flows: [{from: 'b*:/uplink', to: 'a:/camera'}]\n", "4: a flow names the robot 'b*', which is not"),

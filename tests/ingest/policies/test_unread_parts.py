@@ -45,7 +45,7 @@ def verdict(cli: Cli, *arguments: str) -> tuple[str, str]:
 def test_a_saved_graph_keeps_what_was_not_read(cli: Cli) -> None:
     """One answer: what is undetermined from the files is so from the graph."""
     Path("d/f.xml").write_text(FRAGMENT, "utf-8")
-    assert cli("analyze", "d", "-l", "l.yaml", "--save-graph", "g.json", "-o", "o.txt").returncode == 0
+    assert cli("analyze", "d", "-l", "l.yaml", "--save-graph", "g.json", "-o", "o.txt").returncode == 4
     got, said = verdict(cli, "--add", "g.json", "-l", "l.yaml")
     assert got == "undetermined"
     assert "no policy read here includes it" in said

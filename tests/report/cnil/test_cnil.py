@@ -383,7 +383,8 @@ def test_the_command_dates_it_as_it_is_told() -> None:
     assert {a["created_at"] for a in json.loads(outputs[0].stdout)["answers"]} == {"2026-01-02T03:04:05.000Z"}
     imported(json.loads(outputs[0].stdout))
     assert outputs[2].returncode == 2
-    assert outputs[2].stderr == "SOURCE_DATE_EPOCH:0: 'soon' is no time; give whole seconds since 1970, or unset it\n"
+    hint = "give whole seconds since 1970, or unset it"
+    assert outputs[2].stderr == f"SOURCE_DATE_EPOCH:0: 'soon' is not a time; {hint}\n"
 
 
 def test_without_being_told_it_is_dated_now(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -182,7 +182,7 @@ class TestSaved:
             ),
             (
                 '{"format": "rosprivacy.analysis/2", ' + SAVED % "[]",
-                "old.json:0: is no document of the format rosprivacy.analysis/1; give what",
+                "old.json:0: is not a document of the format rosprivacy.analysis/1; give what",
             ),
             ("fleet: 2", "old.json:1: fleet format '2'"),
         ],

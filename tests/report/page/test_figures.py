@@ -92,9 +92,9 @@ def test_what_is_not_whole_says_so_and_how_to_get_the_rest() -> None:
     told = outline(result.document(), "en")
     one = made(result.analysis)[0]
     page = html(told, Figures({told.ways[0].id: inline.Inline(one.svg, whole=False)}))
-    assert "Only the shorter ways are drawn" in page
+    assert "Only the shorter paths are drawn" in page
     assert f"rosprivacy graph … --finding {told.ways[0].id}" in page
-    assert "Only the shorter ways" not in html(told, Figures({told.ways[0].id: one}))
+    assert "Only the shorter paths" not in html(told, Figures({told.ways[0].id: one}))
 
 
 def test_hostile_names_stay_text() -> None:
@@ -126,7 +126,7 @@ def test_each_way_has_its_picture_and_says_it_in_words() -> None:
     page = lxml_html.document_fromstring(html(told, drawn))
     pictures = page.xpath("//figure[@class='picture']//*[@role='img']")
     assert [picture.get("aria-label") for picture in pictures] == [
-        "Picture of the way: " + " → ".join(e["name"] for e in finding["witness"]) for finding in care()["findings"]
+        "Picture of the path: " + " → ".join(e["name"] for e in finding["witness"]) for finding in care()["findings"]
     ]
     assert "no picture" not in page.text_content()
     assert set(drawn.of) == {way.id for way in told.ways}
@@ -149,7 +149,7 @@ def test_what_has_no_room_is_left_out_in_order_and_it_says_how_many_and_how_to_g
     some = figures(result.analysis, told, room=len(every.of[first[0]].svg.encode()))
     assert list(some.of) == first
     page = html(told, some)
-    assert "2 of the ways below have no picture here" in page
+    assert "2 of the paths below have no picture here" in page
     assert [f"--finding {way.id}" in page for way in told.ways] == [False, True, True]
 
 
@@ -168,7 +168,7 @@ def test_what_graphviz_cannot_draw_is_left_out_alone(monkeypatch: pytest.MonkeyP
     missing = [way.id for way in told.ways if way.id not in drawn.of]
     assert missing
     assert told.ways[1].id in missing
-    assert f"{len(missing)} of the ways below have no picture here" in html(told, drawn)
+    assert f"{len(missing)} of the paths below have no picture here" in html(told, drawn)
 
 
 def test_without_graphviz_the_report_says_in_one_place_how_to_get_pictures(monkeypatch: pytest.MonkeyPatch) -> None:

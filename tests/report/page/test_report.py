@@ -156,7 +156,7 @@ def test_each_assumption_is_told() -> None:
             {"verdict": "undetermined", "findings": [], "open": "some"},
             "Not determined: what data can pass is not reviewed",
         ),
-        ({"verdict": "no-leak-found", "findings": []}, "No way to a recipient was found under the labels given"),
+        ({"verdict": "no-leak-found", "findings": []}, "No path to a recipient was found under the labels given"),
         ({"verdict": "undetermined", "findings": [], "open": []}, "no source was named, so no data was followed"),
         ({"verdict": "undetermined", "findings": [], "categories": []}, "no source was named, so no data was followed"),
     ],
@@ -244,19 +244,19 @@ def test_whose_data_by_kind() -> None:
     report = told(care())
     assert cells(report.subjects) == {
         "residents": {
-            "face template": "1 way to assess", "location": "–", "person track": "–",
-            "video of persons": "1 way to assess", "voice": "1 way to assess",
+            "face template": "1 path to assess", "location": "–", "person track": "–",
+            "video of persons": "1 path to assess", "voice": "1 path to assess",
         },
         "staff": {
-            "face template": "1 way to assess", "location": "–", "person track": "–",
-            "video of persons": "1 way to assess", "voice": "1 way to assess",
+            "face template": "1 path to assess", "location": "–", "person track": "–",
+            "video of persons": "1 path to assess", "voice": "1 path to assess",
         },
         "visitors": {
-            "face template": "1 way to assess", "location": "–", "person track": "–",
-            "video of persons": "1 way to assess", "voice": "–",
+            "face template": "1 path to assess", "location": "–", "person track": "–",
+            "video of persons": "1 path to assess", "voice": "–",
         },
         "persons not stated": {
-            "face template": "–", "location": "brought in, no way found", "person track": "can be made of it",
+            "face template": "–", "location": "brought in, no path found", "person track": "can be made of it",
             "video of persons": "–", "voice": "–",
         },
     }  # fmt: skip
@@ -264,15 +264,15 @@ def test_whose_data_by_kind() -> None:
 
 
 def test_who_gets_which_kind() -> None:
-    no = "no way found"
+    no = "no path found"
     assert cells(told(care()).recipients) == {
         "/recorder": {
             "face template": no, "location": no, "person track": no,
-            "video of persons": "1 way to assess, pseudonymised", "voice": no,
+            "video of persons": "1 path to assess, pseudonymised", "voice": no,
         },
         "/uplink": {
-            "face template": "1 way to assess", "location": no, "person track": no, "video of persons": no,
-            "voice": "1 way to assess",
+            "face template": "1 path to assess", "location": no, "person track": no, "video of persons": no,
+            "voice": "1 path to assess",
         },
     }  # fmt: skip
 
@@ -318,9 +318,9 @@ def test_decisions_stand_beside_their_way_with_what_they_lack() -> None:
         assert "6(1)(c)" in text
         assert "no exception of Article 9(2) is recorded" in text  # Article 6 alone does not do for a special category
         assert "to be mitigated" in text
-        assert "matches no way any more" in text
-        assert "1 way to assess accepted by a person's decision; section 4 shows each" in text
-    assert {what: number for number, what in report.numbers}["ways to assess"] == 2
+        assert "matches no path any more" in text
+        assert "1 path to assess accepted by a person's decision; section 4 shows each" in text
+    assert {what: number for number, what in report.numbers}["paths to assess"] == 2
 
 
 def test_findings_that_differ_only_in_the_robot_are_one_with_its_robots_listed() -> None:  # S10
@@ -370,7 +370,7 @@ def test_new_gone_and_changed_ways_are_told() -> None:
     assert [way.mark for way in report.ways] == ["changed", "new"]
     for text in texts(new, earlier=earlier(old)):
         assert gone["id"] in text
-        assert "another shortest way" in text
+        assert "another shortest path" in text
 
 
 def test_a_line_that_only_moved_is_no_change() -> None:
@@ -386,7 +386,7 @@ def test_a_way_that_is_gone_because_less_was_asked_is_no_answer() -> None:
     new["verdict"] = "no-leak-found"
     new["assumptions"] |= {"categories_asked": ["Voice"], "view": "enforced"}
     for text in texts(new, earlier=earlier(care())):
-        assert "were not made in the same way. A way that is new or gone can come from that alone" in text
+        assert "were not made in the same way. A path that is new or gone can come from that alone" in text
         assert "view: 'declared', now 'enforced'" in text
         assert "kinds asked for: all, now Voice" in text
 
@@ -407,8 +407,8 @@ def test_files_that_differ_are_named() -> None:
     ("text", "message"),
     [
         ("", ":1: cannot be read"),
-        ("[]", ":0: is no document of the format rosprivacy.analysis/1"),
-        ('{"format": "rosprivacy.analysis/2"}', ":0: is no document of the format"),
+        ("[]", ":0: is not a document of the format rosprivacy.analysis/1"),
+        ('{"format": "rosprivacy.analysis/2"}', ":0: is not a document of the format"),
         ('{"format": "rosprivacy.analysis/1"}', ":0: verdict is missing or of another type"),
         ("[" * 100_000, ":0: cannot be read"),
         ("\ud800", None),
@@ -745,7 +745,7 @@ def test_a_report_that_is_written_is_no_failure_whatever_it_says() -> None:
     [
         ([], b"name at least one policy"),
         (["--from-database", *SYSTEM], b"takes what is in the database"),
-        ([*SYSTEM, "--since", "missing.json"], b"missing.json:0: is no file; give what"),
+        ([*SYSTEM, "--since", "missing.json"], b"missing.json:0: is not a file; give what"),
         ([*SYSTEM, "--lang", "xx"], b"xx"),
     ],
 )

@@ -295,7 +295,7 @@ def test_a_picture_fits_the_page_and_can_be_read(browser: WebDriver, pages: dict
         assert frame <= width
         assert right <= width or width == PHONE  # what is wide is moved inside its frame
         assert letters >= 9
-        assert label.startswith(("Picture of the way: /", "Bild des Weges: /"))
+        assert label.startswith(("Picture of the path: /", "Bild des Weges: /"))
 
 
 @pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
@@ -323,5 +323,5 @@ def test_there_is_a_picture_of_each_way_or_a_word_how_to_get_it(
     """)
     assert all(without)
     said = browser.execute_script("return document.querySelector('#findings').textContent")
-    assert ("of the ways below have no picture" in said) == bool(without)
+    assert ("of the paths below have no picture" in said) == bool(without)
     assert browser.execute_script("return document.querySelectorAll('figure.picture svg').length") >= 2

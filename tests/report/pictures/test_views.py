@@ -108,7 +108,7 @@ def test_sanitizers_that_end_the_data_and_mundane_channels_are_gone_and_said() -
     assert not names_of(picture.boxes) & {"/filter", "/filtered_safety_video", "/new_pose", "/stop_arm"}
     assert any("/filter, which ends what comes to it" in note for note in picture.notes)
     assert any("carry none of it" in note for note in picture.notes)
-    assert "no way to a leak found" in picture.title
+    assert "no path to a leak found" in picture.title
 
 
 def test_what_pseudonymises_stays_and_what_it_sends_is_dashed() -> None:

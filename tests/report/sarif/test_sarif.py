@@ -325,8 +325,8 @@ def test_further_ways_are_further_code_flows_up_to_a_bound(tmp_path: Path) -> No
     left_out = (
         len([path for path in result.analysis.findings[0].paths if path != result.analysis.findings[0].witness]) - 9
     )
-    assert f"{left_out} ways of findings are left out; --format json lists them." in texts
-    assert "1 findings have more ways than were looked for (--max-paths)." in texts
+    assert f"{left_out} paths of findings are left out; --format json lists them." in texts
+    assert "1 findings have more paths than were looked for (--max-paths)." in texts
 
 
 def test_a_file_with_too_many_ways_keeps_every_finding(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -335,7 +335,7 @@ def test_a_file_with_too_many_ways_keeps_every_finding(monkeypatch: pytest.Monke
     run = checked(log_of(analyze(*CARE_HOME)))
     assert [len(way(r)) if "codeFlows" in r else 0 for r in run["results"]] == [7, 0, 0]
     texts = [notice["message"]["text"] for notice in run["invocations"][0]["toolExecutionNotifications"]]
-    assert "2 ways of findings are left out; --format json lists them." in texts
+    assert "2 paths of findings are left out; --format json lists them." in texts
 
 
 def test_a_very_long_way_keeps_its_ends(tmp_path: Path) -> None:

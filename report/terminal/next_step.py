@@ -1,0 +1,69 @@
+"""What to do next, in the report for the terminal: one step, the one that the verdict waits for (rules S11, S12).
+
+In: a JSON document of the contract. Out: lines.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.model import UNREAD_FILE
+from rosprivacy.report.naming import shown_name
+from rosprivacy.report.terminal.restriction import asked_at_verdict
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+Line = tuple[str, str]  # text, style
+NAMED = 5  # candidates
+SENSORS = (  # what is in the name of a node that brings personal data in, more often than not
+    "camera", "video", "image", "kinect", "realsense", "depth", "thermal", "microphone", "audio", "voice", "speech",
+    "laser", "lidar", "scan", "radar", "localiz", "amcl", "slam", "gnss", "face", "person", "people", "teleop",
+)  # fmt: skip
+SHORT = ("cam", "rgb", "zed", "mic", "asr", "gps", "joy", "user")  # of these only whole words
+SOURCE = "name a source in a label file, such as nodes: {/camera: {source: [Video]}}"
+
+
+def followed(report: Mapping[str, Any]) -> bool:
+    """Whether any data was followed: whether a label names a source of what was asked for."""
+    return bool(report["carries"])
+
+
+def next_lines(report: Mapping[str, Any]) -> Iterator[Line]:
+    """Return the next step; none where nothing was found and nothing is open."""
+    step = _step(report)
+    if step:
+        yield f"Next: {step}", "bold"
+
+
+def _step(report: Mapping[str, Any]) -> str:
+    if report["verdict"] == "leak":
+        return "decide about each finding (rosprivacy decide), or see what would remove it (rosprivacy mitigate)"
+    if report["verdict"] != "undetermined":
+        return ""
+    if not followed(report) and (restriction := asked_at_verdict(report)):
+        return f"ask about all kinds, or {SOURCE}{restriction}"
+    if not followed(report):
+        named = candidates(report)
+        more = f"; candidates by name: {', '.join(named)}" if named else ""
+        return f"{SOURCE}{more} (rosprivacy labels --init lists all nodes)"
+    if report["open"]:
+        first = report["open"][0]["element"]
+        others = len(report["open"]) - 1
+        return f"review {shown_name(first)}{f' and {others:,} more' if others else ''}, say it in a label file, repeat"
+    unread = sorted({shown(said["file"]) for said in report["diagnostics"] if said.get("code") == UNREAD_FILE})
+    return f"name the policy that includes {unread[0]}, or remove it" if unread else ""
+
+
+def candidates(report: Mapping[str, Any]) -> list[str]:
+    """Return the first nodes whose names say that they bring data in: a guess, for a person to judge."""
+    nodes = [element for element in report["unreached"] if element["kind"] == "node"]
+    return [shown_name(node) for node in nodes if _sounds_like_a_sensor(node["name"])][:NAMED]
+
+
+def _sounds_like_a_sensor(name: str) -> bool:
+    words = re.sub("([a-z])([A-Z])", r"\1_\2", name).casefold()
+    parts = re.split("[^a-z]+", words)
+    return any(sensor in words for sensor in SENSORS) or not set(parts).isdisjoint(SHORT)

@@ -1,0 +1,55 @@
+"""The exit code of ``analyze``: what a build in CI goes by (rules S11, S12; the table of all codes).
+
+In: a ``Result`` and what a user lets the build fail on. Out: a number.
+"""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rosprivacy.result import Result
+
+CODES = {
+    0: "no leak found; of other commands: done",
+    1: "what the command exists to find: a leak; for `diff` a finding that is new or worse",
+    2: "bad input or usage",
+    3: "a server (database, Spark) cannot be reached",
+    4: "`analyze`: undetermined; `--fail-on leak` makes it 0, but never where no label names a source",
+    70: "an error of the program itself",
+}
+LEAK, UNDETERMINED, OWN_ERROR = 1, 4, 70
+
+
+class FailOn(StrEnum):
+    """What ends with an exit code other than 0."""
+
+    undetermined = "undetermined"
+    leak = "leak"
+    undecided = "undecided"
+    never = "never"
+
+
+GONE = {  # words of earlier versions -> what to write; no alias, since what ends with 0 is another one now
+    "off": "write never",
+    "todo": "write leak; or leave it out, to fail on undetermined too",
+    "all": "leave out --decisions, so that no finding is accepted",
+}
+
+
+def exit_code(result: Result, fail_on: FailOn) -> int:
+    """Return 1 for a finding that counts, 4 for an answer that is undetermined, else 0.
+
+    A leak that may be, because nobody named a source, is not let through by ``leak``: nothing was looked at then.
+    """
+    analysis, decided = result.analysis, result.decided
+    if fail_on is FailOn.never:
+        return 0
+    left = [finding for finding in analysis.findings if finding.stands]
+    if fail_on is FailOn.undecided:
+        left = [finding for finding in left if not (decided and decided.valid(finding))]
+    if left:
+        return LEAK
+    followed = bool(analysis.carried)
+    return UNDETERMINED if analysis.verdict == "undetermined" and not (fail_on is FailOn.leak and followed) else 0
