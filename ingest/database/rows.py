@@ -150,7 +150,7 @@ def robot_rows(
 def rows_of(robot: str, properties: Row, parts: Mapping[str, Any]) -> RobotRows:
     """Return the rows of a robot with their digest and counts."""
     counts = {
-        "elements": len(parts["elements"]) + len(parts["intakes"]),
+        "elements": len(parts["elements"]),
         "flows": len(parts["flows"]),
         "roles": sum(map(len, parts["roles"].values())),
         "carried": sum(len(row["types"]) for row in parts["carried"]),
