@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from neo4j import ResultSummary, Transaction
 
 Known = Mapping[str, Collection[str]]  # by "label", "relationship type", "property"
-_NAMED = re.compile(r"name is: (.+)\)\s*$", re.DOTALL)
+_NAMED = re.compile(r"\(the missing [a-z ]+ is: (.+)\)\s*$", re.DOTALL)
 _KINDS = {
     "UnknownLabelWarning": ("label", "CALL db.labels()"),
     "UnknownRelationshipTypeWarning": ("relationship type", "CALL db.relationshipTypes()"),
@@ -47,7 +47,7 @@ def refuse_unknown_names(transaction: Transaction, summary: ResultSummary, known
     for kind, listing, name in sorted(set(_unknown(summary))):
         if name in known[kind]:
             continue
-        there = set(known[kind]) | {str(record[0]) for record in transaction.run(listing)}  # type: ignore[arg-type]  # ours
+        there = set(known[kind]) | {str(record[0]) for record in transaction.run(listing)}
         close = get_close_matches(name, sorted(there), n=3)
         hint = f"did you mean {' or '.join(map(shown, close))}?" if close else "see them with rosprivacy query --schema"
         problems.append(f"nothing has the {kind} {shown(name)!r}; {hint}")
@@ -60,5 +60,5 @@ def _unknown(summary: ResultSummary) -> Iterator[tuple[str, str, str]]:
     for notification in summary.notifications or ():
         code = str(notification.get("code", "")).rpartition(".")[2]
         named = _NAMED.search(str(notification.get("description", "")))
-        if code in _KINDS and named:
-            yield (*_KINDS[code], named.group(1))
+        if code in _KINDS:
+            yield (*_KINDS[code], named.group(1) if named else str(notification.get("description")))

@@ -31,10 +31,12 @@ def schema_names(categories: Iterable[str]) -> dict[str, frozenset[str]]:
     frozenset({'CARRIES_VIDEO'})
     """
     stems = list(categories)
+    properties = [field for node in NODES for field in node.properties]
+    properties += [field for kind in RELATIONSHIPS for field in kind.properties]
     return {
         "label": RESERVED | {stem + suffix for stem in stems for suffix in SUFFIXES},
         "relationship type": frozenset(
             {kind.type for kind in RELATIONSHIPS if kind is not CARRIED} | {carries(stem) for stem in stems}
         ),
-        "property": frozenset(field.name for kind in (*NODES, *RELATIONSHIPS) for field in kind.properties),
+        "property": frozenset(field.name for field in properties),
     }
