@@ -45,19 +45,10 @@ def moving(analysis: Analysis) -> Iterator[Moving]:
     for index, flow in enumerate(analysis.graph.flows):
         if flow.source not in known:
             known[flow.source] = passed_and_made(found, flow.source)
-        taken = goes_along(analysis, index)
+        taken = found.passing(index)
         passed, made = known[flow.source]
         begun = found.emits.get(flow.source, 0) | found.flow_emits.get(index, 0)
         yield Moving(passed & taken, begun & taken, made & taken)
-
-
-def goes_along(analysis: Analysis, index: int) -> int:
-    """Return the bits that a flow lets pass and its end takes up."""
-    found, flow = analysis.spread, analysis.graph.flows[index]
-    bits = found.flow_keeps.get(index, found.all_bits)
-    if analysis.graph.elements[flow.target].is_channel:
-        bits &= found.keeps.get(flow.target, found.all_bits)
-    return bits
 
 
 def passed_and_made(found: Spread, vertex: int) -> tuple[int, int]:

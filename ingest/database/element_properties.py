@@ -10,17 +10,17 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import LabelError
 from rosprivacy.analysis.findings.derived_from import origins
-from rosprivacy.analysis.fleet.patterns import NO_ROBOTS, pattern_id
+from rosprivacy.analysis.fleet.likeness import NO_ROBOTS, pattern_id
 from rosprivacy.analysis.kernel.roles import facts
 from rosprivacy.analysis.legal import turned_special
-from rosprivacy.ingest.database.carrying import goes_along, moving
+from rosprivacy.ingest.database.carrying import moving
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.answer import Analysis, Finding
     from rosprivacy.analysis.findings.derived_from import Origin
-    from rosprivacy.analysis.fleet.patterns import Likeness
+    from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Bound, Element, Statement
     from rosprivacy.ontology.vocabulary import Vocabulary
@@ -148,7 +148,7 @@ def flow_results(analysis: Analysis, names: Names) -> Iterator[Row]:
             "passes": names.exact(some.passed) or None,
             "begins": names.exact(some.begun) or None,
             "made": names.exact(some.made) or None,
-            "stops": names.exact(_stopped(found, goes_along(analysis, index))) or None,
+            "stops": names.exact(_stopped(found, found.passing(index))) or None,
         }
 
 
@@ -171,7 +171,7 @@ def origin_properties(analysis: Analysis, origin: Origin, robot: str) -> Row:
     lines = [flows[index].grants[0].place if flows[index].grants else "" for index in origin.flows]
     return {
         "category": origin.category,
-        "way": [elements[vertex].name for vertex in origin.way],
+        "way": [elements[vertex].name for vertex in origin.path],
         "policy": [str(line) for line in lines],
         "past_leak": origin.past_leak,
         "robot": robot,
