@@ -20,12 +20,16 @@ if TYPE_CHECKING:
     from neo4j import ResultSummary, Transaction
 
 Known = Mapping[str, Collection[str]]  # by "label", "relationship type", "property"
-_NAMED = re.compile(r"\(the missing [a-z ]+ is: (.+)\)\s*$", re.DOTALL)
-_KINDS = {
-    "UnknownLabelWarning": ("label", "CALL db.labels()"),
-    "UnknownRelationshipTypeWarning": ("relationship type", "CALL db.relationshipTypes()"),
-    "UnknownPropertyKeyWarning": ("property", "CALL db.propertyKeys()"),
+_LISTED = {
+    "label": "CALL db.labels()",
+    "relationship type": "CALL db.relationshipTypes()",
+    "property": "CALL db.propertyKeys()",
 }
+_UNKNOWN = {"01N50": "label", "01N51": "relationship type", "01N52": "property"}  # statuses of GQL
+_NAMED = re.compile(r"`(.+)` does not exist", re.DOTALL)
+_EARLIER = re.compile(
+    r"\(the missing (label|relationship type|property)(?: name)? is: (.+)\)", re.DOTALL
+)  # before 5.23
 
 
 def refuse_unknown_names(transaction: Transaction, summary: ResultSummary, known: Known) -> None:
@@ -44,10 +48,10 @@ def refuse_unknown_names(transaction: Transaction, summary: ResultSummary, known
         With one line for each other name.
     """
     problems = []
-    for kind, listing, name in sorted(set(_unknown(summary))):
+    for kind, name in sorted(set(_unknown(summary))):
         if name in known[kind]:
             continue
-        there = set(known[kind]) | {str(record[0]) for record in transaction.run(listing)}
+        there = set(known[kind]) | {str(record[0]) for record in transaction.run(_LISTED[kind])}
         close = get_close_matches(name, sorted(there), n=3)
         hint = f"did you mean {' or '.join(map(shown, close))}?" if close else "see them with rosprivacy query --schema"
         problems.append(f"nothing has the {kind} {shown(name)!r}; {hint}")
@@ -55,10 +59,12 @@ def refuse_unknown_names(transaction: Transaction, summary: ResultSummary, known
         raise QueryError("\n".join(problems))
 
 
-def _unknown(summary: ResultSummary) -> Iterator[tuple[str, str, str]]:
-    """(kind, query that lists what there is, name)."""
-    for notification in summary.notifications or ():
-        code = str(notification.get("code", "")).rpartition(".")[2]
-        named = _NAMED.search(str(notification.get("description", "")))
-        if code in _KINDS:
-            yield (*_KINDS[code], named.group(1) if named else str(notification.get("description")))
+def _unknown(summary: ResultSummary) -> Iterator[tuple[str, str]]:
+    """(kind, name), as the server says it; in its own sentence where the name cannot be told."""
+    for status in summary.gql_status_objects:
+        said = status.status_description
+        if kind := _UNKNOWN.get(status.gql_status):
+            named = _NAMED.search(said)
+            yield kind, named.group(1) if named else said
+        elif earlier := _EARLIER.search(said):
+            yield earlier.group(1), earlier.group(2)

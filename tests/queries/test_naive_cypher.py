@@ -20,10 +20,9 @@ from rosprivacy.ingest.database.loading import load
 from rosprivacy.ingest.database.rows import robot_rows
 from rosprivacy.private_neo4j import connection
 from rosprivacy.queries.run import run
-from tests.analysis.findings.test_findings import wildcards
-from tests.analysis.kernel.test_ranks import ranked
 from tests.helpers.cases import CASES
 from tests.helpers.graphs import care_home, rows_of
+from tests.helpers.more_systems import ranked, wildcards
 from tests.helpers.paths import ROOT
 from tests.helpers.random_rows import VOCABULARY, random_systems
 from tests.helpers.systems import systems
