@@ -9,11 +9,14 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.model import Method
+
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping, Sequence
 
+    from rosprivacy.analysis.kernel.roles import Facts
     from rosprivacy.analysis.kernel.spread import Spread
-    from rosprivacy.analysis.model import Element
+    from rosprivacy.analysis.model import Bound, Element, FlowGraph
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +65,7 @@ def cleanings(found: Spread, wanted: Collection[str]) -> tuple[Cleaning, ...]:
     rows = []
     for vertex, decided in sorted(found.facts.items()):
         leaves = found.planes(found.leaves.get(vertex, 0) & mask)
-        for category in (name for name in found.categories if name in wanted and "sanitizer" in decided[name].roles):
+        for category in (name for name in found.categories if name in wanted and _cleans(decided[name])):
             both = found.both(category)
             rows.append(
                 Cleaning(
@@ -88,6 +91,20 @@ def makings(found: Spread, wanted: Collection[str]) -> tuple[Making, ...]:
         for made in decided[category].derives
         if made in wanted and made != category
     )
+
+
+def absent(bound: Bound, graph: FlowGraph) -> tuple[tuple[Element, str], ...]:
+    """Return the nodes of which a label says that they are not on the robot, with a person's reason."""
+    return tuple(
+        (graph.elements[vertex], statement.why)
+        for vertex, said in sorted(bound.elements.items())
+        for statement in said
+        if statement.method is Method.ABSENT
+    )
+
+
+def _cleans(fact: Facts) -> bool:
+    return "sanitizer" in fact.roles and fact.method != Method.ABSENT
 
 
 class _Around:

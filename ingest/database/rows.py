@@ -286,5 +286,6 @@ def _particulars(statement: Statement) -> Row:
     if statement.role == "source":
         return {"through": list(statement.through) or None}
     if statement.role == "sanitizer":
-        return {"method": str(statement.method) if statement.method else None, "stated": statement.stated}
+        method = str(statement.method) if statement.method else None
+        return {"method": method, "stated": statement.stated, "why": statement.why or None}
     return {"of": statement.categories[0]} if statement.role == "derivation" else {}

@@ -270,8 +270,9 @@ ROLES = {
         "It cleans the category.",
         (
             *_PLACE,
-            Property("method", STRING, "anonymise, aggregate, drop or pseudonymise; absent counts as the last"),
+            Property("method", STRING, "anonymise, aggregate, drop, absent or pseudonymise; none counts as the last"),
             Property("stated", BOOLEAN, "whether the label states the method"),
+            Property("why", STRING, "of method absent: why the node is not on the robot"),
         ),
     ),
     "conduit": RelationshipKind("PASSES", "Element", "DataCategory", "Reviewed: it passes the category on.", _PLACE),
