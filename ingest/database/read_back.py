@@ -53,7 +53,7 @@ _ROLE_OF = {kind.type: role for role, kind in ROLES.items()}
 
 ROBOTS = "MATCH (r:Robot) RETURN properties(r) AS robot ORDER BY r.name"
 ELEMENTS = (
-    "MATCH (n) WHERE n:Element OR EXISTS { (n)-[:FLOWS_TO]-() } "
+    "MATCH (n) WHERE (n:Element AND NOT n:Intake) OR EXISTS { (n)-[:FLOWS_TO]-() } "
     "RETURN elementId(n) AS key, labels(n) AS labels, properties(n) AS properties"
 )
 FLOWS = (
