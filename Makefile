@@ -12,14 +12,16 @@ demo: $(VENV)/installed
 	$(BIN)/rosprivacy analyze examples/factory/before.policy.xml --labels examples/factory/run2.labels.yaml --fail-on never
 
 test: $(VENV)/installed-dev
-	$(BIN)/python -m pytest $(PYTEST_ARGS)
+	$(BIN)/python -m pytest -rs $(PYTEST_ARGS)
 
 $(VENV)/installed: pyproject.toml
+	@echo "Installing into $(VENV): about a minute, the first time"
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --editable .
 	touch $@
 
 $(VENV)/installed-dev: pyproject.toml
+	@echo "Installing what the tests need into $(VENV), 1.5 GB with Spark and Java: some minutes, the first time"
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --editable '.[dev,bench]'
 	touch $@ $(VENV)/installed

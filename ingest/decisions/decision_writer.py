@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from contextlib import suppress
+from copy import deepcopy
 from dataclasses import replace
 from io import StringIO
 from typing import TYPE_CHECKING, Any
@@ -40,7 +41,7 @@ _NOWHERE = Place("", 0)
 def with_decision(file: str, text: str | None, entry: Mapping[str, Any], remark: str, vocabulary: Vocabulary) -> str:
     """Return the text of a decisions file with an entry added, or changed where there is one with the same target.
 
-    Of an entry that is there, what the new one does not say stays.
+    Of an entry that is there, what the new one does not say stays; what it says otherwise goes into its history.
 
     Parameters
     ----------
@@ -96,7 +97,7 @@ def _written(text: str, entry: Mapping[str, Any], remark: str) -> tuple[str, int
         if remark and "id" in entry and not (entries.fa.flow_style() or top.fa.flow_style()):
             entries[place].yaml_add_eol_comment(shown(remark), "id")
     else:
-        entries[place].update(entry)
+        _change(entries[place], entry)
     yaml.width = 1_000_000  # lines are people's
     yaml.explicit_start = unix.lstrip("\ufeff").startswith("---")
     yaml.indent(mapping=2, sequence=indent or 2, offset=offset or 0)
@@ -104,6 +105,14 @@ def _written(text: str, entry: Mapping[str, Any], remark: str) -> tuple[str, int
     yaml.dump(top, out)
     written = out.getvalue()
     return written.replace("\n", "\r\n") if "\r\n" in text else written, place
+
+
+def _change(there: Any, entry: Mapping[str, Any]) -> None:
+    """Say it anew; what was said before stays in the ``history`` of the entry, the latest last."""
+    before = {key: there[key] for key in there if key not in (*TARGET, "history", "note")}
+    if any(before.get(key) != value for key, value in entry.items() if key not in (*TARGET, "date")):
+        there.setdefault("history", CommentedSeq()).append(CommentedMap(deepcopy(before)))  # no alias
+    there.update(entry)
 
 
 def _entries(top: Any) -> Any:

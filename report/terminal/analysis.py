@@ -261,7 +261,8 @@ def _diagnostics(report: Mapping[str, Any], *, verbose: bool) -> Iterator[Line]:
     notices = [d for d in report["diagnostics"] if d["severity"] == "notice" and d.get("code") != MERGED]
     for diagnostic in report["diagnostics"]:
         if verbose or diagnostic not in notices:
-            place = f"{shown(diagnostic['file'])}:{diagnostic['line']}"
+            line = f":{diagnostic['line']}" if diagnostic["line"] else ""
+            place = f"{shown(diagnostic['file'])}{line}"
             yield f"{diagnostic['severity']}: {place}: {diagnostic['message']}", "yellow"
     if notices and not verbose:
         yield f"{counted(len(notices), 'notice')} (-v shows them)", "dim"

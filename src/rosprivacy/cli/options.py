@@ -147,7 +147,7 @@ SixLists = Annotated[
     typer.Option(
         metavar="NAME",
         autocompletion=complete_category,
-        help="What a six-list JSON is about.",
+        help="Which kind a six-list JSON is about (no other file); --categories says what to answer for.",
         rich_help_panel=READ,
     ),
 ]

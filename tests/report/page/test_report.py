@@ -407,10 +407,10 @@ def test_files_that_differ_are_named() -> None:
     ("text", "message"),
     [
         ("", ":1: cannot be read"),
-        ("[]", ":0: is not a document of the format rosprivacy.analysis/1"),
-        ('{"format": "rosprivacy.analysis/2"}', ":0: is not a document of the format"),
-        ('{"format": "rosprivacy.analysis/1"}', ":0: verdict is missing or of another type"),
-        ("[" * 100_000, ":0: cannot be read"),
+        ("[]", ": is not a document of the format rosprivacy.analysis/1"),
+        ('{"format": "rosprivacy.analysis/2"}', ": is not a document of the format"),
+        ('{"format": "rosprivacy.analysis/1"}', ": verdict is missing or of another type"),
+        ("[" * 100_000, ": cannot be read"),
         ("\ud800", None),
     ],
 )
@@ -745,7 +745,7 @@ def test_a_report_that_is_written_is_no_failure_whatever_it_says() -> None:
     [
         ([], b"name at least one policy"),
         (["--from-database", *SYSTEM], b"takes what is in the database"),
-        ([*SYSTEM, "--since", "missing.json"], b"missing.json:0: is not a file; give what"),
+        ([*SYSTEM, "--since", "missing.json"], b"missing.json: is not a file; give what"),
         ([*SYSTEM, "--lang", "xx"], b"xx"),
     ],
 )
