@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import DecisionError
 from rosprivacy.analysis.model import Diagnostic, Place, Severity
+from rosprivacy.analysis.written_names import is_glob, meant
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -92,7 +93,7 @@ class Decision:
     category
         A name; it stands for the narrower ones too.
     source, leak
-        Names or globs.
+        Names or globs; after ``=`` a name with glob signs.
     robot
         Name or glob: of the robot of the leak, or of the source where the leak is on none.
     from_robot
@@ -156,19 +157,17 @@ class Decision:
     def rank(self, case: Case, hierarchy: Hierarchy) -> tuple[int, ...]:
         """How closely it speaks of a case; the higher counts."""
         names = [name for name in (self.source, self.leak, self.robot, self.from_robot) if name]
-        exact = sum(not _pattern(name) for name in names)
-        spelt = sum(sum(char not in "*?[]" for char in name) for name in names if _pattern(name))
+        exact = sum(not is_glob(name) for name in names)
+        spelt = sum(sum(char not in "*?[]" for char in name) for name in names if is_glob(name))
         distance = hierarchy.distance(case.category, self.category) if self.category else FARTHEST
         return (bool(self.id), exact, spelt, -(distance or 0), self.pseudonymised is not None, bool(self.kind))
 
 
-def _pattern(name: str) -> bool:
-    return any(char in name for char in "*?[")
-
-
 def _covers(written: str, name: str) -> bool:
     """Nothing written covers every name."""
-    return not written or (fnmatchcase(name, written.replace("[^", "[!")) if _pattern(written) else written == name)
+    if is_glob(written):
+        return fnmatchcase(name, written.replace("[^", "[!"))
+    return not written or meant(written) == name
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,12 +8,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.findings.globs import GlobUse, globs
 from rosprivacy.analysis.findings.ledger import ledger
 from rosprivacy.analysis.fleet.counts import Counts, counted
 from rosprivacy.analysis.non_ros import retention_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Collection, Iterable, Iterator
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.decisions import Decided, Decision
@@ -60,8 +61,16 @@ class Answer:
     def taken_away(self) -> tuple[TakenAway, ...]:
         """The ledger: what was taken away on the data's side, and on whose word; of robots that are alike of one."""
         rows = ledger(self.analysis, self.bound, self.vocabulary.hierarchy, self.diagnostics)
-        beside = self.fleet.likeness.second if self.fleet else ()
-        return tuple(row for row in rows if row.element is None or row.element.robot not in beside)
+        return tuple(row for row in rows if row.element is None or row.element.robot not in self._beside)
+
+    def globs(self, taken: Iterable[TakenAway]) -> tuple[GlobUse, ...]:
+        """What each glob of the label files decides and closes, by the ledger; robots as there."""
+        return globs(self.analysis, self.bound, taken, self._beside)
+
+    @property
+    def _beside(self) -> Collection[str]:
+        """Robots of the graph for which another one stands in what readers get."""
+        return self.fleet.likeness.second if self.fleet else ()
 
     @property
     def accepted(self) -> dict[str, str]:

@@ -30,6 +30,18 @@ def shown_name(element: Mapping[str, Any]) -> str:
     return shown(_full_name(element))
 
 
+def label_name(question: Mapping[str, Any]) -> str:
+    """Return the name of an open element as a label file writes it, with its robot where there are several.
+
+    >>> element = {"robot": "", "kind": "topic", "name": "/*", "pattern": True}
+    >>> label_name({"element": element, "label": {"section": "topics", "name": "=/*"}})
+    '=/*'
+    """
+    element = question["element"]
+    written = question.get("label", element)["name"]  # documents of earlier versions do not say
+    return shown(_full_name({**element, "name": written}))
+
+
 def kind_of(element: Mapping[str, Any]) -> str:
     """Return what an element is, in the program's own words.
 

@@ -1,4 +1,4 @@
-"""Where what a node makes of other data comes from: from which source, along which way (rules S8, S10).
+"""Where what a node makes of other data comes from: from which source, along which path (rules S8, S10).
 
 In: a spread. Out: one ``Origin`` per (node, category that it makes, source). A source of video that comes to a face
 recogniser is the origin of the face templates there.
@@ -9,7 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.kernel.search import START, Net, Search, path_to, search
+from rosprivacy.analysis.kernel.search import START, Search, path_to, search
+from rosprivacy.analysis.kernel.states import Net
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -27,24 +28,24 @@ class Origin:
         Vertices.
     category
         That is made.
-    way
-        A shortest way, vertices, source first, maker last.
+    path
+        A shortest path, vertices, source first, maker last.
     flows
-        The flows of the way, one fewer.
+        The flows of the path, one fewer.
     past_leak
-        Whether every way goes through a leak of the category (rule S10).
+        Whether every path goes through a leak of the category (rule S10).
     """
 
     maker: int
     source: int
     category: str
-    way: tuple[int, ...]
+    path: tuple[int, ...]
     flows: tuple[int, ...]
     past_leak: bool
 
 
 def origins(found: Spread) -> tuple[Origin, ...]:
-    """Return the origins of all that is made on the way, sorted by source, category and maker.
+    """Return the origins of all that is made on the path, sorted by source, category and maker.
 
     Notes
     -----
@@ -72,15 +73,15 @@ def _of(net: Net, source: int) -> Iterator[Origin]:
         not_past = _makers(free, both)
         for maker in sorted(makers.keys() | not_past.keys()):
             past = maker not in not_past
-            way = path_to(net, whole, maker, makers[maker]) if past else path_to(net, free, maker, not_past[maker])
-            vertices = tuple(vertex for _, vertex, _ in way)
-            yield Origin(maker, source, category, vertices, tuple(flow for flow, _, _ in way[1:]), past)
+            path = path_to(net, whole, maker, makers[maker]) if past else path_to(net, free, maker, not_past[maker])
+            vertices = tuple(vertex for _, vertex, _ in path)
+            yield Origin(maker, source, category, vertices, tuple(flow for flow, _, _ in path[1:]), past)
 
 
-def _makers(way: Search, both: int) -> dict[int, int]:
+def _makers(reach: Search, both: int) -> dict[int, int]:
     """Vertex -> the bit of which it makes a category, where it does; to pseudonymise makes nothing new."""
     makers: dict[int, int] = {}
-    for vertex, left in way.left.items():
+    for vertex, left in reach.left.items():
         for bits, origin in left:
             if bits & both and origin is not None and origin != START and not both >> origin & 1:
                 makers.setdefault(vertex, origin)

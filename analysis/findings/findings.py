@@ -25,8 +25,9 @@ from rosprivacy.analysis.findings.open_questions import open_questions
 from rosprivacy.analysis.findings.unknown_ends import unknown_ends
 from rosprivacy.analysis.kernel import standard_channels
 from rosprivacy.analysis.kernel.bits import bits_of
-from rosprivacy.analysis.kernel.search import START, Net, Search, path_to, present, search
+from rosprivacy.analysis.kernel.search import START, Search, path_to, present, search
 from rosprivacy.analysis.kernel.spreading import spread
+from rosprivacy.analysis.kernel.states import Net
 from rosprivacy.analysis.model import DISCLOSURE, Diagnostic, Element, Place, Severity
 from rosprivacy.analysis.modes import Paths
 from rosprivacy.analysis.non_ros import country_unknown, on_day

@@ -1,8 +1,8 @@
-"""The ways to leaks: along which flows data can come from a source to a leak of a category (rule S10).
+"""The paths to leaks: along which flows data can come from a source to a leak of a category (rule S10).
 
-In: a spread. Out: flows. A finding shows one shortest way; a picture has to show where the data can go at all. What is
+In: a spread. Out: flows. A finding shows one shortest path; a picture has to show where the data can go at all. What is
 asked of a flow is whether it lies on a walk from a source to a leak, over states (vertex, bit) as in
-``further_paths.py``. Flows on detours that must come back to where they began are left out: no way without a circle
+``further_paths.py``. Flows on detours that must come back to where they began are left out: no path without a circle
 uses them.
 
 Source: the paper, section II-B, which colours the edges of vulnerable paths. To say of a flow exactly whether a path
@@ -16,11 +16,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.kernel.bits import bits_of
+from rosprivacy.analysis.kernel.states import States, made
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping
 
-    from rosprivacy.analysis.kernel.search import Net
+    from rosprivacy.analysis.kernel.states import Net
 
 State = tuple[int, int, int]  # what (below), vertex or flow, bit
 ARRIVED, STARTED, SENT = 0, 1, 2  # data arrives at a vertex; starts there; starts there along one flow only
@@ -31,14 +32,14 @@ Edge = tuple[State, State, int]  # before, after, flow or ``NO_FLOW``
 
 @dataclass(frozen=True, slots=True)
 class FlowsToLeaks:
-    """The flows on ways to leaks.
+    """The flows on paths to leaks.
 
     Attributes
     ----------
     flows
-        Flow -> number of flows of the shortest way through it; sorted.
+        Flow -> number of flows of the shortest path through it; sorted.
     complete
-        Whether these are all; if not, there are longer ways.
+        Whether these are all; if not, there are longer paths.
     """
 
     flows: dict[int, int]
@@ -55,36 +56,36 @@ def flows_to_leaks(
     ends: Mapping[int, int] | None = None,
     about: int | None = None,
 ) -> FlowsToLeaks:
-    """Return the flows that lie on a way of data from a source to a leak of a category.
+    """Return the flows that lie on a path of data from a source to a leak of a category.
 
     Parameters
     ----------
     net
         Of a spread.
     category
-        An emitted one: what arrives at the leaks. It may be made of others on the way.
+        An emitted one: what arrives at the leaks. It may be made of others on the path.
     sources, leaks
         Vertices to begin and to end at; None for all.
     past_leaks
-        Whether ways through other leaks of the category count, as for a dismissed finding.
+        Whether paths through other leaks of the category count, as for a dismissed finding.
     ends
         Vertex -> bits that end there; the leaks by default. Findings of other kinds end elsewhere, as at a storage.
     about
-        Take only the shorter ways, those up to a length, so that about so many flows are on them; None for all.
+        Take only the shorter paths, those up to a length, so that about so many flows are on them; None for all.
 
     Returns
     -------
     Ways
-        They hold every flow of every way (up to the length) that meets no state twice.
+        They hold every flow of every path (up to the length) that meets no state twice.
 
     Notes
     -----
     Rounds of O(flows), for a fixed number of categories, with networkx's immediate dominators on the part between; two
     rounds as a rule, never more than there are flows.
     """
-    graph = _States(net, category, ends, past_leaks=past_leaks)
+    walk = _Walk(net, category, ends, past_leaks=past_leaks)
     starts = [v for v in net.spread.facts if net.spread.begins(v)] if sources is None else sources
-    edges, before, complete = graph.edges(starts, leaks), -1, True
+    edges, before, complete = walk.edges(starts, leaks), -1, True
     while len(edges) != before:  # what only a detour leads to is gone in the next round
         first, before = before < 0, len(edges)
         ahead, back = _distances(edges, BEGIN, forth=True), _distances(edges, END, forth=False)
@@ -98,7 +99,7 @@ def flows_to_leaks(
 
 
 def _lengths(edges: list[Edge], ahead: Mapping[State, int], back: Mapping[State, int]) -> dict[int, int]:
-    """Flow -> number of flows of the shortest way through it."""
+    """Flow -> number of flows of the shortest path through it."""
     lengths: dict[int, int] = {}
     for here, there, flow in edges:
         if flow != NO_FLOW:
@@ -108,7 +109,7 @@ def _lengths(edges: list[Edge], ahead: Mapping[State, int], back: Mapping[State,
 
 
 def _longest(lengths: Mapping[int, int], about: int) -> int:
-    """The length up to which there are no more flows than asked for; the shortest ways are always in."""
+    """The length up to which there are no more flows than asked for; the shortest paths are always in."""
     every = sorted(lengths.values())
     if len(every) <= about:
         return every[-1] if every else 0
@@ -116,18 +117,16 @@ def _longest(lengths: Mapping[int, int], about: int) -> int:
     return shorter[-1] if shorter else every[0]
 
 
-class _States:
+class _Walk:
     """How data of a category, or of what it is made of, goes from state to state."""
 
     def __init__(self, net: Net, category: str, ends: Mapping[int, int] | None, *, past_leaks: bool) -> None:
-        self._net = net
-        found = net.spread
-        self._ends = found.leaks if ends is None else ends
-        number, self._both = found.categories.index(category), found.both(category)
-        self._relevant = found.all_bits if number in found.made else self._both
-        self._stop: Mapping[int, int] = {}
-        if not past_leaks:
-            self._stop = {v: bits & self._both for v, bits in found.leaks.items() if bits & self._both}
+        self._spread = spread = net.spread
+        self._ends = spread.leaks if ends is None else ends
+        number, self._both = spread.categories.index(category), spread.both(category)
+        relevant = spread.all_bits if number in spread.made else self._both
+        stop = {} if past_leaks else {v: bits & self._both for v, bits in spread.leaks.items() if bits & self._both}
+        self._states = States(net, relevant, stop)
         self._starts: set[State] = set()
 
     def edges(self, starts: Collection[int], leaks: Collection[int] | None) -> list[Edge]:
@@ -148,43 +147,31 @@ class _States:
 
     def _begin(self, starts: Collection[int], leaks: Collection[int] | None) -> Iterator[Edge]:
         """Where what comes back goes on again, or ends, it is one state with what starts: circles are seen as such."""
-        found = self._net.spread
+        spread, states = self._spread, self._states
         for vertex in sorted(starts):
-            stop, keeps = self._stop.get(vertex, 0), found.keeps.get(vertex, found.all_bits)
+            stop, keeps = states.stop.get(vertex, 0), spread.keeps.get(vertex, spread.all_bits)
             alike = stop if leaks is None or vertex in leaks else 0
             alike |= keeps & ~stop
-            for bit in bits_of(found.emits.get(vertex, 0) & self._relevant):
+            for bit in bits_of(states.emitted(vertex)):
                 state = (ARRIVED if alike >> bit & 1 else STARTED, vertex, bit)
                 self._starts.add(state)
                 yield BEGIN, state, NO_FLOW
-            for flow, _, passing in self._net.flows.get(vertex, ()):
-                for bit in bits_of(found.flow_emits.get(flow, 0) & self._relevant & passing):
-                    yield BEGIN, (SENT, flow, bit), NO_FLOW
+            for flow, _, bits in states.single(vertex):
+                yield from ((BEGIN, (SENT, flow, bit), NO_FLOW) for bit in bits_of(bits))
 
     def _onward(self, state: State) -> Iterator[tuple[int, State]]:
         what, where, bit = state
         if what == SENT:
-            yield where, (ARRIVED, self._net.spread.graph.flows[where].target, bit)
+            yield where, (ARRIVED, self._spread.graph.flows[where].target, bit)
             return
-        leaving = self._leaving(where, bit) if what == ARRIVED else 0
+        leaving = self._states.leaving(where, 1 << bit) if what == ARRIVED else 0
         leaving |= 1 << bit if state in self._starts else 0
-        for flow, target, passing in self._net.flows.get(where, ()) if leaving else ():
-            for moved in bits_of(leaving & passing):
-                yield flow, (ARRIVED, target, moved)
-
-    def _leaving(self, vertex: int, bit: int) -> int:
-        found, stop = self._net.spread, self._stop.get(vertex, 0)
-        if stop >> bit & 1:
-            return 0
-        kept = 1 << bit & found.keeps.get(vertex, found.all_bits)
-        return (kept | self._made(vertex, bit)) & self._relevant & ~stop
-
-    def _made(self, vertex: int, bit: int) -> int:
-        return sum(1 << after for before, after in self._net.spread.derives.get(vertex, ()) if before == bit)
+        for flow, target, bits in self._states.after(where, leaving):
+            yield from ((flow, (ARRIVED, target, moved)) for moved in bits_of(bits))
 
     def _leaks(self, vertex: int, bit: int) -> bool:
         here = self._ends.get(vertex, 0) & self._both
-        return bool(here and here & (1 << bit | self._made(vertex, bit)))
+        return bool(here and here & (1 << bit | made(self._spread, vertex, 1 << bit)))
 
 
 def _distances(edges: list[Edge], start: State, *, forth: bool) -> dict[State, int]:

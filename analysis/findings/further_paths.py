@@ -1,7 +1,7 @@
 """Further paths of a finding: how many share no flow, and which there are (the paper, section II-B).
 
 In: a search from a source. Out: counts and paths, by networkx, on the small part of the graph that lies between the
-source and the leak. A path is one over (element, category): where nothing is derived on the way, one over elements.
+source and the leak. A path is one over (element, category): where nothing is derived on the path, one over elements.
 """
 
 from __future__ import annotations
@@ -11,18 +11,20 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.kernel.bits import bits_of
+from rosprivacy.analysis.kernel.states import States
 from rosprivacy.analysis.modes import Paths
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
     from typing import Any
 
-    from rosprivacy.analysis.kernel.search import Net, Search
-    from rosprivacy.analysis.model import Element
+    from rosprivacy.analysis.kernel.search import Search
+    from rosprivacy.analysis.kernel.states import Net
+    from rosprivacy.analysis.model import Element, FlowGraph
 
 State = tuple[int, int]  # vertex, number of the category with which data arrives there
 SOURCE, LEAK = -1, -2  # in place of the category's number: the source and the leak are one state each
-SEARCHED = 10  # times the bound: so many ways of data are looked at, of which many may be one to the reader
+SEARCHED = 10  # times the bound: so many paths of data are looked at, of which many may be one to the reader
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,12 +47,12 @@ class FurtherPaths:
 
 
 class Between:
-    """The ways from one source, for one category that arrives at leaks.
+    """The paths from one source, for one category that arrives at leaks.
 
     Parameters
     ----------
-    way
-        The search whose reach they lie in.
+    reach
+        The search that they lie in.
     category
         Its number.
     relevant
@@ -60,39 +62,33 @@ class Between:
     """
 
     def __init__(
-        self, net: Net, way: Search, source: int, category: int, relevant: int, stop: Mapping[int, int]
+        self, net: Net, reach: Search, source: int, category: int, relevant: int, stop: Mapping[int, int]
     ) -> None:
-        self.net = net
+        self.graph, self.derives = net.spread.graph, net.spread.derives
         self.source = source
         self.category = category
-        self.relevant = relevant
         self.bits = net.spread.bits
-        self.starts = way.begun.get(source, 0)
-        self.emits = self.starts & net.spread.emits.get(source, 0)
+        self.states = States(net, relevant, stop)
+        self.emits = self.states.emitted(source)
         self.back: dict[State, set[State]] = defaultdict(set)
-        for before, after in self._edges(way, stop):
+        for before, after in self._edges(reach):
             self.back[after].add(before)
 
-    def _edges(self, way: Search, stop: Mapping[int, int]) -> Iterable[tuple[State, State]]:
-        spread, everything = self.net.spread, self.net.spread.all_bits
-        for index, target, passing in self.net.flows.get(self.source, ()):
-            bits = (spread.emits.get(self.source, 0) | spread.flow_emits.get(index, 0)) & self.starts & passing
-            yield from (((self.source, SOURCE), state) for state in self._states(target, bits))
-        for vertex, seen in way.seen.items():
-            for here in self._states(vertex, seen & ~stop.get(vertex, 0)):
-                arriving = seen & ~stop.get(vertex, 0) & self.bits.both(here[1]) if here[1] != SOURCE else 0
-                leaving = arriving & spread.keeps.get(vertex, everything)
-                for before, after in spread.derives.get(vertex, ()):
-                    leaving |= (arriving >> before & 1) << after
-                for index, target, passing in self.net.flows.get(vertex, ()) if leaving else ():
-                    moved = leaving & passing
-                    if vertex == self.source:  # what it emits along a flow does not go there a second time
-                        moved &= ~spread.flow_emits.get(index, 0)
-                    yield from ((here, state) for state in self._states(target, moved))
+    def _edges(self, reach: Search) -> Iterator[tuple[State, State]]:
+        states, single = self.states, self.states.net.spread.flow_emits
+        for _, target, bits in (*states.after(self.source, self.emits), *states.single(self.source)):
+            yield from (((self.source, SOURCE), state) for state in self._at(target, bits))
+        for vertex, seen in reach.seen.items():
+            for here in self._at(vertex, seen):
+                arriving = seen & self.bits.both(here[1]) if here[1] != SOURCE else 0
+                for index, target, bits in states.after(vertex, states.leaving(vertex, arriving)):
+                    # what a source emits along a flow does not go there a second time
+                    moved = bits & ~single.get(index, 0) if vertex == self.source else bits
+                    yield from ((here, state) for state in self._at(target, moved))
 
-    def _states(self, vertex: int, bits: int) -> Iterable[State]:
+    def _at(self, vertex: int, bits: int) -> Iterator[State]:
         """The states that data with some bits is in at a vertex, its two planes put together."""
-        for number in bits_of(self.bits.merged(bits & self.relevant)):
+        for number in bits_of(self.bits.merged(bits & self.states.allowed)):
             begun = vertex == self.source and self.emits >> self.bits.plain(number) & 1
             yield (vertex, SOURCE if begun else number)
 
@@ -102,7 +98,7 @@ class Between:
         Parameters
         ----------
         memory
-            Answers for equal graphs: kinds of data often go the same ways.
+            Answers for equal graphs: kinds of data often take the same paths.
         """
         edges = self._leading_to(leak)
         # one kind of data is like another where nothing is made into it
@@ -113,7 +109,7 @@ class Between:
 
     def _leading_to(self, leak: int) -> list[tuple[State, State]]:
         """The edges from which a leak can be reached, sorted."""
-        pairs = self.net.spread.derives.get(leak, ())
+        pairs = self.derives.get(leak, ())
         category = self.bits.category
         ends = {(leak, category(before)) for before, after in pairs if category(after) == self.category}
         ends.add((leak, self.category))
@@ -179,25 +175,25 @@ def further(between: Between, leak: int, memory: dict[Any, Any], asked: str, mos
     disjoint, edges = between.to(leak, memory)
     if mode is Paths.witness:
         return FurtherPaths(len(disjoint))
-    found: Iterable[list[int]] = disjoint
+    chosen: Iterable[list[int]] = disjoint
     if mode is Paths.all:
         import networkx as nx  # noqa: PLC0415 - as above
 
         paths = nx.shortest_simple_paths(nx.DiGraph(edges), (between.source, SOURCE), (leak, LEAK))
-        found = ([state[0] for state in path] for path in paths)
+        chosen = ([state[0] for state in path] for path in paths)
     shown: dict[tuple[Element, ...], None] = {}
-    for number, path in enumerate(found):  # two ways of data that differs may be one way to the reader
-        shown[_elements(between.net, path)] = None
+    for number, path in enumerate(chosen):  # two paths of data that differs may be one path to the reader
+        shown[_elements(between.graph, path)] = None
         if len(shown) > most or number >= SEARCHED * most:
             return FurtherPaths(len(disjoint), tuple(shown)[:most], bounded=True)
     return FurtherPaths(len(disjoint), tuple(shown))
 
 
-def _elements(net: Net, path: list[int]) -> tuple[Element, ...]:
+def _elements(graph: FlowGraph, path: list[int]) -> tuple[Element, ...]:
     """The elements of a path; the two sides of one wildcard are one to the reader."""
     elements: list[Element] = []
     for vertex in path:
-        element = net.spread.graph.elements[vertex]
+        element = graph.elements[vertex]
         if not elements or element.shown_as != elements[-1].shown_as:
             elements.append(element)
     return tuple(elements)

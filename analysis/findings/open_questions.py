@@ -15,8 +15,8 @@ from rosprivacy.analysis.kernel.search import present, search
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
 
-    from rosprivacy.analysis.kernel.search import Net
     from rosprivacy.analysis.kernel.spread import Spread
+    from rosprivacy.analysis.kernel.states import Net
 
 
 def open_questions(net: Net, mask: int, unknown: Collection[int] = ()) -> tuple[OpenQuestion, ...]:
@@ -37,12 +37,12 @@ def open_questions(net: Net, mask: int, unknown: Collection[int] = ()) -> tuple[
         Nodes on the frontier first, then by distance and name; O(flows) for each category that others are made into,
         and once for all the rest.
     """
-    found, elements = net.spread, net.spread.graph.elements
-    uncovered = open_bits(found, unknown)
+    spread, elements = net.spread, net.spread.graph.elements
+    uncovered = open_bits(spread, unknown)
     if not uncovered:
         return ()
-    sources = [vertex for vertex in found.facts if found.begins(vertex)]
-    nearest = search(net, sources, found.all_bits, {})
+    sources = [vertex for vertex in spread.facts if spread.begins(vertex)]
+    nearest = search(net, sources, spread.all_bits, {})
     first = _first(net, sources, uncovered)
     merged: dict[tuple[str, str, str, str], OpenQuestion] = {}
     for vertex, everything in sorted(uncovered.items()):
@@ -51,7 +51,7 @@ def open_questions(net: Net, mask: int, unknown: Collection[int] = ()) -> tuple[
             continue
         frontier = not element.is_channel and bool(first.get(vertex, 0) & bits)
         missing = ("country",) if vertex in unknown else ()
-        question = OpenQuestion(element, found.names(bits), nearest.level(vertex, bits) or 0, frontier, missing)
+        question = OpenQuestion(element, spread.names(bits), nearest.level(vertex, bits) or 0, frontier, missing)
         known = merged.get(element.shown_as)  # the other side of a wildcard
         if known:
             categories = tuple(sorted({*known.categories, *question.categories}))
@@ -60,10 +60,10 @@ def open_questions(net: Net, mask: int, unknown: Collection[int] = ()) -> tuple[
     return tuple(sorted(merged.values(), key=lambda q: (not q.frontier, q.distance, q.element.sort_key())))
 
 
-def open_bits(found: Spread, unknown: Collection[int]) -> dict[int, int]:
+def open_bits(spread: Spread, unknown: Collection[int]) -> dict[int, int]:
     """Return what is at elements without a label that covers it, or where it is not known in which country it is."""
-    reached = {vertex: found.present(vertex) for vertex in {*found.arrives, *found.leaves}}
-    covered = {vertex: bits for vertex, bits in found.covered.items() if vertex not in unknown}
+    reached = {vertex: spread.present(vertex) for vertex in {*spread.arrives, *spread.leaves}}
+    covered = {vertex: bits for vertex, bits in spread.covered.items() if vertex not in unknown}
     uncovered = {vertex: bits & ~covered.get(vertex, 0) for vertex, bits in reached.items()}
     return {vertex: bits for vertex, bits in uncovered.items() if bits}
 
@@ -74,17 +74,17 @@ def _first(net: Net, sources: Iterable[int], uncovered: Mapping[int, int]) -> di
     One search does for all categories that nothing is made into; each of the others takes one, since what it is made
     of passes its leaks.
     """
-    found = net.spread
-    nodes = {v: found.bits.in_both_forms(b) for v, b in uncovered.items() if not found.graph.elements[v].is_channel}
+    spread = net.spread
+    nodes = {v: spread.bits.in_both_forms(b) for v, b in uncovered.items() if not spread.graph.elements[v].is_channel}
     asked = 0
     for bits in nodes.values():
         asked |= bits
-    made = sum(map(found.bits.both, found.made))
+    made = sum(map(spread.bits.both, spread.made))
     first: dict[int, int] = dict.fromkeys(nodes, 0)
-    for own in [asked & ~made, *(found.bits.both(i) & asked for i in sorted(found.made))]:
+    for own in [asked & ~made, *(spread.bits.both(i) & asked for i in sorted(spread.made))]:
         if own:
-            ends = {v: nodes.get(v, 0) | found.leaks.get(v, 0) & own for v in {*nodes, *found.leaks}}
-            reached = search(net, sources, found.all_bits if own & made else own, ends)
+            ends = {v: nodes.get(v, 0) | spread.leaks.get(v, 0) & own for v in {*nodes, *spread.leaks}}
+            reached = search(net, sources, spread.all_bits if own & made else own, ends)
             for vertex in nodes:
                 first[vertex] |= present(reached, vertex) & own
     return first

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Collection
 
-    from rosprivacy.analysis.fleet.patterns import Likeness
+    from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import FlowGraph
 

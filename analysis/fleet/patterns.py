@@ -7,77 +7,18 @@ with how many findings and which robots each has, and deviants: robots whose res
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.findings.findings import finding_id
+from rosprivacy.analysis.fleet.tallies import Count, Form, Pair, Share, Tallies
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
 
     from rosprivacy.analysis.answer import Analysis, Finding, OpenQuestion
+    from rosprivacy.analysis.fleet.likeness import Likeness
+    from rosprivacy.analysis.fleet.tallies import Group
     from rosprivacy.analysis.model import Element
-
-
-@dataclass(frozen=True, slots=True)
-class Likeness:
-    """Which robots of a graph stand for which robots of a fleet.
-
-    Attributes
-    ----------
-    members
-        A robot of the graph -> the robots that are alike, itself first; names that are no key are infrastructure and
-        what is shared, which stand for themselves and count as no robot.
-    second
-        A second robot of the graph -> the first one, which it is like: needed to find what goes from one to another.
-    models
-        As ``members``; empty where there is no model.
-    """
-
-    members: Mapping[str, tuple[str, ...]]
-    second: Mapping[str, str] = field(default_factory=dict)
-    models: Mapping[str, str] = field(default_factory=dict)
-
-    def is_robot(self, name: str) -> bool:
-        """Return whether a name is that of a robot of the graph."""
-        return name in self.members or name in self.second
-
-    def weight(self, name: str) -> int:
-        """Return for how many the robot of an element stands; what is no robot stands for itself."""
-        return 0 if name in self.second else len(self.members.get(name, ("",)))
-
-    def alike(self, element: Element) -> Element:
-        """Return the element as it would be on any robot."""
-        return replace(element, robot="") if self.is_robot(element.robot) else element
-
-    def count(self, finding: Finding) -> int:
-        """Return for how many findings of the fleet one of the graph stands; 0 if another does."""
-        return self.between(finding.source.robot, finding.leak.robot)
-
-    def between(self, source: str, leak: str) -> int:
-        """Return the same for the robots of source and leak."""
-        if source in self.second or self.second.get(leak, source) != source:
-            return 0
-        if leak in self.second:
-            return self.weight(source) * (self.weight(source) - 1)
-        return self.weight(source) * (1 if leak == source else self.weight(leak))
-
-    def alone(self, source: Element, leak: Element) -> bool:
-        """Return whether what begins and ends so stands for no other of its kind."""
-        robots = {source.robot, leak.robot}
-        return not robots & self.second.keys() and all(self.weight(robot) == 1 for robot in robots)
-
-    def across(self, finding: Finding) -> bool:
-        """Return whether data gets from one robot to another."""
-        source, leak = finding.source.robot, finding.leak.robot
-        return source != leak and self.is_robot(source) and self.is_robot(leak)
-
-    def robots(self, finding: Finding) -> tuple[str, ...]:
-        """Return the robots of the fleet from which a finding of the graph begins or, if from none, where it ends."""
-        return self.members.get(finding.source.robot) or self.members.get(finding.leak.robot, ())
-
-
-NO_ROBOTS = Likeness({})
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,27 +52,6 @@ class Pattern:
     accepted: int = 0
 
 
-@dataclass(frozen=True, slots=True, order=True)
-class Share:
-    """How a robot takes part in a pattern.
-
-    Attributes
-    ----------
-    pattern
-        Id.
-    ends
-        Whether data gets to this robot, from another; else it begins here, or here and nowhere else.
-    dismissed, pseudonymised, accepted
-        The finding is.
-    """
-
-    pattern: str
-    ends: bool
-    dismissed: bool
-    pseudonymised: bool
-    accepted: bool = False
-
-
 @dataclass(frozen=True, slots=True)
 class Deviant:
     """Robots whose result differs from that of most robots of their model.
@@ -163,11 +83,13 @@ class FleetView:
     @classmethod
     def of(cls, analysis: Analysis, likeness: Likeness) -> FleetView:
         """Put the findings of an analysis together."""
-        return cls(
-            likeness,
-            patterns(analysis.findings, likeness),
-            deviants(analysis.findings, analysis.open, likeness),
-        )
+        return cls.counted(tallied(analysis.findings, likeness), analysis, likeness)
+
+    @classmethod
+    def counted(cls, tallies: Tallies, analysis: Analysis, likeness: Likeness) -> FleetView:
+        """Return the same when its findings are counted already."""
+        patterns = patterns_of(tallies.groups(), analysis.findings)
+        return cls(likeness, patterns, deviants_of(tallies.shares, analysis.open, likeness))
 
     def shown(self, analysis: Analysis) -> Analysis:
         """Return the analysis with one finding of each pattern, and without robots that only stand beside others."""
@@ -186,61 +108,49 @@ class FleetView:
         )
 
 
-def pattern_id(finding: Finding, likeness: Likeness) -> str:
-    """Return the id of the pattern of a finding; without robots it is that of the finding."""
-    return pattern_of(finding.kind, finding.category, finding.source, finding.leak, likeness, beside=finding.beside)
-
-
-def pattern_of(
-    kind: str, category: str, source: Element, leak: Element, likeness: Likeness, *, beside: bool = False
-) -> str:
-    """Return the id of the pattern of what would be a finding."""
-    across = source.robot != leak.robot and likeness.is_robot(source.robot) and likeness.is_robot(leak.robot)
-    kind = f"across {kind}" if across else kind
-    return finding_id(category, likeness.alike(source), likeness.alike(leak), kind, beside=beside)
-
-
-def patterns(findings: Iterable[Finding], likeness: Likeness) -> tuple[Pattern, ...]:
-    """Put findings that differ only in the robot together, in the order of the first of each.
-
-    Notes
-    -----
-    Linear in the findings and in the robots that are listed.
-    """
-    grouped: dict[str, list[Finding]] = defaultdict(list)
+def tallied(findings: Iterable[Finding], likeness: Likeness) -> Tallies:
+    """Count the findings that differ only in the robot together; linear in the findings and the robots listed."""
+    tallies = Tallies(likeness)
     for finding in findings:
-        if likeness.count(finding):
-            grouped[pattern_id(finding, likeness)].append(finding)
-    return tuple(_pattern(key, found, likeness) for key, found in grouped.items())
+        if count := likeness.count(finding):
+            form = Form(finding.dismissed, finding.accepted, finding.pseudonymised)
+            pair = Pair(finding.kind, finding.category, finding.source, finding.leak, finding.beside)
+            key = tallies.add(pair, form, Count.of(count, form))
+            tallies.share(key, (finding.source.robot,), (finding.leak.robot,), form, across=likeness.across(finding))
+    return tallies
 
 
-def _pattern(key: str, found: list[Finding], likeness: Likeness) -> Pattern:
-    counts = [likeness.count(finding) for finding in found]
-    robots = sorted({robot for finding in found for robot in likeness.robots(finding)})
-    return Pattern(
-        key,
-        min(found, key=lambda finding: (finding.dismissed, finding.accepted, finding.pseudonymised)),
-        sum(counts),
-        tuple(robots),
-        likeness.across(found[0]),
-        sum(count for count, finding in zip(counts, found, strict=True) if finding.dismissed),
-        sum(count for count, finding in zip(counts, found, strict=True) if finding.pseudonymised),
-        sum(count for count, finding in zip(counts, found, strict=True) if finding.accepted),
+def patterns_of(groups: Iterable[Group], findings: Iterable[Finding]) -> tuple[Pattern, ...]:
+    """Return the patterns, each with the finding that was made of what it shows, in the order of these."""
+    order = {(f.kind, f.category, f.source, f.leak, f.beside): (n, f) for n, f in enumerate(findings)}
+    return tuple(
+        Pattern(
+            group.id,
+            order[group.pair][1],
+            group.count.all,
+            group.robots,
+            group.across,
+            group.count.dismissed,
+            group.count.pseudonymised,
+            group.count.accepted,
+        )
+        for group in sorted(groups, key=lambda group: order[group.pair][0])
     )
 
 
 Result = tuple[frozenset[Share], frozenset["Element"]]
 
 
-def deviants(findings: Iterable[Finding], questions: Iterable[OpenQuestion], likeness: Likeness) -> tuple[Deviant, ...]:
-    """Return the robots that differ from most of their model, by model and id; of equally many, the first are most."""
-    return deviants_of(_shares(findings, likeness), questions, likeness)
-
-
 def deviants_of(
     shares: Mapping[str, Collection[Share]], questions: Iterable[OpenQuestion], likeness: Likeness
 ) -> tuple[Deviant, ...]:
-    """Return the same, when it is known how each robot of the graph takes part in patterns."""
+    """Return the robots that differ from most of their model, by model and id; of equally many, the first are most.
+
+    Parameters
+    ----------
+    shares
+        How each robot of the graph takes part in patterns.
+    """
     open_at: dict[str, set[Element]] = defaultdict(set)
     for question in questions:
         open_at[question.element.robot].add(likeness.alike(question.element))
@@ -268,20 +178,6 @@ def different(
             _deviant(robot, model, results[robot], usual, likeness) for robot in robots if results[robot] != usual
         ]
     return tuple(found)
-
-
-def _shares(findings: Iterable[Finding], likeness: Likeness) -> dict[str, set[Share]]:
-    """How each robot that stands for itself and others takes part in patterns."""
-    shares: dict[str, set[Share]] = defaultdict(set)
-    for finding in findings:
-        if not likeness.count(finding):
-            continue
-        key, source = pattern_id(finding, likeness), finding.source.robot
-        leak = likeness.second.get(finding.leak.robot, finding.leak.robot)
-        forms = finding.dismissed, finding.pseudonymised, finding.accepted
-        shares[source].add(Share(key, False, *forms))
-        shares[leak].add(Share(key, likeness.across(finding), *forms))
-    return shares
 
 
 def _deviant(robot: str, model: str, result: Result, usual: Result, likeness: Likeness) -> Deviant:

@@ -7,22 +7,23 @@ report, patterns and robots that differ. The same as ``patterns.py`` makes of al
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rosprivacy.analysis.fleet.patterns import FleetView, Pattern, Share, deviants_of, pattern_of
+from rosprivacy.analysis.fleet.patterns import FleetView
 from rosprivacy.analysis.fleet.source_leak_pairs import pairs
+from rosprivacy.analysis.fleet.tallies import Count, Form, Pair, Share, Tallies
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterator, Sequence
 
     from numpy.typing import NDArray
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.findings.concerns import Concern
-    from rosprivacy.analysis.fleet.patterns import Likeness
+    from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.analysis.fleet.source_leak_pairs import Pairs
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Element
@@ -32,23 +33,6 @@ if TYPE_CHECKING:
 
 Wanted = dict[int, set[tuple[str, int, int, bool]]]  # source -> as ``Chosen`` of the findings
 FIXED = -1
-
-
-@dataclass(frozen=True, slots=True)
-class Group:
-    """A pattern without its way."""
-
-    kind: str
-    category: str
-    source: Element
-    leak: Element
-    id: str
-    count: int
-    robots: tuple[str, ...]
-    across: bool
-    dismissed: int
-    pseudonymised: int
-    beside: bool = False
 
 
 class _Table:
@@ -83,8 +67,7 @@ class Groups:
 
     def __init__(self, likeness: Likeness) -> None:
         self._likeness = likeness
-        self._groups: list[Group] = []
-        self._shares: dict[str, set[Share]] = defaultdict(set)
+        self._tallies = Tallies(likeness)
 
     def __call__(self, found: Spread, kinds: Sequence[Concern], mask: int) -> Wanted:
         """Return the findings to make."""
@@ -115,27 +98,22 @@ class Groups:
         for start, end in zip(starts.tolist(), ends, strict=True):
             rows = order[start:end]
             source, leak = int(sources[rows[0]]), int(leaks[rows[0]])
-            shown = elements[source], elements[leak]
-            ids[int(keys[rows[0]])] = key = pattern_of(part.kind, category, *shown, self._likeness, beside=beside)
+            pair = Pair(part.kind, category, elements[source], elements[leak], beside)
+            form = Form(bool(dismissed[rows[0]]), False, bool(hidden[rows[0]]))
+            some = counts[rows]
+            count = Count(int(some.sum()), int(some[dismissed[rows]].sum()), 0, int(some[hidden[rows]].sum()))
             where = np.unique(np.where(table.is_robot[a[rows]], a[rows], table.first[b[rows]]))
-            robots = (self._likeness.members.get(table.names[robot], ()) for robot in where.tolist())
-            group = Group(
-                part.kind, category, *shown, key, int(counts[rows].sum()),
-                tuple(sorted({robot for some in robots for robot in some})), bool(across[rows[0]]),
-                int(counts[rows][dismissed[rows]].sum()), int(counts[rows][hidden[rows]].sum()), beside,
-            )  # fmt: skip
-            self._groups.append(group)
+            ids[int(keys[rows[0]])] = self._tallies.add(pair, form, count, [table.names[i] for i in where.tolist()])
             yield source, leak
         no = np.zeros(len(keys), bool)
         for robots_at, ends_here in ((a, no), (table.first[b], across)):
             rows = np.unique(np.column_stack([robots_at, keys, ends_here, dismissed, hidden]), axis=0)
             for robot, pattern, *flags in rows.tolist():
-                self._shares[table.names[robot]].add(Share(ids[pattern], *map(bool, flags)))
+                self._tallies.shares[table.names[robot]].add(Share(ids[pattern], *map(bool, flags)))
 
     def view(self, analysis: Analysis) -> FleetView:
         """Return patterns and deviants, when the findings are made."""
-        deviants = deviants_of(self._shares, analysis.open, self._likeness)
-        return FleetView(self._likeness, patterns_of(self._groups, analysis), deviants)
+        return FleetView.counted(self._tallies, analysis, self._likeness)
 
 
 def _plain_beside(part: Pairs) -> Pairs:
@@ -145,22 +123,3 @@ def _plain_beside(part: Pairs) -> Pairs:
     return replace(
         part, sources=part.sources[at], leaks=part.leaks[at], pseudonymised=no, dismissed=~no, beside=no
     )  # fmt: skip
-
-
-def patterns_of(groups: Iterable[Group], analysis: Analysis) -> tuple[Pattern, ...]:
-    """Return the patterns, each with the finding that was made of what it shows."""
-    found = {(f.kind, f.category, f.source, f.leak, f.beside): f for f in analysis.findings}
-    order = {finding.id: number for number, finding in enumerate(analysis.findings)}
-    made = [
-        Pattern(
-            group.id,
-            found[group.kind, group.category, group.source, group.leak, group.beside],
-            group.count,
-            group.robots,
-            group.across,
-            group.dismissed,
-            group.pseudonymised,
-        )
-        for group in groups
-    ]
-    return tuple(sorted(made, key=lambda pattern: order[pattern.finding.id]))

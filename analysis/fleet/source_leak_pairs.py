@@ -1,7 +1,7 @@
 """Which sources reach which leaks, for all sources at once: the kernel with one bit per source (rules S8, S10).
 
 In: a spread, and where each kind of finding can be. Out: pairs, as arrays. A word has 64 bits, so one pass of the
-kernel does 64 sources of a category; where the category is made of others, or pseudonymised on the way, a source takes
+kernel does 64 sources of a category; where the category is made of others, or pseudonymised on the path, a source takes
 a bit for each form in which its data can be. No path is looked for: that is done for the pairs that are shown.
 """
 
@@ -59,7 +59,7 @@ class Pairs:
     beside: Flags
 
 
-def pairs(found: Spread, kinds: Sequence[Concern], mask: int) -> Iterator[Pairs]:
+def pairs(spread: Spread, kinds: Sequence[Concern], mask: int) -> Iterator[Pairs]:
     """Return all pairs, by kind and category.
 
     Parameters
@@ -72,14 +72,14 @@ def pairs(found: Spread, kinds: Sequence[Concern], mask: int) -> Iterator[Pairs]
     Two runs of the kernel per category and so many sources: one that stops at leaks of the category, one that does not.
     So many are ``MOST_WORDS`` times 64 for each form, fewer in a large graph.
     """
-    ends = [as_bits(found, len(found.graph.elements), concern.bits, 0) for concern in kinds]
+    ends = [as_bits(spread, len(spread.graph.elements), concern.bits, 0) for concern in kinds]
     network: GraphArrays | None = None
-    for i, _ in enumerate(found.categories):
-        leaks = [np.flatnonzero(_has(bits, found.bits.plain(i))) for bits in ends]
-        if not mask & found.bits.both(i) or not any(len(some) for some in leaks):
+    for i, _ in enumerate(spread.categories):
+        leaks = [np.flatnonzero(_has(bits, spread.bits.plain(i))) for bits in ends]
+        if not mask & spread.bits.both(i) or not any(len(some) for some in leaks):
             continue
-        network = network or GraphArrays.of(found)
-        yield from _pairs_of(found, network, i, kinds, leaks)
+        network = network or GraphArrays.of(spread)
+        yield from _pairs_of(spread, network, i, kinds, leaks)
 
 
 def _has(bits: Bits, bit: int) -> Flags:
@@ -88,7 +88,7 @@ def _has(bits: Bits, bit: int) -> Flags:
 
 
 def forms(category: int, bits: CategoryBits, steps: Collection[tuple[int, int]]) -> tuple[int, ...]:
-    """Return the forms in which data can be on the way to a category: bits of the spread, sorted.
+    """Return the forms in which data can be on the path to a category: bits of the spread, sorted.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ def forms(category: int, bits: CategoryBits, steps: Collection[tuple[int, int]])
 
 
 class CategoryRun:
-    """One category: from whom it can come, and in which forms its data can be on the way.
+    """One category: from whom it can come, and in which forms its data can be on the path.
 
     Sources are followed by number: bit ``n * at + number`` of n sources is the form at place ``at`` of this one.
 
@@ -120,20 +120,20 @@ class CategoryRun:
         Vertices that bring it in, in any of its forms; sorted.
     """
 
-    def __init__(self, found: Spread, network: GraphArrays, category: int, forms: tuple[int, ...]) -> None:
+    def __init__(self, spread: Spread, network: GraphArrays, category: int, forms: tuple[int, ...]) -> None:
         self._network = network
-        self._own = found.bits.forms(category)
+        self._own = spread.bits.forms(category)
         self._forms = forms
         both = sum(1 << form for form in forms)
-        self.sources = np.array(sorted(v for v in found.facts if found.begins(v) & both), np.int64)
-        self._is_leak = _has(as_bits(found, len(network.keep), found.leaks, 0), self._own[0])
+        self.sources = np.array(sorted(v for v in spread.facts if spread.begins(v) & both), np.int64)
+        self._is_leak = _has(as_bits(spread, len(network.keep), spread.leaks, 0), self._own[0])
         self._passes = {form: _has(network.keep, form) for form in forms}
         self._derivations = network.derivations[np.isin(network.derivations[:, 1:], forms).all(axis=1)]
-        self._begins = {source: found.begins(source) for source in self.sources.tolist()}
+        self._begins = {source: spread.begins(source) for source in self.sources.tolist()}
         flows: dict[int, list[int]] = {vertex: [] for vertex in self.sources.tolist()}
         for number, index in enumerate(network.special):
-            source = found.graph.flows[index].source
-            if source in flows and found.flow_emits.get(index, 0) & both:
+            source = spread.graph.flows[index].source
+            if source in flows and spread.flow_emits.get(index, 0) & both:
                 flows[source].append(network.count + number)
         self._flows = flows
 
@@ -223,11 +223,11 @@ def unpacked(rows: Bits, first: int, n: int) -> Flags:
 
 
 def _pairs_of(
-    found: Spread, network: GraphArrays, number: int, kinds: Sequence[Concern], leaks: Sequence[Indices]
+    spread: Spread, network: GraphArrays, number: int, kinds: Sequence[Concern], leaks: Sequence[Indices]
 ) -> Iterator[Pairs]:
     """The pairs of each kind, of one category."""
-    steps = {(before, after) for pairs in found.derives.values() for before, after in pairs}
-    category = CategoryRun(found, network, number, forms(number, found.bits, steps))
+    steps = {(before, after) for pairs in spread.derives.values() for before, after in pairs}
+    category = CategoryRun(spread, network, number, forms(number, spread.bits, steps))
     rows: list[list[tuple[Indices, Indices, Flags, Flags, Flags]]] = [[] for _ in kinds]
     disclosed = next(number for number, concern in enumerate(kinds) if concern.kind == DISCLOSURE)
     everywhere = np.unique(np.concatenate(leaks))
@@ -266,12 +266,12 @@ def _split(bits: int) -> Iterator[tuple[int, np.uint64]]:
 
 def _closure(start: set[int], steps: Collection[tuple[int, int]]) -> set[int]:
     """What can be got to by some steps."""
-    found: set[int] = set()
+    closed: set[int] = set()
     new = start
     while new:
-        found |= new
-        new = {after for before, after in steps if before in new} - found
-    return found
+        closed |= new
+        new = {after for before, after in steps if before in new} - closed
+    return closed
 
 
 def _rows(

@@ -51,11 +51,11 @@ class GraphArrays:
     derivations: Indices
 
     @classmethod
-    def of(cls, found: Spread) -> GraphArrays:
+    def of(cls, spread: Spread) -> GraphArrays:
         """Make the arrays of a spread; O(flows · log flows)."""
-        graph = found.graph
+        graph = spread.graph
         count = len(graph.elements)
-        special = sorted({*found.flow_emits, *found.flow_keeps})
+        special = sorted({*spread.flow_emits, *spread.flow_keeps})
         sources = [flow.source for flow in graph.flows]
         targets = [flow.target for flow in graph.flows]
         for number, index in enumerate(special):
@@ -63,15 +63,15 @@ class GraphArrays:
             targets.append(targets[index])
             targets[index] = count + number
         vertices = count + len(special)
-        emitted = as_bits(found, vertices, found.emits, 0)
-        keep = as_bits(found, vertices, found.keeps, found.all_bits)
+        emitted = as_bits(spread, vertices, spread.emits, 0)
+        keep = as_bits(spread, vertices, spread.keeps, spread.all_bits)
         for number, index in enumerate(special):
-            passing = found.flow_keeps.get(
-                index, found.all_bits
+            passing = spread.flow_keeps.get(
+                index, spread.all_bits
             )  # what never goes along it is not emitted there either
-            emitted[count + number] = _words(found.flow_emits.get(index, 0) & passing, emitted.shape[1])
+            emitted[count + number] = _words(spread.flow_emits.get(index, 0) & passing, emitted.shape[1])
             keep[count + number] = _words(passing, keep.shape[1])
-        derivations = [(vertex, *pair) for vertex, pairs in found.derives.items() for pair in pairs]
+        derivations = [(vertex, *pair) for vertex, pairs in spread.derives.items() for pair in pairs]
         nodes = bisect_left(graph.elements, True, key=lambda element: element.is_channel)  # these are last
         edges = Edges.of(vertices, np.array(sources, np.int64), np.array(targets, np.int64), nodes)
         return cls(count, edges, tuple(special), emitted, keep, np.array(derivations, np.int64).reshape(-1, 3))
@@ -85,9 +85,9 @@ class GraphArrays:
         )
 
 
-def as_bits(found: Spread, count: int, numbers: Mapping[int, int], otherwise: int) -> Bits:
+def as_bits(spread: Spread, count: int, numbers: Mapping[int, int], otherwise: int) -> Bits:
     """Return sets of bits by vertex as rows of words; those that are not given are all alike."""
-    words = max(1, -(-found.all_bits.bit_length() // WORD))
+    words = max(1, -(-spread.all_bits.bit_length() // WORD))
     rows = np.empty((count, words), np.uint64)
     rows[:] = np.array(_words(otherwise, words), np.uint64)
     for vertex, bits in numbers.items():

@@ -19,6 +19,7 @@ import numpy as np
 from rosprivacy.analysis.kernel.arrays import as_bits, as_numbers
 from rosprivacy.analysis.kernel.edges import Edges
 from rosprivacy.analysis.kernel.fixpoint import fixpoint
+from rosprivacy.analysis.kernel.states import back_from
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
@@ -81,7 +82,7 @@ class Backward:
     leaving: Mapping[int, int]
 
 
-def backward(found: Spread, places: Mapping[int, int], opened: Opened = NOTHING_OPENED) -> Backward:
+def backward(spread: Spread, places: Mapping[int, int], opened: Opened = NOTHING_OPENED) -> Backward:
     """Return from where data would get to some places.
 
     Parameters
@@ -93,10 +94,10 @@ def backward(found: Spread, places: Mapping[int, int], opened: Opened = NOTHING_
     -----
     O(levels · vertices + flows visited), like the fixpoint itself.
     """
-    graph, everything = found.graph, found.all_bits
+    graph, everything = spread.graph, spread.all_bits
     count = len(graph.elements)
-    keeps = {v: bits | opened.elements.get(v, 0) for v, bits in found.keeps.items()}
-    restricted = sorted(found.flow_keeps)
+    keeps = {v: bits | opened.elements.get(v, 0) for v, bits in spread.keeps.items()}
+    restricted = sorted(spread.flow_keeps)
     sources = [flow.source for flow in graph.flows] + [source for source, _ in opened.more]
     targets = [flow.target for flow in graph.flows] + [target for _, target in opened.more]
     for number, index in enumerate(restricted, count):
@@ -104,25 +105,15 @@ def backward(found: Spread, places: Mapping[int, int], opened: Opened = NOTHING_
         targets.append(targets[index])
         targets[index] = number
     vertices = count + len(restricted)
-    begins = {v: bits & _taken_up(found, v, keeps) for v, bits in places.items()}
-    turned = []  # what is made there of what arrives
-    for vertex, pairs in found.derives.items():
-        for before, after in pairs:
-            turned.append((vertex, after, before))
-            if places.get(vertex, 0) >> after & 1:
-                begins[vertex] = begins.get(vertex, 0) | 1 << before
-    passing = {n: found.flow_keeps[i] | opened.flows.get(i, 0) for n, i in enumerate(restricted, count)}
+    begins = {v: back_from(spread, v, bits, opened.elements.get(v, 0)) for v, bits in places.items()}
+    turned = [(vertex, after, before) for vertex, pairs in spread.derives.items() for before, after in pairs]
+    passing = {n: spread.flow_keeps[i] | opened.flows.get(i, 0) for n, i in enumerate(restricted, count)}
     nodes = bisect_left(graph.elements, True, key=lambda element: element.is_channel)  # channels are last
     edges = Edges.of(vertices, np.array(targets, np.int64), np.array(sources, np.int64), nodes)
     leaving, entering = fixpoint(
         edges,
-        as_bits(found, vertices, begins, 0),
-        as_bits(found, vertices, keeps | passing, everything),
+        as_bits(spread, vertices, begins, 0),
+        as_bits(spread, vertices, keeps | passing, everything),
         np.array(turned, np.int64).reshape(-1, 3),
     )
     return Backward(as_numbers(entering[:count]), as_numbers(leaving[:count]))
-
-
-def _taken_up(found: Spread, vertex: int, keeps: Mapping[int, int]) -> int:
-    """A node is reached by all that arrives; a channel takes up only what it carries."""
-    return keeps.get(vertex, found.all_bits) if found.graph.elements[vertex].is_channel else found.all_bits

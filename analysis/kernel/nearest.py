@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.kernel.backward import NOTHING_OPENED, Opened
+from rosprivacy.analysis.kernel.states import back, back_from, onward
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -31,22 +32,23 @@ class Nearest:
         Vertex -> (target, bits that pass the flow).
     """
 
-    found: Spread
+    spread: Spread
     opened: Opened
     levels: Mapping[int, list[tuple[int, int]]]
     leaving: Mapping[int, list[tuple[int, int]]]
 
     @classmethod
-    def of(cls, found: Spread, places: Mapping[int, int], opened: Opened = NOTHING_OPENED) -> Nearest:
+    def of(cls, spread: Spread, places: Mapping[int, int], opened: Opened = NOTHING_OPENED) -> Nearest:
         """Search back from all places at once; O(flows · levels at which bits are new)."""
         leaving: dict[int, list[tuple[int, int]]] = defaultdict(list)
         entering: dict[int, list[tuple[int, int]]] = defaultdict(list)
-        for source, target, passing in _flows(found, opened):
+        for source, target, passing in _flows(spread, opened):
             leaving[source].append((target, passing))
             entering[target].append((source, passing))
-        result = cls(found, opened, defaultdict(list), leaving)
+        result = cls(spread, opened, defaultdict(list), leaving)
         seen: dict[int, int] = defaultdict(int)
-        new = {v: result._before(v, bits, 0) for v, bits in places.items() if bits}
+        more = opened.elements
+        new = {v: back_from(spread, v, bits, more.get(v, 0)) for v, bits in places.items() if bits}
         level = 0
         while new:
             further: dict[int, int] = defaultdict(int)
@@ -57,23 +59,9 @@ class Nearest:
                     result.levels[vertex].append((level, fresh))
                     for source, passing in entering.get(vertex, ()):
                         further[source] |= fresh & passing
-            new = {v: before for v, bits in further.items() if (before := result._before(v, 0, bits))}
+            new = {v: before for v, bits in further.items() if (before := back(spread, v, bits, more.get(v, 0)))}
             level += 1
         return result
-
-    def _before(self, vertex: int, here: int, onward: int) -> int:
-        """The bits that have to arrive for some to be there, or to leave."""
-        keeps = self.keeps(vertex)
-        channel = self.found.graph.elements[vertex].is_channel
-        bits = (here & keeps if channel else here) | onward & keeps
-        for before, after in self.found.derives.get(vertex, ()):
-            if (here | onward) >> after & 1:
-                bits |= 1 << before
-        return bits
-
-    def keeps(self, vertex: int) -> int:
-        """The bits that pass an element as they are."""
-        return self.found.keeps.get(vertex, self.found.all_bits) | self.opened.elements.get(vertex, 0)
 
     def after(self, vertex: int, bits: int) -> int:
         """The nearest place for bits that leave an element; -1 if there is none."""
@@ -88,10 +76,8 @@ class Nearest:
             level, vertex, bits = min((self._level(v, bits) for v, bits in arriving), default=(FAR, -1, 0))
             if level in (0, FAR):
                 return vertex if level == 0 else -1
-            onward = bits & self.keeps(vertex)
-            for before, after in self.found.derives.get(vertex, ()):
-                onward |= (bits >> before & 1) << after
-            arriving = [(target, onward & passing) for target, passing in self.leaving.get(vertex, ())]
+            leaving = onward(self.spread, vertex, bits, self.opened.elements.get(vertex, 0))
+            arriving = [(target, leaving & passing) for target, passing in self.leaving.get(vertex, ())]
 
     def _level(self, vertex: int, bits: int) -> tuple[int, int, int]:
         """How far some bits are from a place: the nearest of them; vertex; these bits."""
@@ -101,10 +87,10 @@ class Nearest:
         return FAR, vertex, 0
 
 
-def _flows(found: Spread, opened: Opened) -> Iterator[tuple[int, int, int]]:
+def _flows(spread: Spread, opened: Opened) -> Iterator[tuple[int, int, int]]:
     """Source, target, bits that pass the flow."""
-    everything = found.all_bits
-    for index, flow in enumerate(found.graph.flows):
-        yield flow.source, flow.target, found.flow_keeps.get(index, everything) | opened.flows.get(index, 0)
+    everything = spread.all_bits
+    for index, flow in enumerate(spread.graph.flows):
+        yield flow.source, flow.target, spread.flow_keeps.get(index, everything) | opened.flows.get(index, 0)
     more: Iterable[tuple[int, int]] = opened.more
     yield from ((source, target, everything) for source, target in more)

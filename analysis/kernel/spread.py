@@ -98,12 +98,14 @@ class Spread:
         bits = self.sent.get(self.graph.flows[index].source, 0) | self.flow_emits.get(index, 0)
         return bits & self.flow_keeps.get(index, self.all_bits)
 
+    def passing(self, index: int) -> int:
+        """What can go along a flow and be taken up at its end; a channel takes up only what it carries."""
+        target, bits = self.graph.flows[index].target, self.flow_keeps.get(index, self.all_bits)
+        return bits & self.keeps.get(target, self.all_bits) if self.graph.elements[target].is_channel else bits
+
     def along(self, index: int) -> int:
         """What goes along a flow and is taken up at its end."""
-        flow, bits = self.graph.flows[index], self.sends(index)
-        if self.graph.elements[flow.target].is_channel:
-            bits &= self.keeps.get(flow.target, self.all_bits)
-        return bits
+        return self.sends(index) & self.passing(index)
 
     def names(self, bits: int) -> tuple[str, ...]:
         """The categories of some bits, planes put together, in order."""

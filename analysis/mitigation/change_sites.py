@@ -9,6 +9,7 @@ from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.kernel.bits import bits_of
+from rosprivacy.analysis.kernel.states import back
 from rosprivacy.analysis.mitigation.changed_system import opens
 
 if TYPE_CHECKING:
@@ -92,11 +93,7 @@ class ChangeSites:
         bits, leaks = self.spread.bits, self.spread.leaks.get(vertex, 0)
         if leaks & bits.both(i):
             return
-        if self.spread.keeps.get(vertex, self.spread.all_bits) & bits.both(i):
-            yield i
-        for before, after in self.spread.derives.get(vertex, ()):
-            if bits.category(after) == i and not leaks >> before & 1:
-                yield bits.category(before)
+        yield from bits_of(bits.merged(back(self.spread, vertex, bits.both(i)) & ~leaks))
 
     def delays(self, flow: int) -> bool:
         """Whether what goes along a flow goes on to a time-critical node."""

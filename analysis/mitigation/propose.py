@@ -1,7 +1,7 @@
 """Findings -> what to change so that they go: proposals, each proven by a new analysis (rules S8, S10).
 
 In: an analysis and what it was made of, the limits that the user sets. Out: ``Proposal``s, for each category with an
-open finding and for all together. What is proposed is taken from a network of the ways to be cut; whether it is right
+open finding and for all together. What is proposed is taken from a network of the paths to be cut; whether it is right
 is decided by the real fixpoint, with the changes applied: a proposal that this does not bear out has no steps.
 
 Source: the paper, section II-C, for the kinds of change and for naming who would get filtered data.
@@ -15,13 +15,13 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.findings.findings import Options, analyse
 from rosprivacy.analysis.kernel.bits import bits_of
-from rosprivacy.analysis.kernel.search import Net
 from rosprivacy.analysis.kernel.spreading import spread
+from rosprivacy.analysis.kernel.states import Net
 from rosprivacy.analysis.mitigation.affected import affected
 from rosprivacy.analysis.mitigation.candidates import candidates, uncut
 from rosprivacy.analysis.mitigation.change_sites import ChangeSites
 from rosprivacy.analysis.mitigation.changed_system import opened, with_changes
-from rosprivacy.analysis.mitigation.cut_network import Group, a_way, cut_network, open_ends
+from rosprivacy.analysis.mitigation.cut_network import Group, a_path, cut_network, open_ends
 from rosprivacy.analysis.mitigation.limits import DENY, FILTER, REVIEW, Limits
 from rosprivacy.analysis.mitigation.min_cut import BUDGET, cheapest
 from rosprivacy.analysis.mitigation.proposals import ITSELF, NOT_ALLOWED, Kept, Proposal, ProposedStep
@@ -133,13 +133,13 @@ class _Work:
         private = [n for n, change in enumerate(options) if change.private]
         for network, numbers in ((left, private), (self._opened(options, groups, kept), range(len(options)))):
             some = [options[n] for n in numbers]
-            if a_way(network, uncut(some)) is None:
+            if a_path(network, uncut(some)) is None:
                 cuts = cheapest(network, some, budget)
                 later += [(replace(cut, chosen=tuple(numbers[n] for n in cut.chosen)), network) for cut in cuts]
         yield from sorted(later, key=lambda pair: pair[0].cost)
 
     def _opened(self, options: Iterable[Candidate], groups: Iterable[Group], kept: Iterable[Kept]) -> CutNetwork:
-        """The ways that there are when wildcards get past all filters that could be made."""
+        """The paths that there are when wildcards get past all filters that could be made."""
         graph, bound = self.system.graph, self.system.bound
         filtered = sorted({flow for change in options if not change.private for flow in change.flows})
         grown = spread(*opened(graph, bound, filtered, self.wild, bound), self.system.hierarchy)
@@ -167,7 +167,7 @@ class _Work:
         return bool(self.analysis.spread.leaks.get(at[0], 0) & self.analysis.spread.bits.both(at[1]))
 
     def _kept(self, group: Group, options: Sequence[Candidate]) -> Iterable[Kept]:
-        """The findings of one source that no change removes, with a way on which none can be made."""
+        """The findings of one source that no change removes, with a path on which none can be made."""
         (source,) = group.sources
         mine: dict[tuple[At, bool], list[Finding]] = defaultdict(list)
         for finding in (f for f in self.findings if self.vertex[f.source] == source):
@@ -176,16 +176,16 @@ class _Work:
             else:
                 mine[self._at(finding), finding.kind != DISCLOSURE].append(finding)
         network = cut_network(self.net, [group], self.wanted)
-        for at, past, way in open_ends(network, uncut(options)):
+        for at, past, path in open_ends(network, uncut(options)):
             for finding in mine[at, past]:
-                yield Kept(finding, NOT_ALLOWED, self._shown(source, network, way))
+                yield Kept(finding, NOT_ALLOWED, self._shown(source, network, path))
 
     def _at(self, finding: Finding) -> At:
         return (self.vertex[finding.leak], self.number[finding.category])
 
-    def _shown(self, source: int, network: CutNetwork, way: Iterable[Arc]) -> tuple[Element, ...]:
+    def _shown(self, source: int, network: CutNetwork, path: Iterable[Arc]) -> tuple[Element, ...]:
         shown = [self.elements[source]]
-        for arc in way:
+        for arc in path:
             element = self.elements[network.at[arc.head][0]] if arc.head in network.at else shown[-1]
             if element.shown_as != shown[-1].shown_as:
                 shown.append(element)
@@ -254,6 +254,6 @@ def _lean(
         for i in sorted(categories) if change.kind != DENY else ():
             less = lean[place][1] - {i}
             tried = [*lean[:place], (change, less), *lean[place + 1 :]]
-            if less and a_way(network, uncut([replace(one, categories=some) for one, some in tried])) is None:
+            if less and a_path(network, uncut([replace(one, categories=some) for one, some in tried])) is None:
                 lean = tried
     return lean

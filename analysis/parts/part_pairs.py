@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     Codes = NDArray[np.uint8]
 
 Met = frozenset[tuple[int, int]]  # number in the border, place of the form: where the data of a source gets to it
-Class = tuple[Met, Met]  # on ways without another leak of the category, on all ways
+Class = tuple[Met, Met]  # on paths without another leak of the category, on all paths
 STOPS = (True, False)
 NOTHING = np.empty(0, np.int64)
 NOT_REACHED = 0  # in place of how data gets somewhere, which is a flag for each ``Arrival``
@@ -60,11 +60,11 @@ class Crossing:
 
     @classmethod
     def of(
-        cls, found: Spread, cut: PartNetwork, number: int, forms: tuple[int, ...], kinds: Sequence[Concern]
+        cls, spread: Spread, cut: PartNetwork, number: int, forms: tuple[int, ...], kinds: Sequence[Concern]
     ) -> Crossing:
         """Make ready what all rounds need."""
-        category = CategoryRun(found, cut.network, number, forms)
-        return cls(cut, category, forms, _within(cut.unit[category.sources]), ends_of(found, number, kinds))
+        category = CategoryRun(spread, cut.network, number, forms)
+        return cls(cut, category, forms, _within(cut.unit[category.sources]), ends_of(spread, number, kinds))
 
     def classes(self) -> dict[int, Class]:
         """Source -> where in the border its data gets to."""
@@ -96,13 +96,13 @@ class Crossing:
         Parameters
         ----------
         leaving
-            What leaves the border on ways without another leak, and on all ways.
+            What leaves the border on paths without another leak, and on all paths.
         """
         carried = [self.carried(given, n, stop=stop) for given, stop in zip(leaving, STOPS, strict=True)]
         return how(self.category, carried, self.ends, n)
 
     def within(self, arriving: Mapping[str, Codes], numbers: Mapping[int, int]) -> Iterator[tuple[str, int, int, int]]:
-        """(kind, source, end, how): the pairs of one unit, by ways within it and ways over the border.
+        """(kind, source, end, how): the pairs of one unit, by paths within it and paths over the border.
 
         Parameters
         ----------
@@ -154,9 +154,9 @@ def _within(units: Indices) -> Indices:
     return numbers
 
 
-def ends_of(found: Spread, number: int, kinds: Sequence[Concern]) -> dict[str, Indices]:
+def ends_of(spread: Spread, number: int, kinds: Sequence[Concern]) -> dict[str, Indices]:
     """Return, by kind of finding, the vertices where data of a category ends in one; sorted."""
-    both = found.both(found.categories[number])
+    both = spread.both(spread.categories[number])
     return {c.kind: np.array(sorted(v for v, bits in c.bits.items() if bits & both), np.int64) for c in kinds}
 
 
@@ -173,14 +173,14 @@ def how(
     Parameters
     ----------
     carried
-        What arrives at and leaves each vertex, by way: in the order of ``STOPS``.
+        What arrives at and leaves each vertex, in the order of ``STOPS``.
     sources, numbers
         Those whose own data counts, too.
     """
 
-    def there(way: int, at: Indices) -> tuple[Flags, Flags]:
-        found = category.there(*carried[way], at, n, stop=STOPS[way])
-        return category.brought(found, at, sources, numbers)
+    def there(number: int, at: Indices) -> tuple[Flags, Flags]:
+        flags = category.there(*carried[number], at, n, stop=STOPS[number])
+        return category.brought(flags, at, sources, numbers)
 
     codes = {}
     for kind, at in ends.items():

@@ -11,17 +11,15 @@ from collections import Counter, defaultdict
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.fleet.patterns import Share, pattern_of
-from rosprivacy.analysis.fleet.patterns_of_pairs import Group
+from rosprivacy.analysis.fleet.tallies import Count, Form, Pair, Tallies
 from rosprivacy.analysis.parts.part_pairs import forms_of
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Iterator
+    from collections.abc import Iterable, Iterator
 
-    from rosprivacy.analysis.fleet.patterns import Likeness
+    from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.analysis.model import Element
 
-Form = tuple[bool, bool, bool]  # dismissed, pseudonymised, beside
 CORE = ""  # in place of the name of a unit
 
 
@@ -74,18 +72,6 @@ class _Many:
         return ((e, unit) for e, unit in self.elements if unit == CORE or units - {unit})
 
 
-@dataclass(slots=True)
-class _Tally:
-    best: tuple[bool, bool, tuple[object, ...], tuple[object, ...]]
-    shown: tuple[str, str, Element, Element]
-    across: bool
-    beside: bool
-    count: int = 0
-    dismissed: int = 0
-    hidden: int = 0
-    robots: set[str] = field(default_factory=set)
-
-
 class Crossed:
     """Puts together what parts say.
 
@@ -94,26 +80,26 @@ class Crossed:
     examples
         Units: for each class of sources and all leaks of one name the first two, so that each source has one of them
         beside its own.
-    shares
-        How each robot takes part in patterns.
+    tallies
+        What is counted.
     """
 
     def __init__(self, likeness: Likeness) -> None:
         self._likeness = likeness
-        self._tallies: dict[str, _Tally] = {}
+        self.tallies = Tallies(likeness)
         self.examples: set[str] = set()
-        self.shares: dict[str, set[Share]] = defaultdict(set)
 
     def within(self, pairs: Iterable[Within]) -> None:
         """Take the pairs of units."""
         likeness = self._likeness
         for pair in pairs:
-            a, b = pair.source.robot, pair.leak.robot
-            if count := likeness.between(a, b):
-                across = a != b and likeness.is_robot(a) and likeness.is_robot(b)
-                for form in forms_of(pair.how):
-                    key = self._add(pair.kind, pair.category, pair.source, pair.leak, form, count, across=across)
-                    self._share(key, (a,), (b,), form, across=across)
+            source, leak = pair.source, pair.leak
+            if count := likeness.between(source.robot, leak.robot):
+                across = likeness.apart(source, leak)
+                for form, beside in _forms(pair.how):
+                    some = Pair(pair.kind, pair.category, source, leak, beside)
+                    key = self.tallies.add(some, form, Count.of(count, form))
+                    self.tallies.share(key, (source.robot,), (leak.robot,), form, across=across)
 
     def between(self, sources: Iterable[Source], ends: Iterable[End]) -> None:
         """Take all sources and ends, and count the pairs of different units, and those of the core."""
@@ -123,33 +109,17 @@ class Crossed:
             if weight := likeness.weight(source.element.robot):
                 many = by_class[source.category, source.number][likeness.alike(source.element)]
                 many.add(source.element, source.unit, weight)
-        by_way: dict[tuple[str, str, Element, bytes], _Many] = defaultdict(_Many)
+        by_end: dict[tuple[str, str, Element, bytes], _Many] = defaultdict(_Many)
         for end in sorted(ends, key=lambda end: end.element.sort_key()):
             if weight := likeness.weight(end.element.robot):
-                by_way[end.kind, end.category, likeness.alike(end.element), end.how].add(end.element, end.unit, weight)
-        for (kind, category, _, ways), leaks in by_way.items():
-            for number, how in enumerate(ways):
+                by_end[end.kind, end.category, likeness.alike(end.element), end.how].add(end.element, end.unit, weight)
+        for (kind, category, _, codes), leaks in by_end.items():
+            for number, how in enumerate(codes):
                 for some in by_class.get((category, number), {}).values() if how else ():
-                    for form in forms_of(how):
-                        self._between(kind, category, form, some, leaks)
+                    for form, beside in _forms(how):
+                        self._between(kind, category, form, some, leaks, beside=beside)
 
-    def groups(self) -> tuple[Group, ...]:
-        """Return the patterns without their ways."""
-        return tuple(
-            Group(
-                *tally.shown,
-                key,
-                tally.count,
-                tuple(sorted(tally.robots)),
-                tally.across,
-                tally.dismissed,
-                tally.hidden,
-                tally.beside,
-            )
-            for key, tally in self._tallies.items()
-        )
-
-    def _between(self, kind: str, category: str, form: Form, sources: _Many, leaks: _Many) -> None:
+    def _between(self, kind: str, category: str, form: Form, sources: _Many, leaks: _Many, *, beside: bool) -> None:
         both = sum(weight * leaks.weights[unit] for unit, weight in sources.weights.items() if unit != CORE)
         count = sources.weights.total() * leaks.weights.total() - both
         if not count:
@@ -159,34 +129,13 @@ class Crossed:
         source, unit = begin[0]
         leak = next(element for element, other in end if other != unit or unit == CORE)
         across = self._likeness.is_robot(source.robot) and self._likeness.is_robot(leak.robot)
-        key = self._add(kind, category, source, leak, form, count, across=across)
-        where = begin if self._likeness.is_robot(source.robot) else end
-        self._tallies[key].robots |= self._members(element.robot for element, _ in where)
-        self._share(key, {e.robot for e, _ in begin}, {e.robot for e, _ in end}, form, across=across)
+        pair = Pair(kind, category, source, leak, beside)
+        where = {element.robot for element, _ in (begin if self._likeness.is_robot(source.robot) else end)}
+        key = self.tallies.add(pair, form, Count.of(count, form), where)
+        self.tallies.share(key, {e.robot for e, _ in begin}, {e.robot for e, _ in end}, form, across=across)
 
-    def _add(
-        self, kind: str, category: str, source: Element, leak: Element, form: Form, count: int, *, across: bool
-    ) -> str:
-        likeness = self._likeness
-        dismissed, hidden, beside = form
-        key = pattern_of(kind, category, source, leak, likeness, beside=beside)
-        order = (dismissed, hidden, source.sort_key(), leak.sort_key())
-        tally = self._tallies.setdefault(key, _Tally(order, (kind, category, source, leak), across, beside))
-        if order < tally.best:
-            tally.best, tally.shown = order, (kind, category, source, leak)
-        tally.count += count
-        tally.dismissed += count * dismissed
-        tally.hidden += count * hidden
-        tally.robots |= self._members([source.robot if likeness.is_robot(source.robot) else leak.robot])
-        return key
 
-    def _members(self, robots: Iterable[str]) -> set[str]:
-        likeness = self._likeness
-        return {name for r in robots for name in likeness.members.get(likeness.second.get(r, r), ())}
-
-    def _share(self, key: str, begin: Collection[str], end: Collection[str], form: Form, *, across: bool) -> None:
-        flags = form[:2]
-        for robot in begin:
-            self.shares[robot].add(Share(key, False, *flags))
-        for robot in end:
-            self.shares[self._likeness.second.get(robot, robot)].add(Share(key, across, *flags))
+def _forms(how: int) -> Iterator[tuple[Form, bool]]:
+    """The findings that a code means: their form, and whether they stand beside another; nothing is accepted here."""
+    for dismissed, pseudonymised, beside in forms_of(how):
+        yield Form(dismissed, accepted=False, pseudonymised=pseudonymised), beside

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import LabelError
 from rosprivacy.analysis.findings.derived_from import origins
-from rosprivacy.analysis.fleet.patterns import NO_ROBOTS, pattern_id
+from rosprivacy.analysis.fleet.likeness import NO_ROBOTS, pattern_id
 from rosprivacy.analysis.kernel.roles import facts
 from rosprivacy.analysis.legal import turned_special
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import Analysis, Finding
     from rosprivacy.analysis.findings.derived_from import Origin
-    from rosprivacy.analysis.fleet.patterns import Likeness
+    from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Bound, Element, Statement
     from rosprivacy.ontology.vocabulary import Vocabulary
@@ -145,9 +145,7 @@ def flow_results(analysis: Analysis, names: Names) -> Iterator[Row]:
     for index, flow in enumerate(analysis.graph.flows):
         if flow.source not in made:
             made[flow.source] = _passed_and_made(found, flow.source)
-        moving = found.flow_keeps.get(index, found.all_bits)
-        if analysis.graph.elements[flow.target].is_channel:
-            moving &= found.keeps.get(flow.target, found.all_bits)
+        moving = found.passing(index)
         passed, makes = made[flow.source]
         begun = found.emits.get(flow.source, 0) | found.flow_emits.get(index, 0)
         yield {
@@ -190,7 +188,7 @@ def origin_properties(analysis: Analysis, origin: Origin, robot: str) -> Row:
     lines = [flows[index].grants[0].place if flows[index].grants else "" for index in origin.flows]
     return {
         "category": origin.category,
-        "way": [elements[vertex].name for vertex in origin.way],
+        "way": [elements[vertex].name for vertex in origin.path],
         "policy": [str(line) for line in lines],
         "past_leak": origin.past_leak,
         "robot": robot,

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.answer import robot_verdicts
 from rosprivacy.analysis.findings.derived_from import origins
-from rosprivacy.analysis.fleet.patterns import pattern_id
+from rosprivacy.analysis.fleet.likeness import pattern_id
 from rosprivacy.ingest.database.element_properties import (
     Names,
     Roles,
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.answer import Analysis, Finding, Verdict
-    from rosprivacy.analysis.fleet.patterns import Likeness
+    from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.analysis.model import Element, Flow
     from rosprivacy.ingest.database.rows import RobotRows, Row
     from rosprivacy.ingest.fleet.fleet_graph import Placed

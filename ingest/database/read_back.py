@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import GraphError, InputError, InputErrors, shown
-from rosprivacy.analysis.fleet.patterns import NO_ROBOTS, Likeness
+from rosprivacy.analysis.fleet.likeness import NO_ROBOTS, Likeness
 from rosprivacy.analysis.model import (
     NAME,
     NON_ROS,
@@ -35,7 +35,7 @@ from rosprivacy.ingest.database.non_ros_properties import facts_of
 from rosprivacy.ingest.database.other_schemas import HINT, of_other_schemas
 from rosprivacy.ingest.database.schema import KIND_LABELS, ROLES
 from rosprivacy.ingest.labels.entries import EXACT, as_ranked_now
-from rosprivacy.ingest.policies.names import covers
+from rosprivacy.ingest.policies.names import covered
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -384,7 +384,7 @@ def _through(
         (vertex, names): tuple(
             index
             for index in leaving[vertex]
-            if any(covers(name, graph.elements[graph.flows[index].target].name) for name in names)
+            if any(covered(name, (graph.elements[graph.flows[index].target].name,)) for name in names)
         )
         for vertex, names in sorted(wanted)
     }

@@ -15,9 +15,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputErrors
+from rosprivacy.analysis.written_names import is_glob, meant
 from rosprivacy.ingest.fleet.dds_domains import pseudo_robot
 from rosprivacy.ingest.labels.label_file import OURS
-from rosprivacy.ingest.policies.names import is_pattern, matcher
+from rosprivacy.ingest.policies.names import matcher
 from rosprivacy.ingest.policies.namespaces import depends
 from rosprivacy.ingest.policies.policy_files import read_policies
 from rosprivacy.ingest.policies.xinclude import stands_alone
@@ -93,7 +94,7 @@ def alike(fleet: Fleet, told_apart: Callable[[str], object] = lambda _: None) ->
 
 
 def _test(robots: str) -> Callable[[str], bool]:
-    return matcher(robots) if is_pattern(robots) else lambda name: name == robots
+    return matcher(robots) if is_glob(robots) else lambda name: name == meant(robots)
 
 
 def chosen(end: str, robots: Iterable[str]) -> list[str]:

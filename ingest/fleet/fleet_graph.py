@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.durations import ordered
 from rosprivacy.analysis.errors import FleetError, InputError, InputErrors, shown
-from rosprivacy.analysis.fleet.patterns import Likeness
+from rosprivacy.analysis.fleet.likeness import Likeness
 from rosprivacy.analysis.model import Element
 from rosprivacy.analysis.non_ros import by_kind
+from rosprivacy.analysis.written_names import meant
 from rosprivacy.ingest.fleet.alike_robots import COLON, chosen, known_to_flows
 from rosprivacy.ingest.fleet.dds_domains import alone, pseudo_robot, shared
 from rosprivacy.ingest.fleet.mergeable_graph import Part, numbered, together
@@ -151,7 +152,7 @@ def add_lines(part: Part, lines: Mapping[Key, Sequence[Place]]) -> None:
 def nowhere(flow: FlowEntry, end: End, known: Iterable[str]) -> InputError:
     """Return the error for the end of a flow that is on no robot; ``known`` are the names that it could mean."""
     name = end.name.partition(COLON)[2] if COLON in end.name else end.name
-    if COLON not in end.name and name.startswith("/"):
+    if COLON not in end.name and meant(name).startswith("/"):
         what = f"a flow names {shown(name)!r} and does not say on which robots"
         return FleetError(flow.place.file, flow.place.line, what, f"write *:{name}, or the robot's id")
     return missing(End(name, end.kind), known, flow.place, FleetError)

@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, shown
 from rosprivacy.analysis.model import STATED, Element, Flow, FlowGraph, Grant
+from rosprivacy.analysis.written_names import literal, meant
 from rosprivacy.ingest.labels.entries import End
 from rosprivacy.ingest.labels.non_ros_reader import is_non_ros
-from rosprivacy.ingest.policies.names import covers, is_pattern, matcher
+from rosprivacy.ingest.policies.names import covered
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -115,11 +116,7 @@ class Ends:
 
     def _of(self, kind: str, name: str) -> list[Element]:
         known = self.names[kind]
-        if not kind or not is_pattern(name):
-            return known.get(name, [])
-        plain = matcher(name)
-        covered = [n for n in known if (covers(name, n) if is_pattern(n) else plain(n))]
-        return [element for other in covered for element in known[other]]
+        return [element for other in (covered(name, known) if kind else [name]) for element in known.get(other, ())]
 
 
 def two_meanings(end: End, found: Iterable[Element]) -> tuple[str, ...]:
@@ -139,7 +136,8 @@ def ambiguous(end: End, kinds: Iterable[str], place: Place, error: type[InputErr
 def missing(end: End, known: Iterable[str], place: Place, error: type[InputError] = LabelError) -> InputError:
     """Return the error for the end of a flow that is not there, with the nearest names."""
     alike = [other for other in dict.fromkeys(known) if is_non_ros(other) == is_non_ros(end.name)]
-    close = get_close_matches(end.name, [other for other in alike if other != end.name], n=3, cutoff=0.5)
+    close = get_close_matches(meant(end.name), [other for other in alike if other != end.name], n=3, cutoff=0.5)
+    close = close if is_non_ros(end.name) else [literal(name) for name in close]
     hint = "define it under elements" if is_non_ros(end.name) else "see the names with rosprivacy labels --init"
     hint = f"did you mean {' or '.join(map(shown, close))}?" if close else hint
     kind = f"the {end.kind} " if end.kind else ""

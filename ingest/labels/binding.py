@@ -15,8 +15,10 @@ from rosprivacy.analysis.durations import ordered
 from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, shown
 from rosprivacy.analysis.model import Bound, Diagnostic, Severity
 from rosprivacy.analysis.non_ros import by_kind
+from rosprivacy.analysis.text import counted
+from rosprivacy.analysis.written_names import is_glob, literal, meant
 from rosprivacy.ingest.labels.label_file import OURS
-from rosprivacy.ingest.policies.names import covers, is_pattern, matcher
+from rosprivacy.ingest.policies.names import covered
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -26,6 +28,7 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.labels.label_file import Labels
 
 NEAREST = 3
+GLOB_LIKE_A_WILDCARD = "glob-like-a-wildcard"
 COMPARISONS = 50_000  # of names, in the search for the nearest; a label file of another system is refused soon
 
 
@@ -81,14 +84,38 @@ def join(graph: FlowGraph, labels: Sequence[Labels]) -> tuple[Bound, list[InputE
     return bound, problems
 
 
-def unused(graph: FlowGraph, labels: Iterable[Labels]) -> Iterator[Diagnostic]:
-    """Yield a notice for each name of a user's own file of standard channels that matches nothing (rule S13)."""
+def remarks(graph: FlowGraph, labels: Iterable[Labels]) -> Iterator[Diagnostic]:
+    """Yield what a person has to know of names in label files, though they are no errors.
+
+    A name in a user's own file of standard channels that matches nothing (rule S13); a glob that is written like the
+    name of a wildcard, which means more than this one element.
+    """
     names = _Names(graph)
     for file in labels:
-        for entry in file.entries if file.shipped and not file.file.startswith(OURS) else ():
-            if not names.matching(entry.name, entry.kinds):
-                error = names.unmatched(entry)
-                yield Diagnostic(entry.place, Severity.NOTICE, f"{error.problem}; {error.hint}")
+        if file.shipped and not file.file.startswith(OURS):
+            yield from _unused(names, file)
+        elif not file.shipped:
+            yield from _like_a_wildcard(names, graph, file)
+
+
+def _unused(names: _Names, file: Labels) -> Iterator[Diagnostic]:
+    for entry in file.entries:
+        if not names.matching(entry.name, entry.kinds):
+            error = names.unmatched(entry)
+            yield Diagnostic(entry.place, Severity.NOTICE, f"{error.problem}; {error.hint}")
+
+
+def _like_a_wildcard(names: _Names, graph: FlowGraph, file: Labels) -> Iterator[Diagnostic]:
+    for entry in file.entries:
+        if not entry.statements or not is_glob(entry.name) or not names.matching(literal(entry.name), entry.kinds):
+            continue
+        found = {graph.elements[vertex].identity for vertex in names.matching(entry.name, entry.kinds)}
+        more = len(found) - sum(name == entry.name for _, _, name in found)
+        if more:
+            others = counted(more, "more element")
+            what = f"{shown(entry.name)!r} is a glob: it means the wildcard of that name and {others}"
+            hint = f'to label the wildcard alone, write "{shown(literal(entry.name))}"'
+            yield Diagnostic(entry.place, Severity.WARNING, f"{what}; {hint}", GLOB_LIKE_A_WILDCARD)
 
 
 def _outside(graph: FlowGraph, labels: Iterable[Labels]) -> dict[int, NonRosFacts]:
@@ -118,20 +145,15 @@ class _Names:
         found = []
         for kind in self.by_kind if kinds is None else kinds:
             known = self.by_kind.get(kind, {})
-            if not is_pattern(name):
-                found += known.get(name, [])
-                continue
-            plain = matcher(name)
-            for other, vertices in known.items():
-                if covers(name, other) if is_pattern(other) else plain(other):
-                    found += vertices
+            found += [vertex for other in covered(name, known) for vertex in known[other]]
         return sorted(found)
 
     def unmatched(self, entry: Entry) -> LabelError:
         """The error for a name that matches nothing, with the nearest names."""
         close = self._close(entry.name, entry.kinds)
         what = f"{shown(entry.name)!r} matches no {' or '.join(entry.kinds)} of the policies"
-        elsewhere = [kind for kind in self.by_kind if kind not in entry.kinds and entry.name in self.by_kind[kind]]
+        name = meant(entry.name)
+        elsewhere = [kind for kind in self.by_kind if kind not in entry.kinds and name in self.by_kind[kind]]
         if elsewhere:
             hint = f"there is a {elsewhere[0]} of that name: move it to the section for it"
         elif close:
@@ -154,7 +176,9 @@ class _Names:
         """The nearest names, as long as looking for them does not take too long."""
         known = [other for kind in kinds for other in self.by_kind.get(kind, {})]
         self.comparisons += len(known)
-        return get_close_matches(name, known, n=NEAREST, cutoff=0.5) if self.comparisons <= COMPARISONS else []
+        if self.comparisons > COMPARISONS:
+            return []
+        return [literal(close) for close in get_close_matches(meant(name), known, n=NEAREST, cutoff=0.5)]
 
 
 def _flows(graph: FlowGraph, leaving: Mapping[int, Sequence[int]], names: _Names, entry: FlowEntry) -> list[int]:
@@ -180,11 +204,11 @@ def _through(
         for vertex in vertices:
             flows = {index: graph.elements[graph.flows[index].target].name for index in leaving.get(vertex, ())}
             written.update(flows.values())
-            chosen = [index for index, name in flows.items() if any(covers(e, name) for e in expressions)]
-            through[vertex, expressions] = tuple(chosen)
+            chosen = {name for expression in expressions for name in covered(expression, set(flows.values()))}
+            through[vertex, expressions] = tuple(index for index, name in flows.items() if name in chosen)
         for name in expressions:
-            if vertices and not any(covers(name, channel) for channel in written):
-                close = get_close_matches(name, sorted(written), n=NEAREST, cutoff=0.5)
+            if vertices and not covered(name, written):
+                close = [literal(one) for one in get_close_matches(meant(name), sorted(written), NEAREST, 0.5)]
                 hint = (
                     f"did you mean {' or '.join(map(shown, close))}?" if close else "name a channel that it writes to"
                 )

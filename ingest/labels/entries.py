@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import GLOB, NAME, SEGMENT, STANDARD
-from rosprivacy.ingest.policies.names import is_pattern, literals
+from rosprivacy.analysis.written_names import is_glob
+from rosprivacy.ingest.policies.names import literals
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.model import Place, Statement
@@ -72,10 +73,10 @@ class FlowEntry:
 def specificity(name: str) -> int:
     """Return the rank of a name among those that cover an element: the more that is spelt out, the higher.
 
-    >>> specificity("/robot/*") < specificity("/robot/cam*") < specificity("/a")
+    >>> specificity("/robot/*") < specificity("/robot/cam*") < specificity("/a") == specificity("=/*")
     True
     """
-    return literals(name) if is_pattern(name) else EXACT
+    return literals(name) if is_glob(name) else EXACT
 
 
 def as_ranked_now(stored: int) -> int:
@@ -90,10 +91,10 @@ def as_ranked_now(stored: int) -> int:
 def naming(name: str) -> str:
     """Return how a label names elements: by a full name, a glob with its last segment written out, or another glob.
 
-    >>> naming("/camera/rosout"), naming("*/rosout"), naming("/camera/*"), naming("*rosout")
-    ('name', 'segment', 'glob', 'glob')
+    >>> naming("/camera/rosout"), naming("*/rosout"), naming("/camera/*"), naming("*rosout"), naming("=/camera/*")
+    ('name', 'segment', 'glob', 'glob', 'name')
     """
-    if not is_pattern(name):
+    if not is_glob(name):
         return NAME
     _, slash, last = name.rpartition("/")
-    return SEGMENT if slash and last and not is_pattern(last) else GLOB
+    return SEGMENT if slash and last and not is_glob(last) else GLOB

@@ -109,7 +109,7 @@ class LabelReader(FileReader):
         if value.kind != "map":
             self.problem(line, f"{section} is a map from names to labels, not a {value.kind}", "write '/name: label'")
         for name, at, label in value.entries:
-            if not name.startswith(("/", "*", "?", "[")):
+            if is_non_ros(name):
                 self.problem(at, f"name {shown(name)!r} is not absolute", "begin it with /")
                 continue
             if len(name) > LONGEST_NAME:
@@ -327,7 +327,7 @@ class LabelReader(FileReader):
         return self._name(value)
 
     def _name(self, value: Value) -> str:
-        if value.kind != "text" or not value.text.startswith(("/", "*", "?", "[")):
+        if value.kind != "text" or is_non_ros(value.text):
             self.problem(value.line, f"{shown(value.text or value.kind)!r} is not an absolute name", "begin it with /")
         elif len(value.text) > LONGEST_NAME:
             what = f"a name of {len(value.text)} characters"

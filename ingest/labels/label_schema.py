@@ -26,8 +26,8 @@ END_OF_KIND = {
     "properties": dict.fromkeys(END_KINDS, END),
     "description": "Which of several of that name: {topic: /map} or {node: /map}.",
 }
-OUTSIDE_NAME = {"type": "string", "pattern": r"^[^/*?\[:][^:]*$", "maxLength": 200}
-NAME = {"type": "string", "pattern": r"^[/*?\[]"}
+OUTSIDE_NAME = {"type": "string", "pattern": r"^[^/=*?\[:][^:]*$", "maxLength": 200}
+NAME = {"type": "string", "pattern": r"^[/=*?\[]", "description": "A name, a glob, or = and a name with glob signs."}
 
 
 def label_schema(categories: Iterable[Category]) -> dict[str, Any]:

@@ -1,6 +1,7 @@
-"""Graph -> a first label file: every element once, grouped, with comments, ready to fill in.
+"""Graph -> a first label file: every element that a person has to judge once, in short lines, ready to fill in.
 
-In: a flow graph. Out: YAML text that is a valid label file as it is (it says nothing yet).
+In: a flow graph, and the channels that files of the program speak of. Out: YAML text that is a valid label file as it
+is (it says nothing yet). A line names one element and no other: ``=`` stands before a name with glob signs.
 """
 
 from __future__ import annotations
@@ -10,51 +11,114 @@ from typing import TYPE_CHECKING
 
 import yaml
 
-from rosprivacy.analysis.text import blanked
+from rosprivacy.analysis.text import blanked, counted
+from rosprivacy.analysis.written_names import literal
+from rosprivacy.ingest.labels.label_reader import SECTIONS
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator, Mapping
+    from collections.abc import Collection, Iterable, Iterator, Mapping
 
-    from rosprivacy.analysis.model import FlowGraph
+    from rosprivacy.analysis.model import Element, FlowGraph
 
 HEADER = """\
-# yaml-language-server: $schema={schema}
 # Labels: which elements bring personal data in, let it out, clean it or pass it on, per kind of data.
 # Fill in what you know; an element without a label counts as not reviewed, and data passes it.
 #
-#   nodes:     {{source: [Video]}}                    brings the data in
-#              {{source: {{Video: [/robot_video]}}}}    … but only through these channels
-#              {{leak: [Voice]}}                      lets it out: to a cloud, a display, a log
-#              {{sanitizer: {{Video: anonymise}}}}      ends it: anonymise, aggregate, drop; pseudonymise does not
-#              {{derives: [{{from: Video, to: FaceTemplate}}]}}   makes one kind of another
-#              conduit  or  {{conduit: [Location]}}   reviewed: passes it on
+#   nodes:     {source: [Video]}                    brings the data in
+#              {source: {Video: [/robot_video]}}    … but only through these channels
+#              {source: [Video], conduit: [Voice]}  … and passes on what it gets of another kind
+#              {leak: [Voice]}                      lets it out: to a cloud, a display, a log
+#              {sanitizer: {Video: anonymise}}      ends it: anonymise, aggregate, drop; pseudonymise does not
+#              {derives: [{from: Video, to: FaceTemplate}]}   makes one kind of another
+#              conduit  or  {conduit: [Location]}   reviewed: passes it on
 #   channels:  mundane     never carries personal data
 #              sensitive   reviewed: may carry it
-#              {{only: [HomeMap]}}  or  {{never: [Location]}}
+#              {only: [HomeMap]}  or  {never: [Location]}
 #
-# Categories: {categories}
-labels: 1
 """
 LONGEST_KEY = 1000  # of YAML, without a question mark before it
 SCHEMA_FILE = "labels.schema.json"
+WITH_SCHEMA = f"# yaml-language-server: $schema={SCHEMA_FILE}\n"
+Channel = tuple[str, str]  # kind, name
 
 
-def template(graph: FlowGraph, categories: Collection[str], standard: Collection[tuple[str, str]]) -> str:
+def template(
+    graph: FlowGraph,
+    standard: Collection[Channel] = (),
+    infrastructure: Collection[Channel] = (),
+    own: Iterable[str] = (),
+    *,
+    schema: bool = False,
+) -> str:
     """Return the text of a first label file.
 
     Parameters
     ----------
-    categories
-        Names to show in the head.
-    standard
-        (kind, name) of the channels that the standard file takes as mundane: listed as comments.
+    standard, infrastructure
+        Channels that the file of standard channels takes as mundane, and that the file of infrastructure proposes:
+        they are counted, not listed.
+    own
+        Names of categories of the user's ontologies.
+    schema
+        Whether the JSON Schema stands beside the file: then editors are told.
     """
-    text = HEADER.format(schema=SCHEMA_FILE, categories=", ".join(categories))
-    taken = set(standard)
-    return text + "\n".join([*_nodes(graph, taken), *_channels(graph, taken), ""])
+    left_out = {*standard, *infrastructure}
+    listed = {channel for channel in map(_channel, graph.elements) if channel not in left_out}
+    head = [
+        WITH_SCHEMA if schema else "",
+        HEADER,
+        *(f"# {line}\n" for line in _remarks(graph, standard, left_out, own)),
+    ]
+    lines = [*_nodes(graph, listed), *_channels(graph, listed), ""]
+    return "".join(head) + "labels: 1\n" + "\n".join(lines)
 
 
-def _nodes(graph: FlowGraph, standard: Collection[tuple[str, str]]) -> Iterator[str]:
+def key(name: str) -> str:
+    """Return a name as the key of a line of YAML, with its colon.
+
+    >>> key("/camera"), key("=/*")
+    ('/camera:', '"=/*":')
+    """
+    plain = name.isascii() and name.startswith("/") and all(c.isalnum() or c in "/_-." for c in name)
+    text = name if plain else yaml.dump(name, default_style='"', width=float("inf")).strip()
+    return f"{text}:" if len(text) < LONGEST_KEY else f"? {text}\n  :"
+
+
+def told(writes: Iterable[Channel], reads: Iterable[Channel]) -> str:
+    """Return what a node writes and reads, topics first, as a comment; empty if nothing."""
+    parts = [
+        f"{verb} {', '.join(name for _, name in sorted(channels, key=_topics_first))}"
+        for verb, channels in (("writes", set(writes)), ("reads", set(reads)))
+        if channels
+    ]
+    return f"  # {blanked('; '.join(parts), '?')}" if parts else ""
+
+
+def _channel(element: Element) -> Channel:
+    return (element.kind, element.name)
+
+
+def _topics_first(channel: Channel) -> tuple[int, str]:
+    kind, name = channel
+    return (["topic", "service", "action"].index(kind), name)
+
+
+def _remarks(
+    graph: FlowGraph, standard: Collection[Channel], left_out: Collection[Channel], own: Iterable[str]
+) -> Iterator[str]:
+    there = {channel for channel in map(_channel, graph.elements) if channel in left_out}
+    taken = there.intersection(standard)
+    names = "".join(f", {name}" for name in own)
+    yield f"Kinds of data: rosprivacy categories{f'; your own:{names[1:]}' if names else ''}"
+    if taken:
+        yield f"Not listed: {counted(len(taken), 'standard channel')}, taken as mundane (rosprivacy labels --standard)"
+    if there - taken:
+        more = counted(len(there - taken), "lifecycle or other infrastructure channel")
+        yield f"Not listed: {more}; add -l rosprivacy:infrastructure to take them as mundane,"
+        yield "            after you have read it (rosprivacy labels --infrastructure)"
+
+
+def _nodes(graph: FlowGraph, listed: Collection[Channel]) -> Iterator[str]:
     enclaves: dict[str, set[str]] = defaultdict(set)
     for profile in graph.profiles:
         enclaves[profile.node].add(profile.enclave)
@@ -62,62 +126,32 @@ def _nodes(graph: FlowGraph, standard: Collection[tuple[str, str]]) -> Iterator[
     for element in graph.elements:
         if element.is_node:
             groups[", ".join(sorted(enclaves[element.name]))].append(element.name)
-    writes, reads = _neighbours(graph, standard)
+    writes, reads = neighbours(graph, listed)
     yield "\nnodes:"
     for group, names in sorted(groups.items()):
         yield f"  # enclave {blanked(group, '?')}"
-        for name in names:
-            yield f"  {_key(name)}{_doing(writes.get(name, set()), reads.get(name, set()))}"
+        yield from (f"  {key(literal(name))}{told(writes.get(name, ()), reads.get(name, ()))}" for name in names)
 
 
-def _neighbours(
-    graph: FlowGraph, standard: Collection[tuple[str, str]]
-) -> tuple[Mapping[str, set[str]], Mapping[str, set[str]]]:
-    """Names of the channels that each node writes and reads, the standard ones left out."""
-    writes: dict[str, set[str]] = defaultdict(set)
-    reads: dict[str, set[str]] = defaultdict(set)
+def neighbours(
+    graph: FlowGraph, listed: Collection[Channel]
+) -> tuple[Mapping[str, set[Channel]], Mapping[str, set[Channel]]]:
+    """Return the channels that each node writes and reads, of those that are listed."""
+    writes: dict[str, set[Channel]] = defaultdict(set)
+    reads: dict[str, set[Channel]] = defaultdict(set)
     for flow in graph.flows:
         source, target = graph.elements[flow.source], graph.elements[flow.target]
-        channel = target if source.is_node else source
-        if (channel.kind, channel.name) in standard:
-            continue
-        if source.is_node:
-            writes[source.name].add(target.name)
-        elif target.is_node:
-            reads[target.name].add(source.name)
+        if source.is_node and target.is_channel and _channel(target) in listed:
+            writes[source.name].add(_channel(target))
+        elif target.is_node and source.is_channel and _channel(source) in listed:
+            reads[target.name].add(_channel(source))
     return writes, reads
 
 
-def _doing(writes: set[str], reads: set[str], most: int = 4) -> str:
-    parts = []
-    for verb, names in (("writes", writes), ("reads", reads)):
+def _channels(graph: FlowGraph, listed: Collection[Channel]) -> Iterator[str]:
+    for section in ("topics", "services", "actions"):
+        (kind,) = SECTIONS[section]
+        names = sorted({e.name for e in graph.elements if e.kind == kind and _channel(e) in listed})
         if names:
-            more = f" and {len(names) - most} more" if len(names) > most else ""
-            parts.append(f"{verb} {', '.join(sorted(names)[:most])}{more}")
-    return f"  # {blanked('; '.join(parts), '?')}" if parts else ""
-
-
-def _channels(graph: FlowGraph, standard: Collection[tuple[str, str]]) -> Iterator[str]:
-    kinds: dict[str, list[str]] = defaultdict(list)
-    for kind, name in sorted({(e.kind, e.name) for e in graph.elements if not e.is_node}, key=lambda k: (k[1], k[0])):
-        kinds[name].append(kind)
-    groups: dict[str, list[str]] = defaultdict(list)
-    for name, found in kinds.items():
-        groups["standard" if all((kind, name) in standard for kind in found) else " and ".join(found)].append(name)
-    taken = groups.pop("standard", [])
-    yield "\nchannels:"
-    for group, names in sorted(groups.items()):
-        yield f"  # {group}s" if " " not in group else f"  # {group} of one name"
-        yield from (f"  {_key(name)}" for name in names)
-    if taken:
-        yield "  # taken as mundane by the standard file; remove the # to say otherwise"
-        yield from (f"  # {_key(name)} sensitive" for name in taken)
-
-
-def _key(name: str) -> str:
-    """A name as a YAML key, with its colon."""
-    if not name.startswith(("/", "*", "?", "[")):  # sros2 does not repair a namespace without /; labels need one
-        name = ("?" if name[0] in "!^]" else f"[{name[0]}]") + name[1:]
-    plain = name.isascii() and all(c.isalnum() or c in "/_-." for c in name)
-    text = name if plain else yaml.dump(name, default_style='"', width=float("inf")).strip()
-    return f"{text}:" if len(text) < LONGEST_KEY else f"? {text}\n  :"
+            yield f"\n{section}:"
+            yield from (f"  {key(literal(name))}" for name in names)

@@ -14,6 +14,7 @@ from rosprivacy.analysis.durations import parse as parse_duration
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import NON_ROS, NonRosFacts, Place
 from rosprivacy.analysis.non_ros import EVERY, RECIPIENTS, TRANSFERS
+from rosprivacy.analysis.written_names import GLOB_SIGNS, LITERAL
 from rosprivacy.ingest.labels.countries import countries
 
 if TYPE_CHECKING:
@@ -72,14 +73,14 @@ class Stated:
 
 
 def is_non_ros(name: str) -> bool:
-    """Return whether a name is one of a non-ROS element; names of ROS begin with ``/``, or are globs."""
-    return not name.startswith(("/", "*", "?", "["))
+    """Return whether a name is one of a non-ROS element; names of ROS begin with ``/``, a glob sign or ``=``."""
+    return not name.startswith(("/", LITERAL, *GLOB_SIGNS))
 
 
 def read_element(reader: Reader, name: str, line: int, value: Value, labels: tuple[str, ...]) -> Stated | None:
     """Read one element; ``labels`` are keys that say what it does, read elsewhere."""
     if not is_non_ros(name) or ":" in name or len(name) > LONGEST or not name.isprintable() or name != name.strip():
-        hint = f"a plain name of at most {LONGEST} characters, not beginning with / * ? [, and without a colon"
+        hint = f"a plain name of at most {LONGEST} characters, not beginning with / = * ? [, and without a colon"
         reader.problem(line, f"{shown(name)!r} cannot name an element outside ROS", hint)
         return None
     kind = value.get("kind") if value.kind == "map" else None

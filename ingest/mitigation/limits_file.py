@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors, LimitsError, shown
 from rosprivacy.analysis.mitigation.limits import CHANGES, LARGEST_COST, Limits, Rule, Weights
-from rosprivacy.ingest.policies.names import covers, is_pattern, matcher
+from rosprivacy.analysis.written_names import literal, meant
+from rosprivacy.ingest.policies.names import covered
 from rosprivacy.ingest.reading import yaml_values
 from rosprivacy.ingest.reading.format_reader import FileReader
 
@@ -142,14 +143,9 @@ class _Reader(FileReader):
             self.problem(item.line, f"a {item.kind} where an element is named", "write its name, such as /camera")
             return []
         name = item.text
-        if is_pattern(name):
-            plain = matcher(name)
-            fits = (other for other in self.by_name if (covers(name, other) if is_pattern(other) else plain(other)))
-            found = sorted(v for other in fits for v in self.by_name[other])
-        else:
-            found = self.by_name.get(name, [])
+        found = sorted(v for other in covered(name, self.by_name) for v in self.by_name[other])
         if not found:
-            close = get_close_matches(name, self.by_name, n=NEAREST, cutoff=0.5)
+            close = [literal(other) for other in get_close_matches(meant(name), self.by_name, n=NEAREST, cutoff=0.5)]
             hint = f"did you mean {' or '.join(map(shown, close))}?" if close else "name an element of the system"
             self.problem(item.line, f"{shown(name)!r} matches no element of the system", hint)
         return found

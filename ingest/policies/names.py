@@ -17,10 +17,11 @@ from fnmatch import fnmatchcase, translate
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
+from rosprivacy.analysis.written_names import GLOB_SIGNS, is_glob, meant
 
-WILDCARDS = frozenset("*?[")
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection
+
 ACTION_SERVICES = ("cancel_goal", "get_result", "send_goal")
 ACTION_TOPICS = ("feedback", "status")
 LONGEST_NAME = 16_384  # characters; DDS takes 255, and a wildcard's cost grows with the square
@@ -126,7 +127,7 @@ def dds_names(kind: str, name: str, leg: str) -> tuple[str, ...]:
 
 def is_pattern(name: str) -> bool:
     """Return whether DDS would read the name as a wildcard expression (rule S4)."""
-    return not WILDCARDS.isdisjoint(name)
+    return not GLOB_SIGNS.isdisjoint(name)
 
 
 def literals(pattern: str) -> int:
@@ -166,6 +167,18 @@ def matcher(pattern: str) -> Callable[[str], bool]:
     """Return the test whether a plain name is covered, compiled once for many names."""
     match = re.compile(translate(_posix(pattern))).match
     return lambda name: match(name) is not None
+
+
+def covered(written: str, names: Collection[str]) -> list[str]:
+    """Return those of some names that one in a label or another file of a person means wholly, in their order.
+
+    >>> covered("/cam*", ["/camera", "/cam*", "/map"]), covered("=/cam*", ["/camera", "/cam*"])
+    (['/camera', '/cam*'], ['/cam*'])
+    """
+    if not is_glob(written):
+        return [meant(written)] if meant(written) in names else []
+    plain = matcher(written)
+    return [name for name in names if (covers(written, name) if is_pattern(name) else plain(name))]
 
 
 @lru_cache(maxsize=65536)

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
         ElementEntry,
         EnclaveEntry,
         FindingEntry,
+        GlobEntry,
         LedgerRow,
         ListedDecision,
         OpenEntry,
@@ -93,6 +94,7 @@ class Assumptions(Given):
     standard_channels_reached: NotRequired[list[Reached]]
     standard_channels_unchanged: NotRequired[list[ElementEntry]]
     overruled: NotRequired[list[OverruledEntry]]
+    globs: NotRequired[list[GlobEntry]]
 
 
 class AnalysisDocument(TypedDict):

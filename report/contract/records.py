@@ -125,6 +125,13 @@ class ListedDecision(DecisionEntry):
     findings: list[str]
 
 
+class LabelKey(TypedDict):
+    """Where a label file says something of an element, and under which name."""
+
+    section: str
+    name: str
+
+
 class OpenEntry(TypedDict):
     """An element that nobody has reviewed."""
 
@@ -132,6 +139,7 @@ class OpenEntry(TypedDict):
     categories: list[str]
     distance: int
     frontier: bool
+    label: NotRequired[LabelKey]
     missing: NotRequired[list[str]]
 
 
@@ -166,6 +174,18 @@ class DeniedEntry(TypedDict):
     role: str
     allowed_by: list[GrantEntry]
     denied_by: list[GrantEntry]
+
+
+class GlobEntry(PlaceEntry):
+    """What a glob of a label file decides and closes."""
+
+    says: list[str]
+    elements: int
+    closed: int
+    reviewed: int
+    leak: ElementEntry | None
+    open: ElementEntry | None
+    warning: str
 
 
 class LedgerRow(TypedDict):

@@ -14,6 +14,7 @@ from rosprivacy.analysis.kernel.ranks import in_words
 from rosprivacy.analysis.legal import turned_special
 from rosprivacy.analysis.model import UNREAD_FILE
 from rosprivacy.analysis.text import utf8
+from rosprivacy.analysis.written_names import literal
 from rosprivacy.report.document import ledger
 from rosprivacy.report.document.non_ros import inventory, taken_by_kind, without_backups
 
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
         FindingEntry,
         FindingMore,
         GrantEntry,
+        LabelKey,
         LawEntry,
         OpenEntry,
         StepEntry,
@@ -48,6 +50,7 @@ if TYPE_CHECKING:
     )
 
 FORMAT = "rosprivacy.analysis/1"
+SECTIONS = {"node": "nodes", "topic": "topics", "service": "services", "action": "actions"}  # of label files
 _KEYS = {"name": "provision"}  # what the contract calls otherwise than the model
 
 
@@ -117,6 +120,7 @@ def analysis_document(answer: Answer) -> AnalysisDocument:
                 element_dict(replace(element, leg="")) for element in analysis.standard_unchanged
             ],
             "overruled": [_overruled(one) for one in analysis.spread.overruled],
+            "globs": ledger.globs(answer.globs(taken), element_dict),
         },
     }
 
@@ -147,6 +151,17 @@ def element_dict(element: Element) -> ElementEntry:
     if element.pattern:
         shown["pattern"] = True
     return shown
+
+
+def label_key(element: Element) -> LabelKey:
+    """Return under which section and name a label file says something of an element, and of no other.
+
+    >>> from rosprivacy.analysis.model import Element
+    >>> label_key(Element("topic", "/*", side="write"))
+    {'section': 'topics', 'name': '=/*'}
+    """
+    section = SECTIONS.get(element.kind, "elements")
+    return {"section": section, "name": element.name if section == "elements" else literal(element.name)}
 
 
 def _overruled(one: Overruled) -> OverruledEntry:
@@ -252,6 +267,7 @@ def _open(question: OpenQuestion) -> OpenEntry:
         "categories": list(question.categories),
         "distance": question.distance,
         "frontier": question.frontier,
+        "label": label_key(question.element),
     }
     if question.missing:
         shown["missing"] = list(question.missing)

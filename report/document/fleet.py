@@ -15,7 +15,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from rosprivacy.analysis.fleet.counts import Counts
-    from rosprivacy.analysis.fleet.patterns import Deviant, FleetView, Likeness, Pattern, Share
+    from rosprivacy.analysis.fleet.likeness import Likeness
+    from rosprivacy.analysis.fleet.patterns import Deviant, FleetView, Pattern
+    from rosprivacy.analysis.fleet.tallies import Share
     from rosprivacy.report.contract.analysis import AnalysisDocument, StandardFile
     from rosprivacy.report.contract.fleet import DeviantEntry, FleetEntry, PatternEntry, ShareEntry
 

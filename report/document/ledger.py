@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.findings.ledger import BY
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection
+    from collections.abc import Callable, Collection, Iterable
 
+    from rosprivacy.analysis.findings.globs import GlobUse
     from rosprivacy.analysis.findings.ledger import TakenAway
     from rosprivacy.analysis.model import Element
-    from rosprivacy.report.contract.records import ElementEntry, LedgerRow
+    from rosprivacy.report.contract.records import ElementEntry, GlobEntry, LedgerRow
 
     Shown = Callable[[Element], ElementEntry]
 
@@ -40,6 +41,24 @@ def rows(taken: Collection[TakenAway], element_dict: Shown) -> list[LedgerRow]:
             "note": row.note,
         }
         for row in taken
+    ]
+
+
+def globs(used: Iterable[GlobUse], element_dict: Shown) -> list[GlobEntry]:
+    """Return what each glob of the label files decides and closes."""
+    return [
+        {
+            "file": use.place.file,
+            "line": use.place.line,
+            "says": list(use.says),
+            "elements": use.elements,
+            "closed": use.closed,
+            "reviewed": use.reviewed,
+            "leak": element_dict(use.leak) if use.leak else None,
+            "open": element_dict(use.open) if use.open else None,
+            "warning": use.warning,
+        }
+        for use in used
     ]
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.model import DISCLOSURE
-from rosprivacy.report.document.analysis import element_dict
+from rosprivacy.report.document.analysis import element_dict, label_key
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     )
 
 FORMAT = "rosprivacy.mitigation/1"
-SECTIONS = {"topic": "topics", "service": "services", "action": "actions"}
 
 
 def mitigation_document(
@@ -146,7 +145,8 @@ def _label(step: ProposedStep) -> dict[str, Any] | None:
     """The label that a review ends in, if the channel carries none."""
     if step.channel is None:
         return None
-    return {SECTIONS[step.channel.kind]: {step.channel.name: {"never": list(step.categories)}}}
+    key = label_key(step.channel)
+    return {key["section"]: {key["name"]: {"never": list(step.categories)}}}
 
 
 def _grant(grant: Grant) -> ChangedGrant:

@@ -79,6 +79,7 @@ def _stopped(index: Index) -> Iterator[str]:
         yield words("a.standard.reached", element=name(row["element"]), data=index.all_data(row["categories"]))
     for element in said.get("standard_channels_unchanged", ()):
         yield words("a.standard.unchanged", element=name(element))
+    yield from _globs(index)
     for row in said.get("overruled", ()):
         yield words(
             f"a.overruled.{row['role']}",
@@ -87,6 +88,22 @@ def _stopped(index: Index) -> Iterator[str]:
             lost=fit(f"{row['file']}:{row['line']}"),
             by=fit(f"{row['by']['file']}:{row['by']['line']}"),
         )
+
+
+def _globs(index: Index) -> Iterator[str]:
+    """What each glob of the label files decides and closes."""
+    words = index.words
+    for row in index.document["assumptions"].get("globs", ()):
+        text = words(
+            "a.glob",
+            place=fit(f"{row['file']}:{row['line']}"),
+            says=words.row(row["says"]),
+            elements=words.count(row["elements"], "element"),
+            closed=row["closed"],
+            reviewed=row["reviewed"],
+        )
+        warning = row["warning"]
+        yield f"{text} {words(f'a.glob.{warning}')}" if warning else text
 
 
 def _type(kind: str, index: Index) -> str:

@@ -169,6 +169,14 @@ WORDS = {
     "a.standard.none": "No standard ROS channel was taken to carry no personal data.",
     "a.standard.reached": "{data} would get to {element}, and stops there for this.",
     "a.standard.unchanged": "A label by a glob says that {element} may carry data; it does not count against that file.",
+    "a.glob": (
+        "The glob at {place} ({says}) decides {elements}; data ends for it at {closed} of them, and {reviewed} count as "
+        "reviewed for it."
+    ),
+    "a.glob.half": (
+        "Warning: that is more than half of the nodes, or of the channels, that data gets to; check that it is meant."
+    ),
+    "a.glob.last-path": "Warning: without it the answer would not be that no leak was found; check that it is meant.",
     "a.overruled.source": "{elements}: no source of {data}, since the label at {by} takes away that at {lost}.",
     "a.overruled.leak": "{elements}: no leak of {data}, since the label at {by} takes away that at {lost}.",
     "a.categories": "The answer is only about these kinds of data and narrower ones: {names}. Others were not looked at.",

@@ -16,7 +16,7 @@ from rosprivacy.report.pictures.picture import Box, Line, Picture, sorted_boxes,
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from rosprivacy.analysis.fleet.patterns import Likeness
+    from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.report.pictures.picture import Key
 
 WAYS = (DATA, WAY, SHORTEST)  # the later hides the earlier

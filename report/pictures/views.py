@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.answer import Verdict
 from rosprivacy.analysis.findings.flows_to_leaks import FlowsToLeaks, flows_to_leaks
-from rosprivacy.analysis.kernel.search import Net
+from rosprivacy.analysis.kernel.states import Net
 from rosprivacy.analysis.model import DISCLOSURE
 from rosprivacy.analysis.text import counted, shortened
 from rosprivacy.report.pictures.looks import ALLOWED, DATA, DENIED, MATCHES, SHORTEST, WAY

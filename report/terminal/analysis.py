@@ -15,9 +15,10 @@ from rosprivacy.analysis.model import CHANNELS, MERGED
 from rosprivacy.analysis.text import blanked, counted
 from rosprivacy.report.document.analysis import files_not_read
 from rosprivacy.report.document.decisions import decision_lines
-from rosprivacy.report.naming import key, kind_of, shown_name
+from rosprivacy.report.naming import key, kind_of, label_name, shown_name
 from rosprivacy.report.terminal.denied import denied_lines
 from rosprivacy.report.terminal.fleet import fleet_lines, robots_of
+from rosprivacy.report.terminal.globs import glob_lines, glob_warnings
 from rosprivacy.report.terminal.labels import overruled_lines, standard_lines
 from rosprivacy.report.terminal.ledger import ledger_lines, taken_away_lines
 from rosprivacy.report.terminal.next_step import next_lines
@@ -93,6 +94,7 @@ def _lines(report: Mapping[str, Any], *, verbose: bool, quiet: bool) -> Iterator
     yield from denied_lines(report, most=None if verbose else SHOWN)
     if verbose:
         yield from ledger_lines(report)
+        yield from glob_lines(report)
     yield from _assumed(report, verbose=verbose)
     yield from _diagnostics(report, verbose=verbose)
     yield from next_lines(report)
@@ -204,7 +206,7 @@ def _review(report: Mapping[str, Any], *, verbose: bool) -> Iterator[Line]:
         for question in chosen:
             element = question["element"]
             missing = "".join(f" no {what} is stated;" for what in question.get("missing", ()))
-            what = f"{shown_name(element)}  ({kind_of(element)}; {', '.join(question['categories'])};{missing}"
+            what = f"{label_name(question)}  ({kind_of(element)}; {', '.join(question['categories'])};{missing}"
             yield f"   {what} {counted(question['distance'], 'step')} from a source)", ""
         if len(questions) > len(chosen):
             yield f"   … and {len(questions) - len(chosen)} more (-v shows all)", "dim"
@@ -218,6 +220,7 @@ def _assumed(report: Mapping[str, Any], *, verbose: bool) -> Iterator[Line]:
     yield f"   view {report['view']}: {view[report['view']]}", ""
     yield from standard_lines(report, None if verbose else SHOWN)
     yield from taken_away_lines(report)
+    yield from glob_warnings(report)
     if "database" in assumptions:
         robots = counted(assumptions["database"]["robots"], "robot")
         yield f"   {robots} in the database, as loaded from these files and changed there since", ""

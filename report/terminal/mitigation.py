@@ -15,7 +15,7 @@ from rosprivacy.analysis.mitigation.limits import DENY, FILTER, REVIEW
 from rosprivacy.analysis.mitigation.proposals import ITSELF
 from rosprivacy.analysis.model import STORAGE_LIMITATION, THIRD_COUNTRY
 from rosprivacy.analysis.text import counted
-from rosprivacy.report.document.mitigation import SECTIONS
+from rosprivacy.report.document.analysis import SECTIONS
 from rosprivacy.report.naming import kind_of, shown_name
 
 if TYPE_CHECKING:

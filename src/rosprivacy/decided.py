@@ -10,7 +10,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.decisions import Case, decided
-from rosprivacy.analysis.fleet.patterns import NO_ROBOTS, pattern_of
+from rosprivacy.analysis.fleet.likeness import NO_ROBOTS, pattern_of
 from rosprivacy.clock import judged_on, today
 from rosprivacy.ontology.special import special_provision
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import Analysis, Finding
     from rosprivacy.analysis.decisions import Decided, Decisions
-    from rosprivacy.analysis.fleet.patterns import Likeness
+    from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.settings import Settings
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, shown
 from rosprivacy.analysis.findings.why_not import why_not
+from rosprivacy.analysis.written_names import meant
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -54,7 +55,7 @@ def _vertices(analysis: Analysis, written: str) -> list[int]:
     elements = analysis.graph.elements
     for vertex, element in enumerate(elements):
         known.setdefault(element.full_name, []).append(vertex)
-    if written not in known:
+    if meant(written) not in known:
         close = get_close_matches(written, known, n=3, cutoff=0.5)
         hint = (
             f"did you mean {' or '.join(map(shown, close))}?"
@@ -62,5 +63,5 @@ def _vertices(analysis: Analysis, written: str) -> list[int]:
             else "see the names with rosprivacy labels --init"
         )
         raise InputError("why-not", 0, f"no element is called {shown(written)!r}", hint)
-    nodes = [vertex for vertex in known[written] if not elements[vertex].is_channel]
-    return nodes or known[written]
+    found = known[meant(written)]
+    return [vertex for vertex in found if not elements[vertex].is_channel] or found

@@ -20,7 +20,7 @@ from rosprivacy.ingest.fleet.fleet_graph import Placed, place
 from rosprivacy.ingest.fleet.joins import joins_nothing
 from rosprivacy.ingest.fleet.mergeable_graph import Part
 from rosprivacy.ingest.labels.add_non_ros import extend
-from rosprivacy.ingest.labels.binding import bind, unused
+from rosprivacy.ingest.labels.binding import bind, remarks
 from rosprivacy.ingest.labels.label_file import Labels, read_labels
 from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.ingest.policies.joint_policies import joint_warnings
@@ -171,7 +171,7 @@ class Reader:
         run = [pushed(policy, robot.add) for policy in policies]
         graph, full = stripped(build(run, settings.view), robot.strip or robot.add)
         extended = extend(graph, files)
-        diagnostics += unused(extended, files)
+        diagnostics += remarks(extended, files)
         part = with_grants(Part.of(extended, bind(extended, files)), lambda grant: as_written(grant, robot.add))
         return Member(robot, policies, part, full, graph.profiles, tuple(files), tuple(dict.fromkeys(diagnostics)))
 

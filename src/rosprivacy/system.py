@@ -8,12 +8,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.fleet.patterns import NO_ROBOTS
+from rosprivacy.analysis.fleet.likeness import NO_ROBOTS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from rosprivacy.analysis.fleet.patterns import Likeness
+    from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.analysis.model import Bound, Diagnostic, FlowGraph, Policy
     from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.ontology.vocabulary import Vocabulary

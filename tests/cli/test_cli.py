@@ -551,37 +551,39 @@ def test_a_graph_that_is_no_regular_file_is_refused_and_does_not_wait(tmp_path: 
 
 # ---------------------------------------------------------------- the labels command
 
+SHIPPED_CHANNELS = set(re.findall(r'"\*/(\w+)"', shipped_text("standard")))
+
 
 def policy(body: str, ns: str = "/", *, twice: bool = False) -> str:
     enclave = f'<enclave path="/e"><profiles><profile ns="{ns}" node="a">{body}</profile></profiles></enclave>'
     return f'<policy version="0.2.0"><enclaves>{enclave * (1 + twice)}</enclaves></policy>'
 
 
-def named(text: str) -> list[tuple[str, str]]:
-    """(section, name) of every line of a first label file, those in comments too."""
-    found = []
-    section = ""
-    for line in text.splitlines():
-        section = line.rstrip(":") if re.fullmatch(r"[a-z]+:", line) else section
-        match = re.match(r'  (?:# )?("(?:[^"\\]|\\.)*"|/[^\s:]*):(?: sensitive)?(?:  #.*)?$', line)
-        if match:
-            written = match[1]
-            found.append((section, json.loads(written) if written.startswith('"') else written))
-    return found
+def elements(path: Path) -> set[tuple[str, str]]:
+    graph = rosprivacy.analyze([str(path)]).analysis.graph
+    return {(element.kind, element.name) for element in graph.elements}
 
 
-def elements(path: Path) -> list[tuple[str, str]]:
-    result = rosprivacy.analyze([str(path)])
-    kinds = {(e.kind == "node", e.name) for e in result.analysis.graph.elements}
-    return sorted(("nodes" if is_node else "channels", name) for is_node, name in kinds)
-
-
-def test_a_first_label_file_names_every_element_once(cli: Cli, before: Path, tmp_path: Path) -> None:
+def test_a_first_label_file_names_every_element_once_but_those_of_the_shipped_files(
+    cli: Cli, before: Path, tmp_path: Path
+) -> None:
     done = cli("labels", "--init", before, "-o", tmp_path / "l.yaml")
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
     text = (tmp_path / "l.yaml").read_text("utf-8")
-    assert sorted(named(text)) == elements(before)
-    assert Draft202012Validator(json.loads(cli("labels", "--schema").stdout)).is_valid(yaml.safe_load(text))
+    read = read_labels(str(tmp_path / "l.yaml"), load()).entries
+    named = [(kind, entry.name) for entry in read for kind in entry.kinds]
+    shipped = {(kind, name) for kind, name in elements(before) if name.rpartition("/")[2] in SHIPPED_CHANNELS}
+    assert sorted(named) == sorted(elements(before) - shipped)
+    assert f"# Not listed: {len(shipped)} standard channels" in text
+    schema = json.loads((tmp_path / "labels.schema.json").read_text("utf-8"))  # the first line names it
+    assert text.startswith("# yaml-language-server: $schema=labels.schema.json\n")
+    assert Draft202012Validator(schema).is_valid(yaml.safe_load(text))
+
+
+def test_a_schema_that_is_there_stays(cli: Cli, before: Path, tmp_path: Path) -> None:
+    (tmp_path / "labels.schema.json").write_text("{}")
+    assert cli("labels", "--init", before, "-o", tmp_path / "l.yaml").returncode == 0
+    assert (tmp_path / "labels.schema.json").read_text() == "{}"
 
 
 def test_a_first_label_file_is_valid_as_it_is_and_says_nothing(cli: Cli, before: Path, tmp_path: Path) -> None:
@@ -591,9 +593,8 @@ def test_a_first_label_file_is_valid_as_it_is_and_says_nothing(cli: Cli, before:
     assert without_assumptions(with_it) == without_assumptions(without)
 
 
-def test_a_first_label_file_lists_standard_channels_as_comments(cli: Cli, before: Path) -> None:
-    text = cli("labels", "--init", before).stdout
-    assert "  # /rosout: sensitive" in text
+def test_a_first_label_file_lists_standard_channels_where_they_are_not_taken(cli: Cli, before: Path) -> None:
+    assert "/rosout:" not in cli("labels", "--init", before).stdout
     assert "  /rosout:" in cli("labels", "--init", before, "--no-standard-channels").stdout
 
 

@@ -34,10 +34,8 @@ NOT_CHECKED = "the ids were not checked; --report FILE checks them against an an
 
 def decide(cli: Cli, folder: Path, *arguments: str) -> str:
     done = cli("decide", *arguments, cwd=folder)
-    assert (done.returncode, done.stderr) == (
-        0,
-        "" if {"--report", "--category", "--leak"} & {*arguments} else NOT_CHECKED,
-    )
+    said = "" if {"--report", "--category", "--leak"} & {*arguments} else NOT_CHECKED
+    assert (done.returncode, done.stderr) == (0, said)
     return (folder / "decisions.yaml").read_text("utf-8")
 
 
@@ -223,7 +221,7 @@ def test_it_is_rarely_refused(text: str, entry: dict[str, str]) -> None:
     ("arguments", "said"),
     [
         (["accept", ID], "an acceptance without reason"),
-        (["accept", "xyz", *SIGNED], "id 'xyz'"),
+        (["accept", "xyz", *SIGNED], "'xyz' is not the id"),
         (["avoid", ID, "--legal-basis", "consent"], "legal basis 'consent'"),
         (["avoid", "--category", "Vidio"], "unknown category 'Vidio'"),
         (["avoid", ID, "--reason", " "], "reason takes text"),
@@ -319,7 +317,7 @@ def test_what_was_decided_before_stays_in_the_file(cli: Cli, tmp_path: Path, mon
 @pytest.mark.parametrize(
     ("given", "told"),
     [
-        (("7ac6",), "'7ac6' is not the id of a finding: write its 16 digits and letters, or give --report"),
+        (("7ac6",), "'7ac6' is not the id of a finding; write its 16 digits and letters, or give --report"),
         ((ID, "--expires", "2020-01-01"), "2020-01-01 is over: it would decide nothing"),
         (("--leak", "/x", "--expires", "soon"), "'soon' is not a date"),
     ],

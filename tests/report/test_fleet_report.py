@@ -12,7 +12,7 @@ import pyshacl
 import pytest
 import rdflib
 
-from rosprivacy.analysis.fleet.patterns import Likeness
+from rosprivacy.analysis.fleet.likeness import Likeness
 from rosprivacy.formats import written
 from rosprivacy.report.page.figures import figures
 from rosprivacy.report.page.html import html

@@ -26,10 +26,10 @@ def test_an_extra_is_named_by_its_packages(extra: str) -> None:
 @pytest.mark.parametrize(
     ("prefix", "begins"),
     [
-        ("/home/me/.local/share/pipx/venvs/rosprivacy", "pipx inject rosprivacy "),
+        ("/home/me/pipx/venvs/rosprivacy", "pipx inject rosprivacy "),
         (
-            "/home/me/.local/share/uv/tools/rosprivacy",
-            "uv pip install --python /home/me/.local/share/uv/tools/rosprivacy ",
+            "/home/me/uv/tools/rosprivacy",
+            "uv pip install --python /home/me/uv/tools/rosprivacy ",
         ),
     ],
 )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -31,24 +32,41 @@ def labels(
         raise typer.BadParameter("name one of --init, --schema, --standard, --infrastructure")
     if init and output and output.is_file():
         raise InputError(str(output), 0, "is there already", "a label file is work: name another, or remove it")
-    emit(_labels_text(inputs, init=init, schema=schema, standard=standard), output)
+    if init:
+        emit(*_first(inputs, output))
+    elif schema:
+        emit(_schema(inputs), output)
+    else:
+        emit(_shipped("standard" if standard else "infrastructure"), output)
 
 
-def _labels_text(inputs: Inputs, *, init: bool, schema: bool, standard: bool) -> str:
-    from rosprivacy.ingest.labels.label_file import shipped_text
-    from rosprivacy.ingest.labels.label_schema import label_schema
-    from rosprivacy.ingest.labels.label_template import template
+def _first(inputs: Inputs, output: Path | None) -> tuple[str, Path | None, dict[Path, str | None]]:
+    """A first label file; and beside it, if it goes into a file, the schema that its first line names."""
+    from rosprivacy.ingest.labels.label_template import SCHEMA_FILE, template
     from rosprivacy.ingest.policies.flow_graph import build
     from rosprivacy.ontology.vocabulary import load
-    from rosprivacy.report.document.analysis import as_text
-    from rosprivacy.robot_system import read_system, standard_channels
+    from rosprivacy.robot_system import infrastructure_channels, read_system, standard_channels
 
     settings = inputs.settings
     vocabulary = load(ontologies=settings.ontologies)
-    if schema:
-        return as_text(label_schema(vocabulary.categories.values()))
-    if not init:
-        return shipped_text("standard" if standard else "infrastructure")
     system, _ = read_system(inputs.named, settings)
     graph = build(system, settings.view)
-    return template(graph, tuple(vocabulary.categories), standard_channels(graph, vocabulary, settings))
+    known = standard_channels(graph, vocabulary, settings), infrastructure_channels(graph, vocabulary)
+    own = sorted(set(vocabulary.categories) - set(load().categories))
+    text = template(graph, *known, own, schema=output is not None)
+    schema = output.parent / SCHEMA_FILE if output else None
+    return text, output, {schema: _schema(inputs)} if schema and not schema.exists() else {}
+
+
+def _schema(inputs: Inputs) -> str:
+    from rosprivacy.ingest.labels.label_schema import label_schema
+    from rosprivacy.ontology.vocabulary import load
+    from rosprivacy.report.document.analysis import as_text
+
+    return as_text(label_schema(load(ontologies=inputs.settings.ontologies).categories.values()))
+
+
+def _shipped(name: str) -> str:
+    from rosprivacy.ingest.labels.label_file import shipped_text
+
+    return shipped_text(name)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from rosprivacy.analysis.fleet.patterns_of_pairs import Group
+    from rosprivacy.analysis.fleet.tallies import Group
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Element
@@ -127,7 +127,7 @@ class Classes:
         """Return the units that bring the classes of what is shown to where they get."""
         wanted: dict[tuple[str, Element], set[bool]] = defaultdict(set)
         for group in groups:
-            wanted[group.category, group.source] |= set(STOPS)
+            wanted[group.pair.category, group.pair.source] |= set(STOPS)
         found = set()
         for source in sources:
             number = self._ours.categories.index(source.category)

@@ -36,8 +36,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from rosprivacy.analysis.fleet.patterns import Deviant, Likeness
-    from rosprivacy.analysis.fleet.patterns_of_pairs import Group
+    from rosprivacy.analysis.fleet.likeness import Likeness
+    from rosprivacy.analysis.fleet.patterns import Deviant
+    from rosprivacy.analysis.fleet.tallies import Group
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Element, NonRosFacts
@@ -252,18 +253,18 @@ class _Run:
         crossed = Crossed(self._likeness)
         crossed.within(pair for answer in answers for pair in answer.within)
         crossed.between(sources, [*classes.own_ends(), *(end for answer in answers for end in answer.ends)])
-        groups = crossed.groups()
+        groups, shares = crossed.tallies.groups(), crossed.tallies.shares
         open_at, count, kinds = _opened(answers, self._likeness)
         mine = {v: e for v, e in enumerate(piece.graph.elements) if e.robot in (HUB, GATE)}
         core_open = workers.open_elements(replace(piece, border=tuple(mine)), ours, mask)
         unit = unit_of(split(self._task.groups)[1])
         needed = self._needed | classes.bringers(groups, sources)
         needed |= {unit[robot] for robot in kinds if robot in unit}
-        ends = (element.robot for group in groups for element in (group.source, group.leak))
+        ends = (element.robot for group in groups for element in (group.pair.source, group.pair.leak))
         needed |= {unit[robot] for robot in ends if robot in unit}
         begins = any(ours.begins(v) & mask for v in ours.facts) or any(answer.begins for answer in answers)
         verdict = Verdict.of(
-            leak=any(group.count > group.dismissed for group in groups),
+            leak=any(group.count.all > group.count.dismissed for group in groups),
             is_open=bool(count or core_open),
             known=begins and not unread(told.diagnostics),
         )
@@ -272,10 +273,10 @@ class _Run:
             emitted=tuple(wanted),
             verdict=verdict,
             groups=groups,
-            deviants=different(crossed.shares, open_at, self._likeness),
+            deviants=different(shares, open_at, self._likeness),
             needed=frozenset(needed),
             examples=frozenset(needed | crossed.examples | classes.all_bringers()),
-            leaking=frozenset(r for r, some in crossed.shares.items() if not all(share.dismissed for share in some)),
+            leaking=frozenset(r for r, some in shares.items() if not all(share.dismissed for share in some)),
             counts=replace(counts, flows=counts.flows + _flows_between(told)),
             told=told,
             likeness=self._likeness,

@@ -12,8 +12,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.findings.findings import Options, analyse
-from rosprivacy.analysis.fleet.patterns import FleetView
-from rosprivacy.analysis.fleet.patterns_of_pairs import patterns_of
+from rosprivacy.analysis.fleet.patterns import FleetView, patterns_of
 from rosprivacy.ingest.fleet.fleet_graph import place_chosen
 from rosprivacy.spark.units import split
 
@@ -68,13 +67,13 @@ def shown(task: Task, found: Found, paths: str, max_paths: int) -> Shown:
         vertex = {element: number for number, element in enumerate(spread.graph.elements)}
         wanted: Wanted = defaultdict(set)
         for group in found.groups:
-            category = spread.categories.index(group.category)
-            wanted[vertex[group.source]].add((group.kind, vertex[group.leak], category, group.beside))
+            kind, category, source, leak, beside = group.pair
+            wanted[vertex[source]].add((kind, vertex[leak], spread.categories.index(category), beside))
         return dict(wanted)
 
     options = Options(task.asked, paths, max_paths, choose=choose, today=task.today)
     analysis = analyse(placed.graph, placed.bound, task.hierarchy, options)
-    view = FleetView(found.likeness, patterns_of(found.groups, analysis), found.deviants)
+    view = FleetView(found.likeness, patterns_of(found.groups, analysis.findings), found.deviants)
     analysis = replace(analysis, verdict=found.verdict, emitted=found.emitted)
     return Shown(analysis, view, placed, members)
 

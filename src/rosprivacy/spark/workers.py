@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rosprivacy.analysis.findings.concerns import Concern
-    from rosprivacy.analysis.fleet.patterns import Likeness
+    from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Element

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rosprivacy.analysis.findings.flows_to_leaks import flows_to_leaks
-from rosprivacy.analysis.kernel.search import Net
+from rosprivacy.analysis.kernel.states import Net
 from rosprivacy.analysis.model import DISCLOSURE, Method
 from tests.helpers.systems import System, analysed, index, statement, systems
 

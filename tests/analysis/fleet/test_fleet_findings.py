@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 from hypothesis import given
 
 from rosprivacy.analysis.findings.findings import Options, analyse
-from rosprivacy.analysis.fleet.patterns import FleetView, pattern_id
+from rosprivacy.analysis.fleet.likeness import pattern_id
+from rosprivacy.analysis.fleet.patterns import FleetView
 from rosprivacy.analysis.fleet.patterns_of_pairs import Groups
 from tests.helpers.random_fleets import Case, fleets, found_in
 from tests.helpers.systems import HIERARCHY
@@ -68,7 +69,7 @@ def test_patterns_made_of_pairs_are_those_made_of_findings(case: Case) -> None:
     groups = Groups(placed.likeness)
     chosen = analyse(placed.graph, placed.bound, HIERARCHY, Options(choose=groups))
     expected, got = FleetView.of(analysis, placed.likeness), groups.view(chosen)
-    assert {pattern.id: pattern for pattern in got.patterns} == {pattern.id: pattern for pattern in expected.patterns}
+    assert got.patterns == expected.patterns
     assert got.deviants == expected.deviants
     assert chosen.verdict == analysis.verdict
     assert set(chosen.findings) == {pattern.finding for pattern in expected.patterns}

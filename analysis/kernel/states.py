@@ -1,0 +1,121 @@
+"""How data goes on: which states follow which, what starts and where it stops (rules S8 and S10), once and plainly.
+
+A state is (vertex, bit): data of a category, in one of its forms, has arrived at an element. In: a ``Spread``. Out:
+``Net``, the flows, and ``States``, the relation. All that walks uses it; the fast forms, ``fixpoint.py`` and
+``search.py``, are held against it by a test.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from rosprivacy.analysis.kernel.spread import Spread
+
+Move = tuple[int, int, int]  # flow, its target, bits that go along it and are taken up there
+
+
+@dataclass(frozen=True, slots=True)
+class Net:
+    """The flows of a spread, by the vertex that they leave: (index, target, bits that pass it).
+
+    Attributes
+    ----------
+    flows
+        All.
+    inner
+        Those from what is written to a wildcard to what is read from it: one element to the reader, and so no step.
+    """
+
+    spread: Spread
+    flows: Mapping[int, list[Move]]
+    inner: Mapping[int, list[Move]]
+
+    @classmethod
+    def of(cls, spread: Spread) -> Net:
+        """Index the flows that anything leaves along."""
+        graph = spread.graph
+        flows: dict[int, list[Move]] = defaultdict(list)
+        inner: dict[int, list[Move]] = defaultdict(list)
+        for index, flow in enumerate(graph.flows):
+            if spread.leaves.get(flow.source):
+                move = (index, flow.target, spread.passing(index))
+                flows[flow.source].append(move)
+                written, read = graph.elements[flow.source], graph.elements[flow.target]
+                if written.pattern and written.shown_as == read.shown_as:
+                    inner[flow.source].append(move)
+        return cls(spread, flows, inner)
+
+
+@dataclass(frozen=True, slots=True)
+class States:
+    """The states of a net, and how they follow each other.
+
+    Attributes
+    ----------
+    allowed
+        Bits to follow.
+    stop
+        Vertex -> bits that are not followed on from there; what a source emits is.
+    """
+
+    net: Net
+    allowed: int
+    stop: Mapping[int, int]
+
+    def emitted(self, vertex: int) -> int:
+        """Return the bits that leave a source along all of its flows."""
+        return self.net.spread.emits.get(vertex, 0) & self.allowed
+
+    def single(self, vertex: int) -> Iterator[Move]:
+        """Yield what a source emits along single flows only."""
+        for index, target, passing in self.net.flows.get(vertex, ()):
+            if bits := self.net.spread.flow_emits.get(index, 0) & self.allowed & passing:
+                yield index, target, bits
+
+    def leaving(self, vertex: int, bits: int) -> int:
+        """Return the bits that leave an element when some arrive."""
+        stop = self.stop.get(vertex, 0)
+        return onward(self.net.spread, vertex, bits & ~stop) & self.allowed & ~stop
+
+    def after(self, vertex: int, leaving: int) -> Iterator[Move]:
+        """Yield where bits arrive that leave an element."""
+        for index, target, passing in self.net.flows.get(vertex, ()) if leaving else ():
+            if bits := leaving & passing:
+                yield index, target, bits
+
+
+def made(spread: Spread, vertex: int, bits: int) -> int:
+    """Return the bits that an element makes of some that arrive."""
+    result = 0
+    for before, after in spread.derives.get(vertex, ()):
+        result |= (bits >> before & 1) << after
+    return result
+
+
+def onward(spread: Spread, vertex: int, bits: int, opened: int = 0) -> int:
+    """Return the bits that leave an element when some arrive: as they are, or as what is made of them.
+
+    Parameters
+    ----------
+    opened
+        Bits that pass although labels close the element for them.
+    """
+    return bits & (spread.keeps.get(vertex, spread.all_bits) | opened) | made(spread, vertex, bits)
+
+
+def back(spread: Spread, vertex: int, bits: int, opened: int = 0) -> int:
+    """Return the bits that have to arrive at an element for some to leave it: ``onward``, turned around."""
+    result = bits & (spread.keeps.get(vertex, spread.all_bits) | opened)
+    for before, after in spread.derives.get(vertex, ()):
+        result |= (bits >> after & 1) << before
+    return result
+
+
+def back_from(spread: Spread, vertex: int, bits: int, opened: int = 0) -> int:
+    """Return the bits that have to arrive for some to be there: a node has what arrives, a channel what it carries."""
+    return back(spread, vertex, bits, opened) | (0 if spread.graph.elements[vertex].is_channel else bits)
