@@ -62,7 +62,7 @@ SYSTEMS = {
     "fleet": System(EXAMPLES / "fleet", ("--fleet", "fleet.yaml")),
     "turtlebot3": System(CORPUS, (TB3, "-l", TB3_LABELS)),
 }
-NEAR = "--around /recoveries_server --around /turtlebot3_laserscan --fold --no-loose-ends"
+NEAR = "--around /turtlebot3_laserscan --fold --no-loose-ends"
 PICTURES = (
     Drawing("factory-ros", "factory"),
     Drawing("factory-privacy", "factory", "--show privacy"),
@@ -76,7 +76,7 @@ PICTURES = (
     Drawing("fleet-privacy-all", "fleet", "--show privacy --fold --cluster robot"),
     Drawing("turtlebot3-ros", "turtlebot3", NEAR),
     Drawing("turtlebot3-ros-all", "turtlebot3", "--fold"),
-    Drawing("turtlebot3-privacy", "turtlebot3", "--show privacy --fold --most 20 --direction down"),
+    Drawing("turtlebot3-privacy", "turtlebot3", "--show privacy --fold --most 16 --direction down"),
     Drawing("turtlebot3-privacy-all", "turtlebot3", "--show privacy --fold"),
 )
 

@@ -346,8 +346,8 @@ WORDS = {
         "could not draw them. Each of them says how to get it."
     ),
     "f.picture.extra": (
-        "There are no pictures, because Graphviz was not installed where the report was made. Install it with its "
-        "headers (Debian: libgraphviz-dev), then pip install pygraphviz; the report then draws one of each path."
+        "There are no pictures, because Graphviz was not installed where the report was made. With its "
+        "headers (Debian: libgraphviz-dev) and the extra [views] of rosprivacy it draws one of each path."
     ),
     "p.legend": "How to read the pictures",
     "p.shapes": (

@@ -117,7 +117,7 @@ def drawn(
         except TooLongError:
             what = f"the layout of {counted(len(picture.boxes), 'box', 'boxes')} takes more than {seconds:g} seconds"
             hint = "draw less (--around, --finding, --fold, --most), give it more with --seconds, or take --format dot"
-            raise DrawingError(f"graph:0: {what}; {hint}") from None
+            raise DrawingError(f"graph: {what}; {hint}") from None
     if form == SVG:
         return Drawn(finished(data, noted), note)
     return Drawn(data, (*note, *_smaller(data)))
