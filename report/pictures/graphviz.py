@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 
 WORKER = "rosprivacy.report.pictures.graphviz_worker"
 MISSING = (
-    "graph: Graphviz is not installed, so there is no SVG and no PNG; take --format dot, graphml or mermaid, or install "
-    "it with its headers (Debian: libgraphviz-dev) and then"
+    "graph: Graphviz is not installed, so there is no SVG and no PNG; take --format dot, graphml or mermaid, or "
+    "install it with its headers (Debian: libgraphviz-dev) and then"
 )
 
 
