@@ -28,7 +28,7 @@ from rosprivacy.analysis.kernel.bits import bits_of
 from rosprivacy.analysis.kernel.search import START, Search, path_to, present, search
 from rosprivacy.analysis.kernel.spreading import spread
 from rosprivacy.analysis.kernel.states import Net
-from rosprivacy.analysis.model import DISCLOSURE, Diagnostic, Element, Method, Place, Severity
+from rosprivacy.analysis.model import DISCLOSURE, Diagnostic, Element, Place, Severity
 from rosprivacy.analysis.modes import Paths
 from rosprivacy.analysis.non_ros import country_unknown, on_day
 
@@ -39,7 +39,6 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.findings.concerns import Concern
     from rosprivacy.analysis.hierarchy import Hierarchy
-    from rosprivacy.analysis.kernel.roles import Facts
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Bound, FlowGraph
 
@@ -341,15 +340,10 @@ def _roles(found: Spread, mask: int) -> dict[Element, dict[str, tuple[str, ...]]
     roles: dict[Element, dict[str, tuple[str, ...]]] = {}
     shown = set(found.names(mask))
     for vertex, decided in sorted(found.facts.items()):
-        said = {c: told for c, fact in decided.items() if c in shown and (told := _told(fact))}
+        said = {c: fact.roles for c, fact in decided.items() if c in shown and fact.roles}
         if said:
             roles[found.graph.elements[vertex]] = said
     return roles
-
-
-def _told(fact: Facts) -> tuple[str, ...]:
-    """The roles as readers get them: what is not on the robot cleans nothing."""
-    return tuple(role for role in fact.roles if role != "sanitizer" or fact.method != Method.ABSENT)
 
 
 def _standard_channels(found: Spread) -> int:

@@ -14,7 +14,6 @@ from rosprivacy.analysis.model import Method
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping, Sequence
 
-    from rosprivacy.analysis.kernel.roles import Facts
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Bound, Element, FlowGraph
 
@@ -65,7 +64,7 @@ def cleanings(found: Spread, wanted: Collection[str]) -> tuple[Cleaning, ...]:
     rows = []
     for vertex, decided in sorted(found.facts.items()):
         leaves = found.planes(found.leaves.get(vertex, 0) & mask)
-        for category in (name for name in found.categories if name in wanted and _cleans(decided[name])):
+        for category in (name for name in found.categories if name in wanted and "sanitizer" in decided[name].roles):
             both = found.both(category)
             rows.append(
                 Cleaning(
@@ -103,10 +102,6 @@ def absent(bound: Bound, graph: FlowGraph) -> tuple[tuple[Element, str], ...]:
     )
 
 
-def _cleans(fact: Facts) -> bool:
-    return "sanitizer" in fact.roles and fact.method != Method.ABSENT
-
-
 class _Around:
     """The channels that an element reads, and who else reads them."""
 
@@ -123,7 +118,7 @@ class _Around:
         named = set()
         for reader in sorted(readers):
             fact = self._found.facts.get(reader, {}).get(category)
-            if (fact is None or "sanitizer" not in fact.roles) and elements[reader].shown_as not in named:
+            if (fact is None or not fact.method) and elements[reader].shown_as not in named:
                 named.add(elements[reader].shown_as)
                 yield elements[reader]
 

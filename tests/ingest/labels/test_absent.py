@@ -9,13 +9,19 @@ from jsonschema import Draft202012Validator
 
 import rosprivacy
 from rosprivacy.analysis.errors import InputErrors
+from rosprivacy.ingest.database.loading import load as load_robots
 from rosprivacy.ingest.labels.label_file import parse_labels
 from rosprivacy.ingest.labels.label_schema import label_schema
 from rosprivacy.ontology.vocabulary import load
+from rosprivacy.private_neo4j import connection
+from rosprivacy.robot_system import robot_of
+from rosprivacy.settings import Settings
+from rosprivacy.stored_system import answer_stored
 
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from rosprivacy.private_neo4j.connection import Connection
     from rosprivacy.result import Result
 
 PROFILE = '<profile ns="/" node="{}"><topics {}="ALLOW"><topic>{}</topic></topics></profile>'
@@ -83,3 +89,18 @@ def test_editors_take_it() -> None:
     assert schema.is_valid({"labels": 1, "nodes": {"/a": {"absent": "sold", "note": "in May"}}})
     assert not schema.is_valid({"labels": 1, "nodes": {"/a": {"absent": ""}}})
     assert not schema.is_valid({"labels": 1, "nodes": {"/a": {"sanitizer": {"Video": "absent"}}}})
+
+
+@pytest.mark.database
+def test_a_database_keeps_who_is_absent_and_why(tmp_path: Path, neo4j_server: Connection) -> None:
+    result = analyze(tmp_path, f"{ENDS}  /shell: {{absent: a debug tool}}\n")
+    with connection.open_driver(neo4j_server) as driver:
+        driver.execute_query("MATCH (n) DETACH DELETE n")
+        load_robots(driver, [robot_of("care", result)], result.vocabulary)
+        stored = answer_stored(driver, Settings()).document()
+        cleans = "MATCH (e) WHERE any(label IN labels(e) WHERE label ENDS WITH 'Sanitizer') RETURN e"
+        cleaning = driver.execute_query(cleans).records
+        driver.execute_query("MATCH (n) DETACH DELETE n")
+    (row,) = stored["assumptions"]["absent"]
+    assert (row["element"]["name"], row["why"]) == ("/shell", "a debug tool")
+    assert (stored["findings"], stored["sanitizers"], cleaning) == ([], [], [])
