@@ -21,7 +21,7 @@ from rosprivacy.cli.options import (
     Server,
 )
 from rosprivacy.cli.output import emit
-from rosprivacy.cli.records import natural_width, records
+from rosprivacy.cli.row_records import natural_width, records
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
