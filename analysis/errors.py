@@ -1,6 +1,7 @@
 """The error tree. Factored out so that every room can raise without importing another.
 
-A message is one line, ``file:line: what is wrong; what to do``; the command line turns errors into exit codes::
+A message is one line, ``file:line: what is wrong; what to do``, without a line where there is none; the
+command line turns errors into exit codes::
 
     RosPrivacyError
       InputErrors          all problems of an input at once
@@ -74,7 +75,8 @@ class InputError(RosPrivacyError):
         self.line = line
         self.problem = problem
         self.hint = hint
-        super().__init__(f"{shown(file) or repr(file)}:{line}: {problem}; {hint}")
+        where = shown(file) or repr(file)
+        super().__init__(f"{where}:{line}: {problem}; {hint}" if line else f"{where}: {problem}; {hint}")
 
 
 class PolicyError(InputError):

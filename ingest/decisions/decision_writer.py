@@ -7,6 +7,7 @@ comes out is read anew, and given out only if every other decision and every com
 from __future__ import annotations
 
 from contextlib import suppress
+from copy import deepcopy
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -34,7 +35,7 @@ _NOWHERE = Place("", 0)
 def with_decision(file: str, text: str | None, entry: Mapping[str, Any], remark: str, vocabulary: Vocabulary) -> str:
     """Return the text of a decisions file with an entry added, or changed where there is one with the same target.
 
-    Of an entry that is there, what the new one does not say stays.
+    Of an entry that is there, what the new one does not say stays; what it says otherwise goes into its history.
 
     Parameters
     ----------
@@ -90,9 +91,17 @@ def _written(text: str, entry: Mapping[str, Any], remark: str) -> tuple[str, int
             if remark and "id" in entry and not (entries.fa.flow_style() or top.fa.flow_style()):
                 entries[place].yaml_add_eol_comment(shown(remark), "id")
         else:
-            entries[place].update(entry)
+            _change(entries[place], entry)
 
     return changed(text, change), places[0]
+
+
+def _change(there: Any, entry: Mapping[str, Any]) -> None:
+    """Say it anew; what was said before stays in the ``history`` of the entry, the latest last."""
+    before = {key: there[key] for key in there if key not in (*TARGET, "history", "note")}
+    if any(before.get(key) != value for key, value in entry.items() if key not in (*TARGET, "date")):
+        there.setdefault("history", CommentedSeq()).append(CommentedMap(deepcopy(before)))  # no alias
+    there.update(entry)
 
 
 def _entries(top: Any) -> Any:

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 TOP = ("decisions", "findings", "note")
 TARGET = ("id", "category", "source", "leak", "robot", "from_robot", "kind", "pseudonymised")
 TEXTS = ("reason", "owner", "ticket")
-KEYS = (*TARGET, "decision", *TEXTS, "legal_basis", "date", "expires", "note")
+KEYS = (*TARGET, "decision", *TEXTS, "legal_basis", "date", "expires", "note", "history")
 LONGEST = 10_000  # characters of a text
 _ID = re.compile(r"[0-9a-f]{16}")
 _DATE = re.compile(r"\d{4}-\d\d-\d\d", re.ASCII)
@@ -88,6 +88,11 @@ def legal_basis(written: str) -> str | None:
     return found[1].lower() if found else None
 
 
+def is_id(written: str) -> bool:
+    """Whether a text is the whole id of a finding."""
+    return bool(_ID.fullmatch(written))
+
+
 def is_date(written: str) -> bool:
     """Whether a text is an ISO date, ``YYYY-MM-DD``."""
     try:
@@ -131,6 +136,9 @@ class _Reader(FileReader):
             for key in ("reason", "owner"):
                 if not texts.get(key, "").strip():
                     self.problem(item.line, f"an acceptance without {key}", f"add {key}: it is what a person signs")
+        for earlier in said["history"].items if "history" in said else ():
+            if earlier.kind != "map":
+                self.problem(earlier.line, f"what was decided before is a map, not a {earlier.kind}", "remove it")
         basis = tuple(self._basis(said["legal_basis"])) if "legal_basis" in said else ()
         return Decision(choice, Place(self.file, item.line), legal_basis=basis, **texts)
 
@@ -151,7 +159,7 @@ class _Reader(FileReader):
             self.problem(item.line, "a decision about everything", "name an id, a category, a source or a leak")
         if texts.get("id"):
             line = said["id"].line
-            if not _ID.fullmatch(texts["id"]):
+            if not is_id(texts["id"]):
                 self.problem(line, f"id {shown(texts['id'])!r}", "copy the 16 digits and letters of a finding")
             form = said["pseudonymised"].text if "pseudonymised" in said else ""
             first = self.ids.setdefault((texts["id"], form), line)

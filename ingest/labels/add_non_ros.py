@@ -35,9 +35,17 @@ def extend(graph: FlowGraph, files: Sequence[Labels]) -> FlowGraph:
     InputErrors
         With every element that is defined twice with different facts, and every end of a flow that is not there.
     """
-    if not any(file.elements or file.flows for file in files):
-        return graph
+    whole, problems = extended(graph, files)
+    if problems:
+        raise InputErrors(problems)
+    return whole
+
+
+def extended(graph: FlowGraph, files: Sequence[Labels]) -> tuple[FlowGraph, list[InputError]]:
+    """Do the same as far as names go; return also what is wrong."""
     problems: list[InputError] = []
+    if not any(file.elements or file.flows for file in files):
+        return graph, problems
     stated: dict[str, Stated] = {}
     for own in (False, True):  # what one robot's file states takes the place of its model's
         stated |= merged((entry for file in files if file.own == own for entry in file.elements), problems)
@@ -52,9 +60,7 @@ def extend(graph: FlowGraph, files: Sequence[Labels]) -> FlowGraph:
         for end in entry.between:
             both = list(ends.between(end, End(entry.name), entry.place, problems))
             flows += [*both, *((b, a, place) for a, b, place in both)]
-    if problems:
-        raise InputErrors(problems)
-    return with_flows(graph, added, flows)
+    return with_flows(graph, added, flows), problems
 
 
 def merged(

@@ -22,7 +22,7 @@ from lxml import etree
 
 from rosprivacy.analysis.errors import InputError, InputErrors, PolicyError, reason, shown
 from rosprivacy.analysis.model import FALLBACK_TAKEN, Diagnostic, Place, Severity
-from rosprivacy.ingest.reading.bounded_file import contents
+from rosprivacy.ingest.reading.bounded_file import contents, nearest_file
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -254,7 +254,7 @@ def _stat(path: Path, place: Place) -> os.stat_result | None:
 def _size(path: Path, file: str, place: Place) -> int:
     found = _stat(path, place)
     if found is None:
-        raise _error(place, f"{shown(file)} not found", "correct the path")
+        raise _error(place, "file not found", nearest_file(Path(file)))
     if not stat.S_ISREG(found.st_mode):
         raise _error(place, f"{shown(file)} is not a regular file", "name an XML file")
     return found.st_size

@@ -6,16 +6,20 @@ written in the same run.
 
 from __future__ import annotations
 
+from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.errors import reason
+from rosprivacy.analysis.errors import reason, shown
 from rosprivacy.analysis.files_read import noted
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from rosprivacy.analysis.errors import InputError
+
+
+ALIKE = 0.8  # names that share their ending only are not
 
 
 def contents(path: Path, name: str = "") -> bytes:
@@ -28,6 +32,16 @@ def contents(path: Path, name: str = "") -> bytes:
     """
     with path.open("rb") as file:
         return noted(file, name or str(path)).read()
+
+
+def nearest_file(path: Path) -> str:
+    """Return what to do about a file that is not there: the nearest names in its folder."""
+    try:
+        there = sorted(other.name for other in path.parent.iterdir())
+    except (OSError, ValueError):
+        there = []
+    near = get_close_matches(path.name, there, n=1, cutoff=ALIKE)
+    return f"did you mean {shown(str(path.with_name(near[0])))}?" if near else "correct the path"
 
 
 def read_regular(file: str, max_bytes: int, fail: Callable[[int, str, str], InputError]) -> bytes:
@@ -48,7 +62,7 @@ def read_regular(file: str, max_bytes: int, fail: Callable[[int, str, str], Inpu
         if not file:
             raise fail(0, "no file named", "name a file")
         if not path.exists():
-            raise fail(0, "file not found", "correct the path")
+            raise fail(0, "file not found", nearest_file(path))
         if not path.is_file():
             raise fail(0, "not a regular file", "name a regular file")
         if path.stat().st_size > max_bytes:

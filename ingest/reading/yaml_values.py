@@ -27,6 +27,7 @@ DEEPEST = 64
 _LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _RESOLVER: Any = yaml.resolver.Resolver()
 _JSON_TOKEN = re.compile(r'[{}\[\]]|"(?:[^"\\]|\\.)*"|[^\s{}\[\]",:]+')
+_XML = re.compile(r"\s*<[?!A-Za-z]")
 _EMPTY = ("the file is empty", "write at least 'labels: 1'")
 
 
@@ -90,6 +91,8 @@ def parse(text: str, fail: Callable[[int, str, str], InputError]) -> Value:
     """Read YAML or JSON text; see ``read``."""
     if not text.strip():
         raise fail(1, *_EMPTY)
+    if _XML.match(text):
+        raise fail(1, "this is XML, such as a policy, and not YAML or JSON", "name policies without an option")
     builder = _Builder(fail)
     if text.lstrip().startswith("{") and _is_json(text, fail):
         _feed_json(text, builder)

@@ -289,7 +289,7 @@ WORDS = {
     "f.picture.part": "Nur die kürzeren Wege sind gezeichnet; alle, mit den Dateien dieses Berichts: {command}",
     "f.picture.none": "Hier nicht gezeichnet; ein Bild davon, mit den Dateien dieses Berichts: {command}",
     "f.picture.left": "{n} der folgenden Wege haben hier kein Bild, damit die Datei versendet werden kann oder weil Graphviz sie nicht zeichnen konnte. Bei jedem steht, wie man es bekommt.",
-    "f.picture.extra": "Es gibt keine Bilder, weil Graphviz nicht installiert war, wo der Bericht erstellt wurde. Mit pip install 'rosprivacy[views]' wird jeder Weg gezeichnet.",
+    "f.picture.extra": "Es gibt keine Bilder, weil Graphviz nicht installiert war, wo der Bericht erstellt wurde. Mit dem Zusatz [views] von rosprivacy wird jeder Weg gezeichnet.",
     "p.legend": "Wie die Bilder zu lesen sind",
     "p.shapes": "Ovale sind Knoten, Rechtecke Topics; runde Ecken sind Services, Reiter Actions. Andere Formen sind Dinge außerhalb von ROS. Pfeile zeigen, wohin die Daten gehen.",
     "p.source": "bringt herein: {names}",

@@ -347,7 +347,7 @@ WORDS = {
     ),
     "f.picture.extra": (
         "There are no pictures, because Graphviz was not installed where the report was made. With "
-        "pip install 'rosprivacy[views]' it draws one of each path."
+        "the extra [views] of rosprivacy it draws one of each path."
     ),
     "p.legend": "How to read the pictures",
     "p.shapes": (

@@ -15,16 +15,14 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING, Self
 
 from rosprivacy.analysis.errors import DrawingError, shown
+from rosprivacy.report.installing import command_for
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
     from types import TracebackType
 
 WORKER = "rosprivacy.report.pictures.graphviz_worker"
-MISSING = (
-    "graph:0: Graphviz is not installed, so there is no SVG and no PNG; "
-    "pip install 'rosprivacy[views]', or take --format dot, graphml or mermaid"
-)
+MISSING = "graph: Graphviz is not installed, so there is no SVG and no PNG; take --format dot, graphml or mermaid, or"
 
 
 def available() -> bool:
@@ -69,7 +67,7 @@ class Graphviz:
 
     def __init__(self) -> None:
         if not available():
-            raise DrawingError(MISSING)
+            raise DrawingError(f"{MISSING} {command_for('views')}")
         self._process: subprocess.Popen[bytes] | None = None
 
     def __enter__(self) -> Self:
@@ -121,9 +119,9 @@ class Graphviz:
             self.close()
             if over.is_set():
                 raise TooLongError
-            raise DrawingError("graph:0: Graphviz ended while it drew; take --format dot and draw that by other means")
+            raise DrawingError("graph: Graphviz ended while it drew; take --format dot and draw that by other means")
         if answer["error"]:
-            raise DrawingError(f"graph:0: Graphviz cannot draw this: {shown(answer['error'])}; take --format dot")
+            raise DrawingError(f"graph: Graphviz cannot draw this: {shown(answer['error'])}; take --format dot")
         return data
 
     def _running(self) -> subprocess.Popen[bytes]:

@@ -114,7 +114,7 @@ def drawn(
             return Drawn(data, (*note, *_smaller(data)))
     what = f"the layout of {counted(len(picture.boxes), 'box', 'boxes')} takes more than {seconds:g} seconds"
     hint = "draw less (--around, --finding, --fold, --most), give it more with --seconds, or take --format dot"
-    raise DrawingError(f"graph:0: {what}; {hint}")
+    raise DrawingError(f"graph: {what}; {hint}")
 
 
 def _paper(form: str) -> dict[str, str]:

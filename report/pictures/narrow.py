@@ -39,7 +39,7 @@ def the_finding(analysis: Analysis, wanted: str) -> Finding:
     what = f"{len(found)} findings begin with" if found else "there is no finding"
     names = [f"{finding.id} ({finding.category})" for finding in (found or analysis.findings)[:5]]
     hint = f"such as {', '.join(names)}" if names else "rosprivacy analyze lists them"
-    raise DrawingError(f"--finding:0: {what} {shown(wanted)!r}; give the number in brackets of the report, {hint}")
+    raise DrawingError(f"--finding: {what} {shown(wanted)!r}; give the number in brackets of the report, {hint}")
 
 
 def of_robot(picture: Picture, robot: str) -> Picture:
@@ -53,7 +53,7 @@ def of_robot(picture: Picture, robot: str) -> Picture:
     own = {box.key for box in picture.boxes if box.robot == robot}
     if not own:
         robots = sorted({box.robot for box in picture.boxes if box.robot})
-        raise DrawingError(f"--robot:0: there is no robot {shown(robot)!r}; {_nearest(robot, robots)}")
+        raise DrawingError(f"--robot: there is no robot {shown(robot)!r}; {_nearest(robot, robots)}")
     joined = {line.target for line in picture.lines if line.source in own}
     joined |= {line.source for line in picture.lines if line.target in own}
     return picture.kept(own | joined, _part(picture, own | joined, f"robot {robot} and what it is joined to"))
@@ -80,7 +80,7 @@ def around(picture: Picture, names: Iterable[str], steps: int) -> Picture:
     missing = [name for name in names if name not in by_name]
     if missing:
         what = "in this picture there is no"
-        raise DrawingError("\n".join(f"--around:0: {what} {shown(n)!r}; {_nearest(n, by_name)}" for n in missing))
+        raise DrawingError("\n".join(f"--around: {what} {shown(n)!r}; {_nearest(n, by_name)}" for n in missing))
     kept = within(picture, {key for name in names for key in by_name[name]}, steps)
     return picture.kept(kept, _part(picture, kept, f"within {counted(steps, 'step')} of {', '.join(names)}"))
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from rich.text import Text
 
 from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.model import MERGED
 from rosprivacy.analysis.text import blanked, counted
 from rosprivacy.report.document.analysis import files_not_read
 from rosprivacy.report.document.decisions import decision_lines
@@ -236,10 +237,11 @@ def _assumed_outside(report: Mapping[str, Any]) -> Iterator[Line]:
 
 
 def _diagnostics(report: Mapping[str, Any], *, verbose: bool) -> Iterator[Line]:
-    notices = [d for d in report["diagnostics"] if d["severity"] == "notice"]
+    notices = [d for d in report["diagnostics"] if d["severity"] == "notice" and d.get("code") != MERGED]
     for diagnostic in report["diagnostics"]:
-        if verbose or diagnostic["severity"] != "notice":
-            place = f"{shown(diagnostic['file'])}:{diagnostic['line']}"
+        if verbose or diagnostic not in notices:
+            line = f":{diagnostic['line']}" if diagnostic["line"] else ""
+            place = f"{shown(diagnostic['file'])}{line}"
             yield f"{diagnostic['severity']}: {place}: {diagnostic['message']}", "yellow"
     if notices and not verbose:
         yield f"{counted(len(notices), 'notice')} (-v shows them)", "dim"

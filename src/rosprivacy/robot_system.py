@@ -5,17 +5,20 @@ In: the names of files. Out: ``System``, whose labels can be replaced.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors
+from rosprivacy.analysis.model import MERGED, REFUSED_NAME, SHARED_ENCLAVE
 from rosprivacy.answering import answer
 from rosprivacy.assumptions import files_read, remembered
-from rosprivacy.ingest.labels.add_non_ros import extend
-from rosprivacy.ingest.labels.binding import bind, remarks
+from rosprivacy.ingest.labels.add_non_ros import extend, extended
+from rosprivacy.ingest.labels.binding import bind, join, remarks
 from rosprivacy.ingest.labels.label_file import Labels, read_labels, unknown_categories
 from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.ingest.policies.joint_policies import joint_warnings
+from rosprivacy.ingest.policies.merged_policies import merging_notices
 from rosprivacy.ingest.policies.policy_files import read_policies
 from rosprivacy.ingest.policies.saved_graph import read_saved
 from rosprivacy.ontology.vocabulary import load
@@ -23,7 +26,7 @@ from rosprivacy.question import question_of
 from rosprivacy.system import System
 
 if TYPE_CHECKING:
-    from rosprivacy.analysis.model import Diagnostic, FlowGraph, Policy
+    from rosprivacy.analysis.model import Bound, Diagnostic, FlowGraph, Policy
     from rosprivacy.ingest.database.rows import RobotRows
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.result import Result
@@ -60,21 +63,47 @@ def robot_system(
 
 def _under(labels: tuple[str | Labels, ...], *, read: Read, settings: Settings, vocabulary: Vocabulary) -> System:
     """Put policies that were read under labels."""
-    policies, diagnostics = read
     files = read_label_files(labels, vocabulary, settings)
-    graph = extend(build(policies, settings.view), files)
+    graph = extend(build(read[0], settings.view), files)
+    system = _joined(graph, bind(graph, files), read, files, settings, vocabulary)
+    return replace(system, under=partial(_under, read=read, settings=settings, vocabulary=vocabulary))
+
+
+def _joined(
+    graph: FlowGraph, bound: Bound, read: Read, files: list[Labels], settings: Settings, vocabulary: Vocabulary
+) -> System:
+    policies, diagnostics = read
     said = tuple(d for policy in policies for d in policy.diagnostics) + diagnostics
     said += tuple(d for file in files for d in file.diagnostics) + tuple(remarks(graph, files))
-    return System(
-        graph,
-        bind(graph, files),
-        vocabulary,
-        said,
-        files_read(policies, files, settings),
-        policies,
-        tuple(files),
-        under=partial(_under, read=read, settings=settings, vocabulary=vocabulary),
-    )
+    return System(graph, bound, vocabulary, said, files_read(policies, files, settings), policies, tuple(files))
+
+
+def answer_each(
+    policies: tuple[str, ...], labels: tuple[str | Labels, ...], settings: Settings
+) -> tuple[tuple[str, Result], ...]:
+    """Read policies and label files, and analyse each policy alone.
+
+    A name of a label has to match in one of the policies at least (rule S11). What of a folder was not read counts
+    for each of its policies, since nobody knows which one it belongs to.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the input, one line each.
+    """
+    vocabulary = load(ontologies=settings.ontologies)
+    question = question_of(settings, vocabulary)
+    read, said = read_system(policies, settings)
+    files = read_label_files(labels, vocabulary, settings)
+    bind(extend(build(read, settings.view), files), files)  # raises what fits none of them
+    left = tuple(one for one in said if one.code not in (MERGED, SHARED_ENCLAVE, REFUSED_NAME))
+    results = []
+    for policy in read:
+        alone = (policy,), (*left, *joint_warnings((policy,)))
+        graph, _ = extended(build((policy,), settings.view), files)
+        system = _joined(graph, join(graph, files)[0], alone, files, settings, vocabulary)
+        results.append((policy.file, answer(system, question)))
+    return tuple(results)
 
 
 def robot_of(name: str, result: Result) -> RobotRows:
@@ -102,7 +131,8 @@ def read_system(policies: tuple[str, ...], settings: Settings) -> Read:
     sources = {name for policy in read for name, _ in policy.sources}
     diagnostics += tuple(d for _, left in graphs for d in left if d.place.file not in sources and d not in diagnostics)
     system = (*read, *(policy for policy in saved if policy.file not in known))
-    return tuple(sorted(system, key=lambda policy: policy.file)), (*diagnostics, *joint_warnings(system))
+    read = tuple(sorted(system, key=lambda policy: policy.file))
+    return read, (*diagnostics, *joint_warnings(system), *merging_notices(system))
 
 
 def standard_channels(graph: FlowGraph, vocabulary: Vocabulary, settings: Settings) -> set[tuple[str, str]]:

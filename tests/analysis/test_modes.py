@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 
 CARE_HOME = str(ROOT / "examples/care-home/care-home.policy.xml")
 WRONG = {
-    "Declared": (View, "--view:0: 'Declared' is none of declared, enforced; did you mean declared?"),
-    "enforce": (View, "--view:0: 'enforce' is none of declared, enforced; did you mean enforced?"),
-    "alle": (Paths, "--paths:0: 'alle' is none of witness, disjoint, all; did you mean all?"),
-    "": (Paths, "--paths:0: '' is none of witness, disjoint, all; did you mean"),
+    "Declared": (View, "--view: 'Declared' is none of declared, enforced; did you mean declared?"),
+    "enforce": (View, "--view: 'enforce' is none of declared, enforced; did you mean enforced?"),
+    "alle": (Paths, "--paths: 'alle' is none of witness, disjoint, all; did you mean all?"),
+    "": (Paths, "--paths: '' is none of witness, disjoint, all; did you mean"),
 }
 
 

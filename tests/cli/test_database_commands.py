@@ -205,7 +205,7 @@ class TestQuery:
             (["findings", "category=Vioce"], "no category 'Vioce' is in the database; did you mean Voice"),
             (["leak-paths", "robot=h2"], "no robot 'h2' is in the database; did you mean h1?"),
             (["reach-of-source", "source=/camra"], "no element '/camra' is in the database; did you mean /camera or"),
-            (["--file", "not-there.cypher"], "not-there.cypher:0: cannot be read: No such file or directory"),
+            (["--file", "not-there.cypher"], "not-there.cypher: cannot be read: No such file or directory"),
         ],
     )
     def test_what_is_wrong_is_2_and_one_line(

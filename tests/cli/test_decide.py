@@ -29,9 +29,13 @@ ID, OTHER = "7ac677bf059b5beb", "0123456789abcdef"
 SIGNED = ("--reason", "needed for safety", "--owner", "A. Person", "--legal-basis", "6(1)(f)")
 
 
+NOT_CHECKED = "the ids were not checked; --report FILE checks them against an analysis\n"
+
+
 def decide(cli: Cli, folder: Path, *arguments: str) -> str:
     done = cli("decide", *arguments, cwd=folder)
-    assert (done.returncode, done.stderr) == (0, "")
+    said = "" if {"--report", "--category", "--leak"} & {*arguments} else NOT_CHECKED
+    assert (done.returncode, done.stderr) == (0, said)
     return (folder / "decisions.yaml").read_text("utf-8")
 
 
@@ -217,7 +221,7 @@ def test_it_is_rarely_refused(text: str, entry: dict[str, str]) -> None:
     ("arguments", "said"),
     [
         (["accept", ID], "an acceptance without reason"),
-        (["accept", "xyz", *SIGNED], "id 'xyz'"),
+        (["accept", "xyz", *SIGNED], "'xyz' is not the id"),
         (["avoid", ID, "--legal-basis", "consent"], "legal basis 'consent'"),
         (["avoid", "--category", "Vidio"], "unknown category 'Vidio'"),
         (["avoid", ID, "--reason", " "], "reason takes text"),
@@ -289,3 +293,37 @@ def test_several_findings_are_decided_at_once_or_not_at_all(cli: Cli, tmp_path: 
 def test_an_empty_file_is_no_decisions_file() -> None:
     with pytest.raises((InputError, InputErrors)):
         with_decision("d", "", {"id": ID, "decision": "avoid"}, "", VOCABULARY)
+
+
+# ---------------------------------------------------------------- users.md, B8
+
+
+def test_what_was_decided_before_stays_in_the_file(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1790000000")
+    decide(cli, tmp_path, "accept", ID, *SIGNED)
+    decide(cli, tmp_path, "accept", ID, *SIGNED)  # says nothing new
+    text = decide(cli, tmp_path, "mitigate", ID, "--ticket", "PRIV-7")
+    (entry,) = yaml.safe_load(text)["findings"]
+    (earlier,) = entry["history"]
+    assert (entry["decision"], entry["ticket"]) == ("mitigate", "PRIV-7")
+    assert (earlier["decision"], earlier["reason"], earlier["owner"]) == ("accept", "needed for safety", "A. Person")
+    text = decide(cli, tmp_path, "delegate", ID, "--owner", "B. Person")
+    (entry,) = yaml.safe_load(text)["findings"]
+    assert [one["decision"] for one in entry["history"]] == ["accept", "mitigate"]
+    (read,) = parse_decisions("decisions.yaml", text, VOCABULARY, "").entries
+    assert (str(read.choice), read.owner) == ("delegate", "B. Person")
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        (("7ac6",), "'7ac6' is not the id of a finding; write its 16 digits and letters, or give --report"),
+        ((ID, "--expires", "2020-01-01"), "2020-01-01 is over: it would decide nothing"),
+        (("--leak", "/x", "--expires", "soon"), "'soon' is not a date"),
+    ],
+)
+def test_what_would_decide_nothing_is_refused(cli: Cli, tmp_path: Path, given: tuple[str, ...], told: str) -> None:
+    done = cli("decide", "mitigate", *given, cwd=tmp_path)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert told in " ".join(done.stderr.replace("│", "").split())
+    assert not (tmp_path / "decisions.yaml").exists()

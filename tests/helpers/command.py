@@ -20,7 +20,7 @@ import typer.main
 from rosprivacy.cli.app import main
 
 Done = subprocess.CompletedProcess[str]
-LINE = re.compile(r"^.+:\d+: .+; .+$")  # file:line: what is wrong; what to do
+LINE = re.compile(r"^.+: .+; .+$")  # file:line: what is wrong; what to do
 BUILT = cache(typer.main.get_command)  # the command line is built once, not for every run
 UNSET = ("FORCE_COLOR", "NO_COLOR", "CLICOLOR_FORCE", "PY_COLORS", "GITHUB_ACTIONS", "COLUMNS", "TERM")
 

@@ -350,7 +350,7 @@ def test_without_the_extra_three_ways_are_named(call: str, nowhere: Path) -> Non
     assert done.returncode == 3, done.stderr
     assert done.stdout == ""
     assert len(done.stderr.splitlines()) == 1
-    for way in ("pip install 'rosprivacy[local]'", "docker compose -f docker/compose.yml up", "--neo4j", "NEO4J_URI"):
+    for way in ("-m pip install 'filelock>=3.16' ", "docker compose -f docker/compose.yml up", "--neo4j", "NEO4J_URI"):
         assert way in done.stderr
     assert not nowhere.exists()
 

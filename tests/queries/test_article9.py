@@ -83,7 +83,7 @@ class TestFilters:
         assert (assumptions["article9_only"], assumptions["data_types_asked"]) == (True, ["audio"])
 
     def test_an_unknown_data_type_is_an_error(self) -> None:
-        with pytest.raises(InputErrors, match=r"--data-type:0: unknown data type 'vidoe'; it is one of: .*video"):
+        with pytest.raises(InputErrors, match=r"--data-type: unknown data type 'vidoe'; it is one of: .*video"):
             document(data_types=("vidoe",))
 
 

@@ -20,6 +20,7 @@ from rosprivacy.analysis.files_read import one_run
 from rosprivacy.fleet_system import answer_fleet
 from rosprivacy.private_neo4j import connection
 from rosprivacy.report.atomic import check_outputs
+from rosprivacy.report.installing import command_for
 from rosprivacy.settings import Settings
 from rosprivacy.spark import session as spark
 from rosprivacy.spark.fleet_on_spark import run_on_spark
@@ -119,7 +120,7 @@ def test_the_document_of_random_fleets(tmp_path: Path, monkeypatch: pytest.Monke
 
 @pytest.mark.usefixtures("session")
 def test_decisions_are_refused(fleet_file: str) -> None:
-    with pytest.raises(InputError, match=r"^--decisions:0: on Spark no decisions are taken into account"):
+    with pytest.raises(InputError, match=r"^--decisions: on Spark no decisions are taken into account"):
         run_on_spark(fleet_file, Settings(decisions="d.yaml"))
 
 
@@ -259,7 +260,7 @@ def test_results_are_there_for_other_tools(results: str, session: SparkSession) 
 
 
 def test_results_are_never_written_over(results: str) -> None:
-    with pytest.raises(InputErrors, match=r"hospital:0: is there already; results are work"):
+    with pytest.raises(InputErrors, match=r"hospital: is there already; results are work"):
         check_new(results)
 
 
@@ -269,7 +270,7 @@ def test_what_results_cannot_hold_is_told(fleet_file: str) -> None:
         run_on_spark(fleet_file, Settings(categories=("Video",)), None, "out")
     lines = str(caught.value).splitlines()
     assert [line.partition(";")[0] for line in lines] == [
-        "--results:0: results are about all categories",
+        "--results: results are about all categories",
         *(f"f.yaml:{n}: results have no flows from robots to robots, one for each pair" for n in (22, 23, 24)),
     ]
     assert not Path("out").exists()
@@ -277,7 +278,7 @@ def test_what_results_cannot_hold_is_told(fleet_file: str) -> None:
 
 def test_what_is_no_results_is_told(tmp_path: Path, results: str) -> None:
     for folder in (tmp_path / "none", tmp_path):
-        with pytest.raises(InputErrors, match=r":0: no results"):
+        with pytest.raises(InputErrors, match=r": no results"):
             read(str(folder))
     from pyarrow import dataset, parquet
 
@@ -291,7 +292,7 @@ def test_what_is_no_results_is_told(tmp_path: Path, results: str) -> None:
     broken = tmp_path / "broken"
     shutil.copytree(results, broken)
     shutil.rmtree(broken / "answer")  # it is written last
-    with pytest.raises(InputErrors, match=r":0: no results"):
+    with pytest.raises(InputErrors, match=r": no results"):
         read(str(broken))
 
 
@@ -325,7 +326,7 @@ def test_it_listens_on_this_machine_only(session: SparkSession) -> None:
 
 
 def test_what_is_no_master_is_told() -> None:
-    told = r"^--master:0: 'moon' is not a Spark master; write local"
+    told = r"^--master: 'moon' is not a Spark master; write local"
     with pytest.raises(InputError, match=told), spark.session("moon"):
         pass
 
@@ -399,7 +400,7 @@ def test_without_the_extra_it_says_how_to_get_it(tmp_path: Path) -> None:
     (tmp_path / "pyspark.py").write_text("raise ImportError\n", "utf-8")
     fleet = str(ROOT / "examples" / "fleet" / "fleet.yaml")
     for more, code, said in (
-        (["--engine", "spark"], 3, "--engine spark needs pyspark; pip install 'rosprivacy[spark]'\n"),
+        (["--engine", "spark"], 3, f"--engine spark needs pyspark; {command_for('spark')}\n"),
         ([], 1, ""),
     ):
         done = subprocess.run(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -13,6 +13,10 @@ from rosprivacy.cli.exit_code import FailOn, exit_code
 from rosprivacy.cli.inputs import Inputs, reads_system, refuse
 from rosprivacy.cli.options import ASKED, Engine, Format, Output
 from rosprivacy.cli.output import emit
+
+if TYPE_CHECKING:
+    from rosprivacy.formats import Style
+    from rosprivacy.settings import Settings
 
 SPARK = "Where it is computed"  # a panel of help
 
@@ -45,6 +49,10 @@ def analyze(
             rich_help_panel=SPARK,
         ),
     ] = None,
+    per_policy: Annotated[
+        bool,
+        typer.Option("--per-policy", help="Analyse each policy alone; by default several make one graph."),
+    ] = False,
     save_graph: Annotated[
         Path | None, typer.Option(metavar="GRAPH.json", help="Save what the policies grant.", show_default=False)
     ] = None,
@@ -85,7 +93,7 @@ def analyze(
     settings = replace(
         inputs.settings, article9=article9, data_types=tuple(data_type or ()), paths=paths.value, max_paths=max_paths
     )
-    saved = ["--save-graph"] if save_graph else []
+    saved = [*(["--save-graph"] if save_graph else []), *(["--per-policy"] if per_policy else [])]
     if inputs.from_database:
         refuse("--from-database", "what is in the database", saved)
     if inputs.fleet:
@@ -96,6 +104,10 @@ def analyze(
             raise typer.BadParameter("--engine spark is for fleets: give --fleet too")
     elif master or results:
         raise typer.BadParameter("--master and --results are for --engine spark")
+    style = Style(verbose=verbose, quiet=quiet, colour=output is None)
+    if per_policy:
+        refuse("--per-policy", "policies by themselves", [*inputs.given("add"), *saved[:-1]])
+        raise typer.Exit(_each_alone(inputs, settings, format, style, output, fail_on))
     if results and output:
         from rosprivacy.report.atomic import check_outputs
 
@@ -112,6 +124,20 @@ def analyze(
         from rosprivacy.report.document.analysis import as_text
 
         texts[save_graph] = as_text(as_dict(result.policies, result.diagnostics))
-    style = Style(verbose=verbose, quiet=quiet, colour=output is None)
     emit(written(result, format.value, style), output, texts)
     raise typer.Exit(exit_code(result, fail_on))
+
+
+def _each_alone(
+    inputs: Inputs, settings: Settings, form: Format, style: Style, output: Path | None, fail_on: FailOn
+) -> int:
+    from rosprivacy.cli import per_policy
+    from rosprivacy.report.document.analysis import as_text
+    from rosprivacy.robot_system import answer_each
+
+    if form not in (Format.text, Format.json):
+        raise typer.BadParameter("--per-policy writes text and json")
+    each = answer_each(inputs.named, tuple(inputs.labels or ()), settings)
+    emit(per_policy.texts(each, style) if form is Format.text else as_text(per_policy.document(each)), output)
+    codes = (exit_code(result, fail_on) for _, result in each)
+    return int(per_policy.worst_of(codes, per_policy.CODES_WORST_FIRST))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import sys
 from datetime import date
 from enum import StrEnum
 from pathlib import Path
@@ -96,7 +97,7 @@ def decide(
     """Decide about findings, or about a pattern of them, in a file that analyze and mitigate take into account."""
     from rosprivacy.clock import today
     from rosprivacy.ingest.decisions.decision_writer import with_decision
-    from rosprivacy.ingest.decisions.decisions_file import is_date
+    from rosprivacy.ingest.decisions.decisions_file import is_date, is_id
     from rosprivacy.ontology.vocabulary import load
 
     pattern = {"category": category, "source": source, "leak": leak, "robot": robot, "from_robot": from_robot}
@@ -106,7 +107,12 @@ def decide(
     if not ids and not any(pattern.values()):
         raise typer.BadParameter("name a finding's id, or a pattern: --category, --source, --leak")
     if expires is not None and not is_date(expires):
-        raise typer.BadParameter(f"{expires!r} is no date: write YYYY-MM-DD", param_hint="--expires")
+        raise typer.BadParameter(f"{expires!r} is not a date: write YYYY-MM-DD", param_hint="--expires")
+    if expires is not None and expires < today(os.environ):
+        raise typer.BadParameter(f"{expires} is over: it would decide nothing", param_hint="--expires")
+    if not report and (short := [one for one in ids or () if not is_id(one)]):
+        hint = "write its 16 digits and letters, or give --report, and its beginning will do"
+        raise InputErrors([DecisionError("ID", 0, f"{shown(short[0])!r} is not the id of a finding", hint)])
     found = _findings(report) if report else None
     if found is not None and ids:
         targets = [_chosen(found, one, str(report)) for one in ids]
@@ -126,6 +132,8 @@ def decide(
         text = with_decision(str(decisions), text, {**target, **said}, remark, vocabulary)
     about = "; ".join(", ".join(f"{key} {shown(str(value))}" for key, value in target.items()) for target in targets)
     answer = f"{shown(str(decisions))}: {choice.value} {about}\n"
+    if ids and not report:
+        print("the ids were not checked; --report FILE checks them against an analysis", file=sys.stderr)
     emit(answer, None, {decisions: text or ""}, edited=decisions)  # the one file that is meant to be read and written
 
 

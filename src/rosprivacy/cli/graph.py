@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from rosprivacy.analysis.errors import DrawingError
 from rosprivacy.cli.inputs import Inputs, reads_system
 from rosprivacy.cli.options import Output
-from rosprivacy.cli.output import emit
+from rosprivacy.cli.output import emit, not_for_a_terminal
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.model import Profile
@@ -140,6 +139,7 @@ def graph(
         raise typer.BadParameter("--finding and --most are for --show privacy")
     show = show or (Shown.privacy if finding or most else Shown.ros)
     form = _format(format, output)
+    not_for_a_terminal(form.upper() if form is not PictureFormat.mermaid else "a drawing", output)
     result, own = _drawn_of(inputs)
     picture = _view(result, show, finding, most, carried_only=bool(inputs.categories), standard=draw_standard_channels)
     if result.fleet and not finding:
@@ -226,8 +226,6 @@ def _write(picture: Picture, form: PictureFormat, output: Path | None, direction
     if form in (PictureFormat.svg, PictureFormat.png):
         from rosprivacy.report.pictures.layout import drawn
 
-        if output is None and sys.stdout is not None and sys.stdout.isatty():
-            raise DrawingError(f"graph:0: {form.upper()} is not for a terminal; name a file with --output")
         done = drawn(picture, form.value, direction=direction, seconds=seconds)
         for said in done.said:
             print(said, file=sys.stderr)

@@ -57,6 +57,12 @@ def _encoding(text: str) -> str:
     return "utf-8" if text.startswith(("{", "@prefix")) else sys.stdout.encoding
 
 
+def not_for_a_terminal(what: str, output: Path | None) -> None:
+    """Refuse to pour into a terminal what nobody reads there, before anything is computed."""
+    if output is None and sys.stdout is not None and sys.stdout.isatty():
+        raise InputError("standard output", 0, f"{what} is not for a terminal", "name a file with --output, or pipe it")
+
+
 def on_console(write: Callable[[Console], None], *, colour: bool) -> str:
     """Return what is written to a rich console, with colours if standard output is a terminal."""
     from io import StringIO

@@ -159,7 +159,7 @@ def _read(file: Path | None) -> str:
     try:
         return contents(file).decode("utf-8")
     except (OSError, ValueError) as error:
-        raise QueryError(f"{shown(str(file))}:0: cannot be read: {reason(error)}; name a file of Cypher") from None
+        raise QueryError(f"{shown(str(file))}: cannot be read: {reason(error)}; name a file of Cypher") from None
 
 
 def _text(rows: Rows, form: RowFormat, *, wide: bool) -> str:

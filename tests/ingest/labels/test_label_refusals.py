@@ -153,4 +153,4 @@ def test_a_file_that_is_not_there_is_refused(tmp_path: Path, monkeypatch: pytest
     monkeypatch.chdir(tmp_path)
     with pytest.raises(InputErrors) as caught:
         read_labels(file, load())
-    assert ":0: " in problems(caught, tmp_path)[0]
+    assert ": " in problems(caught, tmp_path)[0]

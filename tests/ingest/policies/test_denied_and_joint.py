@@ -201,7 +201,7 @@ def test_xml_counts_in_any_case_and_other_files_are_counted(here: Path, cli: Cli
     write(here, "d/r.policy", "")
     done = cli("analyze", "d", "-l", "open.yaml", "-v", *STRICT)
     assert (done.returncode, "/uplink  (node; Video; 2 steps" in done.stdout) == (4, True)
-    assert "notice: d:0: 1 file is not read, as the name does not end in .xml: r.policy; name" in done.stdout
+    assert "notice: d: 1 file is not read, as the name does not end in .xml: r.policy; name" in done.stdout
 
 
 def test_a_linked_folder_is_read_once_whatever_leads_to_it(here: Path, cli: Cli) -> None:
@@ -225,7 +225,7 @@ def test_a_dangling_link_is_an_error(here: Path, cli: Cli) -> None:
     (here / "d" / "zz.xml").symlink_to("gone.xml")
     done = cli("analyze", "d", "-l", "open.yaml")
     assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr == "d/zz.xml:0: a link to nothing: gone.xml; correct the link, or remove it\n"
+    assert done.stderr == "d/zz.xml: a link to nothing: gone.xml; correct the link, or remove it\n"
 
 
 REVIEWED = "labels: 1\nnodes: {/camera: {source: [Video]}, /monitor: conduit}\nchannels: {/video: sensitive}\n"

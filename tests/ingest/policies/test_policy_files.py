@@ -17,7 +17,7 @@ from rosprivacy.ingest.policies.policy_files import read_policies
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-LINE = re.compile(r".+:\d+: .+; .+")
+LINE = re.compile(r"[^;]+: .+; .+")
 FRAGMENT = '<profile>\n<topics publish="ALLOW"><topic>x</topic></topics></profile>'
 
 
@@ -71,7 +71,7 @@ def test_a_file_named_twice_is_read_once(tmp_path: Path, monkeypatch: pytest.Mon
 
 def test_a_file_that_is_not_there_is_refused(tmp_path: Path) -> None:
     (line,) = refused(str(tmp_path / "none.xml"))
-    assert line.startswith(f"{tmp_path}/none.xml:0: ")
+    assert line.startswith(f"{tmp_path}/none.xml: ")
     assert "not found; correct the path" in line
 
 
@@ -126,7 +126,7 @@ def test_a_policy_that_may_not_be_read_is_refused(tmp_path: Path, forbidden: str
     assert read(file) == [file]
     with no_right_to(tmp_path / forbidden, tmp_path):
         (line,) = refused(file)
-    assert line.startswith(f"{file}:0: ")
+    assert line.startswith(f"{file}: ")
 
 
 @pytest.mark.parametrize("forbidden", ["down/node.xml", "down"])
@@ -183,13 +183,13 @@ def test_an_unreadable_file_of_a_folder_is_not_passed_over(tmp_path: Path) -> No
 
 def test_a_folder_without_xml_is_refused(tmp_path: Path) -> None:
     write(tmp_path / "README.md", "")
-    assert refused(str(tmp_path)) == [f"{tmp_path}:0: a folder with no .xml file; name a policy"]
+    assert refused(str(tmp_path)) == [f"{tmp_path}: a folder with no .xml file; name a policy"]
 
 
 def test_a_folder_without_policies_is_refused(tmp_path: Path) -> None:
     write(tmp_path / "node.xml", FRAGMENT)
     (line,) = refused(str(tmp_path))
-    assert line.startswith(f"{tmp_path}:0: no SROS 2 policy found; ")
+    assert line.startswith(f"{tmp_path}: no SROS 2 policy found; ")
 
 
 def test_a_folder_without_policies_is_refused_beside_one_that_has_some(tmp_path: Path) -> None:
@@ -197,7 +197,7 @@ def test_a_folder_without_policies_is_refused_beside_one_that_has_some(tmp_path:
     write(tmp_path / "common" / "node.xml", FRAGMENT)
     assert read(good) == [good]
     (line,) = refused(good, str(tmp_path / "common"))
-    assert line.startswith(f"{tmp_path / 'common'}:0: ")
+    assert line.startswith(f"{tmp_path / 'common'}: ")
 
 
 def test_a_folder_that_links_to_itself_is_read_once(tmp_path: Path) -> None:
@@ -211,8 +211,8 @@ def test_a_dangling_link_in_a_folder_is_an_error(tmp_path: Path) -> None:  # rul
     (tmp_path / "q.xml").symlink_to("none.xml")
     (tmp_path / "r.xml").symlink_to("r.xml")
     assert refused(str(tmp_path)) == [
-        f"{tmp_path}/q.xml:0: a link to nothing: none.xml; correct the link, or remove it",
-        f"{tmp_path}/r.xml:0: a link to nothing: r.xml; correct the link, or remove it",
+        f"{tmp_path}/q.xml: a link to nothing: none.xml; correct the link, or remove it",
+        f"{tmp_path}/r.xml: a link to nothing: r.xml; correct the link, or remove it",
     ]
 
 
@@ -243,7 +243,7 @@ def test_a_glob_passes_over_fragments_with_a_notice(tmp_path: Path) -> None:
 
 
 def test_a_glob_that_matches_nothing_is_refused(tmp_path: Path) -> None:
-    assert refused(f"{tmp_path}/*.xml") == [f"{tmp_path}/*.xml:0: no file matches; correct the pattern"]
+    assert refused(f"{tmp_path}/*.xml") == [f"{tmp_path}/*.xml: no file matches; correct the pattern"]
 
 
 def test_a_file_whose_name_looks_like_a_glob_is_a_file(tmp_path: Path) -> None:
@@ -264,7 +264,7 @@ def test_problems_of_all_files_are_reported_at_once(tmp_path: Path) -> None:
         str(tmp_path / "*.yaml"),
     ]
     found = [line.removeprefix(f"{tmp_path}/").split(": ")[0] for line in refused(*arguments)]
-    assert found == ["*.yaml:0", "bad.xml:2", "broken.xml:2", "none.xml:0"]
+    assert found == ["*.yaml", "bad.xml:2", "broken.xml:2", "none.xml"]
 
 
 def test_order_does_not_matter(tmp_path: Path) -> None:
@@ -275,10 +275,10 @@ def test_order_does_not_matter(tmp_path: Path) -> None:
 
 
 def test_arguments_may_come_from_a_generator(tmp_path: Path) -> None:  # Iterable[str]
-    with pytest.raises(InputErrors, match=re.escape(f"{tmp_path}:0: ")):
+    with pytest.raises(InputErrors, match=re.escape(f"{tmp_path}: ")):
         read_policies(iter([str(tmp_path)]))
     write(tmp_path / "node.xml", FRAGMENT)
-    with pytest.raises(InputErrors, match=re.escape(f"{tmp_path}:0: ")):
+    with pytest.raises(InputErrors, match=re.escape(f"{tmp_path}: ")):
         read_policies(iter([str(tmp_path)]))
 
 

@@ -49,8 +49,8 @@ def refused(text: str) -> tuple[int, str]:
 def refused_file(file: str) -> str:
     with pytest.raises(LabelError) as caught:
         yaml_values.read(file, fail)
-    assert LINE.fullmatch(str(caught.value))
-    return str(caught.value).removeprefix("f.yaml:")
+    assert re.fullmatch(".+: .+; .+", str(caught.value))
+    return str(caught.value).removeprefix("f.yaml:").strip()
 
 
 # ---------------------------------------------------------------- values
@@ -242,12 +242,12 @@ def test_a_file_that_is_no_utf8_text_is_refused(tmp_path: Path, data: bytes, mes
 
 def test_what_is_no_file_is_refused_and_does_not_wait(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe")
-    assert refused_file(str(tmp_path / "none")).startswith("0: file not found")
-    assert refused_file(str(tmp_path)).startswith("0: not a regular file")
-    assert refused_file(str(tmp_path / "pipe")).startswith("0: not a regular file")
-    assert refused_file("/dev/zero").startswith("0: not a regular file")
-    assert refused_file("a" * 5000).startswith("0: cannot be read")
-    assert refused_file("a\0b").startswith("0: ")
+    assert refused_file(str(tmp_path / "none")).startswith("file not found")
+    assert refused_file(str(tmp_path)).startswith("not a regular file")
+    assert refused_file(str(tmp_path / "pipe")).startswith("not a regular file")
+    assert refused_file("/dev/zero").startswith("not a regular file")
+    assert refused_file("a" * 5000).startswith("cannot be read")
+    assert refused_file("a\0b").startswith("file not found")
 
 
 def test_a_file_that_is_too_large_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -255,4 +255,4 @@ def test_a_file_that_is_too_large_is_refused(tmp_path: Path, monkeypatch: pytest
     (tmp_path / "f.yaml").write_text("a: bcdefgh")
     assert plain(yaml_values.read(str(tmp_path / "f.yaml"), fail)[0]) == {"a": "bcdefgh"}
     (tmp_path / "f.yaml").write_text("a: bcdefghi")
-    assert refused_file(str(tmp_path / "f.yaml")).startswith("0: more than 10 bytes")
+    assert refused_file(str(tmp_path / "f.yaml")).startswith("more than 10 bytes")

@@ -384,7 +384,7 @@ def test_the_command_dates_it_as_it_is_told() -> None:
     imported(json.loads(outputs[0].stdout))
     assert outputs[2].returncode == 2
     hint = "give whole seconds since 1970, or unset it"
-    assert outputs[2].stderr == f"SOURCE_DATE_EPOCH:0: 'soon' is not a time; {hint}\n"
+    assert outputs[2].stderr == f"SOURCE_DATE_EPOCH: 'soon' is not a time; {hint}\n"
 
 
 def test_without_being_told_it_is_dated_now(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -173,16 +173,16 @@ class TestSaved:
         [
             (
                 '{"format": "rosprivacy.analysis/1"}',
-                "old.json:0: verdict is missing or of another type; give what 'rosprivacy analyze --format json'",
+                "old.json: verdict is missing or of another type; give what 'rosprivacy analyze --format json'",
             ),
             ('{"format": "rosprivacy.analysis/1",', "old.json:1: cannot be read: "),
             (
                 '{"format": "rosprivacy.analysis/1", ' + SAVED % "[1]",
-                "old.json:0: findings[0] is missing or of another type",
+                "old.json: findings[0] is missing or of another type",
             ),
             (
                 '{"format": "rosprivacy.analysis/2", ' + SAVED % "[]",
-                "old.json:0: is not a document of the format rosprivacy.analysis/1; give what",
+                "old.json: is not a document of the format rosprivacy.analysis/1; give what",
             ),
             ("fleet: 2", "old.json:1: fleet format '2'"),
         ],
@@ -195,7 +195,7 @@ class TestSaved:
 
     def test_a_file_that_is_not_there(self, cli: Cli) -> None:
         done = cli("diff", "no.xml", "new.xml")
-        assert (done.returncode, done.stderr) == (2, "no.xml:0: no.xml not found; correct the path\n")
+        assert (done.returncode, done.stderr) == (2, "no.xml: file not found; correct the path\n")
 
 
 FLEET = "fleet: 1\nmodels: {m: {policies: old.xml, labels: l.yaml}}\ngroups: [{robots: %s, model: m}]\n"

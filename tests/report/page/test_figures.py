@@ -178,7 +178,7 @@ def test_without_graphviz_the_report_says_in_one_place_how_to_get_pictures(monke
     drawn = figures(result.analysis, told)
     assert drawn == Figures(installed=False)
     page = html(told, drawn)
-    assert page.count("rosprivacy[views]") == 1
+    assert page.count("the extra [views]") == 1
     assert "<figure" not in page
     assert "How to read the pictures" not in page
     assert "--finding" not in page

@@ -76,10 +76,10 @@ def test_files_that_differ_are_named() -> None:
     ("text", "message"),
     [
         ("", ":1: cannot be read"),
-        ("[]", ":0: is not a document of the format rosprivacy.analysis/1"),
-        ('{"format": "rosprivacy.analysis/2"}', ":0: is not a document of the format"),
-        ('{"format": "rosprivacy.analysis/1"}', ":0: verdict is missing or of another type"),
-        ("[" * 100_000, ":0: cannot be read"),
+        ("[]", ": is not a document of the format rosprivacy.analysis/1"),
+        ('{"format": "rosprivacy.analysis/2"}', ": is not a document of the format"),
+        ('{"format": "rosprivacy.analysis/1"}', ": verdict is missing or of another type"),
+        ("[" * 100_000, ": cannot be read"),
         ("\ud800", None),
     ],
 )

@@ -233,9 +233,9 @@ def test_a_wildcard_near_by_brings_those_who_use_it() -> None:
 
 
 def test_names_that_nothing_has_are_errors_with_the_nearest() -> None:
-    with pytest.raises(DrawingError, match=r"--around:0: .*'/navigatr'; did you mean /navigator"):
+    with pytest.raises(DrawingError, match=r"--around: .*'/navigatr'; did you mean /navigator"):
         narrow.around(ros(factory(2)), ["/navigatr"], 1)
-    with pytest.raises(DrawingError, match=r"--robot:0: there is no robot 'r2'"):
+    with pytest.raises(DrawingError, match=r"--robot: there is no robot 'r2'"):
         narrow.of_robot(ros(factory(2)), "r2")
 
 
@@ -243,7 +243,7 @@ def test_a_finding_is_found_by_the_beginning_of_its_id() -> None:
     found = factory(2).analysis
     assert narrow.the_finding(found, "7ac677").leak.name == "/archive_server"
     for wrong in ("7ac", "ffff0000", ""):
-        with pytest.raises(DrawingError, match=r"--finding:0: there is no finding .*such as"):
+        with pytest.raises(DrawingError, match=r"--finding: there is no finding .*such as"):
             narrow.the_finding(found, wrong)
 
 

@@ -1,0 +1,65 @@
+"""What is wrong is told with what to write instead, and no place is made up (users.md, B8)."""
+
+from __future__ import annotations
+
+import os
+import pty
+import re
+import subprocess
+import sys
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.helpers.command import Cli, refused
+from tests.helpers.factory import BEFORE
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+@pytest.mark.parametrize(
+    ("words", "hint"),
+    [
+        (("analyse",), "Did you mean 'analyze'"),
+        (("analyze", "--lables", "x"), "--labels"),
+        (("analyze", "p.xml", "--view", "declard"), "did you mean declared"),
+        (("decide", "acept"), "did you mean accept"),
+        (("graph", "p.xml", "--format", "svgg"), "did you mean svg"),
+        (("categories", "Vidio"), "did you mean Video"),
+        (("analyze", BEFORE, "-c", "Vidio"), "did you mean Video"),
+        (("why-not", "/robot_camra", "/archive_server", BEFORE), "did you mean /robot_camera"),
+        (("graph", BEFORE, "--around", "/navigatr"), "did you mean /navigator"),
+        (("analyze", "none.policy.xml"), "did you mean one.policy.xml?"),
+        (("analyze", BEFORE, "-l", "labls.yaml"), "did you mean labels.yaml?"),
+        (("analyze", "--fleet", "one.policy.xml"), "this is XML, such as a policy, and not YAML or JSON"),
+    ],
+    ids=lambda words: words[0] if isinstance(words, tuple) else "",
+)
+def test_the_nearest_is_named(cli: Cli, tmp_path: Path, words: tuple[str, ...], hint: str) -> None:
+    (tmp_path / "one.policy.xml").write_text('<?xml version="1.0"?>\n<policy/>')
+    (tmp_path / "labels.yaml").write_text("labels: 1\n")
+    done = cli(*words, cwd=tmp_path)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert hint in " ".join(done.stderr.replace("│", "").split())
+    assert ":0:" not in done.stderr
+    assert "Value error" not in done.stderr
+
+
+def test_a_missing_file_has_no_line(cli: Cli, tmp_path: Path) -> None:
+    assert refused(cli("analyze", "nope.xml", cwd=tmp_path)) == ["nope.xml: file not found; correct the path"]
+
+
+def test_a_warning_without_a_place_has_none(cli: Cli) -> None:
+    assert "\nwarning: labels: no label names a source" in cli("analyze", BEFORE).stdout
+
+
+@pytest.mark.parametrize("words", [("report", BEFORE), ("graph", BEFORE), ("graph", BEFORE, "-f", "mermaid")])
+def test_a_page_or_a_drawing_is_not_poured_into_a_terminal(words: tuple[str, ...]) -> None:
+    here, there = pty.openpty()
+    command = [sys.executable, "-m", "rosprivacy", *map(str, words)]
+    done = subprocess.run(command, stdout=there, stderr=subprocess.PIPE, text=True, timeout=60, check=False)
+    os.close(there)
+    os.close(here)
+    assert done.returncode == 2
+    assert re.search("is not for a terminal; name a file with --output, or pipe it", done.stderr)

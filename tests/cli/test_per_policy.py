@@ -1,0 +1,128 @@
+"""Several policies: that they make one graph is said, and each can be analysed alone (rules S5, S11; users.md, A7)."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import jsonschema
+import pytest
+
+from tests.helpers.paths import ROOT
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from tests.helpers.command import Cli
+
+APART = "what goes from the nodes of one to those of another is not looked at"
+MERGED = "policies make one graph"
+LABELS = "labels: 1\nnodes: {/camera: {source: [Video]}, /uplink: {leak: [Video]}}\nchannels: {/video: sensitive}\n"
+
+
+def policy(*profiles: tuple[str, str, str]) -> str:
+    """Profiles of (node, publish or subscribe, topic)."""
+    inner = "".join(
+        f'<profile ns="/" node="{node}"><topics {role}="ALLOW"><topic>{topic}</topic></topics></profile>'
+        for node, role, topic in profiles
+    )
+    inside = f'<enclave path="/"><profiles>{inner}</profiles></enclave>'
+    return f'<policy version="0.2.0"><enclaves>{inside}</enclaves></policy>'
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A camera in one policy, what lets out in another: only together they leak."""
+    (tmp_path / "p").mkdir()
+    (tmp_path / "p" / "a.xml").write_text(policy(("camera", "publish", "video")))
+    (tmp_path / "p" / "b.xml").write_text(policy(("uplink", "subscribe", "video")))
+    (tmp_path / "l.yaml").write_text(LABELS)
+    return tmp_path
+
+
+def notices(cli: Cli, folder: Path) -> list[str]:
+    lines = cli("analyze", "p", "-l", "l.yaml", cwd=folder).stdout.splitlines()
+    return [line for line in lines if MERGED in line]
+
+
+def test_files_that_belong_together_are_no_notice(cli: Cli, folder: Path) -> None:
+    assert notices(cli, folder) == []
+
+
+def test_a_node_that_two_files_state_differently_is_named(cli: Cli, folder: Path) -> None:
+    (folder / "p" / "c.xml").write_text(policy(("camera", "publish", "other")))
+    (said,) = notices(cli, folder)
+    assert said == (
+        "notice: p/a.xml:1: 3 policies make one graph, with what each of them allows: node /camera is stated "
+        "differently in p/a.xml and p/c.xml; --per-policy analyses each alone"
+    )
+    (folder / "p" / "c.xml").write_text(policy(("camera", "publish", "video")))
+    assert notices(cli, folder) == []  # the same is no other
+
+
+def test_files_without_a_common_name_are_named(cli: Cli, folder: Path) -> None:
+    (folder / "p" / "c.xml").write_text(policy(("arm", "publish", "joints"), ("arm", "publish", "rosout")))
+    (said,) = notices(cli, folder)
+    assert said == (
+        "notice: p/a.xml:1: 3 policies make one graph of 2 parts that share no node and no channel: "
+        "p/a.xml and p/b.xml | p/c.xml; if these are several systems, --per-policy analyses each alone"
+    )
+    (folder / "p" / "c.xml").write_text(policy(("arm", "publish", "vid*")))
+    assert notices(cli, folder) == []  # a wildcard joins them
+
+
+def answers(cli: Cli, folder: Path, *options: str) -> Any:
+    return json.loads(cli("analyze", "p", "-l", "l.yaml", "--per-policy", "-f", "json", *options, cwd=folder).stdout)
+
+
+def test_each_policy_alone_is_as_if_it_were_the_only_one(cli: Cli, folder: Path) -> None:
+    (folder / "p" / "c.xml").write_text(policy(("camera", "publish", "video"), ("uplink", "subscribe", "video")))
+    document = answers(cli, folder)
+    assert (document["format"], document["verdict"]) == ("rosprivacy.analyses/1", "leak")
+    verdicts = {row["policy"]: row["analysis"]["verdict"] for row in document["policies"]}
+    assert verdicts == {"p/a.xml": "no-leak-found", "p/b.xml": "undetermined", "p/c.xml": "leak"}
+    alone = cli("analyze", "p/c.xml", "-l", "l.yaml", "-f", "json", cwd=folder).stdout
+    assert document["policies"][2]["analysis"] == json.loads(alone)
+    schema = json.loads((ROOT / "docs" / "analysis.schema.json").read_text("utf-8"))
+    for row in document["policies"]:
+        jsonschema.validate(row["analysis"], schema)
+
+
+def test_the_text_ends_with_a_summary_and_the_exit_code_is_the_worst(cli: Cli, folder: Path) -> None:
+    given = ("analyze", "p", "-l", "l.yaml", "--per-policy")
+    done = cli(*given, cwd=folder)
+    assert done.returncode == 4  # b alone has no source
+    assert done.stdout.splitlines()[-3:] == [
+        "no-leak-found: p/a.xml: 0 findings, 0 elements to review",
+        "undetermined: p/b.xml: 0 findings, 0 elements to review",
+        f"undetermined: the worst of 2 policies, each alone; {APART}",
+    ]
+    assert done.stdout.startswith("== p/a.xml\nno-leak-found: ")
+    assert len(cli(*given, "-q", cwd=folder).stdout.splitlines()) == 3
+    assert cli("analyze", "p", "-l", "l.yaml", cwd=folder).returncode == 1  # together they leak
+    (folder / "p" / "c.xml").write_text(policy(("camera", "publish", "video"), ("uplink", "subscribe", "video")))
+    assert cli(*given, cwd=folder).returncode == 1
+    assert cli(*given, "--fail-on", "never", cwd=folder).returncode == 0
+
+
+def test_a_name_that_matches_in_no_policy_is_an_error(cli: Cli, folder: Path) -> None:
+    (folder / "l.yaml").write_text(LABELS.replace("/uplink", "/uplnk"))
+    done = cli("analyze", "p", "-l", "l.yaml", "--per-policy", cwd=folder)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "'/uplnk' matches no node of the policies; did you mean /uplink?" in done.stderr
+
+
+def test_what_a_label_names_may_stand_in_one_of_them(cli: Cli, folder: Path) -> None:
+    """The channels of a source, stated flows, and what joins two nodes."""
+    more = "elements: {ring: {kind: shared-memory, between: [/camera, /uplink]}}\nflows: [{from: /uplink, to: ring}]\n"
+    (folder / "l.yaml").write_text(LABELS.replace("[Video]}, /u", "{Video: [/video]}}, /u") + more)
+    assert [row["analysis"]["verdict"] for row in answers(cli, folder)["policies"]] == ["no-leak-found", "undetermined"]
+
+
+@pytest.mark.parametrize(
+    "options", [("--fleet", "f.yaml"), ("--from-database",), ("p", "--add", "g.json"), ("p", "-f", "sarif")]
+)
+def test_what_makes_no_sense_beside_it_is_refused(cli: Cli, folder: Path, options: tuple[str, ...]) -> None:
+    done = cli("analyze", "--per-policy", *options, cwd=folder)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "--per-policy" in done.stderr
