@@ -252,7 +252,7 @@ def test_wrong_usage_is_2_with_a_word_on_standard_error(cli: Cli, arguments: lis
 def test_the_text_report_names_verdict_way_and_policy_lines(cli: Cli, before: Path, runs: list[Path]) -> None:
     done = cli("analyze", before, "--labels", runs[1])
     assert done.stdout.startswith("leak: ")
-    for said in ("/safety_camera", "/archive_server", f"{before}:54", "Review next", "Assumed", str(runs[1])):
+    for said in ("/safety_camera", "/archive_server", "  before.policy.xml:54", "Review next", "Assumed", str(runs[1])):
         assert said in done.stdout
     assert done.stderr == ""
 
