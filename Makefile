@@ -12,18 +12,18 @@ demo: $(VENV)/installed
 	$(BIN)/rosprivacy analyze examples/factory/before.policy.xml --labels examples/factory/run2.labels.yaml --fail-on never
 
 test: $(VENV)/installed-dev
+	$(BIN)/python -m tests.helpers.fetch
 	$(BIN)/python -m pytest -rs $(PYTEST_ARGS)
 
 $(VENV)/installed: pyproject.toml
-	@echo "Installing into $(VENV): about a minute, the first time"
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --editable .
 	touch $@
 
 $(VENV)/installed-dev: pyproject.toml
-	@echo "Installing what the tests need into $(VENV), 1.5 GB with Spark and Java: some minutes, the first time"
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --editable '.[dev,bench]'
+	@echo "Fetching Python packages for the tests: about 800 MB, most of it Spark; 1.5 GB on disk"
+	$(BIN)/python -m pip install --editable '.[dev,bench]'
 	touch $@ $(VENV)/installed
 
 # What the GitHub Action and the image install, with the hashes of all files, and what builds rosprivacy itself. Needs uv.

@@ -164,7 +164,7 @@ def _vocabulary(folder: Path, shipped: tuple[bytes, ...], own: tuple[tuple[str, 
     ).hexdigest()
     found = kept.get(folder, key)
     if found is None:
-        found = _parse([data.decode() for data in shipped], own)
+        found = _parse(shipped, own)
         kept.keep(folder, key, *found)
     categories, respelt = found
     return Vocabulary.of(categories, respelt, tuple((file, hashlib.sha256(data).hexdigest()) for file, data in own))
@@ -188,11 +188,16 @@ def _read(file: str) -> bytes:
         raise refused(f"cannot be read: {reason(error)}", "check the name and your rights") from None
 
 
-def _parse(shipped: list[str], own: Iterable[tuple[str, bytes]]) -> tuple[tuple[Category, ...], dict[str, str]]:
+@lru_cache(maxsize=1)
+def _shipped(texts: tuple[bytes, ...]) -> tuple[Known, dict[str, str]]:
     from rosprivacy.ontology.turtle import categories_of, read, respelt_of  # noqa: PLC0415 - heavy
 
-    graph = read("\n".join(shipped), "the shipped ontology")
-    known = Known(graph, categories_of(graph))
+    graph = read("\n".join(text.decode() for text in texts), "the shipped ontology")
+    return Known(graph, categories_of(graph)), respelt_of(graph)
+
+
+def _parse(shipped: tuple[bytes, ...], own: Iterable[tuple[str, bytes]]) -> tuple[tuple[Category, ...], dict[str, str]]:
+    known, respelt = _shipped(shipped)
     problems = []
     for file, data in own:
         from rosprivacy.ontology.own import with_own  # noqa: PLC0415 - heavier
@@ -203,4 +208,4 @@ def _parse(shipped: list[str], own: Iterable[tuple[str, bytes]]) -> tuple[tuple[
             problems += [e for e in error.errors if isinstance(e, OntologyError)]
     if problems:
         raise InputErrors(problems)
-    return known.categories, respelt_of(graph)
+    return known.categories, respelt

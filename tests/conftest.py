@@ -37,7 +37,7 @@ STOP_AT_THE_END = (
 )
 
 
-settings.register_profile("everyday", max_examples=25, deadline=None)
+settings.register_profile("everyday", max_examples=8, deadline=None)
 settings.register_profile("thorough", max_examples=200, deadline=None, print_blob=True)
 
 
@@ -55,7 +55,7 @@ def pytest_itemcollected(item: pytest.Item) -> None:
     if not {"corpus", "dpv"}.isdisjoint(used):
         item.add_marker("corpus")
     for group, shared in GROUPS.items():
-        if not shared.isdisjoint(used):
+        if not shared.isdisjoint(used) or (group == "neo4j" and item.get_closest_marker("database")):
             item.add_marker(pytest.mark.xdist_group(group))
 
 
@@ -78,9 +78,11 @@ def pytest_runtest_makereport() -> Generator[None, pytest.TestReport, pytest.Tes
 
 
 @pytest.fixture(autouse=True, scope="session")
-def _own_folders(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """Tests do not touch the user's cache, nor the user's private Neo4j."""
+def _own_folders(tmp_path_factory: pytest.TempPathFactory, pytestconfig: pytest.Config) -> Iterator[None]:
+    """Tests do not touch the user's cache, nor the user's private Neo4j; for minutes Java need not compile its best."""
     with pytest.MonkeyPatch.context() as patch:
+        if not pytestconfig.getoption("--slow"):
+            patch.setenv("JDK_JAVA_OPTIONS", "-XX:TieredStopAtLevel=1")
         patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
         patch.setenv("ROSPRIVACY_DATA", str(tmp_path_factory.mktemp("private data")))
         yield

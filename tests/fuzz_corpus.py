@@ -4,7 +4,7 @@
 
 The corpus (``$ROSPRIVACY_CORPUS``, or ``../shared/corpus``) is copied to a temporary folder while this runs. Work is
 done in a child process with bounds on time and memory, so that a hang or a crash of a C library ends one input only.
-The same seed gives the same inputs. ``test_fuzz.py`` and ``ingest/policies/test_xinclude.py`` use the mutations and
+The same seed gives the same inputs. ``test_fuzz.py`` and ``helpers/includes.py`` use the mutations and
 ``Guard``.
 
 Exit code: 0 if every input was accepted, or refused with one line per problem; 1 otherwise.

@@ -167,7 +167,8 @@ def test_labels_that_were_read_with_another_ontology_are_an_error(tmp_path: Path
     with pytest.raises(rosprivacy.InputErrors) as error:
         rosprivacy.analyze(POLICY, labels)
     hint = "unknown category 'PulseCurve'; give parse_labels the ontologies that analyze gets"
-    assert str(error.value) == "\n".join(f"mine:{line}: {hint}" for line in (0, 3, 4))
+    where = ("mine", "mine:3", "mine:4")
+    assert str(error.value) == "\n".join(f"{place}: {hint}" for place in where)
 
 
 # ---------------------------------------------------------------- what a result can do

@@ -9,18 +9,11 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from tests.helpers.house import ROOMS
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
     from pathlib import Path
-
-MAY = {
-    "analysis": set(),
-    "ontology": {"analysis"},
-    "ingest": {"analysis", "ontology"},
-    "queries": {"analysis", "ontology"},
-    "report": {"analysis", "ontology", "queries"},
-}
 
 
 def imported_rooms(file: Path) -> set[str]:
@@ -38,16 +31,16 @@ def imported_rooms(file: Path) -> set[str]:
     return rooms
 
 
-@pytest.mark.parametrize("room", [room for room in MAY if any((ROOT / room).glob("*.py"))])
+@pytest.mark.parametrize("room", [room for room in ROOMS if any((ROOT / room).glob("*.py"))])
 def test_data_flows_one_way(room: str) -> None:
     for file in (ROOT / room).rglob("*.py"):
-        assert imported_rooms(file) <= MAY[room] | {room}, file
+        assert imported_rooms(file) <= ROOMS[room] | {room}, file
 
 
 def test_one_module_knows_which_bit_is_which() -> None:
     """Bits are numbered by how many categories are emitted; nobody else asks for that number (rule S8)."""
     asking = set()
-    for folder in [*MAY, "src/rosprivacy", "benchmarks"]:
+    for folder in [*ROOMS, "src/rosprivacy", "benchmarks"]:
         for file in (ROOT / folder).rglob("*.py"):
             for node in ast.walk(ast.parse(file.read_text("utf-8"))):
                 if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "len":
@@ -82,10 +75,10 @@ OF_ITS_OWN = {  # modules that touch files in another way, and why none of these
 
 def test_there_is_one_writer_of_files_and_every_reader_notes_them() -> None:
     """What is read is not written: that holds only as long as nothing is opened beside these."""
-    folders = [*MAY, "src/rosprivacy"]
+    folders = [*ROOMS, "src/rosprivacy"]
     touching = set()
     for file in sorted(path for folder in folders for path in (ROOT / folder).rglob("*.py")):
-        if any(link in file.parents for link in (ROOT / "src" / "rosprivacy" / room for room in MAY)):
+        if any(link in file.parents for link in (ROOT / "src" / "rosprivacy" / room for room in ROOMS)):
             continue
         calls = (node.func for node in ast.walk(ast.parse(file.read_text("utf-8"))) if isinstance(node, ast.Call))
         names = {call.attr if isinstance(call, ast.Attribute) else getattr(call, "id", "") for call in calls}
@@ -96,7 +89,7 @@ def test_there_is_one_writer_of_files_and_every_reader_notes_them() -> None:
 
 
 def test_the_rooms_ship_under_the_package() -> None:
-    for room in MAY:
+    for room in ROOMS:
         assert (ROOT / "src" / "rosprivacy" / room).resolve() == ROOT / room
 
 

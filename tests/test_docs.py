@@ -25,8 +25,8 @@ from rosprivacy.ingest.labels.label_file import read_labels
 from rosprivacy.ontology.vocabulary import TOP, load
 from rosprivacy.queries.library import pack
 from rosprivacy.report.terminal import categories
-from tests import test_architecture as rooms
-from tests import test_wings as wings
+from tests.helpers.docs import CATEGORIES, blocks
+from tests.helpers.house import MODULES, PACKAGE, ROOMS, WINGS
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
@@ -36,7 +36,6 @@ if TYPE_CHECKING:
 ARCHITECTURE = ROOT / "docs" / "architecture.md"
 COMMAND_LINE = ROOT / "docs" / "command-line.md"
 DATABASE = ROOT / "docs" / "database.md"
-CATEGORIES = ROOT / "docs" / "categories.md"
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md"]
 SECURITY = ROOT / "docs" / "security.md"
 PAGES.append(ROOT / "SECURITY.md")
@@ -145,11 +144,11 @@ def database_page(text: str) -> str:
 def house() -> str:
     """The rooms and their wings, with what each of them says of itself and may import."""
     rows = []
-    for room in (*rooms.MAY, "rosprivacy"):
-        folder = wings.PACKAGE if room == "rosprivacy" else ROOT / room
-        others = "every room" if room == "rosprivacy" else ", ".join(sorted(rooms.MAY[room])) or "no other room"
+    for room in (*ROOMS, "rosprivacy"):
+        folder = PACKAGE if room == "rosprivacy" else ROOT / room
+        others = "every room" if room == "rosprivacy" else ", ".join(sorted(ROOMS[room])) or "no other room"
         rows.append(house_row(folder, others))
-        ladder = sorted((len(below), wing, sorted(below - {""})) for wing, below in wings.MAY[room].items())
+        ladder = sorted((len(below), wing, sorted(below - {""})) for wing, below in WINGS[room].items())
         for _, wing, below in ladder:
             if wing and (folder / wing / "__init__.py").is_file():
                 rows.append(house_row(folder / wing, f"of its room: {', '.join(below) or 'no other wing'}"))
@@ -175,7 +174,7 @@ def test_the_schema_and_the_query_tables_are_those_of_the_program() -> None:
 def test_the_house_is_told_as_it_is() -> None:
     text = ARCHITECTURE.read_text("utf-8")
     assert text == with_parts(text, house=house())
-    folders = {file.parent for file in wings.MODULES.values()}
+    folders = {file.parent for file in MODULES.values()}
     assert {f"`{folder.relative_to(ROOT)}/`" for folder in folders} <= set(re.findall(r"`[\w/]+/`", text))
 
 
@@ -190,10 +189,6 @@ def test_what_the_architecture_names_is_there() -> None:
 
 def test_the_option_tables_are_those_of_the_program() -> None:
     assert COMMAND_LINE.read_text("utf-8") == command_line()
-
-
-def blocks(page: Path, language: str) -> list[str]:
-    return re.findall(rf"```{language}\n(.*?)```", page.read_text("utf-8"), re.DOTALL)
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.name))

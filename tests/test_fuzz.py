@@ -69,7 +69,11 @@ SIX = '{\n\t"source": ["/robot_camera"],\n\t"leak": ["/archive_server"],\n\t"mun
 
 
 WEEKDAYS = settings(
-    max_examples=100, deadline=None, database=None, derandomize=True, suppress_health_check=list(HealthCheck)
+    max_examples=min(100, 2 * settings().max_examples),
+    deadline=None,
+    database=None,
+    derandomize=True,
+    suppress_health_check=list(HealthCheck),
 )
 SUNDAYS = settings(WEEKDAYS, max_examples=1500, derandomize=False)
 DICE = st.randoms(use_true_random=True)  # seeded by hypothesis; spread more evenly than its own
@@ -257,12 +261,17 @@ def _system(topic: str) -> str:
     ("topic", "label"),
     [
         ("[" * 40_000, "/x"),
-        ("*a" * 20_000, "/x"),
-        ("?*" * 20_000, "/x"),
-        ("[a-" * 10_000 + "]", "/x"),
-        ("x", "[" * 150_000),
-        ("x", "/" + "*a" * 20_000),
-        ("x", "/" + "a" * 1_000_000),
+        *(
+            pytest.param(*case, marks=pytest.mark.slow)
+            for case in (
+                ("*a" * 20_000, "/x"),
+                ("?*" * 20_000, "/x"),
+                ("[a-" * 10_000 + "]", "/x"),
+                ("x", "[" * 150_000),
+                ("x", "/" + "*a" * 20_000),
+                ("x", "/" + "a" * 1_000_000),
+            )
+        ),
     ],
     ids=lambda text: f"{text[:4]}…{len(text)}",
 )

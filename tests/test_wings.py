@@ -3,66 +3,18 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.helpers.paths import ROOT
+from tests.helpers.house import MODULES, PACKAGE, ROOMS, WINGS
+from tests.helpers.paths import ROOT, TESTS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
-    from pathlib import Path
 
-PACKAGE = ROOT / "src" / "rosprivacy"
-ROOMS = ("analysis", "ingest", "ontology", "queries", "report")
-# Which wings a wing may import from; '' is what stands in the room itself. A name of one module is that module alone.
-FACTS = {"", "kernel", "answer", "decisions", "legal"}
-READING = {"reading", "policies"}
-MAY: dict[str, dict[str, set[str]]] = {
-    "analysis": {
-        "": set(),
-        "kernel": {""},
-        "answer": {"", "kernel"},
-        "decisions": {"", "answer"},
-        "legal": {"", "answer"},
-        "findings": FACTS,
-        "fleet": FACTS | {"findings"},
-        "mitigation": FACTS | {"findings"},
-        "parts": FACTS | {"findings", "fleet"},
-    },
-    "ingest": {
-        "": set(),
-        "reading": set(),
-        "policies": {"reading"},
-        "decisions": {"reading"},
-        "labels": READING,
-        "mitigation": READING,
-        "fleet": READING | {"labels"},
-        "database": READING | {"labels", "fleet"},
-    },
-    "ontology": {"": set()},
-    "queries": {"": set()},
-    "report": {
-        "contract": set(),
-        "": {"contract"},
-        "document": {"", "contract"},
-        "terminal": {"", "document"},
-        "pictures": {""},
-        "compare": {"", "document"},
-        "page": {"", "document", "pictures", "compare"},
-        "sarif": {""},
-        "cnil": {""},
-        "rdf": {"", "document"},
-    },
-    "rosprivacy": {
-        "": set(),
-        "private_neo4j": {""},
-        "spark": {""},
-        "cli": {"", "private_neo4j", "spark"},
-        "__main__": {"cli"},
-    },
-}
 # Names that stand twice: the same part of different wings, and what part that is.
 SAME_PART = {
     "analysis": {
@@ -86,20 +38,6 @@ SAME_PART = {
 }
 
 
-def modules() -> dict[str, Path]:
-    """Every module of the program: its dotted name and its file."""
-    folders = [*(ROOT / room for room in ROOMS), PACKAGE]
-    files = [file for folder in folders for file in folder.rglob("*.py")]
-    found = {}
-    for file in files:
-        parts = file.relative_to(PACKAGE if PACKAGE in file.parents else ROOT).with_suffix("").parts
-        found[".".join(("rosprivacy", *(parts[:-1] if parts[-1] == "__init__" else parts)))] = file
-    return found
-
-
-MODULES = modules()
-
-
 def imports(module: str) -> Iterator[str]:
     """The modules of the program that a module imports, at run time, for types, or in a function."""
     for node in ast.walk(ast.parse(MODULES[module].read_text("utf-8"))):
@@ -118,38 +56,40 @@ def room_and_wing(module: str) -> tuple[str, str]:
     parts = module.split(".")[1:]
     room = parts.pop(0) if parts and parts[0] in ROOMS else "rosprivacy"
     package = MODULES[module].name == "__init__.py"
-    wing = parts[0] if len(parts) > 1 or (package and parts) or (parts and parts[0] in MAY[room]) else ""
+    wing = parts[0] if len(parts) > 1 or (package and parts) or (parts and parts[0] in WINGS[room]) else ""
     return room, wing
 
 
-@pytest.mark.parametrize("room", MAY)
+@pytest.mark.parametrize("room", WINGS)
 def test_a_wing_imports_from_those_below_it(room: str) -> None:
     for module in sorted(MODULES):
         mine, wing = room_and_wing(module)
         if mine != room:
             continue
-        assert wing in MAY[room], f"{module}: name its wing in MAY, and what it may import from"
+        assert wing in WINGS[room], (
+            f"{module}: name its wing in WINGS of tests/helpers/house.py, and what it may import from"
+        )
         for target in IMPORTS[module]:
             other, below = room_and_wing(target)
             if other == room and below != wing:
-                assert below in MAY[room][wing], (
+                assert below in WINGS[room][wing], (
                     f"{module} imports {target}; {wing or room} may not import from {below}"
                 )
 
 
-@pytest.mark.parametrize("room", MAY)
+@pytest.mark.parametrize("room", WINGS)
 def test_the_wings_form_a_ladder(room: str) -> None:
-    left = dict(MAY[room])
+    left = dict(WINGS[room])
     while left:
         lowest = {wing for wing, below in left.items() if not below & left.keys()}
         assert lowest, f"none of {sorted(left)} is below the others"
         left = {wing: below for wing, below in left.items() if wing not in lowest}
 
 
-@pytest.mark.parametrize("room", MAY)
+@pytest.mark.parametrize("room", WINGS)
 def test_every_wing_is_there_and_says_what_it_is(room: str) -> None:
     folder = PACKAGE if room == "rosprivacy" else ROOT / room
-    for wing in MAY[room]:
+    for wing in WINGS[room]:
         init = folder / wing / "__init__.py"
         if not (folder / f"{wing}.py").is_file():
             assert ast.get_docstring(ast.parse(init.read_text("utf-8"))), f"{init}: a line that says what it is"
@@ -173,3 +113,17 @@ def test_no_name_stands_twice_but_of_the_same_part() -> None:
         if file.name not in {"__init__.py", "__main__.py"}:
             wings[module.rpartition(".")[2]].add("/".join(module.split(".")[1:-1]))
     assert {name: where for name, where in wings.items() if len(where) > 1} == SAME_PART
+
+
+def test_no_test_imports_from_test_modules() -> None:
+    """What several tests need stands in ``tests/helpers``, or is a fixture of a ``conftest.py``."""
+    for file in TESTS.rglob("*.py"):
+        for node in ast.walk(ast.parse(file.read_text("utf-8"))):
+            if isinstance(node, ast.ImportFrom):
+                names = [f"{node.module}.{alias.name}" for alias in node.names]
+            elif isinstance(node, ast.Import):
+                names = [alias.name for alias in node.names]
+            else:
+                continue
+            taken = [name for name in names if re.match(r"tests\.(?:.*\.)?(?:test_|conftest)", name)]
+            assert not taken, f"{file.relative_to(ROOT)}: put what {taken[0]} shares into tests/helpers"

@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.errors import InputError
 
 
+ALIKE = 0.8  # names that share their ending only are not
+
+
 def contents(path: Path, name: str = "") -> bytes:
     """Read a file whole, and note that it was read; for callers that have made sure what it is.
 
@@ -37,7 +40,7 @@ def nearest_file(path: Path) -> str:
         there = sorted(other.name for other in path.parent.iterdir())
     except (OSError, ValueError):
         there = []
-    near = get_close_matches(path.name, there, n=1)
+    near = get_close_matches(path.name, there, n=1, cutoff=ALIKE)
     return f"did you mean {shown(str(path.with_name(near[0])))}?" if near else "correct the path"
 
 

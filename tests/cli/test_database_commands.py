@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from neo4j import Driver
 
     from rosprivacy.private_neo4j.connection import Connection
-    from tests.helpers.command import Done
+    from tests.helpers.command import Cli, Done
 
 HOME = ROOT / "examples" / "care-home"
 POLICY, LABELS = HOME / "care-home.policy.xml", HOME / "care-home.labels.yaml"
@@ -72,37 +72,37 @@ def lines(done: Done) -> list[str]:
 
 @pytest.mark.database
 class TestLoad:
-    def test_it_says_what_it_wrote_and_the_same_again_changes_nothing(self, driver: Driver) -> None:
-        first = run(*LOAD)
+    def test_it_says_what_it_wrote_and_the_same_again_changes_nothing(self, cli: Cli, driver: Driver) -> None:
+        first = cli(*LOAD)
         assert (first.returncode, first.stderr) == (0, "")
         assert first.stdout == "robot h1 is written: 172 elements, 221 flows, 3 findings; verdict leak\n"
-        assert "is there already, nothing to change" in run(*LOAD).stdout
+        assert "is there already, nothing to change" in cli(*LOAD).stdout
         assert count(driver, "(:Finding {robot: 'h1'})") == 3
 
-    def test_what_vanished_from_the_policy_vanishes_and_other_robots_stay(self, driver: Driver) -> None:
-        run(*LOAD)
-        run(*LOAD[:-1], "h2")
+    def test_what_vanished_from_the_policy_vanishes_and_other_robots_stay(self, cli: Cli, driver: Driver) -> None:
+        cli(*LOAD)
+        cli(*LOAD[:-1], "h2")
         factory = ROOT / "examples" / "factory" / "after.policy.xml"
-        assert run("load", factory, "--robot", "h1").returncode == 0
+        assert cli("load", factory, "--robot", "h1").returncode == 0
         assert (count(driver, "(:Finding {robot: 'h1'})"), count(driver, "(:Finding {robot: 'h2'})")) == (0, 3)
 
     @pytest.mark.parametrize("name", ["", "a\nb", "x" * 201])
-    def test_a_name_that_nobody_could_read_is_refused(self, driver: Driver, name: str) -> None:
-        done = run("load", POLICY, "--robot", name)
+    def test_a_name_that_nobody_could_read_is_refused(self, cli: Cli, driver: Driver, name: str) -> None:
+        done = cli("load", POLICY, "--robot", name)
         assert done.returncode == 2
         assert "cannot name a robot" in done.stderr
         assert count(driver, "(:Element)") == 0
 
-    def test_a_policy_that_is_refused_writes_nothing(self, driver: Driver, tmp_path: Path) -> None:
+    def test_a_policy_that_is_refused_writes_nothing(self, cli: Cli, driver: Driver, tmp_path: Path) -> None:
         (tmp_path / "bad.xml").write_text("<policy")
-        done = run("load", POLICY, tmp_path / "bad.xml")
+        done = cli("load", POLICY, tmp_path / "bad.xml")
         assert done.returncode == 2
         assert all(LINE.match(line) for line in lines(done))
         assert count(driver, "(n)") == 0
 
-    def test_unload(self, driver: Driver) -> None:
-        run(*LOAD)
-        done = run("unload", "--robot", "h1", "--robot", "nobody")
+    def test_unload(self, cli: Cli, driver: Driver) -> None:
+        cli(*LOAD)
+        done = cli("unload", "--robot", "h1", "--robot", "nobody")
         assert (done.returncode, done.stdout) == (2, "robot h1 is removed\n")
         assert lines(done) == ["no robot nobody in the database; see rosprivacy query robots"]
         assert count(driver, "(:Element)") == 0
@@ -110,49 +110,49 @@ class TestLoad:
 
 @pytest.mark.database
 class TestQuery:
-    def test_the_list_names_every_question_and_needs_no_server(self) -> None:
-        done = run("query", NEO4J_URI="bolt://127.0.0.1:1")
+    def test_the_list_names_every_question_and_needs_no_server(self, cli: Cli) -> None:
+        done = cli("query", NEO4J_URI="bolt://127.0.0.1:1")
         assert done.returncode == 0
         assert [line.split(" ")[0] for line in done.stdout.splitlines()[::2]] == list(pack())
 
-    def test_show_prints_the_file(self) -> None:
-        assert run("query", "leak-paths", "--show").stdout == pack()["leak-paths"].text
+    def test_show_prints_the_file(self, cli: Cli) -> None:
+        assert cli("query", "leak-paths", "--show").stdout == pack()["leak-paths"].text
 
     @pytest.mark.slow
     @pytest.mark.usefixtures("loaded")
-    def test_the_three_formats_say_the_same(self) -> None:
-        rows = json.loads(run("query", "leak-paths", "--format", "json").stdout)
+    def test_the_three_formats_say_the_same(self, cli: Cli) -> None:
+        rows = json.loads(cli("query", "leak-paths", "--format", "json").stdout)
         found = [(row["category"], row["leak"]) for row in rows]
         assert found == [("FaceTemplate", "/uplink"), ("Video", "/recorder"), ("Voice", "/uplink")]
-        table = list(csv.DictReader(io.StringIO(run("query", "leak-paths", "--format", "csv").stdout)))
+        table = list(csv.DictReader(io.StringIO(cli("query", "leak-paths", "--format", "csv").stdout)))
         assert [row["path"] for row in table] == [" -> ".join(row["path"]) for row in rows]
-        shown = run("query", "leak-paths").stdout
+        shown = cli("query", "leak-paths").stdout
         assert all(row["leak"] in shown and " -> ".join(row["path"]) in shown for row in rows)
 
     @pytest.mark.slow
-    def test_parameters_limit_and_an_output_file(self, loaded: Driver, tmp_path: Path) -> None:
-        done = run("query", "findings", "category=Biometric", "-f", "json")
+    def test_parameters_limit_and_an_output_file(self, cli: Cli, loaded: Driver, tmp_path: Path) -> None:
+        done = cli("query", "findings", "category=Biometric", "-f", "json")
         assert [row["category"] for row in json.loads(done.stdout)] == ["FaceTemplate"]
-        done = run("query", "findings", "--limit", "2", "-f", "json", "-o", tmp_path / "rows.json")
+        done = cli("query", "findings", "--limit", "2", "-f", "json", "-o", tmp_path / "rows.json")
         assert (done.returncode, done.stdout) == (0, "")
         assert lines(done) == ["only the first 2 rows are shown; --limit shows more"]
         assert count(loaded, "(:Finding)") == 3
         assert len(json.loads((tmp_path / "rows.json").read_text())) == 2
 
     @pytest.mark.usefixtures("loaded")
-    def test_cypher_of_your_own(self, tmp_path: Path) -> None:
+    def test_cypher_of_your_own(self, cli: Cli, tmp_path: Path) -> None:
         text = "MATCH (n:VoiceLeak {robot: $robot}) RETURN n.name AS name"
         (tmp_path / "mine.cypher").write_text(text)
         for asked in (("--cypher", text), ("--file", tmp_path / "mine.cypher")):
-            done = run("query", *asked, "robot=h1", "-f", "csv")
+            done = cli("query", *asked, "robot=h1", "-f", "csv")
             assert (done.returncode, done.stdout) == (0, "name\n/uplink\n")
-        assert run("query", "--cypher", "MATCH (n:Nothing) RETURN n").stdout == "no rows\n"
+        assert cli("query", "--cypher", "MATCH (n:Nothing) RETURN n").stdout == "no rows\n"
 
     @pytest.mark.usefixtures("loaded")
-    def test_no_cell_of_csv_is_a_formula(self, tmp_path: Path) -> None:
+    def test_no_cell_of_csv_is_a_formula(self, cli: Cli, tmp_path: Path) -> None:
         """Names stand in policies of strangers, and people open the rows in a spreadsheet. A number is none."""
         (tmp_path / "mine.cypher").write_text("RETURN '=1+1' AS a, ' @x' AS b, -1 AS c, '-1' AS d, ['+1'] AS `=e`")
-        done = run("query", "--file", tmp_path / "mine.cypher", "-f", "csv")
+        done = cli("query", "--file", tmp_path / "mine.cypher", "-f", "csv")
         assert done.stdout == "a,b,c,d,'=e\n'=1+1,' @x,-1,'-1,'+1\n"
 
     @pytest.mark.slow
@@ -173,8 +173,10 @@ class TestQuery:
             (["--file", "not-there.cypher"], "not-there.cypher: cannot be read: No such file or directory"),
         ],
     )
-    def test_what_is_wrong_is_2_and_one_line(self, loaded: Driver, arguments: list[str], message: str) -> None:
-        done = run("query", *arguments)
+    def test_what_is_wrong_is_2_and_one_line(
+        self, cli: Cli, loaded: Driver, arguments: list[str], message: str
+    ) -> None:
+        done = cli("query", *arguments)
         assert (done.returncode, done.stdout) == (2, "")
         assert len(lines(done)) == 1
         assert message in done.stderr
@@ -183,20 +185,20 @@ class TestQuery:
 
 @pytest.mark.database
 class TestFromDatabase:
-    def test_a_storage_that_was_added_by_hand_is_a_finding(self, driver: Driver) -> None:
-        run(*LOAD)
+    def test_a_storage_that_was_added_by_hand_is_a_finding(self, cli: Cli, driver: Driver) -> None:
+        cli(*LOAD)
         driver.execute_query(ADD_STORAGE)
-        done = run("analyze", "--from-database", "--format", "json")
+        done = cli("analyze", "--from-database", "--format", "json")
         assert done.returncode == 1
         found = json.loads(done.stdout)["findings"]
         assert ("Video", "/camera", "/sd_card") in {
             (f["category"], f["source"]["name"], f["leak"]["name"]) for f in found
         }
-        written = json.loads(run("query", "reaching-leak", "leak=/sd_card", "-f", "json").stdout)
+        written = json.loads(cli("query", "reaching-leak", "leak=/sd_card", "-f", "json").stdout)
         assert [(row["category"], row["source"]) for row in written] == [("Video", "/camera")]
 
-    def test_policies_and_the_database_are_not_mixed(self) -> None:
-        done = run("analyze", "--from-database", POLICY)
+    def test_policies_and_the_database_are_not_mixed(self, cli: Cli) -> None:
+        done = cli("analyze", "--from-database", POLICY)
         assert done.returncode == 2
         assert done.stdout == ""
 
@@ -206,20 +208,20 @@ class TestNoServer:
     COMMANDS = (LOAD, ("unload", "--robot", "h1"), ("query", "robots"), ("analyze", "--from-database"))
 
     @pytest.mark.parametrize("command", COMMANDS, ids=lambda command: command[0])
-    def test_a_server_that_is_not_there_is_3_and_one_line(self, command: tuple[str, ...]) -> None:
+    def test_a_server_that_is_not_there_is_3_and_one_line(self, cli: Cli, command: tuple[str, ...]) -> None:
         with socket.socket() as free:
             free.bind(("127.0.0.1", 0))
             uri = f"bolt://127.0.0.1:{free.getsockname()[1]}"
-        done = run(*command, "--neo4j", uri, NEO4J_PASSWORD="x")  # noqa: S106 - of no server
+        done = cli(*command, "--neo4j", uri, NEO4J_PASSWORD="x")  # noqa: S106 - of no server
         assert (done.returncode, done.stdout) == (3, "")
         assert len(lines(done)) == 1
         assert f"{uri}: no Neo4j answers there" in done.stderr
 
     @pytest.mark.slow
-    def test_a_wrong_password_is_3_and_says_where_it_came_from(self, private_neo4j: Connection) -> None:
+    def test_a_wrong_password_is_3_and_says_where_it_came_from(self, cli: Cli, private_neo4j: Connection) -> None:
         """Again and again too: the server then lets nobody in for some seconds, which pass before other tests go on."""
         for _ in range(5):
-            done = run("query", "robots", "--neo4j", private_neo4j.uri, NEO4J_USERNAME="neo4j", NEO4J_PASSWORD=GUESS)
+            done = cli("query", "robots", "--neo4j", private_neo4j.uri, NEO4J_USERNAME="neo4j", NEO4J_PASSWORD=GUESS)
             assert (done.returncode, done.stdout) == (3, "")
             assert len(lines(done)) == 1
             assert "accepted" in done.stderr
@@ -229,9 +231,9 @@ class TestNoServer:
             pass
         time.sleep(LOCKED)
 
-    def test_no_password_at_all_is_3(self, neo4j_server: Connection) -> None:
+    def test_no_password_at_all_is_3(self, cli: Cli, neo4j_server: Connection) -> None:
         if os.environ.get("NEO4J_URI"):
             assert os.environ.get("NEO4J_PASSWORD")
-        done = run("query", "robots", "--neo4j", neo4j_server.uri, NEO4J_USERNAME="", NEO4J_PASSWORD="")
+        done = cli("query", "robots", "--neo4j", neo4j_server.uri, NEO4J_USERNAME="", NEO4J_PASSWORD="")
         assert done.returncode == 3
         assert "NEO4J_PASSWORD" in done.stderr

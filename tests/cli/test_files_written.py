@@ -19,10 +19,10 @@ from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.files_read import noted, one_run, read_as
 from rosprivacy.ingest.labels.label_file import shipped_text
 from rosprivacy.report.atomic import check_outputs, write_texts
-from tests.cli.test_cli import everything
 from tests.helpers.command import XI, Cli, refused, run
+from tests.helpers.docs import CATEGORIES, blocks
 from tests.helpers.factory import BEFORE, RUN3
-from tests.test_docs import CATEGORIES, blocks
+from tests.helpers.policies import everything
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -104,6 +104,7 @@ RUNS: dict[str, tuple[tuple[str, ...], tuple[str, ...], set[str]]] = {  # comman
         {"p.xml", "sub/part.xml", "s.yaml"},
     ),
 }
+EVERYDAY = ("analyze", "report on a fleet", "labels")
 OPENED = """
 import os, sys
 seen, folder = set(), os.getcwd() + os.sep
@@ -143,7 +144,9 @@ def folder(inputs: Path, tmp_path: Path) -> Path:
     return shutil.copytree(inputs, tmp_path / "home")
 
 
-@pytest.mark.parametrize("name", RUNS)
+@pytest.mark.parametrize(
+    "name", [name if name in EVERYDAY else pytest.param(name, marks=pytest.mark.slow) for name in RUNS]
+)
 def test_what_a_command_reads_it_does_not_write(cli: Cli, folder: Path, name: str) -> None:
     """The system says which files are opened; no output goes over one of them, and none is changed."""
     command, options, reads = RUNS[name]

@@ -15,7 +15,7 @@ from rosprivacy.cli.inputs import WRITTEN, Inputs
 from rosprivacy.cli.output import progress_of
 from rosprivacy.settings import Settings
 from tests.helpers.command import cli, run
-from tests.test_docs import CATEGORIES, blocks
+from tests.helpers.docs import CATEGORIES, blocks
 
 if TYPE_CHECKING:
     from rosprivacy.private_neo4j.connection import Connection

@@ -35,7 +35,9 @@ def run(*arguments: str | Path, cwd: Path | None = None, seconds: float = 60, **
 
 
 class Cli(Protocol):
-    def __call__(self, *arguments: str | Path, cwd: Path | None = None) -> Done: ...
+    def __call__(
+        self, *arguments: str | Path, cwd: Path | None = None, seconds: float = 60, **variables: str
+    ) -> Done: ...
 
 
 @pytest.fixture(params=["here", pytest.param("process", marks=pytest.mark.slow)])
@@ -45,12 +47,15 @@ def cli(request: pytest.FixtureRequest, capsys: pytest.CaptureFixture[str], monk
     for name in UNSET:
         monkeypatch.delenv(name, raising=False)
 
-    def here(*arguments: str | Path, cwd: Path | None = None) -> Done:
+    def here(*arguments: str | Path, cwd: Path | None = None, seconds: float = 60, **variables: str) -> Done:
+        del seconds
         words = [str(argument) for argument in arguments]
         with monkeypatch.context() as patch:
             patch.setattr(sys, "argv", ["rosprivacy", *words])
             patch.setattr(typer.main, "get_command", BUILT)
             patch.chdir(cwd or Path.cwd())
+            for name, value in variables.items():
+                patch.setenv(name, value)
             with pytest.raises(SystemExit) as ended:
                 main()
         code = ended.value.code

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -12,8 +14,12 @@ from rosprivacy.analysis.fleet.counts import counted
 from rosprivacy.analysis.fleet.patterns_of_pairs import Groups
 from rosprivacy.fleet_system import answer_fleet
 from rosprivacy.ingest.fleet.alike_robots import alike
+from rosprivacy.ingest.fleet.fleet_file import read_fleet
+from rosprivacy.ontology.vocabulary import load
+from rosprivacy.question import Question
 from rosprivacy.settings import Settings
 from rosprivacy.spark.distributed import Task, analyse_in_parts
+from rosprivacy.spark.fleet_on_spark import file_reader, result
 from rosprivacy.spark.shown_robots import shown
 from rosprivacy.spark.workers import filled
 from tests.helpers.fleet_files import policy, write
@@ -22,7 +28,6 @@ from tests.helpers.systems import HIERARCHY
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
-    from pathlib import Path
 
     from rosprivacy.ingest.fleet.dds_domains import Member
     from rosprivacy.ingest.fleet.fleet_file import Robot
@@ -165,3 +170,31 @@ def documents(file: str, run: Callable[[str], Result]) -> None:
         assert all(row in known for row in rows), key
     assert got["assumptions"] == expected["assumptions"]
     assert got == expected
+
+
+@dataclass(frozen=True)
+class Listed:
+    """Parts in a list."""
+
+    values: tuple[Any, ...]
+
+    def map(self, function: Callable[[Any], Any], *, keep: bool = False) -> Listed:
+        del keep
+        return Listed(tuple(map(function, self.values)))
+
+    def collect(self) -> list[Any]:
+        return list(self.values)
+
+
+def scattered(units: Sequence[Unit], size: int = 1) -> Listed:
+    return Listed(tuple(tuple(units[i : i + size]) for i in range(0, len(units), size)))
+
+
+def in_list(file: str, size: int = 1) -> Result:
+    vocabulary = load()
+    fleet = read_fleet(file, vocabulary)
+    asked = Task(
+        fleet, alike(fleet), "declared", partial(file_reader, Settings(), str(Path.cwd())), vocabulary.hierarchy
+    )
+    found = analyse_in_parts(asked, partial(scattered, size=size))
+    return result(asked, found, shown(asked, found, "witness", 100), Question(Settings(), None, None, ""), vocabulary)

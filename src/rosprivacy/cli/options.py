@@ -147,7 +147,7 @@ SixLists = Annotated[
     typer.Option(
         metavar="NAME",
         autocompletion=complete_category,
-        help="Which kind a six-list JSON is about (no other file); --categories says what to answer for.",
+        help="Which kind of data a six-list JSON is about; of no effect on other files.",
         rich_help_panel=READ,
     ),
 ]

@@ -66,6 +66,7 @@ def test_more_categories_than_a_word_has_bits(system: System) -> None:
     same(system, system.bound())
 
 
+@pytest.mark.slow
 def test_more_sources_than_a_word_has_bits() -> None:
     """A ring of 150 nodes that all bring video in and of which ten leak it."""
     count = 150

@@ -5,54 +5,21 @@ Here the parts are in a list; ``spark/test_spark.py`` has them on Spark.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.fleet_system import answer_fleet
-from rosprivacy.ingest.fleet.alike_robots import alike
-from rosprivacy.ingest.fleet.fleet_file import read_fleet
-from rosprivacy.ontology.vocabulary import load
-from rosprivacy.question import Question
 from rosprivacy.settings import Settings
-from rosprivacy.spark.distributed import Task, analyse_in_parts
-from rosprivacy.spark.fleet_on_spark import file_reader, result
-from rosprivacy.spark.shown_robots import shown
 from tests.helpers.fleet_files import write
-from tests.helpers.parts import FLEET, documents, fleet_file, same
+from tests.helpers.parts import FLEET, documents, fleet_file, in_list, same, scattered
 from tests.helpers.paths import ROOT
 from tests.helpers.random_fleets import Case, fleets
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from rosprivacy.result import Result
-    from rosprivacy.spark.units import Unit
-
 __all__ = ["fleet_file"]
-
-
-@dataclass(frozen=True)
-class Listed:
-    """Parts in a list."""
-
-    values: tuple[Any, ...]
-
-    def map(self, function: Callable[[Any], Any], *, keep: bool = False) -> Listed:
-        del keep
-        return Listed(tuple(map(function, self.values)))
-
-    def collect(self) -> list[Any]:
-        return list(self.values)
-
-
-def scattered(units: Sequence[Unit], size: int = 1) -> Listed:
-    return Listed(tuple(tuple(units[i : i + size]) for i in range(0, len(units), size)))
 
 
 @given(fleets())
@@ -61,20 +28,9 @@ def test_in_parts_it_is_the_same(case: Case) -> None:
 
 
 @given(fleets())
-@settings(max_examples=30)
 def test_several_units_are_one_part(case: Case) -> None:
     same(case, partial(scattered, size=2))
     same(case, partial(scattered, size=100))
-
-
-def in_list(file: str, size: int = 1) -> Result:
-    vocabulary = load()
-    fleet = read_fleet(file, vocabulary)
-    asked = Task(
-        fleet, alike(fleet), "declared", partial(file_reader, Settings(), str(Path.cwd())), vocabulary.hierarchy
-    )
-    found = analyse_in_parts(asked, partial(scattered, size=size))
-    return result(asked, found, shown(asked, found, "witness", 100), Question(Settings(), None, None, ""), vocabulary)
 
 
 @pytest.mark.parametrize("size", [1, 3])

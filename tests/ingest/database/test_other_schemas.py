@@ -16,7 +16,7 @@ from rosprivacy.ingest.database.read_back import read_stored
 from rosprivacy.ingest.database.schema import SCHEMA
 from rosprivacy.ontology.vocabulary import load as load_vocabulary
 from rosprivacy.private_neo4j import connection
-from tests.helpers.command import refused, run
+from tests.helpers.command import Cli, refused
 from tests.helpers.graphs import care_home, rows_of
 from tests.helpers.paths import ROOT
 
@@ -53,9 +53,9 @@ def rows(driver: Driver, query: str) -> list[list[Any]]:
 @pytest.mark.database
 class TestOfADatabase:
     @pytest.mark.parametrize("command", ["analyze", "report"])
-    def test_it_is_refused_and_nothing_is_written(self, driver: Driver, command: str) -> None:
+    def test_it_is_refused_and_nothing_is_written(self, cli: Cli, driver: Driver, command: str) -> None:
         before = rows(driver, EVERYTHING)
-        (line,) = refused(run(command, "--from-database"))
+        (line,) = refused(cli(command, "--from-database"))
         assert line == f"the database: robot care was loaded by an earlier version; {HINT}"
         assert rows(driver, EVERYTHING) == before
 
@@ -67,18 +67,18 @@ class TestOfADatabase:
             assert str(told.value) == f"the database: robot care was loaded by {which} version; {HINT}"
 
     @pytest.mark.parametrize("question", [("findings",), ("--cypher", "MATCH (f:Finding) RETURN f.id")])
-    def test_a_question_is_answered_with_a_warning(self, driver: Driver, question: tuple[str, ...]) -> None:
-        done = run("query", *question, "-f", "csv")
+    def test_a_question_is_answered_with_a_warning(self, cli: Cli, driver: Driver, question: tuple[str, ...]) -> None:
+        done = cli("query", *question, "-f", "csv")
         assert (done.returncode, len(done.stdout.splitlines())) == (0, 7)  # two robots with three findings each
         why = "warning: robot care was loaded by an earlier version, so rows can be missing or differ"
         assert done.stderr == f"{why}; {HINT}\n"
         driver.execute_query("MATCH (r:Robot {name: 'care'}) SET r.schema = $schema", schema=SCHEMA)
-        assert run("query", *question, "-f", "csv").stderr == ""
+        assert cli("query", *question, "-f", "csv").stderr == ""
 
-    def test_loaded_again_it_is_analysed(self, driver: Driver) -> None:
-        assert "robot care is written" in run(*LOAD).stdout
+    def test_loaded_again_it_is_analysed(self, cli: Cli, driver: Driver) -> None:
+        assert "robot care is written" in cli(*LOAD).stdout
         assert rows(driver, "MATCH (r:Robot) RETURN DISTINCT r.schema") == [[SCHEMA]]
-        done = run("analyze", "--from-database", "-q")
+        done = cli("analyze", "--from-database", "-q")
         assert (done.returncode, done.stderr) == (1, "")
 
     def test_a_robot_that_people_made_by_hand_was_never_loaded(self, driver: Driver) -> None:

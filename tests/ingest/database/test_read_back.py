@@ -69,6 +69,7 @@ def test_the_document_is_that_of_the_files(
     assert dump(driver, without=("digest", "version")) == before
 
 
+@pytest.mark.slow
 def test_on_random_graphs_nothing_changes(driver: Driver) -> None:
     """60 robots in one analysis find what each finds alone, and nothing differs from what was loaded."""
     rows, expected = [], set()

@@ -19,8 +19,8 @@ import rosprivacy
 from rosprivacy.ingest.labels.label_file import read_labels
 from rosprivacy.ingest.policies.names import covers
 from rosprivacy.ontology.vocabulary import load
-from tests.analysis.parts.test_parts import in_list
 from tests.helpers.fleet_files import policy, write
+from tests.helpers.parts import in_list
 
 if TYPE_CHECKING:
     from tests.helpers.command import Cli, Done

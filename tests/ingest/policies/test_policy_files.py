@@ -264,7 +264,7 @@ def test_problems_of_all_files_are_reported_at_once(tmp_path: Path) -> None:
         str(tmp_path / "*.yaml"),
     ]
     found = [line.removeprefix(f"{tmp_path}/").split(": ")[0] for line in refused(*arguments)]
-    assert found == ["*.yaml:0", "bad.xml:2", "broken.xml:2", "none.xml:0"]
+    assert found == ["*.yaml", "bad.xml:2", "broken.xml:2", "none.xml"]
 
 
 def test_order_does_not_matter(tmp_path: Path) -> None:

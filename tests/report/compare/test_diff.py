@@ -195,7 +195,7 @@ class TestSaved:
 
     def test_a_file_that_is_not_there(self, cli: Cli) -> None:
         done = cli("diff", "no.xml", "new.xml")
-        assert (done.returncode, done.stderr) == (2, "no.xml: file not found; did you mean new.xml?\n")
+        assert (done.returncode, done.stderr) == (2, "no.xml: file not found; correct the path\n")
 
 
 FLEET = "fleet: 1\nmodels: {m: {policies: old.xml, labels: l.yaml}}\ngroups: [{robots: %s, model: m}]\n"

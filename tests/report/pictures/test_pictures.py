@@ -275,6 +275,7 @@ def test_looks_differ_in_more_than_colour() -> None:
     assert {word.split()[0] for word in said} == {"makes", "pseudonymises", "ends"}
 
 
+@pytest.mark.slow
 def test_a_picture_without_graphviz_needs_no_graphviz() -> None:
     code = (
         "import sys; sys.modules['pygraphviz'] = None\nfrom rosprivacy.cli.app import main\n"

@@ -27,7 +27,7 @@ from rosprivacy.formats import written
 from rosprivacy.ontology.vocabulary import Vocabulary
 from rosprivacy.report.rdf.facts import legal_of
 from rosprivacy.report.rdf.findings import rdf_graph
-from rosprivacy.report.rdf.serialise import SERIALISERS, as_turtle
+from rosprivacy.report.rdf.serialise import as_turtle
 from rosprivacy.report.rdf.terms import DPV, DPV_CLASSES, DPV_PROPERTIES, RISK, RISKS, RP, element_iri, named
 from rosprivacy.report.rdf.things import STATED
 from tests.helpers.answers import accepting, answer_of
@@ -194,7 +194,7 @@ def comparable(finding: dict[str, Any]) -> dict[str, Any]:
     return some
 
 
-@pytest.mark.parametrize("form", SERIALISERS)
+@pytest.mark.parametrize("form", ["turtle", pytest.param("json-ld", marks=pytest.mark.slow)])
 @pytest.mark.parametrize("case", CASES, ids=lambda path: str(path.name))
 class TestAgainstTheDocument:
     """What a reader of RDF is told is what a reader of JSON is told."""
@@ -377,6 +377,7 @@ def test_random_systems_keep_to_the_shapes_and_change_data_where_labels_say_so(s
 class TestShapesCanFail:
     """A shape that accepts everything shows nothing."""
 
+    @pytest.mark.slow
     def test_without_what_is_required(self, graph: Graph) -> None:
         accepted = []
         required = {(s, p) for s, p, _ in graph if isinstance(s, URIRef) and p != RDF.type}

@@ -179,6 +179,7 @@ def run(*options: str, **environment: str) -> subprocess.CompletedProcess[bytes]
 
 
 class TestTime:
+    @pytest.mark.slow
     def test_no_time_is_told_but_that_of_the_environment(self) -> None:
         assert b"dateTime" not in run("-f", "turtle", SOURCE_DATE_EPOCH="").stdout
         told = strict(run("-f", "turtle", SOURCE_DATE_EPOCH="1767225600").stdout.decode(), "turtle")

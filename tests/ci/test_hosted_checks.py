@@ -1,0 +1,39 @@
+"""Our own checks, hosted and before a commit."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+
+import yaml
+
+from tests.helpers.ci_files import (
+    HOSTED,
+    tool,
+)
+from tests.helpers.paths import ROOT
+
+
+def test_the_hosted_checks_are_those_of_ci_run_on_each_python_and_may_only_read() -> None:
+    hosted = yaml.safe_load(HOSTED.read_text("utf-8"))
+    assert hosted["permissions"] == {}
+    assert "pull_request_target" not in hosted[True]  # YAML reads 'on' so
+    (job,) = hosted["jobs"].values()
+    assert job["permissions"] == {"contents": "read"}
+    assert [step["run"] for step in job["steps"] if "run" in step] == [".ci/run 'not corpus'"]
+    (out,) = (step["with"] for step in job["steps"] if step.get("uses", "").startswith("actions/checkout@"))
+    assert out["persist-credentials"] is False
+    classifiers = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["classifiers"]
+    supported = [name.rpartition(" ")[2] for name in classifiers if re.search(r":: 3\.\d+$", name)]
+    assert job["strategy"]["matrix"]["python"] == supported
+
+
+def test_before_a_commit_runs_what_ci_runs_from_the_same_environment() -> None:
+    file = ROOT / ".pre-commit-config.yaml"
+    done = tool("pre_commit", "validate-config", str(file))
+    assert done.returncode == 0, done.stdout
+    (local,) = yaml.safe_load(file.read_text("utf-8"))["repos"]
+    assert local["repo"] == "local"
+    commands = (ROOT / ".ci" / "run").read_text("utf-8").splitlines()
+    assert [hook["entry"] for hook in local["hooks"]] == [line for line in commands if line.startswith(".venv/bin/")]
+    assert {hook["language"] for hook in local["hooks"]} == {"system"}

@@ -1,0 +1,81 @@
+"""The house as the tests hold it: its rooms and wings with what they may import, and all modules."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tests.helpers.paths import ROOT
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+PACKAGE = ROOT / "src" / "rosprivacy"
+# Which rooms a room may import from.
+ROOMS: dict[str, set[str]] = {
+    "analysis": set(),
+    "ontology": {"analysis"},
+    "ingest": {"analysis", "ontology"},
+    "queries": {"analysis", "ontology"},
+    "report": {"analysis", "ontology", "queries"},
+}
+# Which wings a wing may import from; '' is what stands in the room itself. A name of one module is that module alone.
+FACTS = {"", "kernel", "answer", "decisions", "legal"}
+READING = {"reading", "policies"}
+WINGS: dict[str, dict[str, set[str]]] = {
+    "analysis": {
+        "": set(),
+        "kernel": {""},
+        "answer": {"", "kernel"},
+        "decisions": {"", "answer"},
+        "legal": {"", "answer"},
+        "findings": FACTS,
+        "fleet": FACTS | {"findings"},
+        "mitigation": FACTS | {"findings"},
+        "parts": FACTS | {"findings", "fleet"},
+    },
+    "ingest": {
+        "": set(),
+        "reading": set(),
+        "policies": {"reading"},
+        "decisions": {"reading"},
+        "labels": READING,
+        "mitigation": READING,
+        "fleet": READING | {"labels"},
+        "database": READING | {"labels", "fleet"},
+    },
+    "ontology": {"": set()},
+    "queries": {"": set()},
+    "report": {
+        "contract": set(),
+        "": {"contract"},
+        "document": {"", "contract"},
+        "terminal": {"", "document"},
+        "pictures": {""},
+        "compare": {"", "document"},
+        "page": {"", "document", "pictures", "compare"},
+        "sarif": {""},
+        "cnil": {""},
+        "rdf": {"", "document"},
+    },
+    "rosprivacy": {
+        "": set(),
+        "private_neo4j": {""},
+        "spark": {""},
+        "cli": {"", "private_neo4j", "spark"},
+        "__main__": {"cli"},
+    },
+}
+
+
+def modules() -> dict[str, Path]:
+    """Every module of the program: its dotted name and its file."""
+    folders = [*(ROOT / room for room in ROOMS), PACKAGE]
+    files = [file for folder in folders for file in folder.rglob("*.py")]
+    found = {}
+    for file in files:
+        parts = file.relative_to(PACKAGE if PACKAGE in file.parents else ROOT).with_suffix("").parts
+        found[".".join(("rosprivacy", *(parts[:-1] if parts[-1] == "__init__" else parts)))] = file
+    return found
+
+
+MODULES = modules()

@@ -1,0 +1,114 @@
+"""The tables of the report, and what storages, decisions and fleets add to it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from tests.helpers.pages import texts, told
+from tests.helpers.reports import care, fleet, with_decisions, with_outside
+
+
+def cells(table: Any) -> dict[str, dict[str, str]]:
+    return {
+        row.name: {column: cell.text for column, cell in zip(table.columns, row.cells, strict=True)}
+        for row in table.rows
+    }
+
+
+def test_whose_data_by_kind() -> None:
+    report = told(care())
+    assert cells(report.subjects) == {
+        "residents": {
+            "face template": "1 path to assess", "location": "–", "person track": "–",
+            "video of persons": "1 path to assess", "voice": "1 path to assess",
+        },
+        "staff": {
+            "face template": "1 path to assess", "location": "–", "person track": "–",
+            "video of persons": "1 path to assess", "voice": "1 path to assess",
+        },
+        "visitors": {
+            "face template": "1 path to assess", "location": "–", "person track": "–",
+            "video of persons": "1 path to assess", "voice": "–",
+        },
+        "persons not stated": {
+            "face template": "–", "location": "brought in, no path found", "person track": "can be made of it",
+            "video of persons": "–", "voice": "–",
+        },
+    }  # fmt: skip
+    assert report.silent == ("/lidar",)
+
+
+def test_who_gets_which_kind() -> None:
+    no = "no path found"
+    assert cells(told(care()).recipients) == {
+        "/recorder": {
+            "face template": no, "location": no, "person track": no,
+            "video of persons": "1 path to assess, pseudonymised", "voice": no,
+        },
+        "/uplink": {
+            "face template": "1 path to assess", "location": no, "person track": no, "video of persons": no,
+            "voice": "1 path to assess",
+        },
+    }  # fmt: skip
+
+
+def test_a_recipient_that_nothing_reaches_is_a_row_all_the_same() -> None:
+    document = care() | {"findings": []}
+    assert set(cells(told(document).recipients)) == {"/recorder", "/uplink"}
+
+
+def test_tables_are_cut_into_parts_that_fit_a_page() -> None:
+    document = care()
+    document["categories"] = [{**document["categories"][0], "name": f"K{i}", "title": f"k{i}"} for i in range(14)]
+    document["categories"][3]["name"] = "Video"
+    document |= {"findings": [], "roles": [row for row in document["roles"] if row["category"] == "Video"]}
+    document |= {"derivations": [], "sanitizers": [], "carries": [], "open": []}
+    parts = list(told(document).recipients.parts())
+    assert [len(part.columns) for part in parts] == [6, 6, 2]
+    assert all(len(row.cells) == len(part.columns) for part in parts for row in part.rows)
+
+
+def test_storages_are_told_with_their_retention_and_what_is_missing() -> None:
+    for text in texts(with_outside(care())):
+        assert "video of persons: 30 days; everything: 1 year" in text
+        assert "yes, for how long is not stated" in text
+        assert "country: not stated" in text
+        assert "US (adequacy decision for some recipients)" in text
+        assert "standard contractual clauses" in text
+        assert "Speech Inc." in text
+        assert "is kept at archive: without a stated end, or too long" in text
+        assert "Reason: no retention is stated" in text
+        assert "Members of the EEA and adequacy decisions as of 2026-06-30" in text
+
+
+def test_decisions_stand_beside_their_way_with_what_they_lack() -> None:
+    document = with_decisions(care())
+    report = told(document)
+    assert [way.state for way in report.ways] == ["accepted", "decided", "open"]
+    for text in texts(document):
+        assert "staff has to know" in text
+        assert "6(1)(c)" in text
+        assert "no exception of Article 9(2) is recorded" in text  # Article 6 alone does not do for a special category
+        assert "to be mitigated" in text
+        assert "matches no path any more" in text
+        assert "1 path to assess accepted by a person's decision; section 4 shows each" in text
+    assert {what: number for number, what in report.numbers}["paths to assess"] == 2
+
+
+def test_findings_that_differ_only_in_the_robot_are_one_with_its_robots_listed() -> None:  # S10
+    robots = [f"robot{number:02}" for number in range(20)]
+    document = fleet(care(), robots)
+    report = told(document)
+    assert len(document["findings"]) == 60
+    assert [len(way.robots) for way in report.ways] == [20, 20, 20]
+    assert [row.name for row in report.recipients.rows] == ["/recorder (20 robots)", "/uplink (20 robots)"]
+    for text in texts(document):
+        assert all(robot in text for robot in robots)
+        assert "/uplink (20 robots)" in text
+    assert {item.robots for item in report.items} == {20}
+
+
+def test_a_way_from_robot_to_robot_is_another_pattern_than_one_inside_a_robot() -> None:
+    document = fleet(care(), ["a", "b"])
+    document["findings"][0]["leak"]["robot"] = "b"
+    assert [len(way.robots) for way in told(document).ways] == [0, 2, 2, 0]
