@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Policy
 
 
-LINE = re.compile(r".+:\d+: .+; .+")
+LINE = re.compile(r"[^;]+: .+; .+")
 
 
 NEW, OLD = "http://www.w3.org/2001/XInclude", "http://www.w3.org/2003/XInclude"

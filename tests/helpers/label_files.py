@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Statement
 
 
-LINE = re.compile(r".+:\d+: .+; .+")  # file:line: what is wrong; what to do
+LINE = re.compile(r"[^;]+: .+; .+")  # file:line: what is wrong; what to do
 
 
 # /camera -> /image -> /filter -> /clean -> /viewer, and /viewer calls /snap and /spin of /camera

@@ -17,7 +17,7 @@ from rosprivacy.ingest.policies.policy_files import read_policies
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-LINE = re.compile(r".+:\d+: .+; .+")
+LINE = re.compile(r"[^;]+: .+; .+")
 FRAGMENT = '<profile>\n<topics publish="ALLOW"><topic>x</topic></topics></profile>'
 
 

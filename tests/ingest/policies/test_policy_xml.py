@@ -14,7 +14,7 @@ from rosprivacy.ingest.policies.policy_xml import read_policy
 if TYPE_CHECKING:
     from pathlib import Path
 
-LINE = re.compile(r".+:\d+: .+; .+")  # file:line: what is wrong; what to do
+LINE = re.compile(r"[^;]+: .+; .+")  # file:line: what is wrong; what to do
 VERSION = 'version="0.2.0"'
 TALK = '<topics publish="ALLOW"><topic>chatter</topic></topics>'
 
