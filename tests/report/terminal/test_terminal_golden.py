@@ -19,7 +19,7 @@ from rosprivacy.report.terminal.analysis import print_report, verdict_line
 from rosprivacy.report.terminal.finding_lines import details, in_order, law_lines
 from rosprivacy.report.terminal.wrapped import wrapped
 from tests.helpers.paths import ROOT
-from tests.test_corpus import COSTMAP, MEMORY, TURTLEBOT3
+from tests.helpers.turtlebot import COSTMAP, MEMORY, TURTLEBOT3
 
 if TYPE_CHECKING:
     from tests.helpers.command import Cli
