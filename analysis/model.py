@@ -369,12 +369,13 @@ class Category:
 
 
 class Method(StrEnum):
-    """What a sanitizer does, rule S8. The first three end the category, pseudonymise does not (recital 26)."""
+    """What a sanitizer does, rule S8. Pseudonymise does not end the category (recital 26), the others do."""
 
     ANONYMISE = "anonymise"
     AGGREGATE = "aggregate"
     DROP = "drop"
     PSEUDONYMISE = "pseudonymise"
+    ABSENT = "absent"  # no cleaning: a label says that the node is not on the robot, so nothing gets to it
 
     @property
     def ends(self) -> bool:
@@ -382,6 +383,7 @@ class Method(StrEnum):
         return self is not Method.PSEUDONYMISE
 
 
+CLEANS = tuple(method for method in Method if method is not Method.ABSENT)  # what a label of a sanitizer can say
 NAME, SEGMENT, GLOB = "name", "segment", "glob"  # how a label names an element
 STANDARD = 0  # the tier of the file of standard channels (rule S13); users' files are above it
 CHANGED = 3  # the tier of what a proposal changes: above all that is said now, in files and in a database
@@ -417,6 +419,8 @@ class Statement:
     naming
         How the label names the element: by a full ``NAME``, by a glob with its last ``SEGMENT`` written out, or by
         another ``GLOB``.
+    why
+        Of a node that is not on the robot: a person's reason.
     """
 
     role: str
@@ -429,6 +433,7 @@ class Statement:
     through: tuple[str, ...] = ()
     shipped: bool = False
     naming: str = NAME
+    why: str = ""
 
     @property
     def by_name(self) -> bool:

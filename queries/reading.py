@@ -16,7 +16,7 @@ from rosprivacy.analysis.errors import QueryError, shown
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from neo4j import Transaction
+    from neo4j import ResultSummary, Transaction
 
 INSTEAD = "queries only read the graph: use cypher-shell or the driver for it"
 # Operators of plans, as Neo4j's manual lists them, without what stands before and behind: `Partitioned`,
@@ -57,8 +57,8 @@ _CALLS = re.compile(r"\b(?:Unr|R)esolvedCall\b|\bCALL\s+[^\s({]|\b(?:TERMINATE|S
 _ADDED = "SHOW FUNCTIONS YIELD name, isBuiltIn WHERE NOT isBuiltIn RETURN name ORDER BY name"
 
 
-def refuse_unless_reading(transaction: Transaction, text: str, values: Mapping[str, Any]) -> None:
-    """Let a query pass that only reads the graph.
+def refuse_unless_reading(transaction: Transaction, text: str, values: Mapping[str, Any]) -> ResultSummary:
+    """Let a query pass that only reads the graph; return what the server says of it.
 
     Parameters
     ----------
@@ -84,6 +84,7 @@ def refuse_unless_reading(transaction: Transaction, text: str, values: Mapping[s
         if any(name.lower() in _details(step).lower().replace("`", "") for step in steps):
             what = f"calls {shown(name)}, which was added to Neo4j and is not known to only read"
             raise QueryError(f"the query {what}; {INSTEAD}")
+    return summary
 
 
 def _steps(plan: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:

@@ -15,6 +15,7 @@ from rosprivacy.analysis.errors import DatabaseError as OurDatabaseError
 from rosprivacy.analysis.errors import QueryError, shown
 from rosprivacy.queries.library import NAMES
 from rosprivacy.queries.reading import refuse_unless_reading
+from rosprivacy.queries.unknown_names import refuse_unknown_names
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from neo4j import Driver
 
     from rosprivacy.queries.library import Query
+    from rosprivacy.queries.unknown_names import Known
 
 LIMIT = 1000
 FETCHED = 100  # rows at once; the server keeps them in memory until they are read
@@ -58,6 +60,7 @@ def run(
     *,
     limit: int | None = LIMIT,
     timeout: float | None = TIMEOUT,
+    known: Known | None = None,
 ) -> Rows:
     """Run Cypher that only reads.
 
@@ -67,6 +70,9 @@ def run(
         Most rows to return; None for all.
     timeout
         Seconds that the server may take; None for as long as it takes.
+    known
+        Names that the graph can have: one that is neither among these nor in the database is refused; None lets all
+        names pass.
 
     Raises
     ------
@@ -80,10 +86,16 @@ def run(
 
     with (
         _refusals(driver, timeout),
-        driver.session(default_access_mode=neo4j.READ_ACCESS, fetch_size=FETCHED) as session,
+        driver.session(
+            default_access_mode=neo4j.READ_ACCESS,
+            fetch_size=FETCHED,
+            notifications_min_severity="WARNING" if known is not None else "OFF",
+        ) as session,
         session.begin_transaction(timeout=timeout) as transaction,
     ):
-        refuse_unless_reading(transaction, text, values or {})
+        planned = refuse_unless_reading(transaction, text, values or {})
+        if known is not None:
+            refuse_unknown_names(transaction, planned, known)
         result = transaction.run(text, dict(values or {}))
         columns = tuple(result.keys())
         rows: list[tuple[Any, ...]] = []

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.findings.globs import GlobUse, globs
 from rosprivacy.analysis.findings.ledger import ledger
+from rosprivacy.analysis.findings.review_order import Behind, review_order
 from rosprivacy.analysis.fleet.counts import Counts, counted
 from rosprivacy.analysis.non_ros import retention_of
 
@@ -41,6 +42,8 @@ class Answer:
         Which robots of the graph stand for which, and what they have in common; None for a single robot.
     counts
         Of the whole fleet, where the graph does not hold all of it; None where it does.
+    infrastructure
+        (kind, name) of open channels that the program's own file proposes to take as mundane (rule S13).
     """
 
     analysis: Analysis
@@ -51,6 +54,7 @@ class Answer:
     decided: Decided | None = None
     fleet: FleetView | None = None
     counts: Counts | None = None
+    infrastructure: frozenset[tuple[str, str]] = frozenset()
 
     @property
     def shown(self) -> Analysis:
@@ -62,6 +66,11 @@ class Answer:
         """The ledger: what was taken away on the data's side, and on whose word; of robots that are alike of one."""
         rows = ledger(self.analysis, self.bound, self.vocabulary.hierarchy, self.diagnostics)
         return tuple(row for row in rows if row.element is None or row.element.robot not in self._beside)
+
+    @property
+    def review_order(self) -> dict[tuple[str, str, str, str], Behind]:
+        """Where data comes to each open element from, and what stands behind it."""
+        return review_order(self.analysis)
 
     def globs(self, taken: Iterable[TakenAway]) -> tuple[GlobUse, ...]:
         """What each glob of the label files decides and closes, by the ledger; robots as there."""

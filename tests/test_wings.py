@@ -28,6 +28,7 @@ SAME_PART = {
     "findings": {"analysis/findings", "report/rdf"},  # findings, and findings as RDF
     "fleet": {"cli", "report/contract", "report/document", "report/terminal"},  # what is told of a fleet
     "labels": {"cli", "report/terminal"},  # the command, and what was said of labels
+    "review": {"report/page", "report/terminal"},  # what nobody has reviewed, for each kind of reader
     "globs": {"analysis/findings", "report/terminal"},  # what globs of label files decide, and how it is told
     "ledger": {"analysis/findings", "report/document", "report/terminal"},  # what was taken away, and how it is told
     "mitigation": {"", "report/contract", "report/document", "report/terminal"},  # what is told of proposals

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.kernel.backward import NOTHING_OPENED, Opened, backward
 from rosprivacy.analysis.kernel.nearest import Nearest
-from rosprivacy.analysis.model import Place, Statement
+from rosprivacy.analysis.model import Method, Place, Statement
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.kernel.spread import Spread
 
 Line = Statement | Place
-DENY, STANDARD = "deny", "standard-channel"
+DENY, STANDARD, ABSENT = "deny", "standard-channel", "absent"
 ROUNDS = 64  # lines about several elements that are opened one by one; of others it is said that they may close a path
 PERHAPS = -2  # in place of a vertex, where it was not worked out
 
@@ -98,7 +98,9 @@ def _alone(fact: Facts) -> bool:
 
 def _said_by(lines: tuple[Line, ...]) -> str:
     statements = [line for line in lines if isinstance(line, Statement)]
-    return STANDARD if all(line.shipped for line in statements) else statements[0].role
+    if all(line.shipped for line in statements):
+        return STANDARD
+    return ABSENT if statements[0].method is Method.ABSENT else statements[0].role
 
 
 def behind(found: Spread, closed: Sequence[Closure], places: Mapping[int, int]) -> dict[int, int]:

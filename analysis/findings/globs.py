@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.answer import Verdict
+from rosprivacy.analysis.findings.closures import ABSENT
 from rosprivacy.analysis.findings.ledger import REVIEW
 from rosprivacy.analysis.model import STANDARD
 
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 
 HALF, LAST = "half", "last-path"
 WATCHED = frozenset({"mundane", "conduit", "sanitizer"})  # what one word too much turns into a wrong 'nothing found'
-CLOSERS = frozenset({"mundane", "only", "never", "sanitizer"})
+CLOSERS = frozenset({"mundane", "only", "never", "sanitizer", ABSENT})
 Identity = tuple[str, str, str]
 
 

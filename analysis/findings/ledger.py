@@ -14,7 +14,7 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.findings.closures import PERHAPS, Closure, behind, closures, line_key
+from rosprivacy.analysis.findings.closures import ABSENT, PERHAPS, Closure, behind, closures, line_key
 from rosprivacy.analysis.findings.concerns import concerns
 from rosprivacy.analysis.kernel.roles import NOTHING_SAID
 from rosprivacy.analysis.model import Place, Statement
@@ -30,8 +30,8 @@ if TYPE_CHECKING:
 
 OUTDONE, REVIEW, DECISION, RESTRICTION = "outdone", "review", "decision", "restriction"
 UNREAD, UNKNOWN_READER = "unread-file", "unknown-reader"
-BY = ("deny", "standard-channel", "mundane", "only", "never", "sanitizer", OUTDONE, REVIEW, DECISION, RESTRICTION,
-      UNREAD, UNKNOWN_READER)  # fmt: skip
+BY = ("deny", "standard-channel", "mundane", "only", "never", "sanitizer", ABSENT, OUTDONE, REVIEW, DECISION,
+      RESTRICTION, UNREAD, UNKNOWN_READER)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -243,5 +243,5 @@ def _unknown(analysis: Analysis) -> Iterator[TakenAway]:
 
 
 def _order(row: TakenAway) -> tuple[object, ...]:
-    ends = [element.sort_key() if element else () for element in (row.element, row.to)]
+    ends = [element.sort_key() if element else () for element in (row.element, row.to, row.leak)]
     return (BY.index(row.by), ends, [_line(place) for place in row.places], row.categories, row.note)

@@ -9,11 +9,13 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.model import Method
+
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.kernel.spread import Spread
-    from rosprivacy.analysis.model import Element
+    from rosprivacy.analysis.model import Bound, Element, FlowGraph
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,6 +92,16 @@ def makings(found: Spread, wanted: Collection[str]) -> tuple[Making, ...]:
     )
 
 
+def absent(bound: Bound, graph: FlowGraph) -> tuple[tuple[Element, str], ...]:
+    """Return the nodes of which a label says that they are not on the robot, with a person's reason."""
+    return tuple(
+        (graph.elements[vertex], statement.why)
+        for vertex, said in sorted(bound.elements.items())
+        for statement in said
+        if statement.method is Method.ABSENT
+    )
+
+
 class _Around:
     """The channels that an element reads, and who else reads them."""
 
@@ -106,7 +118,7 @@ class _Around:
         named = set()
         for reader in sorted(readers):
             fact = self._found.facts.get(reader, {}).get(category)
-            if (fact is None or "sanitizer" not in fact.roles) and elements[reader].shown_as not in named:
+            if (fact is None or not fact.method) and elements[reader].shown_as not in named:
                 named.add(elements[reader].shown_as)
                 yield elements[reader]
 

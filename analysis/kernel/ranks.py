@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import LabelError, shown
-from rosprivacy.analysis.model import GLOB, STANDARD
+from rosprivacy.analysis.model import GLOB, STANDARD, Method
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -99,7 +99,7 @@ def in_words(statement: Statement) -> str:
     if statement.role in NONE_OF.values():
         return f"{statement.role.removeprefix('no-')}: none"
     if statement.role == "sanitizer":
-        return f"sanitizer ({statement.method})"
+        return "absent" if statement.method is Method.ABSENT else f"sanitizer ({statement.method})"
     if statement.role in ("only", "never"):
         return f"{statement.role} [{', '.join(statement.categories)}]"
     if statement.role == "derivation":

@@ -46,7 +46,7 @@ class Facts:
     covered
         Whether a label covers the category here (rule S11).
     method
-        Of a sanitizer, as in ``Method``; empty for others.
+        Of a sanitizer, as in ``Method``, and of what is absent; empty for others.
     accepted
         The statements that hold, the highest rank first.
     closers
@@ -112,7 +112,9 @@ def _sum_up(found: Decided, category: str, hierarchy: Hierarchy) -> Facts:
     mundane = by_role.get("mundane", [])
     closers = [*sanitizers, *(s for s in accepted if closes(s, category, hierarchy))]
     sources = by_role.get("source", [])
-    roles = sorted(role for role in by_role if role not in TAKE_BACK)
+    method = str(sanitizers[0].method) if sanitizers else ""
+    none = {*TAKE_BACK, *(["sanitizer"] if method == Method.ABSENT else [])}  # what is not there cleans nothing
+    roles = sorted(role for role in by_role if role not in none)
     return Facts(
         emits=bool(sources),
         through=sources[0].through if sources else (),
@@ -120,11 +122,11 @@ def _sum_up(found: Decided, category: str, hierarchy: Hierarchy) -> Facts:
         passes=not closers,
         pseudonymises=any(s.method is Method.PSEUDONYMISE for s in sanitizers),
         derives=tuple(sorted({s.to for s in by_role.get("derivation", [])})),
-        covered=bool(roles),
+        covered=bool(roles or sanitizers),
         unstated=bool(sanitizers) and not sanitizers[0].stated,
         standard=bool(mundane) and all(s.shipped for s in mundane),
         roles=tuple(roles),
-        method=str(sanitizers[0].method) if sanitizers else "",
+        method=method,
         accepted=accepted,
         closers=tuple(sorted(closers, key=by_line)),
         outdone=found.outdone,

@@ -10,11 +10,13 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.ingest.database.schema import (
     ACROSS,
+    CARRIES,
     CATEGORY,
     ELEMENT,
     ENCLAVE,
     FALLS_UNDER,
     FINDING,
+    INTAKE,
     NODES,
     PROVISION,
     ROBOT,
@@ -24,6 +26,7 @@ from rosprivacy.ingest.database.schema import (
 if TYPE_CHECKING:
     from rosprivacy.ingest.database.schema import NodeKind, RelationshipKind
 
+_IS_CARRIES = f"type(c) STARTS WITH '{CARRIES}'"
 _BY_LABEL = {kind.label: kind for kind in NODES}
 
 
@@ -80,6 +83,28 @@ CREATE_FINDINGS = (
     f"MERGE {_node('f', FINDING, 'row.id')} SET f += row.properties "
     "CREATE (f)-[:`FROM`]->(a) CREATE (f)-[:`TO`]->(b) CREATE (f)-[:`OF_CATEGORY`]->(c)"
 )
+# Both ends are looked up once for all kinds that go from one to the other.
+CREATE_CARRIES = (
+    f"UNWIND $rows AS row MATCH {_node('a', ELEMENT, 'row.source')} MATCH {_node('b', ELEMENT, 'row.target')} "
+    "UNWIND row.types AS type CREATE (a)-[:$(type)]->(b)"
+)
+READ_CARRIES = (
+    f"MATCH (n:`Element`)-[c]->(m:`Element`) WHERE coalesce(n.`robot`, '') IN $names AND {_IS_CARRIES} "
+    "RETURN n.`id`, m.`id`, collect(type(c))"
+)
+DELETE_CARRIES = (
+    f"UNWIND $rows AS row MATCH {_node('a', ELEMENT, 'row.source')}-[c]->{_node('b', ELEMENT, 'row.target')} "
+    "WHERE type(c) IN row.types DELETE c"
+)
+MERGE_INTAKES = (
+    f"UNWIND $rows AS row MERGE {_node('n', ELEMENT, 'row.id')} SET n += row.properties "
+    "WITH n, row, [label IN labels(n) WHERE label IN $labels AND NOT label IN row.labels] AS stale "
+    f"REMOVE n:$(stale) SET n:$(row.labels) WITH n MATCH {_node('r', ROBOT, 'n.`robot`')} "
+    "MERGE (n)-[of:`OF_ROBOT`]->(r) SET of.`robot` = r.`name`"
+)
+DELETE_INTAKES = (
+    f"MATCH (n:{quoted(INTAKE)}) WHERE coalesce(n.`robot`, '') IN $names AND NOT n.`id` IN $ids DETACH DELETE n"
+)
 CREATE_ACROSS = create_relationships(ACROSS)
 MERGE_CATEGORIES = merge_nodes(CATEGORY)
 MERGE_PROVISIONS = merge_nodes(PROVISION)
@@ -101,7 +126,8 @@ READ_ROBOTS = (
 )
 READ_DIGESTS = (
     f"UNWIND $names AS name MATCH {_node('r', ROBOT, 'name')} RETURN name, r.`digest` AS digest, "
-    "r.`elements` = COUNT { (r)<-[:`OF_ROBOT` {`robot`: name}]-() } AND "
+    f"r.`elements` = COUNT {{ (r)<-[:`OF_ROBOT` {{`robot`: name}}]-(n) WHERE NOT n:{quoted(INTAKE)} }} AND "
+    f"r.`carried` = COUNT {{ (r)<-[:`OF_ROBOT` {{`robot`: name}}]-()-[c]->() WHERE {_IS_CARRIES} }} AND "
     "r.`flows` = COUNT { (r)<-[:`OF_ROBOT`]-()-[f:`FLOWS_TO` {`robot`: name}]->() } AND "
     "r.`roles` = COUNT { (r)<-[:`OF_ROBOT`]-()-[o {`robot`: name}]->(:`DataCategory`) } AS whole"
 )
@@ -113,7 +139,8 @@ READ_ELEMENTS = (
 )
 DELETE_ELEMENTS = f"UNWIND $rows AS id MATCH {_node('n', ELEMENT, 'id')} DETACH DELETE n"
 DELETE_OURS = (
-    "MATCH (n:`Element`)-[o]->() WHERE n.`robot` IN $names AND o.`robot` = n.`robot` AND type(o) <> 'OF_ROBOT' DELETE o"
+    "MATCH (n:`Element`)-[o]->() WHERE n.`robot` IN $names AND type(o) <> 'OF_ROBOT' "
+    f"AND (o.`robot` = n.`robot` OR {_IS_CARRIES.replace('(c)', '(o)')}) DELETE o"
 )
 DELETE_FINDINGS = "MATCH (f:`Finding`) WHERE f.`robot` IN $names DETACH DELETE f"
 DELETE_EMPTY_ENCLAVES = (

@@ -13,6 +13,7 @@ from rosprivacy.analysis.findings.derived_from import origins
 from rosprivacy.analysis.fleet.likeness import NO_ROBOTS, pattern_id
 from rosprivacy.analysis.kernel.roles import facts
 from rosprivacy.analysis.legal import turned_special
+from rosprivacy.ingest.database.carrying import moving
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -141,32 +142,14 @@ def _stopped(found: Spread, kept: int) -> int:
 def flow_results(analysis: Analysis, names: Names) -> Iterator[Row]:
     """Return the properties of each allowed flow, in the order of the graph."""
     found = analysis.spread
-    made: dict[int, tuple[int, int]] = {}
-    for index, flow in enumerate(analysis.graph.flows):
-        if flow.source not in made:
-            made[flow.source] = _passed_and_made(found, flow.source)
-        moving = found.passing(index)
-        passed, makes = made[flow.source]
-        begun = found.emits.get(flow.source, 0) | found.flow_emits.get(index, 0)
+    for index, some in enumerate(moving(analysis)):
         yield {
             "carries": names.broad(found.along(index)),
-            "passes": names.exact(passed & moving) or None,
-            "begins": names.exact(begun & moving) or None,
-            "made": names.exact(makes & moving) or None,
-            "stops": names.exact(_stopped(found, moving)) or None,
+            "passes": names.exact(some.passed) or None,
+            "begins": names.exact(some.begun) or None,
+            "made": names.exact(some.made) or None,
+            "stops": names.exact(_stopped(found, found.passing(index))) or None,
         }
-
-
-def _passed_and_made(found: Spread, vertex: int) -> tuple[int, int]:
-    """What comes to an element and goes on, pseudonymised or not; and what it makes of what comes."""
-    arrives = found.arrives.get(vertex, 0)
-    passed, made = arrives & found.keeps.get(vertex, found.all_bits), 0
-    for before, after in found.derives.get(vertex, ()):
-        if arrives >> before & 1:
-            same = found.bits.category(before) == found.bits.category(after)  # pseudonymised here
-            made |= 0 if same else 1 << after
-            passed |= 1 << after if same else 0
-    return passed, made
 
 
 def origin_rows(analysis: Analysis, ids: Sequence[str], robots: Sequence[str]) -> Iterator[Row]:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.answer import robot_verdicts
 from rosprivacy.analysis.findings.derived_from import origins
 from rosprivacy.analysis.fleet.likeness import pattern_id
+from rosprivacy.ingest.database.carrying import Carrying
 from rosprivacy.ingest.database.element_properties import (
     Names,
     Roles,
@@ -23,7 +24,16 @@ from rosprivacy.ingest.database.element_properties import (
     origin_properties,
 )
 from rosprivacy.ingest.database.ids import category_labels, element_id, enclave_id
-from rosprivacy.ingest.database.rows import add_roles, allowed, denied, element_row, flow_row, rows_of
+from rosprivacy.ingest.database.rows import (
+    add_roles,
+    allowed,
+    denied,
+    element_row,
+    end_id,
+    flow_row,
+    intake_row,
+    rows_of,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -31,6 +41,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Analysis, Finding, Verdict
     from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.analysis.model import Element, Flow
+    from rosprivacy.ingest.database.carrying import End
     from rosprivacy.ingest.database.rows import RobotRows, Row
     from rosprivacy.ingest.fleet.fleet_graph import Placed
     from rosprivacy.ontology.vocabulary import Vocabulary
@@ -116,6 +127,11 @@ class FleetRows:
                 )
                 for v in own
             ],
+            "intakes": [
+                intake_row(name, ids.of(elements[v], name), elements[v], self._carrying.labels(v))
+                for v in own
+                if v in self._carrying.intakes
+            ],
             "enclaves": [
                 {"id": enclave_id(name, path), "properties": {"path": path, "robot": name}}
                 for path in sorted({profile.enclave for profile in profiles})
@@ -124,12 +140,16 @@ class FleetRows:
             "flows": list(self._flows(owner, name, ids)),
             "roles": roles,
             "derived": list(self._derived(owner, name, ids)),
+            "carried": list(self._carried(owner, name, ids)),
             "findings": found,
             "across": across,
             "foreign": [],
         }
         parts["foreign"] = [
             element_row(robot, key, element, {}, (), None) for key, (element, robot) in sorted(ids.foreign.items())
+        ]
+        parts["foreign"] += [
+            intake_row(robot, key, element) for key, (element, robot) in sorted(ids.foreign_intakes.items())
         ]
         model = self._likeness.models.get(owner)
         properties = {
@@ -156,6 +176,18 @@ class FleetRows:
         return list(element_results(self._analysis, self._placed.bound, names, roles))
 
     @cached_property
+    def _carrying(self) -> Carrying:
+        return Carrying(self._analysis, [said for _, said in self._results], category_labels(self._vocabulary))
+
+    @cached_property
+    def _steps(self) -> dict[str, list[tuple[End, End, list[str]]]]:
+        """Where kinds of data go, by the robot that they leave."""
+        leaving: dict[str, list[tuple[End, End, list[str]]]] = defaultdict(list)
+        for step in self._carrying.steps:
+            leaving[self._graph.elements[step[0][0]].robot].append(step)
+        return dict(leaving)
+
+    @cached_property
     def _leaving(self) -> dict[str, list[tuple[Flow, Row]]]:
         """Flows by the robot that they leave, with their properties."""
         names = Names(self._analysis.spread, self._vocabulary, category_labels(self._vocabulary))
@@ -175,6 +207,13 @@ class FleetRows:
             source, target = elements[flow.source], elements[flow.target]
             for robot in ids.expanded(target.robot):
                 yield flow_row(name, flow, ids.of(source, name), ids.of(target, robot), properties)
+
+    def _carried(self, owner: str, name: str, ids: _Ids) -> Iterator[Row]:
+        elements = self._graph.elements
+        for (start, own), (end, taken), types in self._steps.get(owner, ()):
+            source = end_id(ids.of(elements[start], name), own)
+            for robot in ids.expanded(elements[end].robot):
+                yield {"source": source, "target": ids.end(elements[end], robot, taken), "types": types}
 
     def _memberships(self, owner: str, name: str, ids: _Ids) -> Iterator[Row]:
         """A node in an enclave, once; the first of its profiles there is named."""
@@ -233,6 +272,7 @@ class _Ids:
 
     def __init__(self, owner: str, name: str, likeness: Likeness) -> None:
         self.foreign: dict[str, tuple[Element, str]] = {}
+        self.foreign_intakes: dict[str, tuple[Element, str]] = {}
         self._owner = owner
         self._name = name
         self._likeness = likeness
@@ -243,6 +283,13 @@ class _Ids:
         if robot != self._name:
             self.foreign[key] = (element, robot)
         return key
+
+    def end(self, element: Element, robot: str, intake: bool) -> str:  # noqa: FBT001 - one of two ids
+        """The id of an element on a robot of the fleet, or of its intake."""
+        key = self.of(element, robot)
+        if intake and robot != self._name:
+            self.foreign_intakes[key] = (element, robot)
+        return end_id(key, intake)
 
     def expanded(self, robot: str) -> list[str]:
         """The robots of the fleet for which a robot of the graph stands, at the end of what begins here."""

@@ -7,10 +7,11 @@ identifier.
 from __future__ import annotations
 
 import hashlib
+import re
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputErrors, OntologyError, shown
-from rosprivacy.ingest.database.schema import RESERVED, SUFFIXES, quoted
+from rosprivacy.ingest.database.schema import CARRIES, RESERVED, SUFFIXES, quoted
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 LONGEST_ID = 1000  # characters; an index key has room for 8 kB
+_WORDS = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 
 
 def element_id(robot: str, element: Element) -> str:
@@ -42,6 +44,20 @@ def enclave_id(robot: str, path: str) -> str:
     return _joined([robot, path])
 
 
+def intake_id(element: str) -> str:
+    """Return what identifies the intake of an element, by the element's id."""
+    return f"{element}|intake"
+
+
+def carries(label: str) -> str:
+    """Return the type of the relationships along which a kind of data goes, by its label.
+
+    >>> carries("FaceTemplate"), carries("RFIDTag")
+    ('CARRIES_FACE_TEMPLATE', 'CARRIES_RFID_TAG')
+    """
+    return CARRIES + _WORDS.sub("_", label).upper()
+
+
 def category_labels(vocabulary: Vocabulary) -> dict[str, str]:
     """Return the label of each category by its name.
 
@@ -59,10 +75,11 @@ def category_labels(vocabulary: Vocabulary) -> dict[str, str]:
             what = f"<{category.iri}> has the label {shown(category.label)!r}, which is not an identifier"
             problems.append(OntologyError("ontology", 0, what, "use letters, digits and _"))
             continue
-        for suffix in SUFFIXES:
-            other = taken.setdefault(category.label + suffix, category.name)
+        named = (*(category.label + suffix for suffix in SUFFIXES), carries(category.label))
+        for name in named:
+            other = taken.setdefault(name, category.name)
             if other != category.name:
-                what = f"the label {category.label + suffix!r} of {category.name!r} is that of {other!r} too"
+                what = f"the label {name!r} of {category.name!r} is that of {other!r} too"
                 problems.append(OntologyError("ontology", 0, what, "rename it"))
     if problems:
         raise InputErrors(problems)

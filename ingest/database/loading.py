@@ -210,10 +210,10 @@ def _write_robots(transaction: ManagedTransaction, robots: list[RobotRows], labe
     if known:
         run(transaction, cypher.DELETE_FINDINGS, names=known)
         run(transaction, cypher.DELETE_OURS, names=known)
-        new = {row["id"] for rows in robots for row in rows.elements}
+        new = {row["id"] for rows in robots for row in (*rows.elements, *rows.intakes)}
         _delete_elements(transaction, [key for key in _element_ids(transaction, known) if key not in new])
-    fresh = [row for rows in robots for row in rows.elements if rows.robot not in known]
-    old = [row for rows in robots for row in rows.elements if rows.robot in known]
+    fresh = [row for rows in robots for row in (*rows.elements, *rows.intakes) if rows.robot not in known]
+    old = [row for rows in robots for row in (*rows.elements, *rows.intakes) if rows.robot in known]
     write(transaction, cypher.CREATE_ELEMENTS, fresh)
     write(transaction, cypher.REPLACE_ELEMENTS, old, labels=labels)
     write(transaction, cypher.MERGE_FOREIGN, _foreign(robots))
@@ -221,6 +221,7 @@ def _write_robots(transaction: ManagedTransaction, robots: list[RobotRows], labe
     for kind, part in ((IN_ENCLAVE, "memberships"), (FLOWS_TO, "flows"), (DERIVES_FROM, "derived")):
         statement = cypher.create_relationships(kind)
         write(transaction, statement, [row for rows in robots for row in getattr(rows, part)])
+    write(transaction, cypher.CREATE_CARRIES, [row for rows in robots for row in rows.carried])
     for role, kind in ROLES.items():
         statement = cypher.create_relationships(kind)
         write(transaction, statement, [row for rows in robots for row in rows.roles.get(role, ())])

@@ -53,7 +53,7 @@ _ROLE_OF = {kind.type: role for role, kind in ROLES.items()}
 
 ROBOTS = "MATCH (r:Robot) RETURN properties(r) AS robot ORDER BY r.name"
 ELEMENTS = (
-    "MATCH (n) WHERE n:Element OR EXISTS { (n)-[:FLOWS_TO]-() } "
+    "MATCH (n) WHERE (n:Element AND NOT n:Intake) OR EXISTS { (n)-[:FLOWS_TO]-() } "
     "RETURN elementId(n) AS key, labels(n) AS labels, properties(n) AS properties"
 )
 FLOWS = (
@@ -292,7 +292,7 @@ class _Reader:
                 raise InputErrors([_problem(what, "see docs/database.md for what a role has")]) from None
             alone = () if role in ("only", "never") or said.get("every") else (category,)
             together[(*facts, *alone)].append(category)
-        for (role, rank, place, method, stated, to, through, every, naming, *_), categories in sorted(
+        for (role, rank, place, method, stated, to, through, every, naming, why, *_), categories in sorted(
             together.items(), key=lambda item: str(item[0])
         ):
             names = () if every else tuple(sorted(categories))
@@ -300,7 +300,7 @@ class _Reader:
                 names = (to,)
                 to = categories[0]  # noqa: PLW2901 - it is stored the other way round: the target is what is made
             shipped = role == "mundane" and rank[0] <= STANDARD
-            yield Statement(role, names, rank, place, method, stated, to, through, shipped, naming)
+            yield Statement(role, names, rank, place, method, stated, to, through, shipped, naming, why)
 
 
 def _flow(row: tuple[int, int, str, str, Mapping[str, Any]], elements: tuple[Element, ...]) -> Flow:
@@ -346,7 +346,7 @@ def _subjects(properties: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def _facts(role: str, category: str, said: Mapping[str, Any]) -> tuple[Any, ...]:
-    """(role, rank, place, method, stated, category that it is made of, through, every) of a relationship."""
+    """(role, rank, place, method, stated, what it is made of, through, every, naming, why) of a relationship."""
     tier, specificity = said.get("tier", HAND), said.get("specificity", EXACT)
     place = Place(str(said.get("file") or DATABASE), int(said.get("line") or 0))
     method, stated = None, True
@@ -367,6 +367,7 @@ def _facts(role: str, category: str, said: Mapping[str, Any]) -> tuple[Any, ...]
         through,
         bool(said.get("every")),
         str(said.get("naming") or (NAME if int(specificity) >= EXACT else SEGMENT)),  # absent in earlier versions
+        str(said.get("why") or ""),
     )
 
 

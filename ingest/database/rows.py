@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.non_ros import BY_KIND
+from rosprivacy.ingest.database.carrying import Carrying
 from rosprivacy.ingest.database.element_properties import (
     Names,
     Roles,
@@ -21,9 +22,9 @@ from rosprivacy.ingest.database.element_properties import (
     origin_rows,
 )
 from rosprivacy.ingest.database.flow_statements import as_properties
-from rosprivacy.ingest.database.ids import category_labels, element_id, enclave_id
+from rosprivacy.ingest.database.ids import category_labels, element_id, enclave_id, intake_id
 from rosprivacy.ingest.database.non_ros_properties import properties_of
-from rosprivacy.ingest.database.schema import KIND_LABELS, LEG, SCHEMA, WILDCARD
+from rosprivacy.ingest.database.schema import INTAKE, KIND_LABELS, LEG, SCHEMA, WILDCARD
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -49,8 +50,12 @@ class RobotRows:
         ``id``, ``labels``, ``properties``.
     enclaves
         ``id``, ``properties``.
+    intakes
+        As elements: what stands for one where what comes to it goes on another way than what begins there.
     memberships, flows, derived
         ``source``, ``target`` (ids), ``properties``.
+    carried
+        ``source``, ``target`` (ids), ``types``: along which kinds of relationships data goes.
     roles
         By role: ``source`` (id), ``target`` (IRI), ``properties``.
     findings
@@ -65,11 +70,13 @@ class RobotRows:
     robot: str
     properties: Row
     elements: list[Row]
+    intakes: list[Row]
     enclaves: list[Row]
     memberships: list[Row]
     flows: list[Row]
     roles: dict[str, list[Row]]
     derived: list[Row]
+    carried: list[Row]
     findings: list[Row]
     across: list[Row]
     foreign: list[Row] = field(default_factory=list)
@@ -82,7 +89,7 @@ class RobotRows:
     @property
     def size(self) -> int:
         """Number of rows, for batches and progress."""
-        lists = (self.elements, self.memberships, self.flows, self.derived, self.findings, self.across)
+        lists = (self.elements, self.memberships, self.flows, self.derived, self.carried, self.findings, self.across)
         return sum(map(len, (*lists, *self.roles.values())))
 
 
@@ -114,13 +121,21 @@ def robot_rows(
     by_element = dict(zip(graph.elements, ids, strict=True))
     enclaves = sorted({profile.enclave for profile in graph.profiles})
     found, across = finding_rows(analysis, vocabulary, by_element, dict.fromkeys(graph.elements, robot))
+    results = list(element_results(analysis, bound, names, roles))
+    carrying = Carrying(analysis, [said for _, said in results], labels)
+    elements = graph.elements
     parts: dict[str, Any] = {
-        "elements": list(_elements(robot, ids, element_results(analysis, bound, names, roles), analysis)),
+        "elements": list(_elements(robot, ids, results, analysis)),
+        "intakes": [intake_row(robot, ids[v], elements[v], carrying.labels(v)) for v in carrying.intakes],
         "enclaves": [{"id": enclave_id(robot, e), "properties": {"path": e, "robot": robot}} for e in enclaves],
         "memberships": list(_memberships(robot, analysis)),
         "flows": list(_flows(robot, analysis, bound, names, ids)),
         "roles": _roles(robot, bound, vocabulary, ids),
         "derived": list(origin_rows(analysis, ids, [robot] * len(ids))),
+        "carried": [
+            {"source": end_id(ids[a], part), "target": end_id(ids[b], to), "types": types}
+            for (a, part), (b, to), types in carrying.steps
+        ],
         "findings": found,
         "across": across,
     }
@@ -138,6 +153,7 @@ def rows_of(robot: str, properties: Row, parts: Mapping[str, Any]) -> RobotRows:
         "elements": len(parts["elements"]),
         "flows": len(parts["flows"]),
         "roles": sum(map(len, parts["roles"].values())),
+        "carried": sum(len(row["types"]) for row in parts["carried"]),
     }
     known = {"schema": SCHEMA, **counts, **properties}
     text = json.dumps([robot, known, parts], sort_keys=True)
@@ -175,6 +191,17 @@ def element_row(
         **(properties_of(facts) if facts else {}),
     }
     return {"id": key, "labels": [*kind_labels(element), *labels], "properties": {**known, **properties}}
+
+
+def intake_row(robot: str, key: str, element: Element, labels: Iterable[str] = ()) -> Row:
+    """Return the row of the intake of an element, whose id is given."""
+    known = {"name": element.name, "robot": robot or None, "kind": element.kind}
+    return {"id": intake_id(key), "labels": [INTAKE, *labels], "properties": known}
+
+
+def end_id(key: str, intake: bool) -> str:  # noqa: FBT001 - one of two ids
+    """Return the id of an element or of its intake."""
+    return intake_id(key) if intake else key
 
 
 def _memberships(robot: str, analysis: Analysis) -> Iterator[Row]:
@@ -259,5 +286,6 @@ def _particulars(statement: Statement) -> Row:
     if statement.role == "source":
         return {"through": list(statement.through) or None}
     if statement.role == "sanitizer":
-        return {"method": str(statement.method) if statement.method else None, "stated": statement.stated}
+        method = str(statement.method) if statement.method else None
+        return {"method": method, "stated": statement.stated, "why": statement.why or None}
     return {"of": statement.categories[0]} if statement.role == "derivation" else {}

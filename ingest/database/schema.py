@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-SCHEMA = 3  # raised when what a load writes gains what an answer rests on, or changes its meaning; none was stored at 1
+SCHEMA = 4  # raised when what a load writes gains what an answer rests on, or changes its meaning; none was stored at 1
 _IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 STRING, INTEGER, BOOLEAN, STRINGS = "STRING", "INTEGER", "BOOLEAN", "LIST<STRING>"
 
@@ -69,7 +69,8 @@ KIND_LABELS = {
     "display": "Display",
     "person": "Person",
 }
-LEG, WILDCARD = "Leg", "Wildcard"
+LEG, WILDCARD, INTAKE = "Leg", "Wildcard", "Intake"
+CARRIES = "CARRIES_"  # and a kind of data, as `carries` writes it
 
 _OURS = Property("robot", STRING, "whose load wrote it; absent on what people add")
 _PLACE = (
@@ -119,7 +120,9 @@ ELEMENT = NodeKind(
         Property("line", INTEGER, "outside ROS: where it is stated"),
     ),
     f"the kind, one of {', '.join(f'`{label}`' for label in KIND_LABELS.values())}; `{LEG}` on the request and the "
-    f"response of a service or action, `{WILDCARD}` on a name with wildcards. And for each category, here `Biometric`: "
+    f"response of a service or action, `{WILDCARD}` on a name with wildcards; `{INTAKE}` on what stands beside an "
+    f"element at the end of `{CARRIES}…`, where what comes to it goes on another way than what begins there. And for "
+    "each category, here `Biometric`: "
     "`Biometric` where it gets to, `BiometricSource` where it begins (at a source, or at a node that makes it of other "
     "data), `BiometricLeak`, `BiometricSanitizer`; the labels of broader categories too",
 )
@@ -139,6 +142,7 @@ ROBOT = NodeKind(
         Property("elements", INTEGER, "how many were loaded"),
         Property("flows", INTEGER, "how many were loaded"),
         Property("roles", INTEGER, "how many relationships of labels were loaded"),
+        Property("carried", INTEGER, "how many `CARRIES_…` were loaded"),
         Property("assumptions", STRING, "JSON: what the answer rests on"),
         Property("diagnostics", STRING, "JSON: what its policies and labels were read with"),
     ),
@@ -236,6 +240,14 @@ FLOWS_TO = RelationshipKind(
         _OURS,
     ),
 )
+CARRIED = RelationshipKind(
+    f"{CARRIES}BIOMETRIC",
+    "Element",
+    "Element",
+    "Data of the category goes this step; one type for each category that a source brings in or a node makes, and a "
+    "broader one does not stand for it. From an element to itself where it is both source and leak. Followed from a "
+    "source to a leak, it finds what the analysis finds, dismissed findings included.",
+)
 ROLES = {
     "source": RelationshipKind(
         "SOURCE_OF",
@@ -258,8 +270,9 @@ ROLES = {
         "It cleans the category.",
         (
             *_PLACE,
-            Property("method", STRING, "anonymise, aggregate, drop or pseudonymise; absent counts as the last"),
+            Property("method", STRING, "anonymise, aggregate, drop, absent or pseudonymise; none counts as the last"),
             Property("stated", BOOLEAN, "whether the label states the method"),
+            Property("why", STRING, "of method absent: why the node is not on the robot"),
         ),
     ),
     "conduit": RelationshipKind("PASSES", "Element", "DataCategory", "Reviewed: it passes the category on.", _PLACE),
@@ -324,6 +337,7 @@ ACROSS = RelationshipKind(
 )
 RELATIONSHIPS = (
     FLOWS_TO,
+    CARRIED,
     *ROLES.values(),
     DERIVES_FROM,
     RelationshipKind("OF_ROBOT", "Element", "Robot", "Whose element it is."),
@@ -336,7 +350,7 @@ RELATIONSHIPS = (
     ACROSS,
 )
 SUFFIXES = ("", "Source", "Leak", "Sanitizer")
-RESERVED = frozenset({kind.label for kind in NODES} | set(KIND_LABELS.values()) | {LEG, WILDCARD})
+RESERVED = frozenset({kind.label for kind in NODES} | set(KIND_LABELS.values()) | {LEG, WILDCARD, INTAKE})
 
 
 def quoted(identifier: str) -> str:

@@ -13,6 +13,7 @@ from rosprivacy.analysis.answer import robot_verdicts
 from rosprivacy.analysis.errors import DatabaseError
 from rosprivacy.analysis.model import unread
 from rosprivacy.ingest.database import cypher
+from rosprivacy.ingest.database.carrying import Carrying
 from rosprivacy.ingest.database.element_properties import (
     Names,
     Roles,
@@ -24,7 +25,7 @@ from rosprivacy.ingest.database.element_properties import (
 from rosprivacy.ingest.database.ids import category_labels, element_id
 from rosprivacy.ingest.database.loading import refusals, run, write
 from rosprivacy.ingest.database.robot_notices import diagnostics_of
-from rosprivacy.ingest.database.rows import kind_labels
+from rosprivacy.ingest.database.rows import end_id, intake_row, kind_labels
 from rosprivacy.ingest.database.schema import DERIVES_FROM, ELEMENT, KIND_LABELS, SUFFIXES
 
 if TYPE_CHECKING:
@@ -44,6 +45,8 @@ WRITE_ELEMENTS = (
     "SET n += row.properties REMOVE n:$(row.stale) SET n:$(row.labels)"
 )
 WRITE_FLOWS = "UNWIND $rows AS row MATCH ()-[f]->() WHERE elementId(f) = row.key SET f += row.properties"
+# Flows, findings and what is carried end at elements that people added, also at those of a later transaction.
+NAME_ELEMENTS = "UNWIND $rows AS row MATCH (n) WHERE elementId(n) = row.key SET n:Element, n.id = row.properties.id"
 DELETE_ORIGINS = "MATCH ()-[d:DERIVES_FROM]->() WHERE d.robot IN $names DELETE d"
 VERDICTS = (
     "UNWIND $rows AS row MATCH (r:Robot {name: row.robot}) "
@@ -80,10 +83,17 @@ class _Changes:
         ids = [
             str(p.get("id") or element_id(r, e)) for p, r, e in zip(stored.properties, robots, elements, strict=True)
         ]
-        self._elements = self._changed_elements(
-            element_results(analysis, stored.bound, names, Roles(vocabulary, labels)), ids, robots
-        )
+        results = list(element_results(analysis, stored.bound, names, Roles(vocabulary, labels)))
+        self._elements = self._changed_elements(results, ids, robots)
+        self._unnamed = [row for rows in self._elements.values() for row in rows if ELEMENT.label in row["labels"]]
         self._flows = self._changed_flows(names, robots)
+        carrying = Carrying(analysis, [said for _, said in results], labels)
+        self._intakes = [
+            intake_row(robots[v], ids[v], elements[v], carrying.labels(v)) for v in sorted(carrying.intakes)
+        ]
+        self._carried: dict[str, dict[tuple[str, str], set[str]]] = defaultdict(dict)
+        for (a, part), (b, to), types in carrying.steps:
+            self._carried[robots[a]][end_id(ids[a], part), end_id(ids[b], to)] = set(types)
         self.changed = sum(map(len, self._elements.values())) + sum(map(len, self._flows.values()))
         by_element = dict(zip(elements, ids, strict=True))
         of_robot = dict(zip(elements, robots, strict=True))
@@ -136,6 +146,7 @@ class _Changes:
         for name in names:
             if versions.get(name) != self._stored.robots[name].get("version"):
                 raise DatabaseError(f"robot {name!r} was loaded meanwhile; analyse the database again")
+        write(transaction, NAME_ELEMENTS, self._unnamed)
         write(transaction, WRITE_ELEMENTS, _rows(self._elements, robots))
         write(transaction, WRITE_FLOWS, _rows(self._flows, robots))
         run(transaction, DELETE_ORIGINS, names=robots)
@@ -143,7 +154,23 @@ class _Changes:
         write(transaction, cypher.create_relationships(DERIVES_FROM), _rows(self._origins, robots))
         write(transaction, cypher.CREATE_FINDINGS, _rows(self._findings, robots))
         write(transaction, cypher.CREATE_ACROSS, _rows(self._across, robots))
+        self._write_carried(transaction, robots)
         write(transaction, VERDICTS, [{"robot": name, "verdict": str(self._verdicts[name])} for name in names])
+
+    def _write_carried(self, transaction: ManagedTransaction, robots: list[str]) -> None:
+        """Where kinds of data go from elements of some robots, as far as it differs; intakes stand before."""
+        write(transaction, cypher.MERGE_INTAKES, self._intakes, labels=sorted(self._ours))
+        new = {ends: types for robot in robots for ends, types in self._carried.get(robot, {}).items()}
+        old = {(a, b): set(types) for a, b, types in transaction.run(cypher.READ_CARRIES, names=robots)}
+        write(transaction, cypher.DELETE_CARRIES, _more(old, new))
+        write(transaction, cypher.CREATE_CARRIES, _more(new, old))
+        run(transaction, cypher.DELETE_INTAKES, names=robots, ids=[row["id"] for row in self._intakes])
+
+
+def _more(some: Mapping[tuple[str, str], set[str]], others: Mapping[tuple[str, str], set[str]]) -> list[Row]:
+    """What goes between two ends in one and not in the other."""
+    more = {ends: types - others.get(ends, set()) for ends, types in some.items()}
+    return [{"source": a, "target": b, "types": sorted(types)} for (a, b), types in more.items() if types]
 
 
 def _by(rows: list[Row], robots: Mapping[str, str], key: str) -> dict[str, list[Row]]:

@@ -6,22 +6,17 @@ comes out is read anew, and given out only if every other decision and every com
 
 from __future__ import annotations
 
-import re
-from collections import Counter
 from contextlib import suppress
 from copy import deepcopy
 from dataclasses import replace
-from io import StringIO
 from typing import TYPE_CHECKING, Any
 
-from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
-from ruamel.yaml.error import YAMLError
-from ruamel.yaml.util import load_yaml_guess_indent
 
 from rosprivacy.analysis.errors import DecisionError, InputError, shown
 from rosprivacy.analysis.model import Place
 from rosprivacy.ingest.decisions.decisions_file import TARGET, parse_decisions
+from rosprivacy.ingest.reading.kept_yaml import FAILURES, changed, keeps_comments
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -34,7 +29,6 @@ NEW = """\
 decisions: 1
 findings: []
 """
-_COMMENT = re.compile(r"(?:^|(?<=\s))#.*$", re.MULTILINE)
 _NOWHERE = Place("", 0)
 
 
@@ -65,13 +59,13 @@ def with_decision(file: str, text: str | None, entry: Mapping[str, Any], remark:
     before = parse_decisions(file, old, vocabulary, "").entries
     try:
         new, place = _written(old, entry, remark)
-    except (YAMLError, ValueError, TypeError, AttributeError, LookupError) as error:
+    except FAILURES as error:
         raise _by_hand(file, f"cannot be changed: {shown(str(error).splitlines()[0])}") from None
     after = parse_decisions(file, new, vocabulary, "").entries
     others = [*before[:place], *before[place + 1 :]]
     if _facts([*after[:place], *after[place + 1 :]]) != _facts(others) or len(after) != max(len(before), place + 1):
         raise _by_hand(file, "cannot be changed without changing another decision")
-    if Counter(_COMMENT.findall(old)) - Counter(_COMMENT.findall(new)):
+    if not keeps_comments(old, new):
         raise _by_hand(file, "cannot be changed without losing a comment")
     return new
 
@@ -86,25 +80,20 @@ def _facts(entries: Iterable[Decision]) -> list[Decision]:
 
 def _written(text: str, entry: Mapping[str, Any], remark: str) -> tuple[str, int]:
     """The new text, and the number of the entry in it."""
-    unix = text.replace("\r\n", "\n")
-    yaml = YAML()
-    yaml.preserve_quotes = True
-    top, indent, offset = load_yaml_guess_indent(unix, yaml=yaml)
-    entries = _entries(top)
-    place = next((i for i, there in enumerate(entries) if _same_target(there, entry)), len(entries))
-    if place == len(entries):
-        entries.append(CommentedMap(entry))
-        if remark and "id" in entry and not (entries.fa.flow_style() or top.fa.flow_style()):
-            entries[place].yaml_add_eol_comment(shown(remark), "id")
-    else:
-        _change(entries[place], entry)
-    yaml.width = 1_000_000  # lines are people's
-    yaml.explicit_start = unix.lstrip("\ufeff").startswith("---")
-    yaml.indent(mapping=2, sequence=indent or 2, offset=offset or 0)
-    out = StringIO()
-    yaml.dump(top, out)
-    written = out.getvalue()
-    return written.replace("\n", "\r\n") if "\r\n" in text else written, place
+    places: list[int] = []
+
+    def change(top: Any) -> None:
+        entries = _entries(top)
+        place = next((i for i, there in enumerate(entries) if _same_target(there, entry)), len(entries))
+        places.append(place)
+        if place == len(entries):
+            entries.append(CommentedMap(entry))
+            if remark and "id" in entry and not (entries.fa.flow_style() or top.fa.flow_style()):
+                entries[place].yaml_add_eol_comment(shown(remark), "id")
+        else:
+            _change(entries[place], entry)
+
+    return changed(text, change), places[0]
 
 
 def _change(there: Any, entry: Mapping[str, Any]) -> None:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, LabelError, shown
 from rosprivacy.analysis.kernel.ranks import NONE_OF
-from rosprivacy.analysis.model import GLOB, NAME, Diagnostic, Method, Place, Severity, Statement
+from rosprivacy.analysis.model import CLEANS, GLOB, NAME, Diagnostic, Method, Place, Severity, Statement
 from rosprivacy.ingest.labels.entries import EXACT, SHIPPED, End, Entry, FlowEntry, naming, specificity
 from rosprivacy.ingest.labels.non_ros_reader import is_non_ros, read_element, read_limits
 from rosprivacy.ingest.policies.names import LONGEST_NAME
@@ -34,7 +34,7 @@ SECTIONS = {
     "actions": ("action",),
 }
 SIX_LISTS = ("source", "leak", "conduit", "sanitizer", "sensitive", "mundane")
-NODE_KEYS = ("source", "leak", "sanitizer", "conduit", "derives", "subjects", "note")
+NODE_KEYS = ("source", "leak", "sanitizer", "conduit", "derives", "subjects", "absent", "note")
 SAYS_NOTHING = ("subjects", "note")  # of what data does
 CHANNEL_KEYS = ("only", "never", "note")
 END_KINDS = ("node", "topic", "service", "action")
@@ -144,6 +144,8 @@ class LabelReader(FileReader):
                 yield from self._sanitizer(value, at, rank)
             elif key == "derives":
                 yield from self._derives(value, at, rank)
+            elif key == "absent":
+                yield from self._absent(label, value, at, rank)
 
     def _source(self, value: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
         if value.kind != "map":
@@ -170,11 +172,11 @@ class LabelReader(FileReader):
             name = self.kind_of_data(written, line)
             if method.kind == "empty":
                 yield Statement("sanitizer", (name,), rank, place, Method.PSEUDONYMISE, stated=False)
-            elif method.kind == "text" and method.text in list(Method):
+            elif method.kind == "text" and method.text in CLEANS:
                 yield Statement("sanitizer", (name,), rank, place, Method(method.text))
             else:
                 what = f"sanitizer method {shown(method.text or method.kind)!r}"
-                self.problem(method.line, what, f"one of {', '.join(Method)}")
+                self.problem(method.line, what, f"one of {', '.join(CLEANS)}")
 
     def _derives(self, value: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
         if value.kind == "empty":
@@ -190,6 +192,16 @@ class LabelReader(FileReader):
                 self.problem(item.line, "a derivation needs from and to", "write {from: Video, to: FaceTemplate}")
             elif all(ends.values()):
                 yield Statement("derivation", (ends["from"],), rank, place, to=ends["to"])
+
+    def _absent(self, label: Value, why: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
+        """A node that has a profile and is not on the robot: nothing gets there, and nothing comes from it."""
+        beside = [key for key, *_ in label.entries if key not in ("absent", "note")]
+        if why.kind != "text" or not why.text.strip():
+            self.problem(place.line, "absent without a reason", "write why it is not there: {absent: a test tool}")
+        elif beside:
+            self.problem(place.line, f"absent beside {beside[0]}", "a node that is not there does nothing: keep one")
+        else:
+            yield Statement("sanitizer", (), rank, place, Method.ABSENT, why=why.text.strip())
 
     def _subjects(self, label: Value) -> tuple[str, ...]:
         """Whom the data of a source are about: groups of persons, as a person calls them."""

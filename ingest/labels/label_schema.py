@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.model import NON_ROS, Method
+from rosprivacy.analysis.model import CLEANS, NON_ROS
 from rosprivacy.analysis.non_ros import RECIPIENTS, TRANSFERS
 from rosprivacy.ingest.labels.label_reader import END_KINDS, LONGEST_GROUP, NONE, SAYS_NOTHING
 from rosprivacy.ingest.labels.non_ros_reader import CARRIERS
@@ -171,7 +171,7 @@ def _node(one: dict[str, Any], some: dict[str, Any], note: dict[str, Any]) -> di
             "conduit": {**some, "description": "Reviewed: passes these on."},
             "sanitizer": {
                 "description": "Cleans these; a method that is not stated counts as pseudonymise.",
-                "anyOf": [some, _by_category({"enum": [*map(str, Method), None]})],
+                "anyOf": [some, _by_category({"enum": [*map(str, CLEANS), None]})],
             },
             "derives": {
                 "type": "array",
@@ -184,6 +184,7 @@ def _node(one: dict[str, Any], some: dict[str, Any], note: dict[str, Any]) -> di
                 "items": {"type": "string", "pattern": "\\S", "maxLength": LONGEST_GROUP},
                 "description": "Of a source: whom its data are about, such as residents or staff.",
             },
+            "absent": {"type": "string", "minLength": 1, "description": "Why it is not on this robot; stands alone."},
             "note": note,
         }
     )

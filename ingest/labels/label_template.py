@@ -31,6 +31,7 @@ HEADER = """\
 #              {sanitizer: {Video: anonymise}}      ends it: anonymise, aggregate, drop; pseudonymise does not
 #              {derives: [{from: Video, to: FaceTemplate}]}   makes one kind of another
 #              conduit  or  {conduit: [Location]}   reviewed: passes it on
+#              {absent: why}                        has a profile, but is not on this robot
 #   channels:  mundane     never carries personal data
 #              sensitive   reviewed: may carry it
 #              {only: [HomeMap]}  or  {never: [Location]}

@@ -41,6 +41,13 @@ class NoMethod(TypedDict):
     taken_as: str
 
 
+class AbsentEntry(TypedDict):
+    """A node that has a profile and is not on the robot, on a person's word."""
+
+    element: ElementEntry
+    why: str
+
+
 class DatabaseEntry(TypedDict):
     """The database that was read."""
 
@@ -94,6 +101,7 @@ class Assumptions(Given):
     standard_channels_reached: NotRequired[list[Reached]]
     standard_channels_unchanged: NotRequired[list[ElementEntry]]
     overruled: NotRequired[list[OverruledEntry]]
+    absent: NotRequired[list[AbsentEntry]]
     globs: NotRequired[list[GlobEntry]]
 
 

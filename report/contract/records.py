@@ -140,6 +140,11 @@ class OpenEntry(TypedDict):
     distance: int
     frontier: bool
     label: NotRequired[LabelKey]
+    through: NotRequired[ElementEntry | None]
+    closes: NotRequired[int]
+    leaks: NotRequired[int]
+    waits: NotRequired[bool]
+    infrastructure: NotRequired[bool]
     missing: NotRequired[list[str]]
 
 

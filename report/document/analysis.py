@@ -9,7 +9,8 @@ import json
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
-from rosprivacy.analysis.findings.sanitizing import cleanings, makings
+from rosprivacy.analysis.findings.review_order import Behind
+from rosprivacy.analysis.findings.sanitizing import absent, cleanings, makings
 from rosprivacy.analysis.kernel.ranks import in_words
 from rosprivacy.analysis.legal import turned_special
 from rosprivacy.analysis.model import UNREAD_FILE
@@ -19,7 +20,7 @@ from rosprivacy.report.document import ledger
 from rosprivacy.report.document.non_ros import inventory, taken_by_kind, without_backups
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Collection, Iterable, Mapping
 
     from rosprivacy.analysis.answer import Analysis, Finding, OpenQuestion, Step
     from rosprivacy.analysis.hierarchy import Hierarchy
@@ -64,7 +65,7 @@ def analysis_document(answer: Answer) -> AnalysisDocument:
         "view": graph.view,
         "categories": [_category(categories[name], hierarchy) for name in analysis.emitted],
         "findings": [_finding(finding, categories) for finding in analysis.findings],
-        "open": [_open(question) for question in analysis.open],
+        "open": _open(answer, analysis.open),
         "unknown_ends": [
             {
                 "element": element_dict(end.element),
@@ -120,6 +121,7 @@ def analysis_document(answer: Answer) -> AnalysisDocument:
                 element_dict(replace(element, leg="")) for element in analysis.standard_unchanged
             ],
             "overruled": [_overruled(one) for one in analysis.spread.overruled],
+            "absent": [{"element": element_dict(element), "why": why} for element, why in absent(answer.bound, graph)],
             "globs": ledger.globs(answer.globs(taken), element_dict),
         },
     }
@@ -261,13 +263,24 @@ def _legal(legal: Legal) -> ProvisionEntry:
     }
 
 
-def _open(question: OpenQuestion) -> OpenEntry:
+def _open(answer: Answer, questions: Iterable[OpenQuestion]) -> list[OpenEntry]:
+    """Open elements, with what stands behind each."""
+    order = answer.review_order
+    return [_question(q, order.get(q.element.shown_as, Behind()), answer.infrastructure) for q in questions]
+
+
+def _question(question: OpenQuestion, behind: Behind, infrastructure: Collection[tuple[str, str]]) -> OpenEntry:
     shown: OpenEntry = {
         "element": element_dict(question.element),
         "categories": list(question.categories),
         "distance": question.distance,
         "frontier": question.frontier,
         "label": label_key(question.element),
+        "through": element_dict(behind.through) if behind.through else None,
+        "closes": behind.closes,
+        "leaks": behind.leaks,
+        "waits": behind.waits,
+        "infrastructure": (question.element.kind, question.element.name) in infrastructure,
     }
     if question.missing:
         shown["missing"] = list(question.missing)

@@ -79,6 +79,8 @@ def _stopped(index: Index) -> Iterator[str]:
         yield words("a.standard.reached", element=name(row["element"]), data=index.all_data(row["categories"]))
     for element in said.get("standard_channels_unchanged", ()):
         yield words("a.standard.unchanged", element=name(element))
+    for row in said.get("absent", ()):
+        yield words("a.absent", element=name(row["element"]), why=printable(row["why"]))
     yield from _globs(index)
     for row in said.get("overruled", ()):
         yield words(

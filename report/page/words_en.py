@@ -169,6 +169,7 @@ WORDS = {
     "a.standard.none": "No standard ROS channel was taken to carry no personal data.",
     "a.standard.reached": "{data} would get to {element}, and stops there for this.",
     "a.standard.unchanged": "A label by a glob says that {element} may carry data; it does not count against that file.",
+    "a.absent": "{element} has a profile and is not on the robot: {why}. So nothing gets to it, and nothing comes from it.",
     "a.glob": (
         "The glob at {place} ({says}) decides {elements}; data ends for it at {closed} of them, and {reviewed} count as "
         "reviewed for it."
@@ -474,6 +475,7 @@ WORDS = {
     "c.leaves": "Leaves it all the same",
     "c.beside": "Get it beside",
     "c.past": "Paths past it",
+    "k.absent": "said not to be on the robot",
     "method.anonymise": "anonymises",
     "method.aggregate": "aggregates",
     "method.drop": "drops",

@@ -11,18 +11,19 @@ from typing import TYPE_CHECKING, Any
 from rich.text import Text
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.model import CHANNELS, MERGED
+from rosprivacy.analysis.model import MERGED
 from rosprivacy.analysis.text import counted
 from rosprivacy.report.document.analysis import files_not_read
-from rosprivacy.report.naming import kind_of, label_name, shown_name, whole
+from rosprivacy.report.naming import shown_name, whole
 from rosprivacy.report.terminal.denied import denied_lines
 from rosprivacy.report.terminal.finding_lines import MANY, details, law_lines, overview
 from rosprivacy.report.terminal.fleet import fleet_lines
 from rosprivacy.report.terminal.globs import glob_lines, glob_warnings
-from rosprivacy.report.terminal.labels import overruled_lines, standard_lines
+from rosprivacy.report.terminal.labels import absent_lines, overruled_lines, standard_lines
 from rosprivacy.report.terminal.ledger import ledger_lines, taken_away_lines
 from rosprivacy.report.terminal.next_step import next_lines
 from rosprivacy.report.terminal.restriction import asked_at_verdict, asked_lines
+from rosprivacy.report.terminal.review import SHOWN, review_lines
 from rosprivacy.report.terminal.unknown_ends import end_lines, ends_at_verdict
 from rosprivacy.report.terminal.wrapped import wrapped
 
@@ -42,7 +43,6 @@ ACCEPTED = {  # the same where a decision accepts a finding
 }
 TAKEN = {"conduit": "passes on all that gets there", "leak": "lets out all that gets there"}
 UNREAD = "no leak reached, but policy files with grants were not read"
-SHOWN = 12  # open elements of a kind, or denied flows, without --verbose
 Line = tuple[str, str]  # text, style
 
 
@@ -84,7 +84,7 @@ def _lines(report: Mapping[str, Any], *, verbose: bool, quiet: bool) -> Iterator
     yield _summary(report), ""
     yield from fleet_lines(report)
     yield from _findings(report, verbose=verbose)
-    yield from _review(report, verbose=verbose)
+    yield from review_lines(report, verbose=verbose)
     yield from end_lines(report, most=None if verbose else SHOWN)
     yield from denied_lines(report, most=None if verbose else SHOWN)
     if verbose:
@@ -129,31 +129,6 @@ def _findings(report: Mapping[str, Any], *, verbose: bool) -> Iterator[Line]:
     yield from law_lines(report, report["findings"])
 
 
-def _review(report: Mapping[str, Any], *, verbose: bool) -> Iterator[Line]:
-    """Open elements in the order of review: nodes on the frontier, then channels, then what lies behind."""
-    groups = (
-        ("Review next (nodes that data reaches first)", [q for q in report["open"] if q["frontier"]]),
-        ("Channels not reviewed", [q for q in report["open"] if q["element"]["kind"] in CHANNELS]),
-        (
-            "Nodes behind those",
-            [q for q in report["open"] if q["element"]["kind"] not in CHANNELS and not q["frontier"]],
-        ),
-    )
-    for title, questions in groups:
-        if not questions:
-            continue
-        yield "", ""
-        yield f"{title}: {len(questions)}", "bold"
-        chosen = questions if verbose else questions[:SHOWN]
-        for question in chosen:
-            element = question["element"]
-            missing = "".join(f" no {what} is stated;" for what in question.get("missing", ()))
-            what = f"{label_name(question)}  ({kind_of(element)}; {', '.join(question['categories'])};{missing}"
-            yield f"   {what} {counted(question['distance'], 'step')} from a source)", ""
-        if len(questions) > len(chosen):
-            yield f"   … and {len(questions) - len(chosen)} more (-v shows all)", "dim"
-
-
 def _assumed(report: Mapping[str, Any], *, verbose: bool) -> Iterator[Line]:
     assumptions = report["assumptions"]
     yield "", ""
@@ -183,6 +158,7 @@ def _assumed(report: Mapping[str, Any], *, verbose: bool) -> Iterator[Line]:
     for taken in assumptions["sanitizers_without_method"]:
         method = f"sanitizer {shown_name(taken['element'])} states no method for {taken['category']}"
         yield f"   {method}: taken as pseudonymise, the data is still personal", "yellow"
+    yield from absent_lines(report)
     yield from overruled_lines(report)
     yield "   labels are a person's word; this is no legal verdict", "dim"
 

@@ -38,6 +38,12 @@ def standard_lines(report: Mapping[str, Any], most: int | None) -> Iterator[Line
         yield f"   {what}; name them, or write out the end of the glob (*/rosout)", "yellow"
 
 
+def absent_lines(report: Mapping[str, Any]) -> Iterator[Line]:
+    """Return the nodes of which labels say that they are not on the robot."""
+    for row in report["assumptions"].get("absent", ()):
+        yield f"   {shown_name(row['element'])} is not on the robot: {shown(row['why'])}", ""
+
+
 def overruled_lines(report: Mapping[str, Any]) -> Iterator[Line]:
     """Return how many sources and leaks labels say that other labels take away."""
     rows = report["assumptions"].get("overruled", ())

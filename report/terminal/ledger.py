@@ -22,6 +22,7 @@ COUNTED = {  # by -> of one, of several
     "only": ("limit 'only'", "limits 'only'"),
     "never": ("limit 'never'", "limits 'never'"),
     "sanitizer": ("sanitizer", "sanitizers"),
+    "absent": ("kind of data at a node that is not there", "kinds of data at nodes that are not there"),
     "outdone": ("source or leak by a label of higher rank", "sources or leaks by labels of higher rank"),
     "review": ("element reviewed by a label", "elements reviewed by labels"),
     "decision": ("accepted finding", "accepted findings"),
@@ -31,8 +32,8 @@ COUNTED = {  # by -> of one, of several
 }
 SAYS = {
     "deny": "denied", "standard-channel": "taken as mundane", "mundane": "mundane", "only": "closed by 'only'",
-    "never": "closed by 'never'", "sanitizer": "cleaned", "outdone": "outdone", "review": "reviewed",
-    "decision": "accepted", "restriction": "not asked about",
+    "never": "closed by 'never'", "sanitizer": "cleaned", "absent": "said not to be there",
+    "outdone": "outdone", "review": "reviewed", "decision": "accepted", "restriction": "not asked about",
 }  # fmt: skip
 
 

@@ -14,6 +14,7 @@ from rosprivacy.analysis.fleet.patterns_of_pairs import Groups
 from rosprivacy.analysis.model import unread
 from rosprivacy.assumptions import assumptions_of
 from rosprivacy.decided import accepts, joined_to
+from rosprivacy.ingest.labels.shipped import infrastructure_of
 from rosprivacy.result import Result
 
 if TYPE_CHECKING:
@@ -76,6 +77,7 @@ def concluded(
         joined,
         view,
         counts,
+        infrastructure_of((question.element for question in analysis.open), system.vocabulary),
         policies=system.policies,
         labels=system.labels,
         options=options,

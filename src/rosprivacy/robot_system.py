@@ -15,7 +15,7 @@ from rosprivacy.answering import answer
 from rosprivacy.assumptions import files_read, remembered
 from rosprivacy.ingest.labels.add_non_ros import extend, extended
 from rosprivacy.ingest.labels.binding import bind, join, remarks
-from rosprivacy.ingest.labels.label_file import INFRASTRUCTURE, Labels, read_labels, unknown_categories
+from rosprivacy.ingest.labels.label_file import Labels, read_labels, unknown_categories
 from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.ingest.policies.joint_policies import joint_warnings
 from rosprivacy.ingest.policies.merged_policies import merging_notices
@@ -138,12 +138,6 @@ def read_system(policies: tuple[str, ...], settings: Settings) -> Read:
 def standard_channels(graph: FlowGraph, vocabulary: Vocabulary, settings: Settings) -> set[tuple[str, str]]:
     """Return (kind, name) of the channels that the standard file takes as mundane (rule S13)."""
     bound = bind(graph, read_label_files((), vocabulary, settings))
-    return {(graph.elements[vertex].kind, graph.elements[vertex].name) for vertex in bound.elements}
-
-
-def infrastructure_channels(graph: FlowGraph, vocabulary: Vocabulary) -> set[tuple[str, str]]:
-    """Return (kind, name) of the channels that the file of infrastructure proposes to take as mundane (rule S13)."""
-    bound = bind(graph, [read_labels(INFRASTRUCTURE, vocabulary)])
     return {(graph.elements[vertex].kind, graph.elements[vertex].name) for vertex in bound.elements}
 
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from rosprivacy.analysis.errors import DatabaseError
+from rosprivacy.ingest.database.schema_names import schema_names
 from rosprivacy.private_neo4j import connection
 from rosprivacy.queries.library import pack
 from tests.helpers.command import LINE, run
@@ -146,7 +147,29 @@ class TestQuery:
         for asked in (("--cypher", text), ("--file", tmp_path / "mine.cypher")):
             done = cli("query", *asked, "robot=h1", "-f", "csv")
             assert (done.returncode, done.stdout) == (0, "name\n/uplink\n")
-        assert cli("query", "--cypher", "MATCH (n:Nothing) RETURN n").stdout == "no rows\n"
+        nobody = "MATCH (n:HealthLeak)-[:CARRIES_HEALTH]->(m) RETURN n.transfer"  # there can be one
+        assert cli("query", "--cypher", nobody).stdout == "no rows\n"
+
+    @pytest.mark.usefixtures("loaded")
+    def test_names_that_nothing_has_are_errors(self, cli: Cli) -> None:
+        """S11, A3 of the users' review: one line for each, with the nearest name."""
+        text = "MATCH (n:BiometrcLeak)-[:CARRIES_VIDE0]->(:Storage) RETURN n.nam, n.robot, n.zzzzzz"
+        done = cli("query", "--cypher", text)
+        assert (done.returncode, done.stdout) == (2, "")
+        said = [line.partition(" or ")[0] for line in lines(done)]
+        assert said == [
+            "nothing has the label 'BiometrcLeak'; did you mean BiometricLeak",
+            "nothing has the property 'nam'; did you mean name",
+            "nothing has the property 'zzzzzz'; see them with rosprivacy query --schema",
+            "nothing has the relationship type 'CARRIES_VIDE0'; did you mean CARRIES_VIDEO",
+        ]
+
+    def test_the_schema_is_told_without_a_database(self, cli: Cli) -> None:
+        done = cli("query", "--schema")
+        assert done.returncode == 0
+        for names in schema_names([]).values():
+            assert all(name in done.stdout for name in names)
+        assert cli("query", "findings", "--schema").returncode == 2
 
     @pytest.mark.usefixtures("loaded")
     def test_no_cell_of_csv_is_a_formula(self, cli: Cli, tmp_path: Path) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from hypothesis import Phase, given, settings
 
 from rosprivacy.analysis.errors import InputErrors
@@ -10,15 +12,18 @@ from rosprivacy.analysis.model import Category
 from rosprivacy.ontology.vocabulary import Vocabulary
 from tests.helpers.systems import PARENTS, System, analysed, systems
 
+if TYPE_CHECKING:
+    from hypothesis.strategies import SearchStrategy
+
 VOCABULARY = Vocabulary.of(Category(n, f"urn:test:{n}", f"Test{n}", n, n, up) for n, up in PARENTS.items())
 
 
-def random_systems(count: int) -> list[System]:
-    """The same each time."""
+def random_systems(count: int, some_of: SearchStrategy[System] | None = None) -> list[System]:
+    """The same each time; ``some_of`` others than those of ``systems``."""
     some: list[System] = []
 
     @settings(max_examples=4 * count, derandomize=True, database=None, phases=[Phase.generate], deadline=None)
-    @given(systems())
+    @given(systems() if some_of is None else some_of)
     def take(system: System) -> None:
         if analysed(system) is not None and _agree(system):
             some.append(system)

@@ -192,7 +192,7 @@ def results(session: SparkSession, tmp_path_factory: pytest.TempPathFactory) -> 
 
 
 ABOUT = ("distance", "frontier")  # depend on which robots are looked at together
-OWN = ("elements", "enclaves", "memberships", "flows", "roles")
+OWN = ("elements", "intakes", "enclaves", "memberships", "flows", "carried", "roles")
 
 
 def test_results_are_the_rows_of_every_robot(results: str, monkeypatch: pytest.MonkeyPatch) -> None:

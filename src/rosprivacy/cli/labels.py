@@ -8,14 +8,15 @@ from typing import Annotated
 import typer
 
 from rosprivacy.analysis.errors import InputError
-from rosprivacy.cli.inputs import Inputs, reads_system
+from rosprivacy.analysis.text import counted
+from rosprivacy.cli.inputs import Inputs, reads_system, refuse
 from rosprivacy.cli.options import Output
 from rosprivacy.cli.output import emit
 
 
 @reads_system(
-    "the policies of one robot that has no labels yet",
-    without=("labels", "fleet", "from_database", "neo4j", "categories", "category", "decisions"),
+    "the policies of one robot",
+    without=("fleet", "from_database", "neo4j", "categories", "category", "decisions"),
 )
 def labels(
     inputs: Inputs,
@@ -25,11 +26,21 @@ def labels(
     infrastructure: Annotated[
         bool, typer.Option("--infrastructure", help="Print the proposal for more such channels.")
     ] = False,
+    update: Annotated[
+        bool, typer.Option("--update", help="Add lines for what is new in the policies to the file of --labels.")
+    ] = False,
+    next_round: Annotated[
+        bool, typer.Option("--next", help="Add lines for what to review next to the file of --labels.")
+    ] = False,
     output: Output = None,
 ) -> None:
-    """Make a first label file, or print the schema or the files that come with the program."""
-    if [init, schema, standard, infrastructure].count(True) != 1:
-        raise typer.BadParameter("name one of --init, --schema, --standard, --infrastructure")
+    """Make a label file or add to one, or print the schema or the files that come with the program."""
+    if [init, schema, standard, infrastructure, update, next_round].count(True) != 1:
+        raise typer.BadParameter("name one of --init, --update, --next, --schema, --standard, --infrastructure")
+    if update or next_round:
+        _add(inputs, output, update=update)
+        return
+    refuse("labels", "label files with --update and --next only", inputs.given("labels"))
     if init and output and output.is_file():
         raise InputError(str(output), 0, "is there already", "a label file is work: name another, or remove it")
     if init:
@@ -40,18 +51,33 @@ def labels(
         emit(_shipped("standard" if standard else "infrastructure"), output)
 
 
+def _add(inputs: Inputs, output: Path | None, *, update: bool) -> None:
+    """Lines into the label file that is named, the one that people edit; remarks go to the terminal."""
+    from rosprivacy.label_lines import next_lines, updated
+
+    labels = tuple(inputs.labels or ())
+    written = (updated if update else next_lines)(inputs.named, labels, inputs.settings)
+    for remark in written.remarks:
+        typer.echo(remark, err=True)
+    file = output or Path(written.file)
+    if written.added or output:
+        emit(written.text, file, edited=Path(written.file))
+    typer.echo(f"{file}: {counted(written.added, 'line')} added", err=True)
+
+
 def _first(inputs: Inputs, output: Path | None) -> tuple[str, Path | None, dict[Path, str | None]]:
     """A first label file; and beside it, if it goes into a file, the schema that its first line names."""
     from rosprivacy.ingest.labels.label_template import SCHEMA_FILE, template
+    from rosprivacy.ingest.labels.shipped import infrastructure_of
     from rosprivacy.ingest.policies.flow_graph import build
     from rosprivacy.ontology.vocabulary import load
-    from rosprivacy.robot_system import infrastructure_channels, read_system, standard_channels
+    from rosprivacy.robot_system import read_system, standard_channels
 
     settings = inputs.settings
     vocabulary = load(ontologies=settings.ontologies)
     system, _ = read_system(inputs.named, settings)
     graph = build(system, settings.view)
-    known = standard_channels(graph, vocabulary, settings), infrastructure_channels(graph, vocabulary)
+    known = standard_channels(graph, vocabulary, settings), infrastructure_of(graph.elements, vocabulary)
     own = sorted(set(vocabulary.categories) - set(load().categories))
     text = template(graph, *known, own, schema=output is not None)
     schema = output.parent / SCHEMA_FILE if output else None

@@ -14,6 +14,7 @@ import typer
 
 from rosprivacy.analysis.errors import QueryError, reason, shown
 from rosprivacy.cli.driver import driver_of
+from rosprivacy.cli.inputs import refuse
 from rosprivacy.cli.options import (
     Output,
     Server,
@@ -22,6 +23,8 @@ from rosprivacy.cli.output import emit
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
+
+    from neo4j import Driver
 
     from rosprivacy.queries.library import Query
     from rosprivacy.queries.run import Rows
@@ -61,6 +64,9 @@ def query(
         Path | None, typer.Option("--file", metavar="FILE", show_default=False, help="Ask what stands in this file.")
     ] = None,
     show: Annotated[bool, typer.Option("--show", help="Print the question's Cypher instead of asking it.")] = False,
+    schema: Annotated[
+        bool, typer.Option("--schema", help="Print the labels, relationship types and properties of the graph instead.")
+    ] = False,
     format: Annotated[RowFormat, typer.Option("--format", "-f", help="Of the rows.")] = RowFormat.table,  # noqa: A002 - the option's name
     output: Output = None,
     limit: Annotated[int, typer.Option(min=1, help="Most rows to print.")] = 1000,
@@ -75,6 +81,13 @@ def query(
     given = list(values or ())
     if (cypher is not None) + (file is not None) + (name is not None and "=" not in name) > 1:
         raise typer.BadParameter("name a question, or give --cypher, or --file")
+    if schema:
+        from rosprivacy.cli.schema_listing import listing
+
+        beside = (("NAME", name), ("--cypher", cypher), ("--file", file))
+        refuse("--schema", "no question", [what for what, value in beside if value is not None])
+        emit(listing(), output)
+        return
     asked = None
     if cypher is None and file is None:
         if name is None:
@@ -91,13 +104,23 @@ def query(
     with driver_of(neo4j) as driver:
         if asked:
             check_names(driver, asked, parameters)
-        rows = run(driver, text, parameters, limit=limit, timeout=timeout)
-        known = run(driver, ROBOTS, limit=None, timeout=timeout)
+        rows = run(driver, text, parameters, limit=limit, timeout=timeout, known=_known_names(driver))
+        robots = run(driver, ROBOTS, limit=None, timeout=timeout)
     emit(_text(rows, format, wide=output is not None), output)
     if rows.more:
         print(f"only the first {limit:,} rows are shown; --limit shows more", file=sys.stderr)
-    if others := of_other_schemas(dict(zip(known.columns, row, strict=True)) for row in known.rows):
+    if others := of_other_schemas(dict(zip(robots.columns, row, strict=True)) for row in robots.rows):
         print(f"warning: {others}, so rows can be missing or differ; {HINT}", file=sys.stderr)
+
+
+def _known_names(driver: Driver) -> dict[str, frozenset[str]]:
+    """The names that a query can ask for: those of the schema, and of all kinds of data, loaded or not."""
+    from rosprivacy.ingest.database.schema_names import LABELS_OF_CATEGORIES, schema_names
+    from rosprivacy.ontology.vocabulary import load
+    from rosprivacy.queries.run import run
+
+    stored = {str(label) for (label,) in run(driver, LABELS_OF_CATEGORIES, limit=None).rows}
+    return schema_names(stored | {category.label for category in load().categories.values()})
 
 
 def _listed(queries: Iterable[Query]) -> str:

@@ -117,6 +117,9 @@ def read(folder: str) -> tuple[dict[str, Any], Iterator[RobotRows]]:
         raise InputErrors([GraphError(folder, 0, f"no results: {shown(why)}", hint)]) from None
     if [row.get("format") for row in answer] != [FORMAT]:
         raise InputErrors([GraphError(folder, 0, f"no results ({FORMAT})", hint)])
+    if set(PARTS) - set(robots.schema.names):
+        hint = "analyse again, with analyze --results and another folder"
+        raise InputErrors([GraphError(folder, 0, "results of an earlier version", hint)])
     return json.loads(answer[0]["document"]), _read(robots, dataset)
 
 

@@ -7,7 +7,7 @@ bring data to what is shared are placed along.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.answer import robot_verdicts
@@ -25,7 +25,7 @@ from rosprivacy.spark.shown_robots import limited
 from rosprivacy.spark.units import unit_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.findings.concerns import Concern
@@ -93,7 +93,7 @@ def core_rows(plan: Plan) -> list[RobotRows]:
     fleet_rows = _fleet_rows(placed, members, plan, unit_of(()))
     core = _core(plan)
     made = [rows for owner in core for rows in fleet_rows.of(owner)]
-    mine = {row["id"] for rows in made for row in rows.elements}
+    mine = _ids(made)
     return [_ending_at(rows, mine, whole=True) for rows in made]
 
 
@@ -102,11 +102,16 @@ def _rows(units: Sequence[Unit], plan: Plan, read: Read) -> Iterator[RobotRows]:
     fleet_rows = _fleet_rows(placed, members, plan, unit_of(units))
     core = _core(plan)
     made = [rows for owner in sorted(unit_of(units)) for rows in fleet_rows.of(owner)]
-    mine = {row["id"] for rows in made for row in rows.elements}
-    shared = {row["id"] for owner in core for rows in fleet_rows.of(owner) for row in rows.elements}
+    mine = _ids(made)
+    shared = {key for owner in core for key in _ids(fleet_rows.of(owner))}
     yield from (_derived_at(rows, mine | shared) for rows in made)
     for owner in core:
         yield from (_ending_at(rows, mine, whole=False) for rows in fleet_rows.of(owner))
+
+
+def _ids(some: Iterable[RobotRows]) -> set[str]:
+    """The ids of elements, and of their intakes."""
+    return {row["id"] for rows in some for row in (*rows.elements, *rows.intakes)}
 
 
 def _core(plan: Plan) -> list[str]:
@@ -189,19 +194,22 @@ def _derived_at(rows: RobotRows, known: Collection[str]) -> RobotRows:
 def _ending_at(rows: RobotRows, ids: Collection[str], *, whole: bool) -> RobotRows:
     """Of what is shared, the flows, findings and what is made that end at some elements; or with all else, too."""
     parts = _parts(rows)
-    for name in ("flows", "findings", "derived"):
+    for name in ("flows", "findings", "derived", "carried"):
         parts[name] = [row for row in parts[name] if row["target"] in ids]
     found = {row["id"] for row in parts["findings"]}
     parts["across"] = [row for row in rows.across if row["source"] in found]
     if not whole:
-        parts |= {"elements": [], "enclaves": [], "memberships": [], "roles": {}}
+        parts |= {"elements": [], "intakes": [], "enclaves": [], "memberships": [], "roles": {}}
     return rows_of(rows.robot, _own(rows.properties), _with_foreign(parts, rows))
 
 
 def _with_foreign(parts: dict[str, Any], rows: RobotRows) -> dict[str, Any]:
     """Only those elements of others that the rows name."""
     named = {
-        row[end] for name in ("flows", "derived", "findings") for row in parts[name] for end in ("source", "target")
+        row[end]
+        for name in ("flows", "derived", "carried", "findings")
+        for row in parts[name]
+        for end in ("source", "target")
     }
     named |= {row["target"] for row in parts["across"]}
     return {**parts, "foreign": [row for row in rows.foreign if row["id"] in named]}
@@ -212,17 +220,19 @@ def put_together(some: Sequence[RobotRows]) -> RobotRows:
     first, *others = some
     parts = _parts(first)
     for rows in others:
-        for name in ("flows", "derived", "findings", "across", "foreign"):
+        for name in ("flows", "derived", "carried", "findings", "across", "foreign"):
             parts[name] = [*parts[name], *getattr(rows, name)]
     parts["foreign"] = sorted({row["id"]: row for row in parts["foreign"]}.values(), key=lambda row: str(row["id"]))
     return rows_of(first.robot, _own(first.properties), parts)
 
 
 def _parts(rows: RobotRows) -> dict[str, Any]:
-    names = ("elements", "enclaves", "memberships", "flows", "roles", "derived", "findings", "across", "foreign")
-    return {name: getattr(rows, name) for name in names}
+    return {
+        field.name: getattr(rows, field.name) for field in fields(rows) if field.name not in ("robot", "properties")
+    }
 
 
 def _own(properties: Row) -> Row:
     """Without what ``rows_of`` adds."""
-    return {key: value for key, value in properties.items() if key not in ("digest", "elements", "flows", "roles")}
+    added = ("digest", "elements", "flows", "roles", "carried")
+    return {key: value for key, value in properties.items() if key not in added}

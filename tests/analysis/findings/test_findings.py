@@ -3,7 +3,6 @@ planes."""
 
 from __future__ import annotations
 
-from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -19,23 +18,11 @@ from rosprivacy.analysis.model import (
     DISCLOSURE,
     Method,
 )
+from tests.helpers.more_systems import wildcards
 from tests.helpers.systems import HIERARCHY, PARENTS, WIDE, WIDE_HIERARCHY, System, analysed, index, statement, systems
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
-
-
-@st.composite
-def wildcards(draw: st.DrawFn) -> System:
-    """The last two channels are the sides of a wildcard, which may match others; labels name both sides."""
-    system = draw(systems().filter(lambda system: system.channels > 1))
-    written, read = system.nodes + system.channels - 2, system.nodes + system.channels - 1
-    edges = {(a, b) for a, b in system.edges if a != written and b != read} | {(written, read)}
-    for channel in range(system.nodes, written):
-        edges |= draw(st.sampled_from([set(), {(written, channel)}, {(channel, read)}]))
-    system.said[read] = system.said[written]
-    never = {at: some for at, some in system.never.items() if at < len(edges)}
-    return replace(system, edges=sorted(edges), never=never, wildcard=True)
 
 
 @given(st.one_of(systems(), wildcards()))

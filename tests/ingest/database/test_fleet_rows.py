@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 import rosprivacy
+from rosprivacy.analysis.model import DISCLOSURE
 from rosprivacy.ingest.database import fleet_rows
 from rosprivacy.ingest.database.fleet_rows import FleetRows
+from rosprivacy.ingest.database.ids import carries, category_labels
 from rosprivacy.ingest.database.loading import load, unload
 from rosprivacy.private_neo4j import connection
 from rosprivacy.queries.library import find
@@ -156,9 +158,12 @@ def test_on_random_fleets(driver: Driver) -> None:
         load(driver, FleetRows(placed, analysis, SMALL, {}), SMALL)
         before = dump_findings(driver)
         assert {row[:6] for row in before} == expected_findings(case)
+        naive = naive_pairs(driver)
+        assert naive == {row[1:6] for row in before if row[0] == DISCLOSURE}
         stored = answer_stored_small(driver)
         assert stored == {row[:6] for row in before}
         assert dump_findings(driver) == before
+        assert naive_pairs(driver) == naive
 
 
 def random_fleets(count: int) -> list[Case]:
@@ -195,6 +200,21 @@ def dump_findings(driver: Driver) -> set[tuple[Any, ...]]:
     found = [tuple(record) for record in driver.execute_query(query).records]
     assert len(set(found)) == len(found)
     return set(found)
+
+
+def naive_pairs(driver: Driver) -> set[tuple[Any, ...]]:
+    """(category, robot and name of the source and of the leak) of the Cypher that everybody writes first."""
+    pairs = set()
+    for name, label in category_labels(SMALL).items():
+        query = (
+            f"MATCH (b:{label}Source)-[:{carries(label)}*1..]->(l:{label}Leak) WITH DISTINCT b, l "
+            "MATCH (e:Element {robot: b.robot, name: b.name}) WHERE NOT e:Intake "
+            "OPTIONAL MATCH (e)-[:DERIVES_FROM {category: $name}]->(s) "
+            "UNWIND [s, CASE WHEN $name IN b.begins THEN b END] AS source WITH source, l WHERE source IS NOT NULL "
+            "RETURN $name, source.robot, source.name, l.robot, l.name"
+        )
+        pairs |= {tuple(record) for record in driver.execute_query(query, name=name).records}
+    return pairs
 
 
 def answer_stored_small(driver: Driver) -> set[tuple[Any, ...]]:

@@ -1,0 +1,131 @@
+"""In which order open elements are worth a person's time: where data comes from, what stands behind each (rule S11).
+
+In: an ``Analysis``. Out: ``Behind`` facts. What only one element lets data get to is what a label there can close, by
+immediate dominators of the flows that carry data. A channel past which data gets to no open element and no leak can
+wait.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict, deque
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.analysis.model import Element
+
+START = -1  # before all sources
+MOST = 200_000  # flows with data; of more it is not worked out what stands behind an element
+Shown = tuple[str, str, str, str]
+Following = dict[int, list[int]]
+
+
+@dataclass(frozen=True, slots=True)
+class Behind:
+    """What a person wants to know of an open element before looking at it.
+
+    Attributes
+    ----------
+    through
+        The element that data comes from, on a shortest path; None at a source.
+    closes, leaks
+        How many other open elements, and how many leaks, data gets to past this one only, at least.
+    waits
+        Whether it is a channel from which data gets to no other open element but channels, and to no leak.
+    """
+
+    through: Element | None = None
+    closes: int = 0
+    leaks: int = 0
+    waits: bool = False
+
+
+def review_order(analysis: Analysis) -> dict[Shown, Behind]:
+    """Return what stands behind each open element, by what a reader sees of it.
+
+    Notes
+    -----
+    networkx's immediate dominators, on the flows that carry data.
+    """
+    if not analysis.open:
+        return {}
+    found = analysis.spread
+    elements = found.graph.elements
+    asked = {question.element.shown_as for question in analysis.open}
+    following: Following = defaultdict(list)
+    for index, flow in enumerate(found.graph.flows):
+        if found.along(index):
+            following[flow.source].append(flow.target)
+    following[START] = [vertex for vertex in range(len(elements)) if found.begins(vertex)]
+    before = _before(following)
+    open_at = [vertex for vertex in before if vertex != START and elements[vertex].shown_as in asked]
+    leaks = {vertex for vertex, bits in found.leaks.items() if bits & found.present(vertex)}
+    wanted = leaks.union(vertex for vertex in open_at if not elements[vertex].is_channel)
+    going_on = _reaching(following, wanted)
+    below = _below(following, {elements[v].shown_as: v for v in reversed(open_at)}.values(), leaks)
+    result: dict[Shown, Behind] = {}
+    for vertex in open_at:
+        element = elements[vertex]
+        closes, leaking = below.get(vertex, (0, 0))
+        through = elements[before[vertex]] if vertex in before and before[vertex] != START else None
+        one = Behind(through, closes, leaking, waits=element.is_channel and vertex not in going_on)
+        other = result.get(element.shown_as)  # the other side of a wildcard
+        result[element.shown_as] = one if other is None else _both(one, other)
+    return result
+
+
+def _both(one: Behind, other: Behind) -> Behind:
+    first = max(one, other, key=lambda side: (side.leaks, side.closes))
+    return Behind(one.through or other.through, first.closes, first.leaks, waits=one.waits and other.waits)
+
+
+def _before(following: Following) -> dict[int, int]:
+    """Every vertex that data gets to, with the one before it on a shortest path; of a source, the nearest of others."""
+    before = {START: START}
+    waiting = deque([START])
+    while waiting:
+        here = waiting.popleft()
+        for there in sorted(following.get(here, ())):
+            if there not in before:
+                waiting.append(there)
+            if before.get(there, START) == START and there != START:
+                before[there] = here
+    return before
+
+
+def _reaching(following: Following, wanted: Iterable[int]) -> set[int]:
+    """The vertices from which data gets to one of some."""
+    entering: Following = defaultdict(list)
+    for here, targets in following.items():
+        for there in targets:
+            entering[there].append(here)
+    seen = set(wanted)
+    waiting = deque(seen)
+    while waiting:
+        for here in entering.get(waiting.popleft(), ()):
+            if here not in seen:
+                seen.add(here)
+                waiting.append(here)
+    return seen
+
+
+def _below(following: Following, questions: Iterable[int], leaks: Iterable[int]) -> Mapping[int, tuple[int, int]]:
+    """Vertex -> how many of the questions, and of the leaks, data gets to past it only; without itself."""
+    edges = [(here, there) for here, targets in following.items() for there in targets]
+    if not 0 < len(edges) <= MOST:
+        return {}
+    import networkx as nx  # noqa: PLC0415 - heavy
+
+    parents = nx.immediate_dominators(nx.DiGraph(edges), START)
+    asked, leaking = set(questions), set(leaks)
+    below: dict[int, tuple[int, int]] = defaultdict(lambda: (0, 0))
+    for vertex in asked | leaking:
+        above = parents.get(vertex)
+        while above not in (None, START):
+            closes, ends = below[above]
+            below[above] = (closes + (vertex in asked), ends + (vertex in leaking))
+            above = parents[above]
+    return below

@@ -1,0 +1,47 @@
+"""The order of review (S11): what stands behind an open element is what vanishes when a label ends the data there."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from hypothesis import assume, given
+
+from rosprivacy.analysis.errors import InputErrors
+from rosprivacy.analysis.findings.findings import analyse
+from rosprivacy.analysis.findings.review_order import review_order
+from rosprivacy.analysis.model import Bound, Method, Place, Statement
+from tests.helpers.systems import HIERARCHY, System, systems
+
+EVERY = Statement("sanitizer", (), (99, 99), Place("more", 1), Method.DROP)
+NO_CHANNEL = Statement("mundane", (), (99, 99), Place("more", 1))
+
+
+@given(systems())
+def test_what_is_only_past_an_element_vanishes_with_it_and_data_comes_from_where_it_says(system: System) -> None:
+    graph, bound = system.graph(), system.bound()
+    try:
+        before = analyse(graph, bound, HIERARCHY)
+    except InputErrors:
+        assume(False)
+    order = review_order(before)
+    assert set(order) == {question.element.shown_as for question in before.open}
+    for question in before.open:
+        behind = order[question.element.shown_as]
+        ends = {(graph.elements[f.source].shown_as, graph.elements[f.target].shown_as) for f in graph.flows}
+        assert behind.through is None or (behind.through.shown_as, question.element.shown_as) in ends
+        vertices = [v for v, e in enumerate(graph.elements) if e.shown_as == question.element.shown_as]
+        said = NO_CHANNEL if question.element.is_channel else EVERY
+        if any(s.role in ("source", "derivation") for v in vertices for s in bound.elements.get(v, ())):
+            continue  # what begins here does not end with what comes in
+        elements = {**bound.elements, **{v: (*bound.elements.get(v, ()), said) for v in vertices}}
+        after = analyse(graph, replace_elements(bound, elements), HIERARCHY)
+        left = {q.element.shown_as for q in after.open} - {question.element.shown_as}
+        gone = {q.element.shown_as for q in before.open} - left - {question.element.shown_as}
+        assert behind.closes <= len(gone)  # 'at least'
+        if behind.waits:
+            assert {q.element.shown_as for q in before.open if not q.element.is_channel} <= left
+            assert [f.id for f in after.findings] == [f.id for f in before.findings]
+
+
+def replace_elements(bound: Bound, elements: dict[int, tuple[Statement, ...]]) -> Bound:
+    return replace(bound, elements=elements)

@@ -1,0 +1,106 @@
+"""``absent: why``: a profile that is not on the robot (review/users.md, B3.7); nothing is said to be cleaned there."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+from jsonschema import Draft202012Validator
+
+import rosprivacy
+from rosprivacy.analysis.errors import InputErrors
+from rosprivacy.ingest.database.loading import load as load_robots
+from rosprivacy.ingest.labels.label_file import parse_labels
+from rosprivacy.ingest.labels.label_schema import label_schema
+from rosprivacy.ontology.vocabulary import load
+from rosprivacy.private_neo4j import connection
+from rosprivacy.robot_system import robot_of
+from rosprivacy.settings import Settings
+from rosprivacy.stored_system import answer_stored
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from rosprivacy.private_neo4j.connection import Connection
+    from rosprivacy.result import Result
+
+PROFILE = '<profile ns="/" node="{}"><topics {}="ALLOW"><topic>{}</topic></topics></profile>'
+POLICY = '<policy version="0.2.0"><enclaves><enclave path="/"><profiles>{}</profiles></enclave></enclaves></policy>'
+PROFILES = [
+    ("camera", "publish", "image"), ("shell", "subscribe", "image"), ("shell", "publish", "copy"),
+    ("uplink", "subscribe", "copy"),
+]  # fmt: skip
+ENDS = "nodes:\n  /camera: {source: [Video]}\n  /uplink: {leak: [Video]}\n"
+
+
+def analyze(folder: Path, labels: str, **options: str) -> Result:
+    (folder / "p.xml").write_text(POLICY.format("".join(PROFILE.format(*profile) for profile in PROFILES)))
+    (folder / "l.yaml").write_text(f"labels: 1\n{labels}")
+    return rosprivacy.analyze(str(folder / "p.xml"), str(folder / "l.yaml"), **options)  # type: ignore[arg-type]
+
+
+def test_nothing_goes_through_what_is_absent_and_every_report_says_so(tmp_path: Path) -> None:
+    assert len(analyze(tmp_path, ENDS).findings) == 1
+    result = analyze(tmp_path, f"{ENDS}  /shell: {{absent: a debug tool}}\n")
+    document = result.document()
+    assert document["findings"] == []
+    assert [q["element"]["name"] for q in document["open"]] == ["/image"]
+    assert document["sanitizers"] == []  # it cleans nothing
+    assert not [row for row in document["roles"] if row["element"]["name"] == "/shell"]
+    assert [(row["element"]["name"], row["why"]) for row in document["assumptions"]["absent"]] == [
+        ("/shell", "a debug tool")
+    ]
+    (row,) = [row for row in document["taken_away"] if row["element"]["name"] == "/shell"]
+    assert (row["by"], row["leak"]["name"]) == ("absent", "/uplink")  # who says so is in the ledger
+    assert "   /shell is not on the robot: a debug tool" in result.to("text")
+    assert "/shell has a profile and is not on the robot: a debug tool" in result.to("markdown")
+
+
+def test_what_is_absent_brings_nothing_in(tmp_path: Path) -> None:
+    result = analyze(tmp_path, 'nodes:\n  "/c*": {source: [Video]}\n  /camera: {absent: sold}\n')
+    assert result.analysis.carried == ()
+    assert "/camera: absent takes away the source of Video" in str([d.message for d in result.analysis.diagnostics])
+
+
+def test_a_channel_that_only_an_absent_node_reads_can_wait(tmp_path: Path) -> None:
+    (question,) = analyze(tmp_path, f"{ENDS}  /shell: {{absent: a debug tool}}\n").document()["open"]
+    assert question["waits"]
+    text = analyze(tmp_path, f"{ENDS}  /shell: {{absent: a debug tool}}\n").to("text")
+    assert "1 can wait: from there data gets to no leak and no node that is not reviewed" in text
+
+
+@pytest.mark.parametrize(
+    ("label", "problem"),
+    [
+        ("{absent: }", "absent without a reason"),
+        ("{absent: true}", "absent without a reason"),
+        ("{absent: sold, leak: [Video]}", "absent beside leak"),
+        ("{sanitizer: {Video: absent}}", "sanitizer method 'absent'"),
+        ("absent", "label 'absent' on a node"),
+    ],
+)
+def test_it_stands_alone_with_its_reason(label: str, problem: str) -> None:
+    with pytest.raises(InputErrors, match=problem):
+        parse_labels(f"labels: 1\nnodes: {{/a: {label}}}", load(), name="l")
+
+
+def test_editors_take_it() -> None:
+    schema = Draft202012Validator(label_schema(load().categories.values()))
+    assert schema.is_valid({"labels": 1, "nodes": {"/a": {"absent": "sold", "note": "in May"}}})
+    assert not schema.is_valid({"labels": 1, "nodes": {"/a": {"absent": ""}}})
+    assert not schema.is_valid({"labels": 1, "nodes": {"/a": {"sanitizer": {"Video": "absent"}}}})
+
+
+@pytest.mark.database
+def test_a_database_keeps_who_is_absent_and_why(tmp_path: Path, neo4j_server: Connection) -> None:
+    result = analyze(tmp_path, f"{ENDS}  /shell: {{absent: a debug tool}}\n")
+    with connection.open_driver(neo4j_server) as driver:
+        driver.execute_query("MATCH (n) DETACH DELETE n")
+        load_robots(driver, [robot_of("care", result)], result.vocabulary)
+        stored = answer_stored(driver, Settings()).document()
+        cleans = "MATCH (e) WHERE any(label IN labels(e) WHERE label ENDS WITH 'Sanitizer') RETURN e"
+        cleaning = driver.execute_query(cleans).records
+        driver.execute_query("MATCH (n) DETACH DELETE n")
+    (row,) = stored["assumptions"]["absent"]
+    assert (row["element"]["name"], row["why"]) == ("/shell", "a debug tool")
+    assert (stored["findings"], stored["sanitizers"], cleaning) == ([], [], [])
