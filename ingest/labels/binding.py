@@ -106,8 +106,12 @@ def _unused(names: _Names, file: Labels) -> Iterator[Diagnostic]:
 
 
 def _like_a_wildcard(names: _Names, graph: FlowGraph, file: Labels) -> Iterator[Diagnostic]:
+    told_apart = {entry.name for entry in file.entries}  # who labels the wildcard too knows of the difference
     for entry in file.entries:
-        if not entry.statements or not is_glob(entry.name) or not names.matching(literal(entry.name), entry.kinds):
+        alone = literal(entry.name)
+        if not entry.statements or not is_glob(entry.name) or alone in told_apart:
+            continue
+        if not names.matching(alone, entry.kinds):
             continue
         found = {graph.elements[vertex].identity for vertex in names.matching(entry.name, entry.kinds)}
         more = len(found) - sum(name == entry.name for _, _, name in found)

@@ -164,6 +164,18 @@ class TestQuery:
             "nothing has the relationship type 'CARRIES_VIDE0'; did you mean CARRIES_VIDEO",
         ]
 
+    @pytest.mark.parametrize("on_terminal", ["", "1"])
+    def test_no_path_is_cut(self, loaded: Driver, on_terminal: str) -> None:
+        """B5 of the users' review: what is too wide for a table is records, wrapped between names."""
+        names = [f"/{'namespace/' * 9}node{number}" for number in range(5)]
+        text = f"RETURN {names} AS path, 1 AS steps UNION RETURN ['/a'] AS path, 0 AS steps"
+        done = run("query", "--cypher", text, FORCE_COLOR=on_terminal, COLUMNS="60")
+        assert loaded
+        assert done.returncode == 0
+        assert " -> ".join(names) in " ".join(done.stdout.split())
+        assert "path   /a\n" in done.stdout
+        assert "…" not in done.stdout
+
     def test_the_schema_is_told_without_a_database(self, cli: Cli) -> None:
         done = cli("query", "--schema")
         assert done.returncode == 0

@@ -280,6 +280,15 @@ def test_what_is_no_results_is_told(tmp_path: Path, results: str) -> None:
     for folder in (tmp_path / "none", tmp_path):
         with pytest.raises(InputErrors, match=r": no results"):
             read(str(folder))
+    from pyarrow import dataset, parquet
+
+    earlier = tmp_path / "earlier"
+    shutil.copytree(results, earlier)
+    robots = dataset.dataset(f"{earlier}/robots", format="parquet").to_table().drop_columns(["carried"])
+    shutil.rmtree(earlier / "robots")
+    parquet.write_table(robots, f"{earlier}/robots")
+    with pytest.raises(InputErrors, match=r":0: results of an earlier version; analyse again"):
+        read(str(earlier))
     broken = tmp_path / "broken"
     shutil.copytree(results, broken)
     shutil.rmtree(broken / "answer")  # it is written last

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from rosprivacy.analysis.errors import QueryError, reason, shown
+from rosprivacy.analysis.text import printable
 from rosprivacy.cli.driver import driver_of
 from rosprivacy.cli.inputs import refuse
 from rosprivacy.cli.options import (
@@ -20,6 +21,7 @@ from rosprivacy.cli.options import (
     Server,
 )
 from rosprivacy.cli.output import emit
+from rosprivacy.cli.row_records import natural_width, records
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -28,6 +30,9 @@ if TYPE_CHECKING:
 
     from rosprivacy.queries.library import Query
     from rosprivacy.queries.run import Rows
+
+
+WIDEST_TABLE = 400  # in a file or a pipe
 
 
 class RowFormat(StrEnum):
@@ -67,7 +72,9 @@ def query(
     schema: Annotated[
         bool, typer.Option("--schema", help="Print the labels, relationship types and properties of the graph instead.")
     ] = False,
-    format: Annotated[RowFormat, typer.Option("--format", "-f", help="Of the rows.")] = RowFormat.table,  # noqa: A002 - the option's name
+    format: Annotated[  # noqa: A002 - the option's name
+        RowFormat, typer.Option("--format", "-f", help="Of the rows; a table that is too wide becomes records.")
+    ] = RowFormat.table,
     output: Output = None,
     limit: Annotated[int, typer.Option(min=1, help="Most rows to print.")] = 1000,
     timeout: Annotated[float, typer.Option(min=0.1, help="Seconds that the server may take.")] = 60.0,
@@ -182,13 +189,16 @@ def _table(columns: tuple[str, ...], cells: list[list[str]], *, wide: bool) -> s
 
     if not cells:
         return "no rows\n"
+    cells = [[printable(cell) for cell in row] for row in cells]
+    terminal = Console()
+    on_screen = terminal.is_terminal and not wide
+    if natural_width(columns, cells) > (width := terminal.width if on_screen else WIDEST_TABLE):
+        return records(columns, cells, width if on_screen else sys.maxsize)
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for column in columns:
         table.add_column(Text(column), overflow="fold")
     for row in cells:
-        table.add_row(*(Text(shown(cell)) for cell in row))
+        table.add_row(*map(Text, row))
     text = io.StringIO()
-    terminal = Console()
-    width = terminal.width if terminal.is_terminal and not wide else 400
     Console(file=text, width=width, highlight=False).print(table)
     return "".join(f"{line.rstrip()}\n" for line in text.getvalue().splitlines()).lstrip("\n")

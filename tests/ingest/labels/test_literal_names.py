@@ -183,6 +183,8 @@ def test_the_bare_line_of_an_older_template_is_answered_with_what_to_write() -> 
     assert (str(warning.place), warning.severity) == ("l.yaml:5", "warning")
     assert "it means the wildcard of that name and 2 more elements" in warning.message
     assert 'write "=/*"' in warning.message
+    both = analyze(f'{ENDS}topics: {{"/*": sensitive, "=/*": mundane}}\n')  # the file tells them apart
+    assert not [d for d in both.diagnostics if d.code == "glob-like-a-wildcard"]
     quiet = analyze(f'{ENDS}channels: {{"/*": }}\n')  # the line as the template had it, not filled in
     assert not [d for d in quiet.diagnostics if d.code == "glob-like-a-wildcard"]
 
