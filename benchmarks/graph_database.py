@@ -20,7 +20,7 @@ import neo4j
 from measure import Line, compared, print_header, print_line
 from neo4j_fleet import NAMES, ROBOTS, VOCABULARY, fleet
 
-from rosprivacy.ingest.database.cypher import create_relationships
+from rosprivacy.ingest.database.cypher import CREATE_CARRIES, create_relationships
 from rosprivacy.ingest.database.loading import BATCH, load
 from rosprivacy.ingest.database.schema import ACROSS, DERIVES_FROM, FLOWS_TO, IN_ENCLAVE, ROLES
 from rosprivacy.private_neo4j import connection
@@ -66,7 +66,7 @@ def bare(driver: Driver, robots: list[RobotRows]) -> None:
     load(driver, [], VOCABULARY)
     parts: list[tuple[str, list[Any]]] = [
         (BARE_ROBOTS, [{"robot": rows.robot, "properties": rows.properties} for rows in robots]),
-        (BARE_ELEMENTS, [row for rows in robots for row in rows.elements]),
+        (BARE_ELEMENTS, [row for rows in robots for row in (*rows.elements, *rows.intakes)]),
         (BARE_ENCLAVES, [row for rows in robots for row in rows.enclaves]),
         (create_relationships(IN_ENCLAVE), [row for rows in robots for row in rows.memberships]),
         (create_relationships(FLOWS_TO), [row for rows in robots for row in rows.flows]),
@@ -74,6 +74,7 @@ def bare(driver: Driver, robots: list[RobotRows]) -> None:
             (create_relationships(kind), [row for rows in robots for row in rows.roles.get(name, ())])
             for name, kind in ROLES.items()
         ),
+        (CREATE_CARRIES, [row for rows in robots for row in rows.carried]),
         (create_relationships(DERIVES_FROM), [row for rows in robots for row in rows.derived]),
         (BARE_FINDINGS, [row for rows in robots for row in rows.findings]),
         (create_relationships(ACROSS), [row for rows in robots for row in rows.across]),

@@ -12,22 +12,23 @@ from rich.text import Text
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import MERGED
-from rosprivacy.analysis.text import blanked, counted
+from rosprivacy.analysis.text import counted
 from rosprivacy.report.document.analysis import files_not_read
-from rosprivacy.report.document.decisions import decision_lines
-from rosprivacy.report.naming import key, kind_of, shown_name
+from rosprivacy.report.naming import shown_name, whole
 from rosprivacy.report.terminal.denied import denied_lines
-from rosprivacy.report.terminal.fleet import fleet_lines, robots_of
+from rosprivacy.report.terminal.finding_lines import MANY, details, law_lines, overview
+from rosprivacy.report.terminal.fleet import fleet_lines
 from rosprivacy.report.terminal.globs import glob_lines, glob_warnings
 from rosprivacy.report.terminal.labels import absent_lines, overruled_lines, standard_lines
 from rosprivacy.report.terminal.ledger import ledger_lines, taken_away_lines
 from rosprivacy.report.terminal.next_step import next_lines
-from rosprivacy.report.terminal.restriction import asked_at_verdict, asked_lines, may_be_asked
+from rosprivacy.report.terminal.restriction import asked_at_verdict, asked_lines
 from rosprivacy.report.terminal.review import SHOWN, review_lines
 from rosprivacy.report.terminal.unknown_ends import end_lines, ends_at_verdict
+from rosprivacy.report.terminal.wrapped import wrapped
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator, Mapping
+    from collections.abc import Iterator, Mapping
 
     from rich.console import Console
 
@@ -40,22 +41,14 @@ ACCEPTED = {  # the same where a decision accepts a finding
     "undetermined": "no leak reached but what is accepted, and not everything on the way is reviewed",
     "no-leak-found": "no way to a leak but what is accepted, everything on the way is reviewed",
 }
-VERBS = {
-    "publish": "publishes", "subscribe": "is read by", "request": "request", "reply": "reply",
-    "call": "call", "execute": "execute", "matches": "wildcard covers", "flow": "goes to",
-}  # fmt: skip
-MAY = {"always": "applies", "conditional": "can apply", "may-reveal": "may be revealed"}  # to the data, not the system
-KINDS = {
-    "disclosure": "",
-    "storage-limitation": "kept without a stated end, or too long: ",
-    "third-country-transfer": "leaves the EEA without a stated basis: ",
-}
 TAKEN = {"conduit": "passes on all that gets there", "leak": "lets out all that gets there"}
 UNREAD = "no leak reached, but policy files with grants were not read"
 Line = tuple[str, str]  # text, style
 
 
-def print_report(console: Console, report: Mapping[str, Any], *, verbose: bool = False, quiet: bool = False) -> None:
+def print_report(
+    console: Console, report: Mapping[str, Any], *, verbose: bool = False, quiet: bool = False, width: int | None = None
+) -> None:
     """Print a document.
 
     Parameters
@@ -64,8 +57,10 @@ def print_report(console: Console, report: Mapping[str, Any], *, verbose: bool =
         All open elements and notices.
     quiet
         The verdict only.
+    width
+        Of the terminal; None for a file or a pipe, where lines are not broken.
     """
-    for text, style in _lines(report, verbose=verbose, quiet=quiet):
+    for text, style in wrapped(_lines(report, verbose=verbose, quiet=quiet), width):
         console.print(Text(text, style), soft_wrap=True)
 
 
@@ -88,7 +83,7 @@ def _lines(report: Mapping[str, Any], *, verbose: bool, quiet: bool) -> Iterator
         return
     yield _summary(report), ""
     yield from fleet_lines(report)
-    yield from _findings(report)
+    yield from _findings(report, verbose=verbose)
     yield from review_lines(report, verbose=verbose)
     yield from end_lines(report, most=None if verbose else SHOWN)
     yield from denied_lines(report, most=None if verbose else SHOWN)
@@ -97,6 +92,8 @@ def _lines(report: Mapping[str, Any], *, verbose: bool, quiet: bool) -> Iterator
         yield from glob_lines(report)
     yield from _assumed(report, verbose=verbose)
     yield from _diagnostics(report, verbose=verbose)
+    yield "", ""
+    yield verdict_line(report)
     yield from next_lines(report)
 
 
@@ -108,83 +105,28 @@ def _summary(report: Mapping[str, Any]) -> str:
         counted(len(findings), "finding"),
         *([f"{accepted} of them accepted"] if accepted else []),
         *([f"{dismissed} more only through another leak"] if dismissed else []),
-        f"{counted(len(report['open']), 'element')} to review",
+        _to_review(report),
         f"{counted(report['elements'], 'element')} and {counted(report['flows'], 'flow')} in all",
     ]
     return ", ".join(parts)
 
 
-def _findings(report: Mapping[str, Any]) -> Iterator[Line]:
-    roles = {(key(said["element"]), said["category"]): said["roles"] for said in report["roles"]}
-    unreviewed = {(key(question["element"]), name) for question in report["open"] for name in question["categories"]}
-    for number, finding in enumerate(report["findings"], 1):
-        source, leak = finding["source"], finding["leak"]
-        form = "pseudonymised " if finding["pseudonymised"] else ""
-        style = "dim" if finding["dismissed"] or finding["accepted"] else "bold"
+def _to_review(report: Mapping[str, Any]) -> str:
+    """How many elements are open, and how many where the legs of services and actions are counted by themselves."""
+    legs, elements = len(report["open"]), len({whole(question["element"]) for question in report["open"]})
+    more = f" ({legs:,} counting the legs of services and actions)" if legs != elements else ""
+    return f"{counted(elements, 'element')} to review{more}"
+
+
+def _findings(report: Mapping[str, Any], *, verbose: bool) -> Iterator[Line]:
+    """Details of each finding; a list of one line each where there are many, and nobody asked for more."""
+    yield from overview(report)
+    if verbose or len(report["findings"]) <= MANY:
+        yield from details(report, report["findings"])
+    elif report["findings"]:
         yield "", ""
-        what = f"{KINDS[finding['kind']]}{form}{finding['category']}{may_be_asked(report, finding['category'])}"
-        yield f"{number}. {what}: {shown_name(source)} -> {shown_name(leak)}   [{finding['id']}]", style
-        yield from robots_of(report, finding)
-        if "reason" in finding:
-            yield f"   {shown(finding['reason'])}", ""
-        if finding["dismissed"]:
-            through = ", ".join(shown_name(element) for element in finding["through"])
-            past = "; past it, data gets there pseudonymised only" if finding.get("beside_pseudonymised") else ""
-            yield f"   only through {through}, which has a finding of its own{past}", "dim"
-        yield from decision_lines(finding)
-        yield from _way(finding, roles, unreviewed)
-        yield from _paths(finding)
-        yield from _law(finding, report)
-
-
-def _way(finding: Mapping[str, Any], roles: Mapping[Any, Any], unreviewed: Collection[Any]) -> Iterator[Line]:
-    """The witness, hop by hop: element, what labels say of it, policy line."""
-    witness, steps = finding["witness"], finding["steps"]
-    data = [step["category"] for step in steps]
-    for hop, element in enumerate(witness):
-        # what is there: the data that arrives, at the source the data that leaves, at the leak what gets out too
-        here = dict.fromkeys([*data[max(hop - 1, 0) : hop or 1], *([] if hop < len(steps) else [finding["category"]])])
-        said = [(name, role) for name in here for role in roles.get((key(element), name), ())]
-        notes = [f"{role} of {name}" for name, role in said]
-        notes += ["not reviewed" for name in here if (key(element), name) in unreviewed]
-        style = "red" if any(role == "leak" for _, role in said) else ""
-        yield f"   {shown_name(element)}  ({', '.join([kind_of(element), *notes])})", style
-        if hop < len(steps):
-            before = steps[hop - 1] if hop else steps[hop]
-            yield f"     | {_step(steps[hop], before)}", "dim"
-
-
-def _step(step: Mapping[str, Any], before: Mapping[str, Any]) -> str:
-    """One hop: what the policy allows, where, and what the data has become."""
-    places = [f"{shown(grant['file'])}:{grant['line']}" for grant in step["policy"]]
-    more = f" and {len(places) - 1} more" if len(places) > 1 else ""
-    what = f"{VERBS[step['role']]}  {places[0]}{more}" if places else VERBS[step["role"]]
-    changed = (step["category"], step["pseudonymised"]) != (before["category"], before["pseudonymised"])
-    form = "pseudonymised " if step["pseudonymised"] else ""
-    return f"{what}   now {form}{step['category']}" if changed else what
-
-
-def _paths(finding: Mapping[str, Any]) -> Iterator[Line]:
-    if finding["disjoint_paths"] > 1:
-        yield f"   {finding['disjoint_paths']} ways that share no flow", ""
-    for path in finding.get("paths", ()):
-        yield "   way: " + " -> ".join(shown_name(element) for element in path), ""
-    if finding.get("paths_bounded"):
-        yield f"   … there are more ways; the bound is {len(finding['paths'])} (--max-paths)", "yellow"
-
-
-def _law(finding: Mapping[str, Any], report: Mapping[str, Any]) -> Iterator[Line]:
-    """What a person has to look up about the data that arrives; where it became what it is."""
-    if finding["special_from"]:
-        yield f"   {shown_name(finding['special_from'])} makes such data of other data", ""
-    for legal in finding["law"]:
-        condition = f": {blanked(legal['condition'])}" if legal["condition"] else ""
-        yield f"   {shown(legal['provision'])}, {MAY[legal['verdict']]}{condition}", "magenta"
-    if finding["article9"] == "unknown":
-        yield "   the ontology does not say whether Article 9 GDPR applies to such data", "yellow"
-    if finding["article9"] == "no":
-        reasons = {category["name"]: category["reason"] for category in report["categories"]}
-        yield f"   not Article 9 GDPR by itself: {blanked(reasons.get(finding['category'], ''))}", "dim"
+        yield "Details of one: rosprivacy show ID, with the same policies and labels; of all: -v", "dim"
+    yield from law_lines(report, report["findings"])
 
 
 def _assumed(report: Mapping[str, Any], *, verbose: bool) -> Iterator[Line]:

@@ -39,6 +39,13 @@ def fleet_lines(report: Mapping[str, Any]) -> Iterator[Line]:
                 yield f"   {word}: {named([element['name'] for element in deviant[key]])}", ""
 
 
+def on_robots(report: Mapping[str, Any], finding: Mapping[str, Any]) -> Iterator[str]:
+    """Return in a few words on how many robots a finding is; nothing of what is on none."""
+    for pattern in report.get("fleet", {}).get("patterns", ()):
+        if pattern["finding"] == finding["id"] and pattern["robots"]:
+            yield f"on {counted(len(pattern['robots']), 'robot')}{_parts(pattern)}"
+
+
 def robots_of(report: Mapping[str, Any], finding: Mapping[str, Any]) -> Iterator[Line]:
     """Return on how many robots a finding is."""
     fleet = report.get("fleet")
@@ -47,9 +54,12 @@ def robots_of(report: Mapping[str, Any], finding: Mapping[str, Any]) -> Iterator
         return
     how_many = f"{len(pattern['robots'])} of {counted(fleet['robots'], 'robot')}"
     across = f", from one to another, {pattern['findings']:,} times" if pattern["across"] else ""
+    yield f"   on {how_many}{across}{_parts(pattern)}: {named(pattern['robots'])}   [pattern {pattern['id']}]", ""
+
+
+def _parts(pattern: Mapping[str, Any]) -> str:
     parts = [f"{pattern[key]:,} {what}" for key, what in FORMS if 0 < pattern[key] < pattern["findings"]]
-    more = f" ({', '.join(parts)})" if parts else ""
-    yield f"   on {how_many}{across}{more}: {named(pattern['robots'])}   [pattern {pattern['id']}]", ""
+    return f" ({', '.join(parts)})" if parts else ""
 
 
 def named(names: Iterable[str]) -> str:

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import UNREAD_FILE
-from rosprivacy.report.naming import shown_name
+from rosprivacy.report.naming import shown_name, whole
 from rosprivacy.report.terminal.restriction import asked_at_verdict
+from rosprivacy.report.terminal.review import next_round
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -50,8 +51,8 @@ def _step(report: Mapping[str, Any]) -> str:
         more = f"; candidates by name: {', '.join(named)}" if named else ""
         return f"{SOURCE}{more} (rosprivacy labels --init lists all nodes)"
     if report["open"]:
-        first = report["open"][0]["element"]
-        others = len(report["open"]) - 1
+        first = next_round(report)[0]["element"]
+        others = len({whole(question["element"]) for question in report["open"]}) - 1
         return f"review {shown_name(first)}{f' and {others:,} more' if others else ''}, say it in a label file, repeat"
     unread = sorted({shown(said["file"]) for said in report["diagnostics"] if said.get("code") == UNREAD_FILE})
     return f"name the policy that includes {unread[0]}, or remove it" if unread else ""

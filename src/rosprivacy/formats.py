@@ -81,8 +81,10 @@ def _text(answer: Answer, style: Style) -> str:
     from rosprivacy.report.terminal.analysis import print_report
 
     text = StringIO()
-    console = Console(file=text, force_terminal=style.colour and Console().is_terminal, highlight=False, emoji=False)
-    print_report(console, document(answer), verbose=style.verbose, quiet=style.quiet)
+    terminal = style.colour and Console().is_terminal
+    console = Console(file=text, force_terminal=terminal, highlight=False, emoji=False)
+    width = Console().width if terminal else None
+    print_report(console, document(answer), verbose=style.verbose, quiet=style.quiet, width=width)
     return text.getvalue()
 
 

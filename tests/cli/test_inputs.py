@@ -45,7 +45,7 @@ limits: {PulseCurve: P30D}
 """
 DECISIONS = "decisions: 1\nfindings:\n  - {category: PulseCurve, decision: mitigate}\n"
 GROUP: Any = typer.main.get_command(app)
-READERS = ("analyze", "report", "graph", "mitigate", "diff", "load", "labels", "why-not")
+READERS = ("analyze", "show", "report", "graph", "mitigate", "diff", "load", "labels", "why-not")
 SYSTEM = ("p.xml", "-l", "l.yaml")
 
 
@@ -142,7 +142,8 @@ def message(text: str) -> str:
 
 @pytest.mark.parametrize("name", READERS)
 def test_what_makes_no_sense_for_a_command_is_refused_in_one_wording(cli: Cli, clinic: Path, name: str) -> None:
-    ends = {"diff": ["p.xml", "p.xml"], "why-not": ["/camera", "/uplink", "p.xml"]}.get(name, ["p.xml"])
+    own = {"diff": ["p.xml"], "show": ["59dc"], "why-not": ["/camera", "/uplink"]}
+    ends = [*own.get(name, ()), "p.xml"]
     for parameter in GROUP.commands[name].params:
         if parameter.hidden:
             value = [] if parameter.is_flag else ["x"]
@@ -210,8 +211,8 @@ def test_help_shows_the_commands_in_the_order_of_a_users_way(cli: Cli) -> None:
     shown = cli("--help").stdout
     names = re.findall(r"^│ ([a-z][a-z-]*) ", shown, re.MULTILINE)
     assert names == [
-        "labels", "categories", "analyze", "why-not", "diff", "report", "graph", "decide", "mitigate", "fleet", "load",
-        "unload", "query", "db",
+        "labels", "categories", "analyze", "show", "why-not", "diff", "report", "graph", "decide", "mitigate", "fleet",
+        "load", "unload", "query", "db",
     ]  # fmt: skip
     panels = re.findall(r"^╭─ ([\w ]+) ─", shown, re.MULTILINE)
     assert panels == ["Options", "Label", "Analyse", "See", "Decide", "Fleet and database"]

@@ -63,6 +63,14 @@ def not_for_a_terminal(what: str, output: Path | None) -> None:
         raise InputError("standard output", 0, f"{what} is not for a terminal", "name a file with --output, or pipe it")
 
 
+def terminal_width() -> int | None:
+    """Return how wide the terminal is; None where standard output is none."""
+    from rich.console import Console
+
+    console = Console()
+    return console.width if console.is_terminal else None
+
+
 def on_console(write: Callable[[Console], None], *, colour: bool) -> str:
     """Return what is written to a rich console, with colours if standard output is a terminal."""
     from io import StringIO

@@ -83,9 +83,9 @@ class TestPlainBesidePseudonymised:
         assert done.returncode == 1
         titles = [line.split("   [")[0] for line in done.stdout.splitlines() if line[:2] in ("1.", "2.", "3.")]
         assert titles == [
-            "1. pseudonymised Video: /cam -> /cloud",
-            "2. Video: /cam -> /cloud",
-            "3. Video: /cam -> /recorder",
+            "1. Video: /cam -> /recorder",
+            "2. pseudonymised Video: /cam -> /cloud",
+            "3. Video: /cam -> /cloud",
         ]
         only = "   only through /recorder, which has a finding of its own; past it, data gets there pseudonymised only"
         assert only in done.stdout.splitlines()
@@ -149,7 +149,7 @@ class TestFrontier:
         )
         lines = cli("analyze", "p.xml", "-l", "l.yaml").stdout.splitlines()
         at = lines.index("Review next (nodes that data reaches first): 1")
-        assert lines[at + 1] == "   /m  (node; FaceTemplate; 4 steps from a source)"
+        assert lines[at + 1] == "   /m  (node; 4 steps from a source; FaceTemplate through /c)"
 
     def test_the_sides_of_a_wildcard_are_one_element(self, cli: Cli) -> None:
         policy(profile("s", ("publish", "topic", "/*")), profile("m", ("subscribe", "topic", "/*")))
