@@ -287,7 +287,7 @@ def test_what_is_no_results_is_told(tmp_path: Path, results: str) -> None:
     robots = dataset.dataset(f"{earlier}/robots", format="parquet").to_table().drop_columns(["carried"])
     shutil.rmtree(earlier / "robots")
     parquet.write_table(robots, f"{earlier}/robots")
-    with pytest.raises(InputErrors, match=r":0: results of an earlier version; analyse again"):
+    with pytest.raises(InputErrors, match=r": results of an earlier version; analyse again"):
         read(str(earlier))
     broken = tmp_path / "broken"
     shutil.copytree(results, broken)
