@@ -99,7 +99,7 @@ def lines(folder: Path) -> Iterator[Line]:
     analysis = result.analysis
     whole = ros_view(analysis)
     size = f"{len(whole.boxes):,} elements, {len(whole.lines):,} lines, {len(analysis.findings)} findings"
-    command = [sys.executable, "-m", "rosprivacy", "graph", policy, "--labels", labels]
+    command = [sys.executable, "-m", "rosprivacy", "graph", "--all", policy, "--labels", labels]
     for show in ("ros", "privacy"):
         for options in ((), ("--fold", "--cluster", "namespace")):
             output = folder / f"{show}.svg"
