@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import pytest
 from rdflib import OWL, RDF, RDFS, SH, SKOS, Graph, Literal, Namespace, URIRef
 
-from rosprivacy.analysis.model import KINDS, Method
+from rosprivacy.analysis.model import CLEANS, KINDS
 from rosprivacy.ingest.database import schema
 from tests.helpers.ontologies import FOLDER, RP, SHIPPED, categories, ontology, provisions, shapes
 
@@ -294,7 +294,7 @@ class TestElements:
 
     def test_the_methods_are_those_of_label_files(self) -> None:
         ends = {n: str(ontology().value(item, RP.endsCategory)) for n, item in self.of_type("Method").items()}
-        assert ends == {method.value: str(method.ends).lower() for method in Method}
+        assert ends == {method.value: str(method.ends).lower() for method in CLEANS}
 
     @pytest.mark.parametrize(
         ("kind", "notations"),
