@@ -12,6 +12,7 @@ from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.findings.findings import Options, analyse
 from rosprivacy.analysis.hierarchy import Hierarchy
 from rosprivacy.analysis.model import (
+    CLEANS,
     NON_ROS,
     NOWHERE,
     STATED,
@@ -41,7 +42,7 @@ PARENTS = {"Any": (), "Bio": ("Any",), "Loc": ("Any",), "Face": ("Bio",), "Track
 HIERARCHY = Hierarchy.of(Category(n, f"urn:{n}", n, n, n, up) for n, up in PARENTS.items())
 WIDE = [f"K{i:02}" for i in range(70)]
 WIDE_HIERARCHY = Hierarchy.of(Category(n, f"urn:{n}", n, n, n) for n in WIDE)
-METHODS = tuple(Method)
+METHODS = CLEANS  # what a label of a sanitizer can say; `absent` is a word of its own
 
 
 def statement(role: str, *categories: str, method: Method | None = None, to: str = "") -> Statement:
