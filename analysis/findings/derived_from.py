@@ -65,10 +65,10 @@ def _of(net: Net, source: int) -> Iterator[Origin]:
     for number in sorted(found.made):
         category = found.categories[number]
         both = found.both(category)
-        makers = _makers(whole, both)
-        if not makers:
+        if not _can_make(found, whole, both):
             continue
         # Where the category also arrives ready-made through a leak, only the search past no leak shows that it is made.
+        makers = _makers(whole, both)
         free = search(net, [source], found.all_bits, {v: bits & both for v, bits in found.leaks.items()})
         not_past = _makers(free, both)
         for maker in sorted(makers.keys() | not_past.keys()):
@@ -76,6 +76,15 @@ def _of(net: Net, source: int) -> Iterator[Origin]:
             path = path_to(net, whole, maker, makers[maker]) if past else path_to(net, free, maker, not_past[maker])
             vertices = tuple(vertex for _, vertex, _ in path)
             yield Origin(maker, source, category, vertices, tuple(flow for flow, _, _ in path[1:]), past)
+
+
+def _can_make(found: Spread, reach: Search, both: int) -> bool:
+    """Whether anything arrives of which a category is made, also where that arrives ready-made as well."""
+    return any(
+        both >> made & 1 and reach.seen.get(vertex, 0) >> of & 1
+        for vertex, pairs in found.derives.items()
+        for of, made in pairs
+    )
 
 
 def _makers(reach: Search, both: int) -> dict[int, int]:

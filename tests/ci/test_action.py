@@ -27,6 +27,8 @@ from tests.helpers.ci_files import (
 from tests.helpers.paths import ROOT
 from tests.helpers.sarif import checked
 
+pytestmark = pytest.mark.slow  # each step of the action is a process
+
 
 def steps_of(inputs: dict[str, str]) -> list[tuple[str, dict[str, str]]]:
     """(script, variables) of the action's steps, with inputs put in as GitHub does: in ``env`` only."""
@@ -82,7 +84,6 @@ def test_the_action_writes_sarif_json_a_summary_and_outputs(runner: dict[str, st
     assert "leak: data can reach a leak" in lines
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("fail_on", "code"), [("never", 0), ("leak", 0), ("undetermined", 4), ("", 4)])
 def test_the_action_fails_when_it_is_told_to(fail_on: str, code: int, runner: dict[str, str], tmp_path: Path) -> None:
     shutil.copytree(FACTORY, tmp_path / "p")
@@ -96,7 +97,6 @@ def test_the_action_fails_when_it_is_told_to(fail_on: str, code: int, runner: di
     assert view == ("enforced" if fail_on == "never" else "declared")
 
 
-@pytest.mark.slow
 def test_bad_input_ends_the_action_with_the_problem(runner: dict[str, str], tmp_path: Path) -> None:
     *_, done = run_action({"policies": "-x; echo hello"}, runner, tmp_path)
     assert done.returncode == 2
@@ -105,7 +105,6 @@ def test_bad_input_ends_the_action_with_the_problem(runner: dict[str, str], tmp_
     assert "hello" not in done.stdout
 
 
-@pytest.mark.slow
 def test_nothing_of_a_hostile_checkout_runs_in_the_action(runner: dict[str, str], tmp_path: Path) -> None:
     checkout = tmp_path / "checkout"
     shutil.copytree(FACTORY, checkout / "p")
@@ -123,7 +122,6 @@ def test_nothing_of_a_hostile_checkout_runs_in_the_action(runner: dict[str, str]
     assert json.loads((checkout / "rosprivacy.json").read_text("utf-8"))["verdict"] == "leak"
 
 
-@pytest.mark.slow
 def test_an_answer_that_the_checkout_brings_is_not_taken_for_ours(runner: dict[str, str], tmp_path: Path) -> None:
     """If the analysis fails, a later step must not find one."""
     for name in ("rosprivacy.sarif", "rosprivacy.json"):
@@ -134,7 +132,6 @@ def test_an_answer_that_the_checkout_brings_is_not_taken_for_ours(runner: dict[s
     assert not Path(runner["GITHUB_OUTPUT"]).exists()
 
 
-@pytest.mark.slow
 def test_the_action_writes_through_no_linked_folder(runner: dict[str, str], tmp_path: Path) -> None:
     shutil.copytree(FACTORY, tmp_path / "checkout" / "p")
     planted(tmp_path / "elsewhere" / "out.json", "mine")
@@ -146,7 +143,6 @@ def test_the_action_writes_through_no_linked_folder(runner: dict[str, str], tmp_
     assert (tmp_path / "elsewhere" / "out.json").read_text("utf-8") == "mine"
 
 
-@pytest.mark.slow
 def test_nothing_of_a_hostile_checkout_runs_while_the_action_installs(tmp_path: Path) -> None:
     """The first step too; and what it installs is what the lock names."""
     action, checkout = hooks_repository(tmp_path / "action"), tmp_path / "checkout"
@@ -177,7 +173,6 @@ def alike(pin: str) -> str:
     return re.sub("[-_.]+", "-", pin.lower())
 
 
-@pytest.mark.slow
 def test_a_file_with_another_hash_is_not_installed(tmp_path: Path) -> None:
     action = hooks_repository(tmp_path / "action")
     lock = (action / "requirements.lock").read_text("utf-8")
@@ -190,7 +185,6 @@ def test_a_file_with_another_hash_is_not_installed(tmp_path: Path) -> None:
     assert not (tmp_path / "temp" / "rosprivacy" / "bin" / "rosprivacy").exists()
 
 
-@pytest.mark.slow
 def test_the_action_installs_itself(tmp_path: Path) -> None:
     shutil.copytree(FACTORY, tmp_path / "p")
     (tmp_path / "temp").mkdir()

@@ -23,6 +23,8 @@ from tests.helpers.ci_files import (
 )
 from tests.helpers.sarif import HOSTILE
 
+pytestmark = pytest.mark.slow  # each comment is made by processes
+
 
 def compare(tmp_path: Path, before: dict[str, Any], after: dict[str, Any]) -> str:
     files = [tmp_path / "before.json", tmp_path / "after.json"]
@@ -42,31 +44,28 @@ def report_of(run: int) -> dict[str, Any]:
     return found
 
 
-@pytest.mark.slow
 def test_the_comment_says_what_is_new_and_what_is_gone(tmp_path: Path) -> None:
     run1, run2, run5 = report_of(1), report_of(2), report_of(5)
     new = compare(tmp_path, run1, run2)
-    assert "**New ways to assess: 2**" in new
+    assert "**New paths to assess: 2**" in new
     assert "- `Video`: `node /safety_camera` → `node /archive_server`, allowed at `before.policy.xml:14`\n" in new
     assert "Verdict: `undetermined` before, `leak` now." in new
     assert "**Gone: 2**" in compare(tmp_path, run2, run5)
     same = compare(tmp_path, run2, run2)
-    assert "No way to assess is new, gone or changed." in same
+    assert "No path to assess is new, gone or changed." in same
     assert "this is no legal verdict" in same
 
 
-@pytest.mark.slow
 def test_what_was_not_analysed_before_is_all_new(tmp_path: Path) -> None:
     """The report that the workflow takes in its place."""
     steps = yaml.safe_load((CI / "privacy.yml").read_text("utf-8"))["jobs"]["paths-to-assess"]["steps"]
     (nothing,) = (step["env"]["NOTHING"] for step in steps if "NOTHING" in step.get("env", {}))
     comment = compare(tmp_path, json.loads(nothing), report_of(2))
-    assert "**New ways to assess: 2**" in comment
+    assert "**New paths to assess: 2**" in comment
     assert "Verdict: `not analysed before` before, `leak` now." in comment
     assert "Asked otherwise" not in comment
 
 
-@pytest.mark.slow
 def test_no_name_can_link_or_mention_anybody(tmp_path: Path) -> None:
     after = report_of(2)
     for finding in after["findings"]:
@@ -80,13 +79,12 @@ def test_no_name_can_link_or_mention_anybody(tmp_path: Path) -> None:
     assert line.isprintable()
 
 
-@pytest.mark.slow
 def test_long_lists_are_cut_and_say_so(tmp_path: Path) -> None:
     after = report_of(2)
     one = after["findings"][0]
     after["findings"] = [{**one, "id": f"{i:016x}", "leak": {**one["leak"], "name": f"/l{i}x"}} for i in range(500)]
     comment = compare(tmp_path, report_of(1), after)
-    assert "**New ways to assess: 500**" in comment
+    assert "**New paths to assess: 500**" in comment
     assert "- and 480 more" in comment
     assert len(comment) < 10_000
 
@@ -106,7 +104,6 @@ def say_what_changes(runner: dict[str, str], checkout: Path, outcome: str, **mor
     return Path(runner["GITHUB_STEP_SUMMARY"]).read_text("utf-8")
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("outcome", ["failure", "success"])
 def test_a_pull_request_is_not_its_own_baseline(outcome: str, runner: dict[str, str], tmp_path: Path) -> None:
     """It brings a before.json that says that nothing is new; and an analysis that failed leaves one half done."""
@@ -116,20 +113,19 @@ def test_a_pull_request_is_not_its_own_baseline(outcome: str, runner: dict[str, 
     planted(Path(runner["RUNNER_TEMP"], "after.json"), new)
     planted(Path(runner["RUNNER_TEMP"], "before.json"), new if outcome == "failure" else old)
     comment = say_what_changes(runner, tmp_path / "checkout", outcome)
-    assert "**New ways to assess: 2**" in comment
+    assert "**New paths to assess: 2**" in comment
     assert ("**There is no baseline**: " in comment) == (outcome == "failure")
     before = "not analysed before" if outcome == "failure" else "undetermined"
     assert f"Verdict: `{before}` before, `leak` now." in comment
 
 
-@pytest.mark.slow
 def test_nothing_of_a_hostile_checkout_runs_while_it_is_compared(runner: dict[str, str], tmp_path: Path) -> None:
     trace = hostile(tmp_path / "checkout")
     for name in ("before.json", "after.json"):
         planted(Path(runner["RUNNER_TEMP"], name), json.dumps(report_of(2)))
     comment = say_what_changes(runner, tmp_path / "checkout", "success", **FROM_HERE)
     assert not trace.exists(), trace.read_text("utf-8")
-    assert "No way to assess is new, gone or changed." in comment
+    assert "No path to assess is new, gone or changed." in comment
 
 
 def test_who_reads_a_pull_request_can_write_nothing() -> None:

@@ -24,6 +24,8 @@ from tests.helpers.ci_files import (
     tool,
 )
 
+pytestmark = pytest.mark.slow  # pre-commit makes environments
+
 
 def users_repository(folder: Path, hooks: Path, hook: dict[str, Any]) -> Path:
     """A repository with a policy, labels and a hook."""
@@ -61,7 +63,6 @@ def test_the_hook_fails_on_a_leak_and_passes_without_one(tmp_path: Path) -> None
     assert "Passed" in clean.stdout
 
 
-@pytest.mark.slow
 def test_nothing_of_a_hostile_repository_runs_in_the_hook(tmp_path: Path) -> None:
     """Its own entry, in the environment of the tests; git and its hooks are pre-commit's business."""
     hooks = tmp_path / "hooks"
@@ -83,7 +84,6 @@ def test_nothing_of_a_hostile_repository_runs_in_the_hook(tmp_path: Path) -> Non
     assert done.returncode == 1
 
 
-@pytest.mark.slow
 def test_pre_commit_installs_the_hook_from_this_repository(tmp_path: Path) -> None:
     hooks = hooks_repository(tmp_path / "hooks")
     done = run_hook(users_repository(tmp_path / "user", hooks, {"args": arguments(2)}), tmp_path)

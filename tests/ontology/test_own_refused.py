@@ -17,6 +17,8 @@ from tests.helpers.command import Cli, cli, refused
 if TYPE_CHECKING:
     from pathlib import Path
 
+pytestmark = pytest.mark.slow  # half a second each: the shapes are asked of the whole ontology
+
 __all__ = ["cli"]
 
 HEAD = """\

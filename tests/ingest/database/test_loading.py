@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 VOCABULARY = load_vocabulary()
 COUNTS = (
-    "MATCH (r:Robot) RETURN r.name AS name, r.elements = COUNT { (r)<-[:OF_ROBOT]-() } "
+    "MATCH (r:Robot) RETURN r.name AS name, r.elements = COUNT { (r)<-[:OF_ROBOT]-(e WHERE NOT e:Intake) } "
     "AND r.flows = COUNT { (r)<-[:OF_ROBOT]-()-[:FLOWS_TO]->() } AS whole"
 )
 

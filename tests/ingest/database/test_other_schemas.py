@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
     from rosprivacy.private_neo4j.connection import Connection
 
+pytestmark = pytest.mark.slow  # each loads a database of its own
+
 VOCABULARY = load_vocabulary()
 HOME = ROOT / "examples" / "care-home"
 LOAD = ("load", HOME / "care-home.policy.xml", "--labels", HOME / "care-home.labels.yaml", "--robot", "care")
