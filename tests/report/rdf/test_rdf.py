@@ -388,7 +388,7 @@ class TestShapesCanFail:
             if not problems(changed):
                 accepted.append(re.split("[:#]", str(predicate))[-1])
         assert sorted(accepted) == [  # what a finding, a hop, a category can be without
-            "broader", "conduitOf", "derivationOf", "exactMatch", "fallsUnder", "followed", "inFile", "leakOf", "leg",
+            "broader", "conduitOf", "derivationOf", "diagnostic", "exactMatch", "fallsUnder", "followed", "inFile", "leakOf", "leg",
             "path", "sanitizerOf", "sourceOf", "used",
         ]  # fmt: skip
 
