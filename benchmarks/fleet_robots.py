@@ -23,7 +23,7 @@ from rosprivacy.fleet_system import fleet_system
 from rosprivacy.ingest.fleet.alike_robots import Alike
 from rosprivacy.ingest.fleet.fleet_graph import place
 from rosprivacy.ontology.vocabulary import load
-from rosprivacy.question import question_of
+from rosprivacy.question import Question
 from rosprivacy.settings import Settings
 
 if TYPE_CHECKING:
@@ -82,14 +82,20 @@ def _written(file: Path, robots: int, model: dict[str, Any], flows: list[dict[st
     return str(file)
 
 
+def everything(known: Vocabulary) -> Question:
+    """What is asked: all that is known."""
+    return Question(Settings(), known, None, None, "")
+
+
 def answered(file: str, known: Vocabulary) -> dict[str, Any]:
     """Read a fleet, analyse it, and make the report: all that a command does but start."""
-    return answer(fleet_system(file, Settings(), known), question_of(Settings(), known)).document()
+    question = everything(known)
+    return answer(fleet_system(file, question), question).document()
 
 
 def as_themselves(file: str, known: Vocabulary) -> Placed:
     """The graph of a fleet in which each robot stands for itself, as if no two were alike."""
-    read = fleet_system(file, Settings(), known)
+    read = fleet_system(file, everything(known))
     (member,) = read.members.values()
     groups = [Alike((robot,), joined=True) for robot in read.fleet.robots]
     return place(read.fleet, groups, {r.id: replace(member, robot=r) for r in read.fleet.robots}, "declared")

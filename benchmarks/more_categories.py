@@ -10,15 +10,19 @@ from __future__ import annotations
 
 import sys
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
-from rosprivacy import robot_system
+from rosprivacy import question
 from rosprivacy.cli import app
 from rosprivacy.ontology.vocabulary import TOP, Vocabulary, load
 
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
-def extended() -> Vocabulary:
-    """Return the shipped vocabulary with the extra categories."""
-    known = load().categories
+
+def extended(ontologies: Sequence[str] = ()) -> Vocabulary:
+    """Return what the program reads, with the extra categories."""
+    known = load(ontologies=ontologies).categories
     extra = [
         replace(known[TOP], name=name, iri=f"urn:x-benchmark:{name}", label=name, title=name, broader=(TOP,))
         for name in extra_names(count)
@@ -32,5 +36,5 @@ def extra_names(number: int) -> list[str]:
 
 if __name__ == "__main__":
     count = int(sys.argv.pop(1))
-    vars(robot_system)["load"] = extended  # the name under which the program calls it
+    vars(question)["load"] = extended  # the name under which the program calls it
     app.main()

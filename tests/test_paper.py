@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from tests.helpers.docs import blocks
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
@@ -28,7 +29,7 @@ PUBLIC = {  # what a reader fetches, and where it is in the corpus
 
 def commands() -> Iterator[tuple[str, list[str], int | None]]:
     """Each command, the lines that are shown of what it prints, and its exit code where that is shown."""
-    for block in re.findall(r"```console\n(.*?)```", PAGE.read_text("utf-8"), re.DOTALL):
+    for block in blocks(PAGE, "console"):
         parts = [part.splitlines() for part in re.split(r"^\$ ", block, flags=re.MULTILINE)[1:]]
         for part, after in zip(parts, [*parts[1:], [""]], strict=True):
             if part[0] != "echo $?":

@@ -73,7 +73,7 @@ def concluded(
         system.bound,
         system.vocabulary,
         system.diagnostics + (joined.diagnostics if joined else ()),
-        assumptions_of(system.rests_on, analysis, question, system.vocabulary),
+        assumptions_of(system.rests_on, analysis, question),
         joined,
         view,
         counts,

@@ -21,14 +21,11 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.decisions import Decisions
     from rosprivacy.analysis.model import Policy
     from rosprivacy.ingest.labels.label_file import Labels
-    from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.question import Question
     from rosprivacy.settings import Settings
 
 
-def assumptions_of(
-    rests_on: Mapping[str, Any], analysis: Analysis, question: Question, vocabulary: Vocabulary
-) -> dict[str, Any]:
+def assumptions_of(rests_on: Mapping[str, Any], analysis: Analysis, question: Question) -> dict[str, Any]:
     """Return the assumptions of a report (rule S12).
 
     Parameters
@@ -40,7 +37,7 @@ def assumptions_of(
     """
     standard = rests_on["standard_channels"]
     return {
-        **_of_question(analysis, question.settings, vocabulary),
+        **_of_question(analysis, question),
         **({"countries_as_of": countries().as_of} if any(f.country for f in analysis.outside.values()) else {}),
         **rests_on,
         "standard_channels": {**standard, "taken": analysis.standard_channels} if standard else None,
@@ -48,8 +45,9 @@ def assumptions_of(
     }
 
 
-def _of_question(analysis: Analysis, settings: Settings, vocabulary: Vocabulary) -> dict[str, Any]:
+def _of_question(analysis: Analysis, question: Question) -> dict[str, Any]:
     """What is assumed whatever is read."""
+    settings, vocabulary = question.settings, question.vocabulary
     broader = may_be(vocabulary, settings, analysis.emitted)
     return {
         "rosprivacy": __version__,

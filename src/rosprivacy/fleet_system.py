@@ -26,12 +26,10 @@ from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.ingest.policies.joint_policies import joint_warnings
 from rosprivacy.ingest.policies.namespaces import as_written, pushed, told
 from rosprivacy.ingest.policies.policy_files import read_policies
-from rosprivacy.ontology.vocabulary import load
 from rosprivacy.question import question_of
 from rosprivacy.system import System
 
 if TYPE_CHECKING:
-    from rosprivacy.analysis.decisions import Decisions
     from rosprivacy.analysis.model import Diagnostic, Policy
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.question import Question
@@ -66,19 +64,16 @@ def answer_fleet(file: str, settings: Settings) -> Result:
     InputErrors
         With every problem of the input, one line each.
     """
-    vocabulary = load(ontologies=settings.ontologies)
-    question = question_of(settings, vocabulary)
-    return answer(fleet_system(file, settings, vocabulary, question.decisions), question)
+    question = question_of(settings)
+    return answer(fleet_system(file, question), question)
 
 
-def fleet_system(
-    file: str, settings: Settings, vocabulary: Vocabulary, decisions: Decisions | None = None
-) -> FleetSystem:
+def fleet_system(file: str, question: Question) -> FleetSystem:
     """Read a fleet file and what it names, each kind of robot once.
 
     Parameters
     ----------
-    decisions
+    question
         Robots about which somebody decided by name are alike to no other.
 
     Raises
@@ -86,6 +81,7 @@ def fleet_system(
     InputErrors
         With every problem of the input, one line each.
     """
+    settings, vocabulary, decisions = question.settings, question.vocabulary, question.decisions
     fleet = read_fleet(file, vocabulary)
     groups = alike(fleet, decisions.told_apart) if decisions else alike(fleet)
     reader = Reader(vocabulary, settings)
@@ -123,7 +119,7 @@ def rows_of_fleet(system: FleetSystem, question: Question, result: Result) -> Fl
     more = {}
     for name, member in system.members.items():
         files = files_read(member.policies, member.files, question.settings)
-        said = assumptions_of(files, result.analysis, question, system.vocabulary)
+        said = assumptions_of(files, result.analysis, question)
         more[name] = remembered(said, member.diagnostics)
     everything = {**result.assumptions, "policies": [], "labels": []}
     more[system.fleet.name] = remembered(everything, system.joins)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import InputErrors, OntologyError, shown
 from rosprivacy.clock import judged_on
 from rosprivacy.decided import decisions_of
+from rosprivacy.ontology.vocabulary import load
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -29,7 +30,9 @@ class Question:
     Attributes
     ----------
     settings
-        As a user named it.
+        As a user named it, with how to read what it is asked of.
+    vocabulary
+        The words in which it is asked and answered.
     asked
         Emitted categories that the answer is about; None for all.
     decisions
@@ -41,6 +44,7 @@ class Question:
     """
 
     settings: Settings
+    vocabulary: Vocabulary
     asked: frozenset[str] | None
     decisions: Decisions | None
     today: str
@@ -52,17 +56,18 @@ class Question:
         return self.every or self.decisions is not None
 
 
-def question_of(settings: Settings, vocabulary: Vocabulary) -> Question:
-    """Return what a user asks, with the decisions that are named.
+def question_of(settings: Settings) -> Question:
+    """Return what a user asks, with the ontologies and the decisions that are named.
 
     Raises
     ------
     InputErrors
-        If a category or a kind of data is not known, or with every problem of the decisions.
+        With every problem of the ontologies or of the decisions, or if a category or a kind of data is not known.
     """
+    vocabulary = load(ontologies=settings.ontologies)
     asked = asked_for(vocabulary, settings)
     decisions = decisions_of(settings, vocabulary)
-    return Question(settings, asked, decisions, settings.today or judged_on(os.environ))
+    return Question(settings, vocabulary, asked, decisions, settings.today or judged_on(os.environ))
 
 
 def asked_for(vocabulary: Vocabulary, settings: Settings) -> frozenset[str] | None:

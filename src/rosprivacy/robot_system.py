@@ -21,7 +21,6 @@ from rosprivacy.ingest.policies.joint_policies import joint_warnings
 from rosprivacy.ingest.policies.merged_policies import merging_notices
 from rosprivacy.ingest.policies.policy_files import read_policies
 from rosprivacy.ingest.policies.saved_graph import read_saved
-from rosprivacy.ontology.vocabulary import load
 from rosprivacy.question import question_of
 from rosprivacy.system import System
 
@@ -29,6 +28,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Bound, Diagnostic, FlowGraph, Policy
     from rosprivacy.ingest.database.rows import RobotRows
     from rosprivacy.ontology.vocabulary import Vocabulary
+    from rosprivacy.question import Question
     from rosprivacy.result import Result
     from rosprivacy.settings import Settings
 
@@ -43,14 +43,11 @@ def answer_robot(policies: tuple[str, ...], labels: tuple[str | Labels, ...], se
     InputErrors
         With every problem of the input, one line each.
     """
-    vocabulary = load(ontologies=settings.ontologies)
-    question = question_of(settings, vocabulary)
-    return answer(robot_system(policies, labels, settings, vocabulary), question)
+    question = question_of(settings)
+    return answer(robot_system(policies, labels, question), question)
 
 
-def robot_system(
-    policies: tuple[str, ...], labels: tuple[str | Labels, ...], settings: Settings, vocabulary: Vocabulary
-) -> System:
+def robot_system(policies: tuple[str, ...], labels: tuple[str | Labels, ...], question: Question) -> System:
     """Read policies and label files.
 
     Raises
@@ -58,7 +55,8 @@ def robot_system(
     InputErrors
         With every problem of the input, one line each.
     """
-    return _under(labels, read=read_system(policies, settings), settings=settings, vocabulary=vocabulary)
+    settings = question.settings
+    return _under(labels, read=read_system(policies, settings), settings=settings, vocabulary=question.vocabulary)
 
 
 def _under(labels: tuple[str | Labels, ...], *, read: Read, settings: Settings, vocabulary: Vocabulary) -> System:
@@ -91,8 +89,8 @@ def answer_each(
     InputErrors
         With every problem of the input, one line each.
     """
-    vocabulary = load(ontologies=settings.ontologies)
-    question = question_of(settings, vocabulary)
+    question = question_of(settings)
+    vocabulary = question.vocabulary
     read, said = read_system(policies, settings)
     files = read_label_files(labels, vocabulary, settings)
     bind(extend(build(read, settings.view), files), files)  # raises what fits none of them

@@ -12,7 +12,6 @@ from rosprivacy.answering import answer
 from rosprivacy.assumptions import put_together
 from rosprivacy.ingest.database.read_back import Stored, read_stored
 from rosprivacy.ingest.database.write_back import write_back
-from rosprivacy.ontology.vocabulary import load
 from rosprivacy.question import question_of
 from rosprivacy.system import System
 
@@ -57,10 +56,9 @@ def answer_stored(driver: Driver, settings: Settings) -> Result:
     DatabaseError
         If the server refuses, or a robot was loaded meanwhile.
     """
-    vocabulary = load(ontologies=settings.ontologies)
-    question = replace(question_of(settings, vocabulary), every=True)
-    system = stored_system(driver, vocabulary)
+    question = replace(question_of(settings), every=True)
+    system = stored_system(driver, question.vocabulary)
     everything = replace(question, asked=None, decisions=None)
     result = answer(system, everything)
-    write_back(driver, system.stored, result.analysis, vocabulary)
+    write_back(driver, system.stored, result.analysis, question.vocabulary)
     return result if question == everything else answer(system, question)

@@ -18,6 +18,6 @@ VOCABULARY = load_vocabulary()
 
 
 def rows(file: str) -> FleetRows:
-    system = fleet_system(file, Settings(), VOCABULARY)
-    question = replace(question_of(Settings(), VOCABULARY), every=True)
+    question = replace(question_of(Settings()), every=True)
+    system = fleet_system(file, question)
     return rows_of_fleet(system, question, answer(system, question))

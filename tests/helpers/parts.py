@@ -197,4 +197,4 @@ def in_list(file: str, size: int = 1) -> Result:
         fleet, alike(fleet), "declared", partial(file_reader, Settings(), str(Path.cwd())), vocabulary.hierarchy
     )
     found = analyse_in_parts(asked, partial(scattered, size=size))
-    return result(asked, found, shown(asked, found, "witness", 100), Question(Settings(), None, None, ""), vocabulary)
+    return result(asked, found, shown(asked, found, "witness", 100), Question(Settings(), vocabulary, None, None, ""))

@@ -188,12 +188,11 @@ def _drawn_of(inputs: Inputs) -> tuple[Result, dict[str, tuple[Profile, ...]]]:
         return inputs.result(settings), {}
     from rosprivacy.answering import answer
     from rosprivacy.fleet_system import fleet_system
-    from rosprivacy.ontology.vocabulary import load
     from rosprivacy.question import question_of
 
-    vocabulary = load(ontologies=settings.ontologies)
-    system = fleet_system(inputs.fleet, settings, vocabulary)
-    return answer(system, question_of(settings, vocabulary)), dict(system.placed.profiles)
+    question = question_of(settings)
+    system = fleet_system(inputs.fleet, question)
+    return answer(system, question), dict(system.placed.profiles)
 
 
 def _format(given: PictureFormat | None, output: Path | None) -> PictureFormat:

@@ -58,16 +58,14 @@ def _load_fleet(file: str, settings: Settings, neo4j: str | None) -> None:
     from rosprivacy.fleet_system import fleet_system, rows_of_fleet
     from rosprivacy.ingest.database import loading as database
     from rosprivacy.ingest.database.fleet_rows import MOST_ACROSS
-    from rosprivacy.ontology.vocabulary import load
     from rosprivacy.question import question_of
 
-    vocabulary = load(ontologies=settings.ontologies)
-    question = replace(question_of(settings, vocabulary), every=True)
-    system = fleet_system(file, settings, vocabulary)
+    question = replace(question_of(settings), every=True)
+    system = fleet_system(file, question)
     result = answer(system, question)
     rows = rows_of_fleet(system, question, result)
     with driver_of(neo4j) as driver, _bar(None) as advance:
-        done = database.load(driver, rows, vocabulary, advance)
+        done = database.load(driver, rows, system.vocabulary, advance)
     robots = len(system.fleet.robots)
     what = f"fleet {shown(file)}: {robots:,} robots and what they share"
     emit(

@@ -39,7 +39,6 @@ if TYPE_CHECKING:
 
     from rosprivacy.ingest.fleet.dds_domains import Member
     from rosprivacy.ingest.fleet.fleet_file import Robot
-    from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.question import Question
     from rosprivacy.result import Result
     from rosprivacy.settings import Settings
@@ -70,10 +69,9 @@ def run_on_spark(file: str, settings: Settings, master: str | None = None, resul
         raise InputError(
             "--decisions", 0, "on Spark no decisions are taken into account", "leave them out, or analyse in memory"
         )
-    vocabulary = load(ontologies=settings.ontologies)
-    fleet = read_fleet(file, vocabulary)
     plain = replace(settings, progress=unchanged, today=settings.today or judged_on(os.environ))
-    question = question_of(plain, vocabulary)
+    question = question_of(plain)
+    fleet, vocabulary = read_fleet(file, question.vocabulary), question.vocabulary
     task = Task(
         fleet, alike(fleet), settings.view, partial(file_reader, plain, str(Path.cwd())), vocabulary.hierarchy,
         question.asked, question.today,
@@ -85,7 +83,7 @@ def run_on_spark(file: str, settings: Settings, master: str | None = None, resul
         found = analyse_in_parts(task, partial(scatter, spark))
         _note_what_workers_read(found)
         told = shown(task, found, settings.paths, settings.max_paths)
-        answer = result(task, found, told, question, vocabulary)
+        answer = result(task, found, told, question)
         if results:
             plan, units = plan_of(task, found, answer, plain)
             write(spark, results, units, plan, answer.document())
@@ -125,7 +123,7 @@ def _check_whole(task: Task) -> None:
         raise InputErrors(problems)
 
 
-def result(task: Task, found: Found, told: Shown, question: Question, vocabulary: Vocabulary) -> Result:
+def result(task: Task, found: Found, told: Shown, question: Question) -> Result:
     """Put together what a report says."""
     rests_on = {
         **({"countries_as_of": countries().as_of} if found.told.countries else {}),
@@ -143,7 +141,7 @@ def result(task: Task, found: Found, told: Shown, question: Question, vocabulary
     policies = {policy.file: policy for member in told.members.values() for policy in member.policies}
     labels = {file.file: file for member in told.members.values() for file in member.files}
     system = System(
-        told.placed.graph, told.placed.bound, vocabulary, said, rests_on,
+        told.placed.graph, told.placed.bound, question.vocabulary, said, rests_on,
         tuple(policies.values()), tuple(labels.values()), found.likeness, is_fleet=True,
     )  # fmt: skip
     return concluded(system, question, told.analysis, told.view, Options(), found.counts)

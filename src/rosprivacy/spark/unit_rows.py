@@ -174,8 +174,8 @@ def _fleet_rows(placed: Placed, members: Mapping[str, Member], plan: Plan, mine:
 
 def _more(member: Member, analysis: Analysis, plan: Plan, vocabulary: Any) -> dict[str, str]:
     files = files_read(member.policies, member.files, plan.settings)
-    question = Question(plan.settings, None, None, plan.settings.today or "")
-    said = assumptions_of(files, analysis, question, vocabulary)
+    question = Question(plan.settings, vocabulary, None, None, plan.settings.today or "")
+    said = assumptions_of(files, analysis, question)
     if said["standard_channels"]:
         spread = analysis.spread
         robots = [spread.graph.elements[vertex] for vertex in spread.standard]

@@ -118,7 +118,8 @@ class TestRobots:
         write("eye.yaml", "labels: 1\nnodes: {/camera: {source: [Video], leak: [Video]}, /uplink: {leak: [Video]}}\n")
         write("own.yaml", "labels: 1\nnodes: {/uplink: {leak: none, conduit: [Video]}}\n")
         write("f.yaml", f"fleet: 1\n{MODELS}robots: {{a: {{model: eye}}, b: {{model: eye, labels: own.yaml}}}}\n")
-        result = answer(fleet_system("f.yaml", Settings(), load()), Question(Settings(), None, None, "", every=True))
+        question = Question(Settings(), load(), None, None, "", every=True)
+        result = answer(fleet_system("f.yaml", question), question)
         assert [(f.leak.robot, f.leak.name) for f in result.analysis.findings] == [
             ("a", "/camera"), ("a", "/uplink"), ("b", "/camera"),
         ]  # fmt: skip
