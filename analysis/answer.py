@@ -128,7 +128,7 @@ class Verdict(StrEnum):
 
     @classmethod
     def of(cls, *, leak: bool, is_open: bool, known: bool) -> Verdict:
-        """Decide: ``leak`` if a finding stands, ``known`` if data was followed and no grant was left unread (S11, S12).
+        """Decide: ``leak`` if a finding stands, ``known`` if it lacks no grounds and all grants were read (S11, S12).
 
         >>> str(Verdict.of(leak=False, is_open=False, known=False))
         'undetermined'
@@ -170,6 +170,8 @@ class Analysis:
         What is stated about non-ROS elements (rule S9).
     unknown_ends
         Channels with data that nobody known reads, elements outside ROS that no flow reaches; sorted (rule S11).
+    lacking
+        What 'no leak found' needs and is missing, as the code of a diagnostic; empty if nothing is (rules S11, S12).
     """
 
     graph: FlowGraph
@@ -187,6 +189,7 @@ class Analysis:
     diagnostics: tuple[Diagnostic, ...] = ()
     outside: Mapping[Element, NonRosFacts] = field(default_factory=dict)
     unknown_ends: tuple[UnknownEnd, ...] = ()
+    lacking: str = ""
 
 
 def robot_verdicts(
@@ -212,7 +215,8 @@ def robot_verdicts(
             robot_of(e) for finding in analysis.findings if finding.stands for e in (finding.source, finding.leak)
         }
     open_at = {robot_of(question.element) for question in analysis.open}
-    known = {robot_of(carried.element) for carried in analysis.carried}.difference(not_read)
+    carrying = () if analysis.lacking else analysis.carried
+    known = {robot_of(carried.element) for carried in carrying}.difference(not_read)
     return {
         robot: Verdict.of(leak=robot in leaking, is_open=robot in open_at, known=robot in known) for robot in robots
     }

@@ -146,6 +146,10 @@ MERGED = "merged"  # policies that make one graph, and may not have been meant t
 FALLBACK_TAKEN = "fallback-taken"
 EMPTY_GROUP = "empty-group"
 REFUSED_NAME = "refused-name"
+NO_SOURCE = "no-source"  # what 'no leak found' lacks, so that it says nothing (rules S11, S12)
+GOES_NOWHERE = "goes-nowhere"
+NO_LEAK_NAMED = "no-leak-named"
+NOTHING_FOLLOWED = (NO_SOURCE, GOES_NOWHERE)
 
 
 class Severity(StrEnum):

@@ -21,6 +21,7 @@ from rosprivacy.analysis.decisions import Case
 from rosprivacy.analysis.findings.arrival import shown_arrivals
 from rosprivacy.analysis.findings.concerns import concerns
 from rosprivacy.analysis.findings.further_paths import Between, further
+from rosprivacy.analysis.findings.grounds import grounds, lacking
 from rosprivacy.analysis.findings.open_questions import open_questions
 from rosprivacy.analysis.findings.unknown_ends import unknown_ends
 from rosprivacy.analysis.kernel import standard_channels
@@ -28,7 +29,7 @@ from rosprivacy.analysis.kernel.bits import bits_of
 from rosprivacy.analysis.kernel.search import START, Search, path_to, present, search
 from rosprivacy.analysis.kernel.spreading import spread
 from rosprivacy.analysis.kernel.states import Net
-from rosprivacy.analysis.model import DISCLOSURE, Diagnostic, Element, Place, Severity
+from rosprivacy.analysis.model import DISCLOSURE, Element, Place
 from rosprivacy.analysis.modes import Paths
 from rosprivacy.analysis.non_ros import country_unknown, on_day
 
@@ -118,14 +119,11 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
     findings = tuple(_findings(net, mask, kinds, options))
     unknown = {v for v, facts in bound.outside.items() if country_unknown(graph.elements[v], facts)}
     questions = open_questions(net, mask, unknown)
-    sources = any(found.begins(vertex) & mask for vertex in range(len(graph.elements)))
+    lacks = grounds(found, mask).lacking
+    leak = any(finding.stands for finding in findings)
     return Analysis(
         graph=graph,
-        verdict=Verdict.of(
-            leak=any(finding.stands for finding in findings),
-            is_open=bool(questions),
-            known=sources and not options.unread,
-        ),
+        verdict=Verdict.of(leak=leak, is_open=bool(questions), known=not lacks and not options.unread),
         emitted=tuple(wanted),
         findings=findings,
         open=questions,
@@ -136,16 +134,14 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
         standard_unchanged=standard_channels.unchanged(found, bound),
         spread=found,
         unstated=tuple(_unstated(found)),
-        diagnostics=(*(one.diagnostic() for one in found.overruled), *(() if sources else (_no_source(options),))),
+        diagnostics=(
+            *(one.diagnostic() for one in found.overruled),
+            *(() if leak or questions else lacking(lacks, restricted=options.categories is not None)),
+        ),
         outside={graph.elements[vertex]: facts for vertex, facts in sorted(bound.outside.items())},
         unknown_ends=unknown_ends(found, mask),
+        lacking=lacks,
     )
-
-
-def _no_source(options: Options) -> Diagnostic:
-    what = "no label names a source" if options.categories is None else "no source emits one of the chosen categories"
-    message = f"{what}: no data was followed, so this says nothing about the system"
-    return Diagnostic(Place("labels", 0), Severity.WARNING, message)
 
 
 def _findings(net: Net, mask: int, kinds: Sequence[Concern], options: Options) -> Iterator[Finding]:

@@ -13,7 +13,7 @@ from rosprivacy.analysis.findings.review_order import Behind
 from rosprivacy.analysis.findings.sanitizing import absent, cleanings, makings
 from rosprivacy.analysis.kernel.ranks import in_words
 from rosprivacy.analysis.legal import turned_special
-from rosprivacy.analysis.model import UNREAD_FILE
+from rosprivacy.analysis.model import GOES_NOWHERE, NO_LEAK_NAMED, UNREAD_FILE
 from rosprivacy.analysis.text import utf8
 from rosprivacy.analysis.written_names import literal
 from rosprivacy.report.document import ledger
@@ -130,6 +130,12 @@ def analysis_document(answer: Answer) -> AnalysisDocument:
 def files_not_read(document: Mapping[str, Any]) -> int:
     """Return how many files with grants were not read: why a verdict can be undetermined with nothing open (S11)."""
     return len({said["file"] for said in document["diagnostics"] if said.get("code") == UNREAD_FILE})
+
+
+def lacking(document: Mapping[str, Any]) -> str:
+    """Return what 'no leak found' lacks where data has a source: ``GOES_NOWHERE``, ``NO_LEAK_NAMED``, else empty."""
+    codes = {said.get("code") for said in document["diagnostics"]}
+    return next((code for code in (GOES_NOWHERE, NO_LEAK_NAMED) if code in codes), "")
 
 
 def as_text(value: Any) -> str:

@@ -5,12 +5,15 @@ In: ``TakenAway`` rows. Out: plain dicts, in their order.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.answer import Verdict
+from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.findings.closures import ABSENT
 from rosprivacy.analysis.findings.ledger import BY
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable
+    from collections.abc import Callable, Collection, Iterable, Mapping
 
     from rosprivacy.analysis.findings.globs import GlobUse
     from rosprivacy.analysis.findings.ledger import TakenAway
@@ -18,6 +21,8 @@ if TYPE_CHECKING:
     from rosprivacy.report.contract.records import ElementEntry, GlobEntry, LedgerRow
 
     Shown = Callable[[Element], ElementEntry]
+
+WORD_OF_A_LABEL = ("mundane", "only", "never", "sanitizer", ABSENT)
 
 
 def rows(taken: Collection[TakenAway], element_dict: Shown) -> list[LedgerRow]:
@@ -60,6 +65,22 @@ def globs(used: Iterable[GlobUse], element_dict: Shown) -> list[GlobEntry]:
         }
         for use in used
     ]
+
+
+def hanging(document: Mapping[str, Any]) -> list[tuple[str, Mapping[str, Any]]]:
+    """Return (place, row) of each line of a label file at which data ends, where no leak was found; else nothing.
+
+    A path can end at one of several of them, so no row by itself says that a leak lies behind. Of a line that closes
+    much, the row that stands for it is the first that has a leak behind it.
+    """
+    if document["verdict"] != Verdict.NO_LEAK_FOUND:
+        return []
+    closing = (row for row in document["taken_away"] if row["by"] in WORD_OF_A_LABEL)
+    first: dict[str, Mapping[str, Any]] = {}
+    for row in sorted(closing, key=lambda row: not row["leak"]):
+        for place in row["places"]:
+            first.setdefault(f"{shown(place['file'])}:{place['line']}", row)
+    return list(first.items())
 
 
 def counts(taken: Collection[TakenAway]) -> dict[str, int]:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.text import fit, printable
+from rosprivacy.report.document.ledger import hanging
 from rosprivacy.report.naming import name
 
 if TYPE_CHECKING:
@@ -81,6 +82,8 @@ def _stopped(index: Index) -> Iterator[str]:
         yield words("a.standard.unchanged", element=name(element))
     for row in said.get("absent", ()):
         yield words("a.absent", element=name(row["element"]), why=printable(row["why"]))
+    if rows := hanging(index.document):
+        yield words("a.hangs", labels=words.row(f"{name(row['element'])} ({fit(place)})" for place, row in rows))
     yield from _globs(index)
     for row in said.get("overruled", ()):
         yield words(

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.text import fit
 from rosprivacy.report.compare.changes import ASKED, Changes, changes
-from rosprivacy.report.document.analysis import files_not_read
+from rosprivacy.report.document.analysis import files_not_read, lacking
 from rosprivacy.report.naming import name
 from rosprivacy.report.page import assumed, elements, sanitizers, tables
 from rosprivacy.report.page.closed import Closed, closed
@@ -208,11 +208,11 @@ def _title(index: Index) -> str:
 
 
 def _verdict(index: Index) -> str:
-    """The verdict; ``nothing`` where no data was followed (rule S12: nothing was asked, so nothing can be said)."""
+    """The verdict; ``nothing``, ``goes-nowhere`` or ``no-leak-named`` where it lacks grounds (rules S11, S12)."""
     verdict = str(index.document["verdict"])
     asked = verdict != "undetermined" or index.document["open"] or files_not_read(index.document)
     followed = index.document["categories"] and asked
-    return verdict if followed else "nothing"
+    return verdict if followed else lacking(index.document) or "nothing"
 
 
 def _means(index: Index, sections: list[str]) -> Iterator[str]:

@@ -115,6 +115,16 @@ WORDS = {
     "verdict.nothing.means": (
         "No label names a source of the kinds of data that were asked for. The report says nothing about the system."
     ),
+    "verdict.goes-nowhere": "Not determined: what the named sources bring in goes nowhere, so no data were followed",
+    "verdict.goes-nowhere.means": (
+        "What the sources named in the labels bring in goes to standard channels at most, and ends there. Perhaps "
+        "other nodes bring it in. The report says nothing about the system."
+    ),
+    "verdict.no-leak-named": "Not determined: no label says where data get out of the system",
+    "verdict.no-leak-named.means": (
+        "Data were followed, and everything on the way was reviewed. But no label says of any element that it lets the "
+        "data out, or that it does not, so no path could have been found."
+    ),
     "verdict.accepted": "{ways} accepted by a person's decision; section {section} shows each with its reason.",
     "not.legal": (
         "This report is no legal verdict. It shows where data can go under the policies, and what people said of the "
@@ -170,6 +180,7 @@ WORDS = {
     "a.standard.reached": "{data} would get to {element}, and stops there for this.",
     "a.standard.unchanged": "A label by a glob says that {element} may carry data; it does not count against that file.",
     "a.absent": "{element} has a profile and is not on the robot: {why}. So nothing gets to it, and nothing comes from it.",
+    "a.hangs": "That no path was found hangs on labels at which data end: {labels}. Check that each is true.",
     "a.glob": (
         "The glob at {place} ({says}) decides {elements}; data ends for it at {closed} of them, and {reviewed} count as "
         "reviewed for it."

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.answer import Verdict
 from rosprivacy.analysis.findings.flows_to_leaks import FlowsToLeaks, flows_to_leaks
 from rosprivacy.analysis.kernel.states import Net
-from rosprivacy.analysis.model import DISCLOSURE
+from rosprivacy.analysis.model import DISCLOSURE, GOES_NOWHERE, NO_LEAK_NAMED
 from rosprivacy.analysis.text import counted, shortened
 from rosprivacy.report.pictures.looks import ALLOWED, DATA, DENIED, MATCHES, SHORTEST, WAY
 from rosprivacy.report.pictures.picture import PRIVACY, ROS, Box, Line, Picture, order, sorted_boxes, sorted_lines
@@ -37,6 +37,10 @@ VERDICTS = {
     Verdict.NO_LEAK_FOUND: "no path to a leak found",
 }
 PER_BOX = 12  # flows that are looked at for each box: channels with the same ends will be one
+LACKING = {
+    GOES_NOWHERE: "it goes nowhere but to standard channels, so nothing was followed",
+    NO_LEAK_NAMED: "no label says where it gets out",
+}
 NOTHING = "No data was followed: no label names a source. So this says nothing about the system."
 LONGER = "Not drawn: paths of more"
 BOTH_WAYS = {"request", "reply", "call", "execute"}
@@ -200,11 +204,16 @@ def privacy_view(analysis: Analysis, beside: Collection[str] = ()) -> Picture:
     what = listed(analysis.emitted, most=6)
     findings = counted(len(open_findings), "finding")
     open_count = counted(len({q.element.identity for q in analysis.open if q.element.robot not in beside}), "element")
-    title = f"Where {what} can go ({analysis.graph.view}): {VERDICTS[analysis.verdict]}"
+    title = f"Where {what} can go ({analysis.graph.view}): {_verdict(analysis)}"
     notes = (f"{findings}, {open_count} not reviewed", *reached.left_out(beside))
     shown = tuple(in_words(finding) for finding in open_findings)
     core = _core(open_findings)
     return Picture(PRIVACY, title, sorted_boxes(boxes.values()), lines.made(), notes, shown, core)
+
+
+def _verdict(analysis: Analysis) -> str:
+    lacks = analysis.verdict is Verdict.UNDETERMINED and not analysis.open
+    return LACKING.get(analysis.lacking, VERDICTS[analysis.verdict]) if lacks else VERDICTS[analysis.verdict]
 
 
 def _ways_to_all(analysis: Analysis, net: Net, findings: Iterable[Finding]) -> Iterator[dict[int, int]]:

@@ -13,7 +13,7 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.legal import strongest_first
-from rosprivacy.analysis.model import Place, Severity, unread
+from rosprivacy.analysis.model import NO_LEAK_NAMED, Place, Severity, unread
 from rosprivacy.analysis.text import utf8
 from rosprivacy.report.places import Places, in_a_file, to_review
 from rosprivacy.report.sarif.flows import flows_between, further_ways, prose, text
@@ -21,6 +21,7 @@ from rosprivacy.report.sarif.results import LAW, ROOT, Files, Results
 from rosprivacy.report.sarif.robots import with_robots
 from rosprivacy.report.sarif.rules import (
     FILES_NOT_READ,
+    NO_LEAK,
     NO_VERDICT,
     NOTHING_FOLLOWED,
     RULES,
@@ -63,7 +64,8 @@ def _log(answer: Answer, root: Path) -> dict[str, Any]:
     taxa = sorted({legal.iri: legal for said in law.values() for legal in said}.values(), key=lambda legal: legal.name)
     found = (rule_of(finding.kind) for finding in analysis.findings)
     not_read = [FILES_NOT_READ] if unread(diagnostics) else []
-    rules = {rule.id: rule for rule in (*RULES, *found, UNREVIEWED, NOTHING_FOLLOWED, *not_read)}
+    not_named = [NO_LEAK] if analysis.lacking == NO_LEAK_NAMED else []
+    rules = {rule.id: rule for rule in (*RULES, *found, UNREVIEWED, NOTHING_FOLLOWED, *not_named, *not_read)}
     made = Results(
         analysis,
         Places.of(analysis, assumptions),

@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.answer import Verdict
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.legal import MAY_REVEAL, turned_special
+from rosprivacy.analysis.model import NO_LEAK_NAMED
 from rosprivacy.report.places import NOWHERE, of_step, to_review
 from rosprivacy.report.sarif.artifacts import uri_of
 from rosprivacy.report.sarif.flows import flows_of, logical, named, prose, text
-from rosprivacy.report.sarif.rules import FILES_NOT_READ, NOTHING_FOLLOWED, UNREVIEWED, Rule, rule_of
+from rosprivacy.report.sarif.rules import FILES_NOT_READ, NO_LEAK, NOTHING_FOLLOWED, UNREVIEWED, Rule, rule_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -86,7 +87,8 @@ class Results:
             yield self._question(question)
         if self.analysis.verdict is Verdict.UNDETERMINED and not self.analysis.open:
             not_read = FILES_NOT_READ.id in self.rules and self.analysis.carried
-            yield self._rule_alone(FILES_NOT_READ if not_read else NOTHING_FOLLOWED)
+            lacks_leak = self.analysis.lacking == NO_LEAK_NAMED
+            yield self._rule_alone(FILES_NOT_READ if not_read else NO_LEAK if lacks_leak else NOTHING_FOLLOWED)
 
     def _finding(self, finding: Finding) -> dict[str, Any]:
         rule = rule_of(finding.kind)

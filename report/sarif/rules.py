@@ -106,8 +106,16 @@ NOTHING_FOLLOWED = Rule(
     "no-data-followed",
     "PersonalDataNotFollowed",
     "No data was followed: that nothing is found says nothing about the system.",
-    "No label names a source of the kinds of data that were asked for, so there was nothing to follow.",
+    "No label names a source of the kinds of data that were asked for, or what the sources bring in goes nowhere but "
+    "to standard channels, so there was nothing to follow.",
     ("Name the nodes that bring personal data in, in a label file: rosprivacy labels --init writes a first one.",),
+)
+NO_LEAK = Rule(
+    "no-leak-named",
+    "PersonalDataLeakNotNamed",
+    "No label says where data gets out: that nothing is found says nothing about the system.",
+    "Everything that data gets to is reviewed. But no label says of any element that it is a leak, or that it is none.",
+    ("Name what lets data out (leak: [Video]) in a label file; if nothing does, say so at a node that might (none).",),
 )
 
 

@@ -11,16 +11,16 @@ from typing import TYPE_CHECKING, Any
 from rich.text import Text
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.model import MERGED
+from rosprivacy.analysis.model import GOES_NOWHERE, MERGED, NO_LEAK_NAMED
 from rosprivacy.analysis.text import counted
-from rosprivacy.report.document.analysis import files_not_read
+from rosprivacy.report.document.analysis import files_not_read, lacking
 from rosprivacy.report.naming import shown_name, whole
 from rosprivacy.report.terminal.denied import denied_lines
 from rosprivacy.report.terminal.finding_lines import MANY, details, law_lines, overview
 from rosprivacy.report.terminal.fleet import fleet_lines
 from rosprivacy.report.terminal.globs import glob_lines, glob_warnings
 from rosprivacy.report.terminal.labels import absent_lines, overruled_lines, standard_lines
-from rosprivacy.report.terminal.ledger import ledger_lines, taken_away_lines
+from rosprivacy.report.terminal.ledger import hanging_lines, ledger_lines, taken_away_lines
 from rosprivacy.report.terminal.next_step import next_lines
 from rosprivacy.report.terminal.restriction import asked_at_verdict, asked_lines
 from rosprivacy.report.terminal.review import SHOWN, review_lines
@@ -43,6 +43,11 @@ ACCEPTED = {  # the same where a decision accepts a finding
 }
 TAKEN = {"conduit": "passes on all that gets there", "leak": "lets out all that gets there"}
 UNREAD = "no leak reached, but policy files with grants were not read"
+LACKING = {
+    GOES_NOWHERE: "no data was followed, it goes nowhere but to standard channels",
+    NO_LEAK_NAMED: "no label says where data gets out, so nothing that it gets to could be a leak",
+    "": "no data was followed",
+}
 Line = tuple[str, str]  # text, style
 
 
@@ -68,7 +73,7 @@ def verdict_line(report: Mapping[str, Any]) -> Line:
     """Return the line that says the verdict, what it leaves open, and what was not asked for (rules S11, S12)."""
     style, meaning = VERDICTS[report["verdict"]]
     if not any(report["categories"]) or (report["verdict"] == "undetermined" and not report["open"]):
-        meaning = UNREAD if files_not_read(report) and any(report["categories"]) else "no data was followed"
+        meaning = UNREAD if files_not_read(report) and any(report["categories"]) else LACKING[lacking(report)]
     accepted = sum(finding["accepted"] for finding in report["findings"])
     if accepted and report["verdict"] != "leak":
         style, meaning = "bold yellow", ACCEPTED[report["verdict"]]
@@ -137,6 +142,7 @@ def _assumed(report: Mapping[str, Any], *, verbose: bool) -> Iterator[Line]:
     yield f"   view {report['view']}: {view[report['view']]}", ""
     yield from standard_lines(report, None if verbose else SHOWN)
     yield from taken_away_lines(report)
+    yield from hanging_lines(report, None if verbose else SHOWN)
     yield from glob_warnings(report)
     if "database" in assumptions:
         robots = counted(assumptions["database"]["robots"], "robot")

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.text import counted
+from rosprivacy.report.document.ledger import hanging
 from rosprivacy.report.naming import shown_name
 
 if TYPE_CHECKING:
@@ -47,6 +48,20 @@ def taken_away_lines(report: Mapping[str, Any]) -> Iterator[Line]:
     closing = sum(_closes(row) for row in report["taken_away"])
     if closing:
         yield f"   {closing:,} of these closed a path to a leak or an open element (-v lists them)", "yellow"
+
+
+def hanging_lines(report: Mapping[str, Any], most: int | None) -> Iterator[Line]:
+    """Return on which labels it hangs that no leak was found: data gets there and ends on their word (rule S12)."""
+    rows = hanging(report)
+    if rows:
+        said = [f"{place} ({shown_name(row['element'])} {SAYS[row['by']]}{_leak_behind(row)})" for place, row in rows]
+        more = f" and {len(said) - most:,} more (-v shows all)" if most is not None and len(said) > most else ""
+        what = f"no-leak-found hangs on {counted(len(said), 'label')} at which data ends"
+        yield f"   warning: {what}: {', '.join(said[:most])}{more}", "bold yellow"
+
+
+def _leak_behind(row: Mapping[str, Any]) -> str:
+    return f"; without it data gets to the leak {shown_name(row['leak'])}" if row["leak"] else ""
 
 
 def ledger_lines(report: Mapping[str, Any]) -> Iterator[Line]:

@@ -9,7 +9,8 @@ import re
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.model import UNREAD_FILE
+from rosprivacy.analysis.model import GOES_NOWHERE, NO_LEAK_NAMED, UNREAD_FILE
+from rosprivacy.report.document.analysis import lacking
 from rosprivacy.report.naming import shown_name, whole
 from rosprivacy.report.terminal.restriction import asked_at_verdict
 from rosprivacy.report.terminal.review import next_round
@@ -24,7 +25,13 @@ SENSORS = (  # what is in the name of a node that brings personal data in, more 
     "laser", "lidar", "scan", "radar", "localiz", "amcl", "slam", "gnss", "face", "person", "people", "teleop",
 )  # fmt: skip
 SHORT = ("cam", "rgb", "zed", "mic", "asr", "gps", "joy", "user")  # of these only whole words
-SOURCE = "name a source in a label file, such as nodes: {/camera: {source: [Video]}}"
+EXAMPLE = "nodes: {/camera: {source: [Video]}}"
+LACKING = {
+    GOES_NOWHERE: f"check which node brings the data in (those named send none on): {EXAMPLE}",
+    NO_LEAK_NAMED: "name what lets data out, such as nodes: {/uplink: {leak: [Video]}}; if nothing does, say so at a "
+    "node that might: {leak: none}",
+}
+SOURCE = f"name a source in a label file, such as {EXAMPLE}"
 
 
 def followed(report: Mapping[str, Any]) -> bool:
@@ -55,7 +62,7 @@ def _step(report: Mapping[str, Any]) -> str:
         others = len({whole(question["element"]) for question in report["open"]}) - 1
         return f"review {shown_name(first)}{f' and {others:,} more' if others else ''}, say it in a label file, repeat"
     unread = sorted({shown(said["file"]) for said in report["diagnostics"] if said.get("code") == UNREAD_FILE})
-    return f"name the policy that includes {unread[0]}, or remove it" if unread else ""
+    return f"name the policy that includes {unread[0]}, or remove it" if unread else LACKING.get(lacking(report), "")
 
 
 def candidates(report: Mapping[str, Any]) -> list[str]:

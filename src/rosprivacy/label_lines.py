@@ -26,7 +26,8 @@ from rosprivacy.ingest.policies.names import covered
 from rosprivacy.ingest.reading.bounded_file import read_regular
 from rosprivacy.ingest.reading.yaml_values import MAX_BYTES
 from rosprivacy.ontology.vocabulary import load
-from rosprivacy.report.terminal.next_step import candidates
+from rosprivacy.report.document.analysis import lacking
+from rosprivacy.report.terminal.next_step import LACKING, candidates
 from rosprivacy.report.terminal.review import next_round, review_text, sources_of
 from rosprivacy.robot_system import answer_robot, read_label_files, read_system, standard_channels
 
@@ -100,6 +101,8 @@ def next_lines(policies: tuple[str, ...], labels: tuple[str, ...], settings: Set
             lines["nodes", name] = NewLine("nodes", name, "does it bring personal data in? {source: [Video]}")
     if not report["carries"] and not lines:
         remarks.append(f"{own.file}: no source is named yet; rosprivacy labels --init lists all nodes")
+    if code := lacking(report):
+        remarks.append(f"{own.file}: nothing is left to review, but {LACKING[code]}")
     text = with_lines(own.file, text, list(lines.values()), vocabulary)
     return Written(own.file, text, len(lines), tuple(remarks))
 

@@ -68,7 +68,8 @@ def test_a_system_leaks_if_one_of_its_robots_does(system: System, data: st.DataO
 
 
 def test_a_robot_that_no_data_reaches_is_not_settled() -> None:
-    analysis = System(1, 0, [], {0: [statement("source", "Face")]}, {}).analyse()
+    said = {0: [statement("source", "Face"), statement("no-leak")], 1: [statement("sensitive")]}
+    analysis = System(1, 1, [(0, 1)], said, {}).analyse()
     told = robot_verdicts(analysis, ["", "other"], lambda element: element.robot)
     assert told == {"": Verdict.NO_LEAK_FOUND, "other": Verdict.UNDETERMINED}
     assert Element("node", "/n0") in {carried.element for carried in analysis.carried}

@@ -8,6 +8,8 @@ from __future__ import annotations
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.model import NOTHING_FOLLOWED
+
 if TYPE_CHECKING:
     from rosprivacy.result import Result
 
@@ -16,7 +18,7 @@ CODES = {
     1: "what the command exists to find: a leak; for `diff` a finding that is new or worse",
     2: "bad input or usage",
     3: "a server (database, Spark) cannot be reached",
-    4: "`analyze`: undetermined; `--fail-on leak` makes it 0, but never where no label names a source",
+    4: "`analyze`: undetermined; `--fail-on leak` makes it 0, but never where no data was followed",
     70: "an error of the program itself",
 }
 LEAK, UNDETERMINED, OWN_ERROR = 1, 4, 70
@@ -41,7 +43,8 @@ GONE = {  # words of earlier versions -> what to write; no alias, since what end
 def exit_code(result: Result, fail_on: FailOn) -> int:
     """Return 1 for a finding that counts, 4 for an answer that is undetermined, else 0.
 
-    A leak that may be, because nobody named a source, is not let through by ``leak``: nothing was looked at then.
+    A leak that may be, because nobody named a source whose data goes anywhere, is not let through by ``leak``: nothing
+    was looked at then.
     """
     analysis, decided = result.analysis, result.decided
     if fail_on is FailOn.never:
@@ -51,5 +54,5 @@ def exit_code(result: Result, fail_on: FailOn) -> int:
         left = [finding for finding in left if not (decided and decided.valid(finding))]
     if left:
         return LEAK
-    followed = bool(analysis.carried)
+    followed = analysis.lacking not in NOTHING_FOLLOWED
     return UNDETERMINED if analysis.verdict == "undetermined" and not (fail_on is FailOn.leak and followed) else 0

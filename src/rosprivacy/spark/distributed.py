@@ -9,13 +9,15 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import partial, reduce
+from operator import or_
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rosprivacy.analysis.answer import Verdict
 from rosprivacy.analysis.errors import FleetError, InputError, InputErrors
+from rosprivacy.analysis.findings.grounds import grounds
 from rosprivacy.analysis.fleet.counts import Counts, counted
 from rosprivacy.analysis.fleet.patterns import different
 from rosprivacy.analysis.fleet.source_leak_pairs import forms
@@ -82,6 +84,8 @@ class Found:
 
     Attributes
     ----------
+    lacking
+        What 'no leak found' needs and is missing in the whole fleet.
     groups
         Patterns, without ways.
     needed
@@ -104,6 +108,7 @@ class Found:
 
     emitted: tuple[str, ...]
     verdict: Verdict
+    lacking: str
     groups: tuple[Group, ...]
     deviants: tuple[Deviant, ...]
     needed: frozenset[str]
@@ -262,16 +267,17 @@ class _Run:
         needed |= {unit[robot] for robot in kinds if robot in unit}
         ends = (element.robot for group in groups for element in (group.pair.source, group.pair.leak))
         needed |= {unit[robot] for robot in ends if robot in unit}
-        begins = any(ours.begins(v) & mask for v in ours.facts) or any(answer.begins for answer in answers)
+        lacking = reduce(or_, (answer.grounds for answer in answers), grounds(ours, mask)).lacking
         verdict = Verdict.of(
             leak=any(group.count.all > group.count.dismissed for group in groups),
             is_open=bool(count or core_open),
-            known=begins and not unread(told.diagnostics),
+            known=not lacking and not unread(told.diagnostics),
         )
         counts = sum((answer.counts for answer in answers), counted(piece.graph, ours, self._likeness, (), mine))
         return Found(
             emitted=tuple(wanted),
             verdict=verdict,
+            lacking=lacking,
             groups=groups,
             deviants=different(shares, open_at, self._likeness),
             needed=frozenset(needed),

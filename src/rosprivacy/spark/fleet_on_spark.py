@@ -104,7 +104,9 @@ def plan_of(task: Task, found: Found, answer: Result, settings: Settings) -> tup
     fleet = replace(task.fleet, robots=(), infrastructure=())
     assumptions = answer.assumptions
     joins = joins_nothing(task.fleet, task.groups, found.told.met)
-    plan = Plan(fleet, fixed, examples, found.shared, found.leaking, assumptions, settings, task.reader, joins)
+    plan = Plan(
+        fleet, fixed, examples, found.shared, found.leaking, found.lacking, assumptions, settings, task.reader, joins
+    )
     return plan, units
 
 

@@ -11,7 +11,9 @@ from collections import defaultdict
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.answer import Verdict
 from rosprivacy.analysis.findings.findings import Options, analyse
+from rosprivacy.analysis.findings.grounds import lacking
 from rosprivacy.analysis.fleet.patterns import FleetView, patterns_of
 from rosprivacy.ingest.fleet.fleet_graph import place_chosen
 from rosprivacy.spark.units import split
@@ -74,7 +76,10 @@ def shown(task: Task, found: Found, paths: str, max_paths: int) -> Shown:
     options = Options(task.asked, paths, max_paths, choose=choose, today=task.today)
     analysis = analyse(placed.graph, placed.bound, task.hierarchy, options)
     view = FleetView(found.likeness, patterns_of(found.groups, analysis.findings), found.deviants)
-    analysis = replace(analysis, verdict=found.verdict, emitted=found.emitted)
+    told = tuple(said for said in analysis.diagnostics if said.code != analysis.lacking or not said.code)
+    if found.verdict is Verdict.UNDETERMINED and not found.open:
+        told += lacking(found.lacking, restricted=task.asked is not None)
+    analysis = replace(analysis, verdict=found.verdict, emitted=found.emitted, lacking=found.lacking, diagnostics=told)
     return Shown(analysis, view, placed, members)
 
 

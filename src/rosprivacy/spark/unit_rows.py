@@ -61,6 +61,8 @@ class Plan:
         What is stated about elements of the core.
     leaking
         See ``Found``.
+    lacking
+        See ``Found``.
     assumptions
         Of the answer about the whole fleet.
     joins
@@ -72,6 +74,7 @@ class Plan:
     examples: tuple[Unit, ...]
     shared: Mapping[Element, NonRosFacts]
     leaking: frozenset[str]
+    lacking: str
     assumptions: Mapping[str, Any]
     settings: Settings
     reader: Callable[[], Read]
@@ -167,6 +170,7 @@ def _fleet_rows(placed: Placed, members: Mapping[str, Member], plan: Plan, mine:
     said = {name: _more(member, analysis, plan, vocabulary) for name, member in members.items()}
     said[plan.fleet.name] = remembered({**plan.assumptions, "policies": [], "labels": []}, plan.joins)
     not_read = [name for name, member in members.items() if unread(member.diagnostics)]
+    analysis = replace(analysis, lacking=plan.lacking)
     verdicts = robot_verdicts(analysis, said, lambda element: element.robot, not_read, plan.leaking)
     more = {name: {**some, "verdict": str(verdicts[name])} for name, some in said.items()}
     return FleetRows(placed, analysis, vocabulary, more, most_across=0)

@@ -13,6 +13,7 @@ import numpy as np
 
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.findings.concerns import concerns
+from rosprivacy.analysis.findings.grounds import Grounds, grounds
 from rosprivacy.analysis.findings.open_questions import open_bits
 from rosprivacy.analysis.fleet.counts import Counts, counted
 from rosprivacy.analysis.kernel.spreading import fill, meaning
@@ -173,8 +174,8 @@ class Answer:
         Robot -> number of what is open there, in ``sets``.
     sets
         Elements without their robot, with the categories for which they are open, and what has to be known of them.
-    begins
-        Whether there is a source of what is asked for.
+    grounds
+        What 'no leak found' needs, as far as it is in the part.
     """
 
     within: tuple[Within, ...]
@@ -182,7 +183,7 @@ class Answer:
     ends: tuple[End, ...]
     open: Mapping[str, int]
     sets: tuple[frozenset[tuple[Element, tuple[str, ...]]], ...]
-    begins: bool
+    grounds: Grounds
     counts: Counts
 
 
@@ -244,10 +245,9 @@ def answered(part: Ready, forms: Mapping[int, tuple[int, ...]], asked: Asked) ->
                 unit = names[int(cut.unit[vertex])]
                 ends.append(End(kind, name, graph.elements[vertex], unit, codes[row].tobytes()))
     on_robots, sets = _open(part, found, asked.mask)
-    begins = any(found.begins(vertex) & asked.mask for vertex in found.facts)
     border = set(part.piece.border)
     counts = counted(graph, found, part.likeness, border, {v for v in border if graph.elements[v].robot == HUB})
-    return Answer(tuple(within), tuple(sources), tuple(ends), on_robots, sets, begins, counts)
+    return Answer(tuple(within), tuple(sources), tuple(ends), on_robots, sets, grounds(found, asked.mask), counts)
 
 
 def _open(

@@ -283,8 +283,8 @@ class TestUnknownEnds:
     """Rule S11: what is not known is said (case 10)."""
 
     def test_a_channel_that_nobody_known_reads(self, cli: Cli) -> None:
-        policy(CAM)
-        labels("nodes: {/camera: {source: [Video]}}\nchannels: {/video: sensitive}\n")
+        policy(CAM, UP.format(topic="/other"))
+        labels("nodes: {/camera: {source: [Video]}, /uplink: {leak: [Video]}}\nchannels: {/video: sensitive}\n")
         done = cli("analyze", "p.xml", "-l", "l.yaml")
         assert done.returncode == 0
         first, *_ = done.stdout.splitlines()
@@ -303,8 +303,8 @@ class TestUnknownEnds:
         ]
 
     def test_a_request_that_no_server_reads(self, cli: Cli) -> None:
-        policy(profile("camera", ("request", "service", "/store")))
-        labels("nodes: {/camera: {source: [Video]}}\nchannels: {/store: sensitive}\n")
+        policy(profile("camera", ("request", "service", "/store")), UP.format(topic="/other"))
+        labels("nodes: {/camera: {source: [Video]}, /uplink: {leak: [Video]}}\nchannels: {/store: sensitive}\n")
         done = cli("analyze", "p.xml", "-l", "l.yaml")
         assert done.returncode == 0
         assert "; 1 channel ends at no known reader" in done.stdout
@@ -371,7 +371,7 @@ class TestUnknownEnds:
 
     def test_on_a_fleet_with_the_robot(self, cli: Cli) -> None:
         policy(CAM)
-        labels("nodes: {/camera: {source: [Video]}}\nchannels: {/video: sensitive}\n")
+        labels("nodes: {/camera: {source: [Video], leak: none}}\nchannels: {/video: sensitive}\n")
         fleet = (
             "fleet: 1\nrobots: {a: {policies: [p.xml], labels: [l.yaml]}, b: {policies: [p.xml], labels: [l.yaml]}}\n"
         )

@@ -255,7 +255,7 @@ class TestDismissal:
 class TestVerdict:
     """Rule S12."""
 
-    REVIEWED = SOURCE + "  /*: conduit\nchannels:\n  /*: sensitive\n"
+    REVIEWED = SOURCE + "  /*: conduit\n  /b: {leak: none}\nchannels:\n  /*: sensitive\n"
 
     def test_everything_reviewed_and_no_leak(self, tmp_path: Path) -> None:
         assert system(tmp_path, self.REVIEWED).analysis.verdict == "no-leak-found"

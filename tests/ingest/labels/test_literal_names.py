@@ -209,7 +209,7 @@ def test_each_glob_says_what_it_decides_and_closes() -> None:
     ("labels", "warning"),
     [
         ('channels: {"/*": mundane}', "last-path"),  # the verdict hangs on it
-        ('channels: {"/*": sensitive}\nnodes:\n  /camera: {source: [Video]}\n  "*": conduit', "last-path"),
+        ('channels: {"/*": sensitive}\nnodes:\n  /camera: {source: [Video], leak: none}\n  "*": conduit', "last-path"),
         ('nodes:\n  /camera: {source: [Video]}\n  "/[!c]*": conduit', "half"),  # channels are open
         ('nodes:\n  /camera: {source: [Video]}\n  /uplink: {leak: [Video]}\n  "/rel*": conduit', ""),
         ('nodes:\n  /camera: {source: [Video]}\n  "/r*": {sanitizer: {Video: drop}}', "half"),

@@ -228,7 +228,9 @@ def test_a_dangling_link_is_an_error(here: Path, cli: Cli) -> None:
     assert done.stderr == "d/zz.xml: a link to nothing: gone.xml; correct the link, or remove it\n"
 
 
-REVIEWED = "labels: 1\nnodes: {/camera: {source: [Video]}, /monitor: conduit}\nchannels: {/video: sensitive}\n"
+REVIEWED = (
+    "labels: 1\nnodes: {/camera: {source: [Video], leak: none}, /monitor: conduit}\nchannels: {/video: sensitive}\n"
+)
 MONITOR = enclave("/mon", profile("monitor", SUBSCRIBE))
 
 

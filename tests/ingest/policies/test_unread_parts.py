@@ -32,7 +32,7 @@ def _folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     Path("d").mkdir()
     Path("d/p.xml").write_text(CAMERA, "utf-8")
-    labels = 'labels: 1\nnodes: {/camera: {source: [Video]}, "/x*": conduit}\nchannels: {"/*": sensitive}\n'
+    labels = 'labels: 1\nnodes: {/camera: {source: [Video], leak: none}, "/x*": conduit}\nchannels: {"/*": sensitive}\n'
     Path("l.yaml").write_text(labels.replace(', "/x*": conduit', ""), "utf-8")
     Path("x.yaml").write_text(labels.replace('"/x*"', "/x"), "utf-8")
 

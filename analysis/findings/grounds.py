@@ -1,0 +1,87 @@
+"""What 'no leak found' needs before it says anything: a source whose data goes somewhere, and a word on leaks.
+
+In: a ``Spread``. Out: ``Grounds``, of a system or of a part of it.
+
+Source: rules S11 and S12: what is not known is said. A first label file, or one with a wrong name in it, must not look
+like an answer: nothing leaks where nothing was followed, and nothing is a leak where nobody said what one is.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.model import GOES_NOWHERE, NO_LEAK_NAMED, NO_SOURCE, Diagnostic, Place, Severity
+
+if TYPE_CHECKING:
+    from rosprivacy.analysis.kernel.spread import Spread
+
+SPEAKS_OF_LEAKS = ("leak", "no-leak")
+NO_SOURCE_OF_THESE = "no source emits one of the chosen categories: no data was followed"
+WHAT = {
+    NO_SOURCE: "no label names a source: no data was followed",
+    GOES_NOWHERE: "what the sources bring in goes nowhere but to standard channels: no data was followed",
+    NO_LEAK_NAMED: "no label says where data gets out: nothing that it gets to could be a leak",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Grounds:
+    """Whether a source begins what is asked for, whether its data goes on, and whether anybody speaks of leaks."""
+
+    source: bool = False
+    onward: bool = False
+    leak: bool = False
+
+    def __or__(self, other: Grounds) -> Grounds:
+        """Return the grounds of two parts of a system together."""
+        return Grounds(self.source or other.source, self.onward or other.onward, self.leak or other.leak)
+
+    @property
+    def lacking(self) -> str:
+        """What is missing first, as the code of a diagnostic; empty if nothing is.
+
+        >>> Grounds(source=True, onward=True).lacking
+        'no-leak-named'
+        """
+        if not self.source:
+            return NO_SOURCE
+        return GOES_NOWHERE if not self.onward else "" if self.leak else NO_LEAK_NAMED
+
+
+def grounds(found: Spread, mask: int) -> Grounds:
+    """Return the grounds of a spread, for some of its categories.
+
+    What a person closes, or a DENY, was looked at: the data got there. A standard channel is nobody's word.
+    """
+    asked = found.names(mask)
+    return Grounds(
+        source=any(found.begins(vertex) & mask for vertex in found.facts),
+        onward=_onward(found, mask),
+        leak=any(_judged(found, vertex, asked) for vertex in found.facts),
+    )
+
+
+def _onward(found: Spread, mask: int) -> bool:
+    if any(bits & mask for vertex, bits in found.arrives.items() if vertex not in found.standard):
+        return True
+    if any(found.leaves.get(flow.source, 0) & mask for flow in found.graph.taken_back):
+        return True
+    return any(found.leaves.get(found.graph.flows[index].source, 0) & mask for index in found.flow_keeps)
+
+
+def _judged(found: Spread, vertex: int, asked: tuple[str, ...]) -> bool:
+    """Whether it is a storage, or is said to be a leak or none: by a label, outranked or not, or by its kind."""
+    if found.graph.elements[vertex].kind == "storage":
+        return True
+    facts = [fact for category, fact in found.facts[vertex].items() if category in asked]
+    said = (statement for fact in facts for statement in (*fact.accepted, *(lost for lost, _ in fact.outdone)))
+    return any(statement.role in SPEAKS_OF_LEAKS for statement in said)
+
+
+def lacking(code: str, *, restricted: bool) -> tuple[Diagnostic, ...]:
+    """Return the warning about what is missing, if anything; ``restricted`` if only some categories are asked for."""
+    if not code:
+        return ()
+    what = NO_SOURCE_OF_THESE if code == NO_SOURCE and restricted else WHAT[code]
+    return (Diagnostic(Place("labels", 0), Severity.WARNING, f"{what}, so this says nothing about the system", code),)
