@@ -102,8 +102,8 @@ def decide(
     from rosprivacy.ingest.decisions.decision_writer import with_decision
     from rosprivacy.ontology.vocabulary import load
 
-    pattern = {"category": category, "source": source, "leak": leak, "robot": robot, "from_robot": from_robot}
-    pattern = {key: value for key, value in pattern.items() if value}
+    names = {"category": category, "source": source, "leak": leak, "robot": robot, "from_robot": from_robot}
+    pattern = {key: value for key, value in names.items() if value}
     _check_target(ids, pattern)
     _check_expiry(expires)
     findings = _findings(report) if report else None
