@@ -15,6 +15,7 @@ from rosprivacy.analysis.kernel.named_channels import keep_named, named, stated_
 from rosprivacy.analysis.kernel.overruled import overruled
 from rosprivacy.analysis.kernel.roles import NOTHING_SAID, Facts, facts
 from rosprivacy.analysis.kernel.spread import Spread
+from rosprivacy.analysis.model import Method
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
@@ -117,6 +118,8 @@ def _set_vertex(found: Spread, vertex: int, bound: Bound, stated: Mapping[int, C
     decided = found.facts[vertex]
     if any(fact.standard for fact in decided.values()):
         found.standard.add(vertex)
+    if any(fact.method == Method.ABSENT for fact in decided.values()):
+        found.absent.add(vertex)
     number = {category: i for i, category in enumerate(found.categories)}
     found.keeps[vertex] = _bits(found, decided, lambda fact: fact.passes)
     found.leaks[vertex] = _bits(found, decided, lambda fact: fact.leaks)
