@@ -1,4 +1,4 @@
-"""``docs/case-studies.md`` can be repeated: its commands are run and its lines typed in order, and its counts are right."""
+"""``docs/case-studies.md`` can be repeated: commands are run and lines typed in order, and what it counts is right."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class Typist:
         """Where a line of that name stands in that section; None if it has to be typed anew."""
         if line == section:
             return lines.index(line) if line in lines else None
-        name = line.split(": ")[0].rstrip(":")
+        name = line.split(": ", maxsplit=1)[0].rstrip(":")
         there = range(lines.index(section), self._end(lines, section))
         return next((i for i in there if re.match(rf"{re.escape(name)}:( |$)", lines[i])), None)
 

@@ -1,4 +1,4 @@
-"""``docs/paper.md`` says what the program prints: every command is run, every line that is shown is printed, in order."""
+"""``docs/paper.md`` says what the program prints: every command is run, every line that is shown is printed."""
 
 from __future__ import annotations
 

@@ -48,8 +48,8 @@ def _step(report: Mapping[str, Any]) -> str:
         return f"ask about all kinds, or {SOURCE}{restriction}"
     if not followed(report):
         named = candidates(report)
-        others = f" and {len(named) - NAMED} more" if len(named) > NAMED else ""
-        more = f"; candidates by name: {', '.join(named[:NAMED])}{others}" if named else ""
+        rest = f" and {len(named) - NAMED} more" if len(named) > NAMED else ""
+        more = f"; candidates by name: {', '.join(named[:NAMED])}{rest}" if named else ""
         return f"{SOURCE}{more} (rosprivacy labels --init lists all nodes)"
     if report["open"]:
         first = next_round(report)[0]["element"]

@@ -12,8 +12,8 @@ from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.ingest.database.loading import load as load_robots
 from rosprivacy.ingest.labels.label_file import parse_labels
 from rosprivacy.ingest.labels.label_schema import label_schema
-from rosprivacy.ontology.vocabulary import load
 from rosprivacy.mitigation import run_mitigation
+from rosprivacy.ontology.vocabulary import load
 from rosprivacy.private_neo4j import connection
 from rosprivacy.robot_system import robot_of
 from rosprivacy.settings import Settings
