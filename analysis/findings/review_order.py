@@ -51,21 +51,28 @@ def review_order(analysis: Analysis) -> dict[Shown, Behind]:
     Notes
     -----
     networkx's immediate dominators, on the flows that carry data.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.findings.findings import analyse
+    >>> {name: (behind.closes, behind.leaks) for (_, _, name, _), behind in review_order(analyse(*factory())).items()}
+    {'/video': (1, 1), '/filtered': (0, 0)}
     """
     if not analysis.open:
         return {}
-    found = analysis.spread
-    elements = found.graph.elements
-    asked = {q.element.shown_as: found.bits.merged(sum(map(found.both, q.categories))) for q in analysis.open}
+    spread = analysis.spread
+    elements = spread.graph.elements
+    asked = {q.element.shown_as: spread.bits.merged(sum(map(spread.both, q.categories))) for q in analysis.open}
     following: Following = defaultdict(list)
-    for index, flow in enumerate(found.graph.flows):
-        if found.along(index):
+    for index, flow in enumerate(spread.graph.flows):
+        if spread.along(index):
             following[flow.source].append(flow.target)
-    following[START] = [vertex for vertex in range(len(elements)) if found.begins(vertex)]
+    following[START] = [vertex for vertex in range(len(elements)) if spread.begins(vertex)]
     reached = _reached(following)
     open_at = [vertex for vertex in reached if elements[vertex].shown_as in asked]
-    through = _through(found, {vertex: asked[elements[vertex].shown_as] for vertex in open_at}, reached)
-    leaks = {vertex for vertex, bits in found.leaks.items() if bits & found.present(vertex)}
+    through = _through(spread, {vertex: asked[elements[vertex].shown_as] for vertex in open_at}, reached)
+    leaks = {vertex for vertex, bits in spread.leaks.items() if bits & spread.present(vertex)}
     wanted = leaks.union(vertex for vertex in open_at if not elements[vertex].is_channel)
     going_on = _reaching(following, wanted)
     below = _below(following, {elements[v].shown_as: v for v in reversed(open_at)}.values(), leaks)
@@ -87,21 +94,21 @@ def _both(one: Behind, other: Behind) -> Behind:
 
 def _reached(following: Following) -> list[int]:
     """Every vertex that data gets to, the nearest to a source first."""
-    found = dict.fromkeys(sorted(following[START]))
-    waiting = deque(found)
+    reached = dict.fromkeys(sorted(following[START]))
+    waiting = deque(reached)
     while waiting:
-        new = [there for there in sorted(following.get(waiting.popleft(), ())) if there not in found]
-        found.update(dict.fromkeys(new))
+        new = [there for there in sorted(following.get(waiting.popleft(), ())) if there not in reached]
+        reached.update(dict.fromkeys(new))
         waiting += new
-    return list(found)
+    return list(reached)
 
 
-def _through(found: Spread, asked: Mapping[int, int], reached: Iterable[int]) -> dict[int, int]:
+def _through(spread: Spread, asked: Mapping[int, int], reached: Iterable[int]) -> dict[int, int]:
     """Open vertex -> the vertex from which most of the kinds that are open there come along a flow."""
     order = {vertex: place for place, vertex in enumerate(reached)}
     best: dict[int, tuple[int, int, int]] = {}
-    for index, flow in enumerate(found.graph.flows):
-        bits = found.bits.merged(found.along(index)) & asked.get(flow.target, 0)
+    for index, flow in enumerate(spread.graph.flows):
+        bits = spread.bits.merged(spread.along(index)) & asked.get(flow.target, 0)
         if bits:
             one = (-bits.bit_count(), order[flow.source], flow.source)
             best[flow.target] = min(one, best.get(flow.target, one))
