@@ -49,38 +49,50 @@ class Grounds:
         return GOES_NOWHERE if not self.onward else "" if self.leak else NO_LEAK_NAMED
 
 
-def grounds(found: Spread, mask: int) -> Grounds:
+def grounds(spread: Spread, mask: int) -> Grounds:
     """Return the grounds of a spread, for some of its categories.
 
     What a person closes, or a DENY, was looked at: the data got there. A standard channel is nobody's word.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis import example
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> found = spread(*example.factory())
+    >>> grounds(found, found.all_bits)
+    Grounds(source=True, onward=True, leak=True)
     """
-    asked = found.names(mask)
+    asked = spread.names(mask)
     return Grounds(
-        source=any(found.begins(vertex) & mask for vertex in found.facts),
-        onward=_onward(found, mask),
-        leak=any(_judged(found, vertex, asked) for vertex in found.facts),
+        source=any(spread.begins(vertex) & mask for vertex in spread.facts),
+        onward=_onward(spread, mask),
+        leak=any(_judged(spread, vertex, asked) for vertex in spread.facts),
     )
 
 
-def _onward(found: Spread, mask: int) -> bool:
-    if any(bits & mask for vertex, bits in found.arrives.items() if vertex not in found.standard):
+def _onward(spread: Spread, mask: int) -> bool:
+    if any(bits & mask for vertex, bits in spread.arrives.items() if vertex not in spread.standard):
         return True
-    if any(found.leaves.get(flow.source, 0) & mask for flow in found.graph.taken_back):
+    if any(spread.leaves.get(flow.source, 0) & mask for flow in spread.graph.taken_back):
         return True
-    return any(found.leaves.get(found.graph.flows[index].source, 0) & mask for index in found.flow_keeps)
+    return any(spread.leaves.get(spread.graph.flows[index].source, 0) & mask for index in spread.flow_keeps)
 
 
-def _judged(found: Spread, vertex: int, asked: tuple[str, ...]) -> bool:
+def _judged(spread: Spread, vertex: int, asked: tuple[str, ...]) -> bool:
     """Whether it is a storage, or is said to be a leak or none: by a label, outranked or not, or by its kind."""
-    if found.graph.elements[vertex].kind == "storage":
+    if spread.graph.elements[vertex].kind == "storage":
         return True
-    facts = [fact for category, fact in found.facts[vertex].items() if category in asked]
+    facts = [fact for category, fact in spread.facts[vertex].items() if category in asked]
     said = (statement for fact in facts for statement in (*fact.accepted, *(lost for lost, _ in fact.outdone)))
     return any(statement.role in SPEAKS_OF_LEAKS for statement in said)
 
 
 def lacking(code: str, *, restricted: bool) -> tuple[Diagnostic, ...]:
-    """Return the warning about what is missing, if anything; ``restricted`` if only some categories are asked for."""
+    """Return the warning about what is missing, if anything; ``restricted`` if only some categories are asked for.
+
+    >>> [said.message for said in lacking(NO_SOURCE, restricted=True)]
+    ['no source emits one of the chosen categories: no data was followed, so this says nothing about the system']
+    """
     if not code:
         return ()
     what = NO_SOURCE_OF_THESE if code == NO_SOURCE and restricted else WHAT[code]
