@@ -94,7 +94,7 @@ def test_nor_on_any_policy_of_the_corpus(corpus: Path) -> None:
     names = tuple(sorted(str(file.relative_to(corpus / "policies")) for file in (corpus / "policies").rglob("*.xml")))
     planted = planted_in(corpus, names)
     assert len(planted) > 10
-    found = []
+    found: list[str] = []
     for number, one in enumerate(planted):
         few = len(one.system.graph.elements) > LARGE
         found += wrong(one, Random(number), *((40, 30) if few else (200, 300)))  # noqa: S311 - no secret

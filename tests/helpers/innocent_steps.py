@@ -157,8 +157,8 @@ def plant(file: Path, random: Random) -> Planted | None:
         there = brute(system, {source: said}).spread([source])
         leaks = sorted({v for v, _ in there} & set(nodes) - {source})
         if leaks:
-            names = [system.graph.elements[v].name for v in (source, random.choice(leaks))]
-            return Planted(file, system, *names, kind)
+            names = [element.name for element in system.graph.elements]
+            return Planted(file, system, names[source], names[random.choice(leaks)], kind)
     return None
 
 
