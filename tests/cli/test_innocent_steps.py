@@ -97,7 +97,7 @@ def test_nor_on_any_policy_of_the_corpus(corpus: Path) -> None:
     found: list[str] = []
     for number, one in enumerate(planted):
         few = len(one.system.graph.elements) > LARGE
-        found += wrong(one, Random(number), *((40, 30) if few else (200, 300)))  # noqa: S311 - no secret
+        found += wrong(one, Random(number), *((20, 15) if few else (80, 80)))  # noqa: S311 - no secret
     assert found == []
 
 
