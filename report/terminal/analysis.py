@@ -15,6 +15,7 @@ from rosprivacy.analysis.model import MERGED
 from rosprivacy.analysis.text import counted
 from rosprivacy.report.document.analysis import files_not_read
 from rosprivacy.report.naming import shown_name, whole
+from rosprivacy.report.review_groups import SHOWN
 from rosprivacy.report.terminal.denied import denied_lines
 from rosprivacy.report.terminal.finding_lines import MANY, details, law_lines, overview
 from rosprivacy.report.terminal.fleet import fleet_lines
@@ -23,7 +24,7 @@ from rosprivacy.report.terminal.labels import absent_lines, overruled_lines, sta
 from rosprivacy.report.terminal.ledger import ledger_lines, taken_away_lines
 from rosprivacy.report.terminal.next_step import next_lines
 from rosprivacy.report.terminal.restriction import asked_at_verdict, asked_lines
-from rosprivacy.report.terminal.review import SHOWN, review_lines
+from rosprivacy.report.terminal.review import review_lines
 from rosprivacy.report.terminal.unknown_ends import end_lines, ends_at_verdict
 from rosprivacy.report.terminal.wrapped import wrapped
 

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import UNREAD_FILE
 from rosprivacy.report.naming import shown_name, whole
+from rosprivacy.report.review_groups import next_round
 from rosprivacy.report.terminal.restriction import asked_at_verdict
-from rosprivacy.report.terminal.review import next_round
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

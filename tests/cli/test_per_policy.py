@@ -74,14 +74,16 @@ def test_files_without_a_common_name_are_named(cli: Cli, folder: Path) -> None:
 def test_several_policies_of_one_robot_of_a_fleet_are_told_alike(cli: Cli, folder: Path) -> None:
     """What a robot runs makes one graph (S4); of what two robots run, each has its own."""
     (folder / "p" / "c.xml").write_text(policy(("camera", "publish", "other"), ("uplink", "subscribe", "rosout")))
-    fleet = "fleet: 1\nname: f\nrobots:\n  r: {policies: [%s], labels: [l.yaml]}\n  s: {policies: [%s], labels: [l.yaml]}\n"
+    fleet = "fleet: 1\nname: f\nrobots: {r: {policies: [%s], labels: l.yaml}, s: {policies: [%s], labels: l.yaml}}\n"
     (folder / "f.yaml").write_text(fleet % ("p/a.xml, p/b.xml, p/c.xml", "p/b.xml, p/a.xml"))
     done = cli("analyze", "--fleet", "f.yaml", cwd=folder)
+    said = (
+        "notice: p/%s.xml:1: 3 policies make one graph, with what each of them allows: node %s is stated differently "
+    )
+    said += "differently in p/%s.xml and p/c.xml; name for a robot of the fleet only what runs on it"
     assert [line for line in done.stdout.splitlines() if MERGED in line] == [
-        "notice: p/a.xml:1: 3 policies make one graph, with what each of them allows: node /camera is stated "
-        "differently in p/a.xml and p/c.xml; name for a robot of the fleet only what runs on it",
-        "notice: p/b.xml:1: 3 policies make one graph, with what each of them allows: node /uplink is stated "
-        "differently in p/b.xml and p/c.xml; name for a robot of the fleet only what runs on it",
+        said % ("a", "/camera", "a"),
+        said % ("b", "/uplink", "b"),
     ]
     (folder / "f.yaml").write_text(fleet % ("p/a.xml, p/b.xml", "p/b.xml, p/a.xml"))
     done = cli("analyze", "--fleet", "f.yaml", cwd=folder)
