@@ -98,7 +98,7 @@ class OpenQuestion:
     distance
         Flows from the nearest source.
     frontier
-        Of a node: whether a category reaches it without another open node or a leak of it on the way.
+        Of a node: whether a category reaches it without another open node or a leak of it on the path.
     missing
         What has to be known of a non-ROS element and is not stated, such as ``country``.
     """

@@ -201,8 +201,8 @@ class Decisions:
 
     def on(self, case: Case) -> Decision | None:
         """The decision about a case, valid or not; None if there is none, or several of one rank that differ."""
-        found = self.foremost(case)
-        return found[0] if len({entry.choice for entry in found}) == 1 else None
+        foremost = self.foremost(case)
+        return foremost[0] if len({entry.choice for entry in foremost}) == 1 else None
 
     def told_apart(self, robot: str) -> tuple[bool, ...]:
         """Return which entries that name robots mean this one: robots are alike only if all do so alike."""
@@ -268,13 +268,13 @@ def decided(
     cases = [(finding, case_of(finding)) for finding in findings]
     on: dict[str, Decision] = {}
     for finding, case in cases:
-        found = decisions.foremost(case)
-        other = next((entry for entry in found if entry.choice != found[0].choice), None)
+        foremost = decisions.foremost(case)
+        other = next((entry for entry in foremost if entry.choice != foremost[0].choice), None)
         if other:
-            what = f"to {other.choice} {finding.id} contradicts line {found[0].place.line}: to {found[0].choice}"
+            what = f"to {other.choice} {finding.id} contradicts line {foremost[0].place.line}: to {foremost[0].choice}"
             raise DecisionError(other.place.file, other.place.line, what, "make one more specific, or remove it")
-        if found:
-            on[finding.id] = found[0]
+        if foremost:
+            on[finding.id] = foremost[0]
     about = tuple(
         tuple(sorted({finding.id for finding, case in cases if entry.about(case, decisions.hierarchy)}))
         for entry in decisions.entries

@@ -97,8 +97,8 @@ def parts(text: str) -> tuple[tuple[str, int], ...]:
     """
     from isodate.isoduration import ISO8601_PERIOD_REGEX  # noqa: PLC0415 - light start
 
-    found = ISO8601_PERIOD_REGEX.fullmatch(text)
-    written = [(unit, found[f"{unit}s"]) for unit in UNITS if found[f"{unit}s"]] if found and not found["sign"] else []
+    match = ISO8601_PERIOD_REGEX.fullmatch(text)
+    written = [(unit, match[f"{unit}s"]) for unit in UNITS if match[f"{unit}s"]] if match and not match["sign"] else []
     whole = all(number[:-1].isdecimal() and len(number) <= LONGEST_NUMBER for _, number in written)
     return tuple((unit, int(number[:-1])) for unit, number in written) if whole else ()
 

@@ -1,4 +1,4 @@
-"""What the law says of categories, closed over the hierarchy; where on a way data become a special category.
+"""What the law says of categories, closed over the hierarchy; where on a path data become a special category.
 
 In: categories with what the ontology states of each. Out: the same with what follows for narrower and broader ones. It
 gives no verdict on a system: a provision is one that a person has to look at.
@@ -83,12 +83,12 @@ def _inherited(category: Category, categories: Mapping[str, Category], hierarchy
 def _with_narrower(category: Category, narrower: Iterable[Category]) -> Category:
     """The category with what it may reveal because data of it may be of a narrower kind."""
     covered = {legal.name for legal in category.law}
-    found: dict[str, list[tuple[Category, Legal]]] = {}
+    provisions: dict[str, list[tuple[Category, Legal]]] = {}
     for kind in sorted(narrower, key=lambda kind: kind.name):
         for legal in kind.law:
             if legal.name not in covered and not (legal.special and ARTICLE_9 in covered):
-                found.setdefault(legal.name, []).append((kind, legal))
-    more = [_may_reveal(kinds) for _, kinds in sorted(found.items())]
+                provisions.setdefault(legal.name, []).append((kind, legal))
+    more = [_may_reveal(kinds) for _, kinds in sorted(provisions.items())]
     return replace(category, law=tuple(sorted((*category.law, *more), key=lambda legal: (legal.name, legal.stated_of))))
 
 

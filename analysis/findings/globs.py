@@ -102,31 +102,31 @@ class _Decided:
 
 
 def _decided(analysis: Analysis, bound: Bound, beside: Collection[str]) -> dict[Place, _Decided]:
-    found = analysis.spread
+    spread = analysis.spread
     lines: dict[Place, _Decided] = defaultdict(_Decided)
     for vertex, said in bound.elements.items():
-        element = found.graph.elements[vertex]
+        element = spread.graph.elements[vertex]
         if element.robot in beside:
             continue
-        for statement, holds in _stated(said, found.facts.get(vertex, {}), found):
+        for statement, holds in _stated(said, spread.facts.get(vertex, {}), spread):
             lines[statement.place].says.add(statement.role)
             lines[statement.place].elements.update([element.identity] if holds else ())
     for index, said in bound.flows.items():
-        source, target = _ends(found.graph, index)
+        source, target = _ends(spread.graph, index)
         if source.robot in beside:
             continue
-        for statement, holds in _stated(said, found.flow_facts.get(index, {}), found):
+        for statement, holds in _stated(said, spread.flow_facts.get(index, {}), spread):
             lines[statement.place].says.add(statement.role)
             lines[statement.place].flows.update([(source.identity, target.identity)] if holds else ())
     return lines
 
 
-def _stated(said: Iterable[Statement], facts: Mapping[str, Facts], found: Spread) -> Iterator[tuple[Statement, bool]]:
+def _stated(said: Iterable[Statement], facts: Mapping[str, Facts], spread: Spread) -> Iterator[tuple[Statement, bool]]:
     """What globs of a user say of an element or a flow, and whether it holds there."""
     accepted = {statement for fact in facts.values() for statement in fact.accepted}
     for statement in said:
         if _of_a_user(statement):
-            yield statement, statement in accepted or not found.categories
+            yield statement, statement in accepted or not spread.categories
 
 
 def _ends(graph: FlowGraph, index: int) -> tuple[Element, Element]:
@@ -140,12 +140,12 @@ def _of_a_user(statement: Statement) -> bool:
 
 def _reached(analysis: Analysis) -> dict[str, int]:
     """How many channels, and how many other elements, data gets to; along how many flows; whether it goes on or not."""
-    found = analysis.spread
-    there = {found.graph.elements[vertex] for vertex in {*found.arrives, *found.leaves}}
+    spread = analysis.spread
+    there = {spread.graph.elements[vertex] for vertex in {*spread.arrives, *spread.leaves}}
     sent = [
-        _ends(found.graph, index)
-        for index, flow in enumerate(found.graph.flows)
-        if found.sent.get(flow.source, 0) | found.flow_emits.get(index, 0)
+        _ends(spread.graph, index)
+        for index, flow in enumerate(spread.graph.flows)
+        if spread.sent.get(flow.source, 0) | spread.flow_emits.get(index, 0)
     ]
     return {
         "channels": len({e.identity for e in there if e.is_channel}),

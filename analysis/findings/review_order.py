@@ -52,17 +52,17 @@ def review_order(analysis: Analysis) -> dict[Shown, Behind]:
     """
     if not analysis.open:
         return {}
-    found = analysis.spread
-    elements = found.graph.elements
+    spread = analysis.spread
+    elements = spread.graph.elements
     asked = {question.element.shown_as for question in analysis.open}
     following: Following = defaultdict(list)
-    for index, flow in enumerate(found.graph.flows):
-        if found.along(index):
+    for index, flow in enumerate(spread.graph.flows):
+        if spread.along(index):
             following[flow.source].append(flow.target)
-    following[START] = [vertex for vertex in range(len(elements)) if found.begins(vertex)]
+    following[START] = [vertex for vertex in range(len(elements)) if spread.begins(vertex)]
     before = _before(following)
     open_at = [vertex for vertex in before if vertex != START and elements[vertex].shown_as in asked]
-    leaks = {vertex for vertex, bits in found.leaks.items() if bits & found.present(vertex)}
+    leaks = {vertex for vertex, bits in spread.leaks.items() if bits & spread.present(vertex)}
     wanted = leaks.union(vertex for vertex in open_at if not elements[vertex].is_channel)
     going_on = _reaching(following, wanted)
     below = _below(following, {elements[v].shown_as: v for v in reversed(open_at)}.values(), leaks)

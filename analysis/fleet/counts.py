@@ -27,7 +27,7 @@ class Counts:
 
 
 def counted(
-    graph: FlowGraph, found: Spread, likeness: Likeness, elsewhere: Collection[int] = (), unreal: Collection[int] = ()
+    graph: FlowGraph, spread: Spread, likeness: Likeness, elsewhere: Collection[int] = (), unreal: Collection[int] = ()
 ) -> Counts:
     """Return the counts of a graph.
 
@@ -51,7 +51,7 @@ def counted(
     identities = {
         element.identity for vertex, element in enumerate(elements) if vertex not in elsewhere and vertex not in unreal
     }
-    taken = {elements[vertex].identity for vertex in found.standard}
+    taken = {elements[vertex].identity for vertex in spread.standard}
     return Counts(
         sum(likeness.weight(robot) for robot, *_ in identities),
         sum(weight(f.source, f.target) for f in graph.flows if f.source not in unreal and f.target not in unreal),

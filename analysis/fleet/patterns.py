@@ -168,16 +168,16 @@ def different(
     for robot, model in sorted(likeness.models.items()):
         if model:
             of_model[model].append(robot)
-    found = []
+    deviants = []
     for model, robots in sorted(of_model.items()):
         many: Counter[Result] = Counter()
         for robot in robots:
             many[results[robot]] += likeness.weight(robot)
         usual = max(many, key=lambda result: many[result])  # of equally many the first that was put in
-        found += [
+        deviants += [
             _deviant(robot, model, results[robot], usual, likeness) for robot in robots if results[robot] != usual
         ]
-    return tuple(found)
+    return tuple(deviants)
 
 
 def _deviant(robot: str, model: str, result: Result, usual: Result, likeness: Likeness) -> Deviant:

@@ -27,11 +27,11 @@ if TYPE_CHECKING:
 
 def stated_flows(graph: FlowGraph) -> dict[int, list[int]]:
     """Return vertex -> the flows out of it that a person states: channels that a source names do not restrict these."""
-    found: dict[int, list[int]] = defaultdict(list)
+    stated: dict[int, list[int]] = defaultdict(list)
     for index, flow in enumerate(graph.flows):
         if flow.role == STATED:
-            found[flow.source].append(index)
-    return dict(found)
+            stated[flow.source].append(index)
+    return dict(stated)
 
 
 def keep_named(
@@ -63,7 +63,7 @@ def named(
     elements: Mapping[int, Mapping[str, Facts]], graph: FlowGraph, bound: Bound
 ) -> list[tuple[str, Statement, int, int]]:
     """Return (category, statement of a source, channel that it names, flow to it), with what wildcards match there."""
-    found: list[tuple[str, Statement, int, int]] = []
+    rows: list[tuple[str, Statement, int, int]] = []
     matches: dict[int, list[int]] = defaultdict(list)
     for index, flow in enumerate(graph.flows if bound.through else ()):
         if flow.role == "matches":
@@ -72,19 +72,19 @@ def named(
         for category, fact in decided.items():
             for source in fact.by_role("source")[:1] if fact.through else ():
                 indices = bound.through.get((vertex, fact.through), ())
-                found += [(category, source, graph.flows[i].target, i) for i in _with_matches(indices, graph, matches)]
-    return found
+                rows += [(category, source, graph.flows[i].target, i) for i in _with_matches(indices, graph, matches)]
+    return rows
 
 
 def _with_matches(indices: Iterable[int], graph: FlowGraph, matches: Mapping[int, list[int]]) -> list[int]:
     """Flows, and those from the wildcards at their ends to the channels that these match."""
-    found = list(indices)
-    seen = set(found)
-    for index in found:
+    flows = list(indices)
+    seen = set(flows)
+    for index in flows:
         new = [after for after in matches.get(graph.flows[index].target, ()) if after not in seen]
         seen.update(new)
-        found += new
-    return found
+        flows += new
+    return flows
 
 
 def _contradiction(name: str, category: str, closer: Statement, source: Statement) -> LabelError:

@@ -73,15 +73,15 @@ def overruled(meaning: Mapping[int, Mapping[str, Facts]], elements: tuple[Elemen
     What elements outside ROS are taken to be is nobody's word, and an exception for a narrower kind in one file and
     of one name is no surprise: these are not told.
     """
-    found: dict[tuple[Statement, Statement], tuple[set[str], set[str]]] = defaultdict(lambda: (set(), set()))
+    outdone: dict[tuple[Statement, Statement], tuple[set[str], set[str]]] = defaultdict(lambda: (set(), set()))
     for vertex, decided in meaning.items():
         for category, fact in decided.items():
             for lost, by in fact.outdone:
                 if _counts(fact, lost, by):
-                    categories, names = found[lost, by]
+                    categories, names = outdone[lost, by]
                     categories.add(category)
                     names.add(elements[vertex].name)
-    together = (Overruled(*pair, tuple(sorted(c)), tuple(sorted(n))) for pair, (c, n) in found.items())
+    together = (Overruled(*pair, tuple(sorted(c)), tuple(sorted(n))) for pair, (c, n) in outdone.items())
     return tuple(sorted(_merged(together), key=_order))
 
 

@@ -3,7 +3,7 @@
 In: statements, a category, the hierarchy. Out: ``Decided``.
 
 Of statements that contradict each other the higher rank wins, then the one nearer in the hierarchy. ``mundane``,
-``sensitive``, ``only`` and ``never`` are of one kind in this: each lets a category pass or closes the way to it. A leak
+``sensitive``, ``only`` and ``never`` are of one kind in this: each lets a category pass or stops it. A leak
 is never outdone by a statement about a broader or an overlapping category, and the standard channels' file is not
 outdone by a glob of the user's whose last segment is not written out. Equals that contradict are an error.
 """

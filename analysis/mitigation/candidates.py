@@ -1,7 +1,7 @@
 """What could be changed so that data no longer gets there: filters, reviews, grants set to DENY, each with its cost.
 
-In: an analysis, the places on the ways to its open findings, the limits that the user sets. Out: ``Candidate``s. What
-is on its way to a time-critical node is never filtered nor cut.
+In: an analysis, the places on the paths to its open findings, the limits that the user sets. Out: ``Candidate``s. What
+is on a path to a time-critical node is never filtered nor cut.
 """
 
 from __future__ import annotations
@@ -96,7 +96,7 @@ def uncut(changes: Iterable[Candidate]) -> Callable[[Arc], bool]:
 def candidates(
     places: ChangeSites, arcs: Sequence[Arc], denials: Callable[[Collection[int]], Sequence[Denial]]
 ) -> tuple[Candidate, ...]:
-    """Return the changes that could be made on some ways, in a stable order: reviews, filters, denials.
+    """Return the changes that could be made on some paths, in a stable order: reviews, filters, denials.
 
     Parameters
     ----------
@@ -110,14 +110,14 @@ def candidates(
             by_flow[arc.flow].add(arc.category)
         if arc.channel >= 0:
             by_channel[arc.channel].add(arc.category)
-    found = [*_reviews(places, by_channel), *_filters(places, by_flow)]
+    changes = [*_reviews(places, by_channel), *_filters(places, by_flow)]
     if DENY in places.limits.kinds:
-        found += _denied(places, denials(sorted(by_flow)))
-    return tuple(found)
+        changes += _denied(places, denials(sorted(by_flow)))
+    return tuple(changes)
 
 
 def _reviews(places: ChangeSites, by_channel: Mapping[int, set[int]]) -> Iterator[Candidate]:
-    """A channel on the way that nobody has reviewed may turn out to carry none; a wildcard is not one channel."""
+    """A channel on a path that nobody has reviewed may turn out to carry none; a wildcard is not one channel."""
     elements, spread = places.graph.elements, places.spread
     parts: dict[tuple[str, str, str], list[int]] = defaultdict(list)
     for vertex, element in enumerate(elements):

@@ -85,7 +85,7 @@ def mitigate(
 
 
 class _Work:
-    """The way to one proposal."""
+    """How one proposal is made."""
 
     def __init__(self, system: System, analysis: Analysis, limits: Limits, names: tuple[str, ...]) -> None:
         self.system = system

@@ -97,7 +97,7 @@ def _proposal(proposal: Proposal, critical: set[Element]) -> ProposalEntry:
                 "kind": kept.finding.kind,
                 "category": kept.finding.category,
                 "reason": kept.reason,
-                "way": [element_dict(one) for one in kept.way],
+                "way": [element_dict(one) for one in kept.path],
             }
             for kept in proposal.kept
         ],
