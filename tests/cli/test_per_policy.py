@@ -77,9 +77,7 @@ def test_several_policies_of_one_robot_of_a_fleet_are_told_alike(cli: Cli, folde
     fleet = "fleet: 1\nname: f\nrobots: {r: {policies: [%s], labels: l.yaml}, s: {policies: [%s], labels: l.yaml}}\n"
     (folder / "f.yaml").write_text(fleet % ("p/a.xml, p/b.xml, p/c.xml", "p/b.xml, p/a.xml"))
     done = cli("analyze", "--fleet", "f.yaml", cwd=folder)
-    said = (
-        "notice: p/%s.xml:1: 3 policies make one graph, with what each of them allows: node %s is stated differently "
-    )
+    said = "notice: p/%s.xml:1: 3 policies make one graph, with what each of them allows: node %s is stated "
     said += "differently in p/%s.xml and p/c.xml; name for a robot of the fleet only what runs on it"
     assert [line for line in done.stdout.splitlines() if MERGED in line] == [
         said % ("a", "/camera", "a"),
