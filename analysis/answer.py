@@ -206,6 +206,15 @@ def robot_verdicts(
         Robots of which grants were not read.
     leaking
         Robots at which a finding begins or ends, where it is known of more than this analysis.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.findings.findings import analyse
+    >>> analysis = analyse(*factory("amr-1"))
+    >>> verdicts = robot_verdicts(analysis, ["amr-1", "amr-2"], lambda element: element.robot)
+    >>> [f"{robot}: {verdict}" for robot, verdict in verdicts.items()]
+    ['amr-1: leak', 'amr-2: undetermined']
     """
     if leaking is None:
         leaking = {

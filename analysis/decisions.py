@@ -264,6 +264,17 @@ def decided(
     ------
     DecisionError
         If two decisions of one rank differ; the message names both lines.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.findings.findings import analyse
+    >>> graph, bound, hierarchy = factory()
+    >>> entry = Decision(Choice.ACCEPT, Place("decisions.yaml", 2), category="Biometric", expires="2026-12-31")
+    >>> decisions = Decisions("decisions.yaml", "", "2027-01-01", (entry,), hierarchy)
+    >>> joined = decided(decisions, analyse(graph, bound, hierarchy).findings, {}, everything=True)
+    >>> len(joined.about[0]), str(joined.states[0]), joined.diagnostics[0].message
+    (2, 'expired', 'the decision to accept a pattern expired on 2026-12-31 and no longer counts; decide anew')
     """
     cases = [(finding, case_of(finding)) for finding in findings]
     on: dict[str, Decision] = {}
@@ -325,7 +336,14 @@ def _diagnostics(
 
 
 def missing(entry: Decision, findings: Iterable[Finding], special: Mapping[str, str]) -> Iterator[str]:
-    """Yield the legal bases that an acceptance lacks: Article 6, and 9(2) where a category is special."""
+    """Yield the legal bases that an acceptance lacks: Article 6, and 9(2) where a category is special.
+
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.findings.findings import analyse
+    >>> entry = Decision(Choice.ACCEPT, Place("decisions.yaml", 2), legal_basis=("6(1)(f)",))
+    >>> list(missing(entry, analyse(*factory()).findings, {"FaceTemplate": "GDPR Art. 9(1)"}))
+    ['states no ground under Article 9(2), and FaceTemplate can fall under GDPR Art. 9(1)']
+    """
     if not any(basis.startswith("6(1)") for basis in entry.legal_basis):
         yield "states no legal basis under Article 6(1)"
     if not any(basis.startswith("9(2)") for basis in entry.legal_basis):

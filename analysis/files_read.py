@@ -24,7 +24,15 @@ _NOTES: ContextVar[dict[Key, str] | None] = ContextVar("files_read", default=Non
 
 @contextmanager
 def one_run() -> Iterator[None]:
-    """Keep what is read in the block, and forget it at its end; a run within a run has notes of its own."""
+    """Keep what is read in the block, and forget it at its end; a run within a run has notes of its own.
+
+    >>> with one_run():
+    ...     note("labels.yaml", os.stat(os.curdir))
+    ...     read_as("labels.yaml", None)
+    'labels.yaml'
+    >>> read_as("labels.yaml", None) is None
+    True
+    """
     token = _NOTES.set({})
     try:
         yield
@@ -33,13 +41,25 @@ def one_run() -> Iterator[None]:
 
 
 def noted(file: BinaryIO, name: str) -> BinaryIO:
-    """Note a file that is open, under the name that the user knows, and return it to be read."""
+    """Note a file that is open, under the name that the user knows, and return it to be read.
+
+    >>> import tempfile
+    >>> with one_run(), tempfile.TemporaryFile() as file:
+    ...     noted(file, "policy.xml") is file, read_as("link.xml", os.fstat(file.fileno()))
+    (True, 'policy.xml')
+    """
     note(name, os.fstat(file.fileno()))
     return file
 
 
 def note(name: str, status: os.stat_result) -> None:
-    """Note that a file is read; for one that another process reads, which has no notes here."""
+    """Note that a file is read; for one that another process reads, which has no notes here.
+
+    >>> with one_run():
+    ...     note("policy.xml", os.stat(os.curdir))
+    ...     read_as("policy.xml", None)
+    'policy.xml'
+    """
     notes = _NOTES.get()
     if notes is not None:
         for key in _keys(name, status):
@@ -55,6 +75,13 @@ def read_as(name: str, status: os.stat_result | None) -> str | None:
         Any name of the file: links, other spellings and relative names lead to the same device and inode.
     status
         What the system says of the file, links followed; None if it is not there (any more).
+
+    Examples
+    --------
+    >>> with one_run():
+    ...     note("policy.xml", os.stat(os.curdir))
+    ...     read_as("link.xml", os.stat(os.curdir)), read_as("./policy.xml", None), read_as("labels.yaml", None)
+    ('policy.xml', 'policy.xml', None)
     """
     notes = _NOTES.get() or {}
     return next((notes[key] for key in _keys(name, status) if key in notes), None)

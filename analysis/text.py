@@ -82,5 +82,9 @@ def counted(number: int, noun: str, plural: str = "") -> str:
 
 
 def cut(line: str, most: int) -> str:
-    """Return so many signs of a line; its end is left out where it is too long."""
+    """Return so many signs of a line; its end is left out where it is too long.
+
+    >>> cut("abcdef", 3), cut("abc", 3)
+    ('abc…', 'abc')
+    """
     return line if len(line) <= most else f"{line[:most]}…"

@@ -54,7 +54,13 @@ class Closure:
 
 
 def closures(spread: Spread) -> list[Closure]:
-    """Return where data ends: elements, then flows, then denied flows, each in the order of the graph."""
+    """Return where data ends: elements, then flows, then denied flows, each in the order of the graph.
+
+    >>> from rosprivacy.analysis.example import NAMES, factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> [(closure.by, NAMES[closure.vertex]) for closure in closures(spread(*factory()))]
+    [('sanitizer', '/filter'), ('only', '/faces'), ('standard-channel', '/rosout'), ('deny', '/video')]
+    """
     return [*_elements(spread), *_flows(spread), *_denied(spread)]
 
 
@@ -116,6 +122,16 @@ def behind(spread: Spread, closed: Sequence[Closure], places: Mapping[int, int])
     dict
         Number of the closure -> the nearest place, or ``PERHAPS``; those with nothing behind are absent. A search tells
         for closures by themselves. A line that closes several elements in a row has to be opened as a whole.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import NAMES, factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> carried = spread(*factory())
+    >>> closed = closures(carried)
+    >>> places = behind(carried, closed, carried.leaks)
+    >>> {closure.by: NAMES[places[n]] if n in places else None for n, closure in enumerate(closed)}
+    {'sanitizer': '/archive', 'only': '/archive', 'standard-channel': None, 'deny': '/archive'}
     """
     if not closed or not any(places.values()):
         return {}
@@ -174,7 +190,12 @@ def _extents(spread: Spread, lines: set[Line]) -> dict[Line, Opened]:
 
 
 def line_key(line: Line) -> tuple[str, int, str]:
-    """Statements by their place and what they say; policy lines by their place."""
+    """Statements by their place and what they say; policy lines by their place.
+
+    >>> lines = [Place("b.yaml", 1), Place("a.yaml", 20), Place("a.yaml", 3)]
+    >>> [str(line) for line in sorted(lines, key=line_key)]
+    ['a.yaml:3', 'a.yaml:20', 'b.yaml:1']
+    """
     if isinstance(line, Place):
         return (line.file, line.line, "")
     return (line.place.file, line.place.line, repr(line))

@@ -26,7 +26,15 @@ class Concern:
 
 
 def concerns(spread: Spread, bound: Bound, hierarchy: Hierarchy) -> Iterator[Concern]:
-    """Return where each kind of finding can be (rule S10); disclosure first."""
+    """Return where each kind of finding can be (rule S10); disclosure first.
+
+    >>> from rosprivacy.analysis.example import DISK, factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> graph, bound, hierarchy = factory()
+    >>> kinds = list(concerns(spread(graph, bound, hierarchy), bound, hierarchy))
+    >>> [(concern.kind, concern.reasons.get((DISK, "Video"), "")) for concern in kinds]
+    [('disclosure', ''), ('storage-limitation', 'no retention is stated'), ('third-country-transfer', '')]
+    """
     yield Concern(DISCLOSURE, spread.leaks, {})
     elements = spread.graph.elements
     storages = {v: facts for v, facts in bound.outside.items() if elements[v].kind == "storage"}

@@ -51,6 +51,14 @@ def origins(spread: Spread) -> tuple[Origin, ...]:
     -----
     One search per source and one per category that is made of its data: O(flows) each. Nothing is searched where
     nothing is made.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import NAMES, factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> (origin,) = origins(spread(*factory()))
+    >>> origin.category, [NAMES[vertex] for vertex in origin.path]
+    ('FaceTemplate', ['/camera', '/video', '/face_id'])
     """
     if not spread.made:
         return ()

@@ -94,18 +94,10 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
 
     Examples
     --------
-    >>> from rosprivacy.analysis.hierarchy import Hierarchy
-    >>> from rosprivacy.analysis.model import Bound, Category, Element, Flow, FlowGraph, Place, Statement
-    >>> graph = FlowGraph(
-    ...     (Element("node", "/camera"), Element("node", "/uplink"), Element("topic", "/image")),
-    ...     (Flow(0, 2, "publish"), Flow(2, 1, "subscribe")), denied=(), profiles=(),
-    ... )
-    >>> def said(role, line):
-    ...     return (Statement(role, ("Video",), (1, 1), Place("labels.yaml", line)),)
-    >>> bound = Bound({0: said("source", 3), 1: said("leak", 4)})
-    >>> analysis = analyse(graph, bound, Hierarchy.of([Category("Video", "urn:Video", "Video", "Video", "Video")]))
+    >>> from rosprivacy.analysis.example import factory
+    >>> analysis = analyse(*factory())
     >>> str(analysis.verdict), [element.name for element in analysis.findings[0].witness]
-    ('leak', ['/camera', '/image', '/uplink'])
+    ('leak', ['/camera', '/video', '/face_id', '/faces', '/archive'])
     """
     options = options or Options()
     bound = replace(bound, outside=on_day(bound.outside, options.today))

@@ -78,6 +78,17 @@ def globs(
         The ledger.
     beside
         Robots that are not counted: another one stands for them.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.findings.findings import analyse
+    >>> from rosprivacy.analysis.findings.ledger import ledger
+    >>> graph, bound, hierarchy = factory()
+    >>> analysis = analyse(graph, bound, hierarchy)
+    >>> uses = globs(analysis, bound, ledger(analysis, bound, hierarchy))
+    >>> [(str(use.place), use.says, use.elements, use.closed, use.leak.name) for use in uses]
+    [('labels.yaml:5', ('only',), 1, 1, '/archive')]
     """
     decided = _decided(analysis, bound, beside)
     rows: dict[Place, list[TakenAway]] = defaultdict(list)

@@ -97,20 +97,12 @@ def ledger(
 
     Examples
     --------
+    >>> from rosprivacy.analysis.example import factory
     >>> from rosprivacy.analysis.findings.findings import analyse
-    >>> from rosprivacy.analysis.hierarchy import Hierarchy
-    >>> from rosprivacy.analysis.model import Bound, Category, Element, Flow, FlowGraph, Place, Statement
-    >>> graph = FlowGraph(
-    ...     (Element("node", "/camera"), Element("node", "/uplink"), Element("topic", "/image")),
-    ...     (Flow(0, 2, "publish"), Flow(2, 1, "subscribe")), denied=(), profiles=(),
-    ... )
-    >>> def said(role, line):
-    ...     return (Statement(role, ("Video",), (1, 1), Place("labels.yaml", line)),)
-    >>> bound = Bound({0: said("source", 3), 1: said("leak", 4), 2: said("never", 5)})
-    >>> hierarchy = Hierarchy.of([Category("Video", "urn:Video", "Video", "Video", "Video")])
+    >>> graph, bound, hierarchy = factory()
     >>> rows = ledger(analyse(graph, bound, hierarchy), bound, hierarchy)
-    >>> [(row.by, row.element.name, row.leak.name) for row in rows]
-    [('never', '/image', '/uplink')]
+    >>> [(row.by, *map(str, row.places)) for row in rows if row.leak]
+    [('deny', 'policy.xml:10'), ('only', 'labels.yaml:5'), ('sanitizer', 'labels.yaml:4')]
     """
     spread = analysis.spread
     asked = sum(spread.both(category) for category in analysis.emitted)

@@ -49,6 +49,13 @@ def review_order(analysis: Analysis) -> dict[Shown, Behind]:
     Notes
     -----
     networkx's immediate dominators, on the flows that carry data.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.findings.findings import analyse
+    >>> {name: (behind.closes, behind.leaks) for (_, _, name, _), behind in review_order(analyse(*factory())).items()}
+    {'/video': (1, 1), '/filtered': (0, 0)}
     """
     if not analysis.open:
         return {}

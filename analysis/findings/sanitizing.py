@@ -58,6 +58,12 @@ def cleanings(spread: Spread, wanted: Collection[str]) -> tuple[Cleaning, ...]:
     """Return what sanitizes any of the categories.
 
     Complexity: O(flows) once, then the channels around each sanitizer.
+
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> (cleaning,) = cleanings(spread(*factory()), ["Video"])
+    >>> cleaning.element.name, cleaning.pseudonymised, [element.name for element in cleaning.beside]
+    ('/filter', ('Video',), ['/face_id'])
     """
     around = _Around(spread)
     mask = sum(spread.both(category) for category in wanted)
@@ -82,7 +88,14 @@ def cleanings(spread: Spread, wanted: Collection[str]) -> tuple[Cleaning, ...]:
 
 
 def makings(spread: Spread, wanted: Collection[str]) -> tuple[Making, ...]:
-    """Return what makes any of the categories of another one; what is that kind already is not made."""
+    """Return what makes any of the categories of another one; what is that kind already is not made.
+
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> (making,) = makings(spread(*factory()), ["FaceTemplate"])
+    >>> making.element.name, making.made_of, making.made, making.reached
+    ('/face_id', 'Video', 'FaceTemplate', True)
+    """
     return tuple(
         Making(spread.graph.elements[vertex], category, made, bool(spread.present(vertex) & spread.both(category)))
         for vertex, decided in sorted(spread.facts.items())
@@ -93,7 +106,14 @@ def makings(spread: Spread, wanted: Collection[str]) -> tuple[Making, ...]:
 
 
 def absent(bound: Bound, graph: FlowGraph) -> tuple[tuple[Element, str], ...]:
-    """Return the nodes of which a label says that they are not on the robot, with a person's reason."""
+    """Return the nodes of which a label says that they are not on the robot, with a person's reason.
+
+    >>> from rosprivacy.analysis.example import FILTER, factory
+    >>> from rosprivacy.analysis.model import Bound, Place, Statement
+    >>> said = Statement("sanitizer", (), (1, 1), Place("labels.yaml", 4), Method.ABSENT, why="from spring on")
+    >>> [(element.name, why) for element, why in absent(Bound({FILTER: (said,)}), factory()[0])]
+    [('/filter', 'from spring on')]
+    """
     return tuple(
         (graph.elements[vertex], statement.why)
         for vertex, said in sorted(bound.elements.items())

@@ -30,6 +30,17 @@ def unknown_ends(spread: Spread, mask: int) -> tuple[UnknownEnd, ...]:
     -----
     Who reads is a matter of flows: a flow that a DENY takes back makes no reader, one that some data may not take
     makes one. O(flows).
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> graph, bound, hierarchy = factory()
+    >>> unread = replace(graph, flows=graph.flows[:5])  # nobody subscribes
+    >>> carried = spread(unread, bound, hierarchy)
+    >>> [(end.element.name, end.what, end.categories) for end in unknown_ends(carried, carried.all_bits)]
+    [('/video', 'reader', ('Video',))]
     """
     merged: dict[tuple[str, str, str, str], tuple[Element, int]] = {}
     for vertex in _unread(spread, mask):
@@ -44,13 +55,13 @@ def unknown_ends(spread: Spread, mask: int) -> tuple[UnknownEnd, ...]:
 def _unread(spread: Spread, mask: int) -> Iterator[int]:
     """Channels with data from which no flow leads to anything but channels."""
     elements = spread.graph.elements
-    known = readable(spread.graph)
+    known = _readable(spread.graph)
     for vertex in sorted(spread.leaves):
         if elements[vertex].is_channel and spread.present(vertex) & mask and vertex not in known:
             yield vertex
 
 
-def readable(graph: FlowGraph) -> Collection[int]:
+def _readable(graph: FlowGraph) -> Collection[int]:
     """Return the channels that a node reads, by their name or through wildcards that match it (rule S4)."""
     known: set[int] = set()
     before: dict[int, list[int]] = defaultdict(list)

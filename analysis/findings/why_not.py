@@ -98,20 +98,11 @@ def why_not(analysis: Analysis, source: Sequence[int], leak: Sequence[int], cate
 
     Examples
     --------
+    >>> from rosprivacy.analysis.example import ARCHIVE, FACE_ID, factory
     >>> from rosprivacy.analysis.findings.findings import analyse
-    >>> from rosprivacy.analysis.hierarchy import Hierarchy
-    >>> from rosprivacy.analysis.model import Bound, Category, Element, Flow, FlowGraph, Place, Statement
-    >>> graph = FlowGraph(
-    ...     (Element("node", "/camera"), Element("node", "/uplink"), Element("topic", "/image")),
-    ...     (Flow(0, 2, "publish"), Flow(2, 1, "subscribe")), denied=(), profiles=(),
-    ... )
-    >>> def said(role, line):
-    ...     return (Statement(role, ("Video",), (1, 1), Place("labels.yaml", line)),)
-    >>> bound = Bound({0: said("source", 3), 1: said("leak", 4), 2: said("never", 5)})
-    >>> hierarchy = Hierarchy.of([Category("Video", "urn:Video", "Video", "Video", "Video")])
-    >>> answer = why_not(analyse(graph, bound, hierarchy), [0], [1], "Video")
-    >>> [(obstacle.by, obstacle.element.name, str(obstacle.places[0])) for obstacle in answer.obstacles]
-    [('never', '/image', 'labels.yaml:5')]
+    >>> answer = why_not(analyse(*factory()), [FACE_ID], [ARCHIVE], "Video")
+    >>> [(obstacle.by, obstacle.element.name, *map(str, obstacle.places)) for obstacle in answer.obstacles]
+    [('no-source', '/face_id'), ('only', '/faces', 'labels.yaml:5')]
     """
     spread = analysis.spread
     elements = spread.graph.elements

@@ -37,6 +37,15 @@ def counted(
         Vertices that are counted elsewhere; flows to or from them are counted here.
     unreal
         Vertices that are none of the fleet; flows to or from them are not counted.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.fleet.likeness import Likeness
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> graph, bound, hierarchy = factory("amr-1")
+    >>> counted(graph, spread(graph, bound, hierarchy), Likeness({"amr-1": ("amr-1", "amr-2")}))
+    Counts(elements=18, flows=18, denied_flows=2, standard_channels=2)
     """
     elements = graph.elements
 

@@ -26,7 +26,13 @@ if TYPE_CHECKING:
 
 
 def stated_flows(graph: FlowGraph) -> dict[int, list[int]]:
-    """Return vertex -> the flows out of it that a person states: channels that a source names do not restrict these."""
+    """Return vertex -> the flows out of it that a person states: channels that a source names do not restrict these.
+
+    >>> from rosprivacy.analysis.example import NAMES, factory
+    >>> graph, _, _ = factory()
+    >>> {NAMES[vertex]: [NAMES[graph.flows[i].target] for i in flows] for vertex, flows in stated_flows(graph).items()}
+    {'/archive': ['disk']}
+    """
     stated: dict[int, list[int]] = defaultdict(list)
     for index, flow in enumerate(graph.flows):
         if flow.role == STATED:
@@ -43,6 +49,18 @@ def keep_named(
     ----------
     elements, flows
         What statements mean for each.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import CAMERA, VIDEO, factory
+    >>> from rosprivacy.analysis.model import Bound, Place, Statement
+    >>> graph, _, hierarchy = factory()
+    >>> source = Statement("source", ("Video",), (1, 1), Place("labels.yaml", 2), through=("/video",))
+    >>> never = Statement("never", ("Video",), (1, 1), Place("labels.yaml", 9))
+    >>> bound = Bound({CAMERA: (source,), VIDEO: (never,)}, through={(CAMERA, source.through): (2,)})
+    >>> elements = {v: {"Video": facts("", said, "Video", hierarchy)} for v, said in bound.elements.items()}
+    >>> print(*keep_named(elements, {}, graph, bound, hierarchy))
+    labels.yaml:9: /video is never [Video] here, and the source at labels.yaml:2 names it for Video; keep one of them
     """
     told: set[tuple[Place, Place]] = set()
     for category, source, vertex, index in named(elements, graph, bound):
@@ -62,7 +80,17 @@ def keep_named(
 def named(
     elements: Mapping[int, Mapping[str, Facts]], graph: FlowGraph, bound: Bound
 ) -> list[tuple[str, Statement, int, int]]:
-    """Return (category, statement of a source, channel that it names, flow to it), with what wildcards match there."""
+    """Return (category, statement of a source, channel that it names, flow to it), with what wildcards match there.
+
+    >>> from rosprivacy.analysis.example import CAMERA, NAMES, factory
+    >>> from rosprivacy.analysis.model import Bound, Place, Statement
+    >>> graph, _, hierarchy = factory()
+    >>> source = Statement("source", ("Video",), (1, 1), Place("labels.yaml", 2), through=("/video",))
+    >>> bound = Bound({CAMERA: (source,)}, through={(CAMERA, source.through): (2,)})
+    >>> elements = {CAMERA: {"Video": facts("/camera", (source,), "Video", hierarchy)}}
+    >>> [(category, NAMES[channel], flow) for category, _, channel, flow in named(elements, graph, bound)]
+    [('Video', '/video', 2)]
+    """
     rows: list[tuple[str, Statement, int, int]] = []
     matches: dict[int, list[int]] = defaultdict(list)
     for index, flow in enumerate(graph.flows if bound.through else ()):

@@ -101,6 +101,14 @@ def facts(name: str, said: Sequence[Statement], category: str, hierarchy: Hierar
     ------
     LabelError
         If two statements of equal rank contradict each other; the message names both lines.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import FILTER, factory
+    >>> _, bound, hierarchy = factory()
+    >>> cleaning = facts("/filter", bound.elements[FILTER], "Video", hierarchy)
+    >>> cleaning.roles, cleaning.passes, cleaning.pseudonymises
+    (('sanitizer',), False, True)
     """
     return _sum_up(decided(name, said, category, hierarchy), category, hierarchy)
 

@@ -32,6 +32,13 @@ def spread(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy) -> Spread:
     ------
     InputErrors
         If statements of equal rank contradict each other.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import ARCHIVE, factory
+    >>> carried = spread(*factory())
+    >>> carried.planes(carried.arrives[ARCHIVE])  # as they are, pseudonymised
+    (('FaceTemplate',), ('Video',))
     """
     result = meaning(graph, bound, hierarchy, emitted(bound.elements.values()))
     network = GraphArrays.of(result)
@@ -51,6 +58,13 @@ def meaning(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, categories: It
     ------
     InputErrors
         If statements of equal rank contradict each other.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import ARCHIVE, factory
+    >>> labelled = meaning(*factory(), ["FaceTemplate", "Video"])
+    >>> labelled.names(labelled.leaks[ARCHIVE]), labelled.arrives
+    (('FaceTemplate', 'Video'), {})
     """
     categories = tuple(sorted(categories))
     spread = Spread(graph, categories)
@@ -93,7 +107,13 @@ def meaning(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, categories: It
 
 
 def emitted(elements: Iterable[Iterable[Statement]]) -> set[str]:
-    """Return the categories that a source names or a derivation makes: only these have bits (rule S7)."""
+    """Return the categories that a source names or a derivation makes: only these have bits (rule S7).
+
+    >>> from rosprivacy.analysis.example import factory
+    >>> _, bound, _ = factory()
+    >>> sorted(emitted(bound.elements.values()))
+    ['FaceTemplate', 'Video']
+    """
     names: set[str] = set()
     for said in elements:
         for statement in said:
@@ -160,7 +180,15 @@ def _closed(derives: Mapping[str, tuple[str, ...]]) -> dict[str, set[str]]:
 
 
 def fill(spread: Spread, arrives: Bits, leaves: Bits) -> None:
-    """Put the fixpoint in; rows are vertices of its network, of which elements are the first."""
+    """Put the fixpoint in; rows are vertices of its network, of which elements are the first.
+
+    >>> from rosprivacy.analysis.example import ROSOUT, factory
+    >>> labelled = meaning(*factory(), ["FaceTemplate", "Video"])
+    >>> network = GraphArrays.of(labelled)
+    >>> fill(labelled, *fixpoint(network.edges, network.emitted, network.keep, network.derivations))
+    >>> labelled.names(labelled.arrives[ROSOUT]), labelled.leaves.get(ROSOUT, 0)
+    (('Video',), 0)
+    """
     count = len(spread.graph.elements)
     spread.arrives = as_numbers(arrives[:count])
     spread.leaves = as_numbers(leaves[:count])

@@ -19,7 +19,14 @@ SAYS_OTHERWISE = ("sensitive", "only")
 
 
 def reached(spread: Spread, mask: int) -> tuple[tuple[Element, tuple[str, ...]], ...]:
-    """Return (channel, categories that get to it and stop there), one for both legs and sides of a channel."""
+    """Return (channel, categories that get to it and stop there), one for both legs and sides of a channel.
+
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> carried = spread(*factory())
+    >>> [(channel.name, names) for channel, names in reached(carried, carried.all_bits)]
+    [('/rosout', ('Video',))]
+    """
     elements = spread.graph.elements
     bits: dict[tuple[str, str, str], int] = defaultdict(int)
     first: dict[tuple[str, str, str], Element] = {}
@@ -35,7 +42,18 @@ def reached(spread: Spread, mask: int) -> tuple[tuple[Element, tuple[str, ...]],
 
 
 def unchanged(spread: Spread, bound: Bound) -> tuple[Element, ...]:
-    """Return the channels of which a glob with an open end says that they may carry data, and does not count."""
+    """Return the channels of which a glob with an open end says that they may carry data, and does not count.
+
+    >>> from dataclasses import replace
+    >>> from rosprivacy.analysis.example import ROSOUT, factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> from rosprivacy.analysis.model import Place, Statement
+    >>> graph, bound, hierarchy = factory()
+    >>> said = Statement("sensitive", (), (1, 0), Place("labels.yaml", 6), naming=GLOB)
+    >>> bound = replace(bound, elements={**bound.elements, ROSOUT: (*bound.elements[ROSOUT], said)})
+    >>> [channel.name for channel in unchanged(spread(graph, bound, hierarchy), bound)]
+    ['/rosout']
+    """
     elements = spread.graph.elements
     globs = {
         elements[vertex].identity: elements[vertex]

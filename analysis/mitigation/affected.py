@@ -51,7 +51,17 @@ class _Rights:
 
 
 def affected(before: Analysis, after: Analysis) -> tuple[Affected, ...]:
-    """Return who gets less after than before; O(flows)."""
+    """Return who gets less after than before; O(flows).
+
+    >>> from dataclasses import replace
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.findings.findings import analyse
+    >>> graph, bound, hierarchy = factory()
+    >>> denied = replace(graph, flows=graph.flows[:7] + graph.flows[8:])  # /video -> /face_id
+    >>> less = affected(analyse(graph, bound, hierarchy), analyse(denied, bound, hierarchy))
+    >>> [(one.element.name, [name for _, _, name, _ in one.unread], bool(one.filtered)) for one in less]
+    [('/archive', [], True), ('/face_id', ['/video'], False), ('disk', [], True)]
+    """
     was, becomes = _rights(before), _rights(after)
     rows = []
     for element in sorted(was, key=lambda e: e.sort_key()):

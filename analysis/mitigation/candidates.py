@@ -79,7 +79,13 @@ class Candidate:
 
 
 def uncut(changes: Iterable[Candidate]) -> Callable[[Arc], bool]:
-    """Return the test whether an arc is cut by none of some changes, made once for many arcs."""
+    """Return the test whether an arc is cut by none of some changes, made once for many arcs.
+
+    >>> from rosprivacy.analysis.mitigation.cut_network import Arc
+    >>> passes = uncut([Candidate(FILTER, 10, flows=frozenset({7}), categories=frozenset({1}))])
+    >>> [passes(Arc(2, 3, category, flow)) for category, flow in ((1, 7), (0, 7), (1, 8))]
+    [False, True, True]
+    """
     flows: set[int] = set()
     filtered: set[At] = set()
     reviewed: set[At] = set()
@@ -102,6 +108,21 @@ def candidates(
     ----------
     denials
         Says of flows what grants would have to be set to DENY for each to go, and what else would go with it.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import ARCHIVE, CAMERA, NAMES, factory
+    >>> from rosprivacy.analysis.findings.findings import analyse
+    >>> from rosprivacy.analysis.kernel.states import Net
+    >>> from rosprivacy.analysis.mitigation.change_sites import ChangeSites
+    >>> from rosprivacy.analysis.mitigation.cut_network import Group, cut_network
+    >>> from rosprivacy.analysis.mitigation.limits import Limits
+    >>> analysis = analyse(*factory())
+    >>> net = Net.of(analysis.spread)
+    >>> network = cut_network(net, [Group((CAMERA,))], [net.spread.categories.index("FaceTemplate")])
+    >>> changes = candidates(ChangeSites(analysis, Limits(), {ARCHIVE}, {}), network.arcs, lambda flows: ())
+    >>> [(change.kind, change.cost, [NAMES[v] for v in (*change.channels, *change.readers)]) for change in changes[:3]]
+    [('review', 1, ['/video']), ('filter', 30, ['/face_id', '/filter']), ('filter', 10, ['/archive'])]
     """
     by_flow: dict[int, set[int]] = defaultdict(set)
     by_channel: dict[int, set[int]] = defaultdict(set)

@@ -53,6 +53,15 @@ def cheapest(network: CutNetwork, changes: Sequence[Candidate], budget: int = BU
     Notes
     -----
     networkx's maximum flow on the network, twice; then at most ``budget`` steps, each O(arcs) at worst.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.mitigation.candidates import Candidate
+    >>> from rosprivacy.analysis.mitigation.cut_network import Arc, CutNetwork
+    >>> network = CutNetwork([Arc(BEGIN, 2, 0, flow=5), Arc(BEGIN, 2, 0, flow=6), Arc(2, END, 0, flow=7)])
+    >>> changes = [Candidate("deny", cost, flows=frozenset({flow})) for flow, cost in ((5, 10), (6, 10), (7, 15))]
+    >>> cheapest(network, changes)
+    (ChangeSet(chosen=(2,), cost=15, lower=15, sure=True),)
     """
     if not network.arcs:
         return (ChangeSet((), 0, 0, sure=True),)
