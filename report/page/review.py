@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.report.counts import count_rows
 from rosprivacy.report.naming import key
 from rosprivacy.report.page.entries_of_robots import grouped
 from rosprivacy.report.review_groups import review_groups, sources_of
@@ -55,7 +56,7 @@ class Group:
     """Questions of one urgency; ``key`` is that of its heading."""
 
     key: str
-    number: int
+    number: str
     questions: tuple[Question, ...]
     folded: tuple[Folded, ...] = ()
 
@@ -65,10 +66,13 @@ def review(index: Index) -> tuple[Group, ...]:
     return tuple(
         Group(
             f"q.{group.key}",
-            len(group.questions),
+            _number(group.questions, index),
             tuple(_questions(group.now, index)),
             tuple(
-                Folded(index.words(said, elements=index.words.count(len(rows), "element")), _names(rows, index))
+                Folded(
+                    index.words(said, elements=index.words.count(count_rows(rows).elements, "element")),
+                    _names(rows, index),
+                )
                 for said, rows in (("q.waits", group.waiting), ("q.proposed", group.proposed))
                 if rows
             ),
@@ -83,7 +87,15 @@ def unknown_ends(index: Index) -> tuple[Group, ...]:
     rows: dict[str, list[Mapping[str, Any]]] = {"q.reader": [], "q.flow": []}
     for row in index.document["unknown_ends"]:
         rows[f"q.{row['unknown']}"].append({**row, "distance": None})
-    return tuple(Group(heading, len(some), tuple(_questions(some, index))) for heading, some in rows.items() if some)
+    return tuple(
+        Group(heading, _number(some, index), tuple(_questions(some, index))) for heading, some in rows.items() if some
+    )
+
+
+def _number(rows: Iterable[Mapping[str, Any]], index: Index) -> str:
+    count = count_rows(rows)
+    number = index.words.number(count.elements)
+    return number if count.elements == count.legs else index.words("q.legs", elements=number, legs=count.legs)
 
 
 def _names(rows: Iterable[Mapping[str, Any]], index: Index) -> str:

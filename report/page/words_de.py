@@ -424,6 +424,7 @@ WORDS = {
     "q.first": "Als Nächstes zu prüfen: Knoten, zu denen Daten vor jedem anderen offenen Knoten gelangen",
     "q.channels": "Kanäle",
     "q.behind": "Knoten, die dahinter liegen",
+    "q.legs": "{elements}; {legs} mit Anfrage und Antwort von Services und Actions",
     "q.waits": "{elements}, mit denen es Zeit hat: Von dort gelangen Daten zu keinem Empfänger und zu keinem ungeprüften Knoten",
     "q.proposed": "{elements}: Lifecycle- oder andere Infrastrukturkanäle, für die die Datei rosprivacy:infrastructure vorschlägt, sie als frei von personenbezogenen Daten zu nehmen",
     "q.brings": "ist selbst eine Quelle ({data}); gibt es weiter, was hereinkommt?",

@@ -501,6 +501,7 @@ WORDS = {
     "q.first": "Review next: nodes that data reaches before any other open node",
     "q.channels": "Channels",
     "q.behind": "Nodes that lie behind those",
+    "q.legs": "{elements}; {legs} with the legs of services and actions",
     "q.waits": "{elements} can wait: from there data gets to no recipient and to no node that is not reviewed",
     "q.proposed": (
         "{elements}: lifecycle or other infrastructure channels, which the label file rosprivacy:infrastructure proposes "

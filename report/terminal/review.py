@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.text import counted
+from rosprivacy.report.counts import count_rows
 from rosprivacy.report.naming import key, kind_of, label_name, shown_name
 from rosprivacy.report.review_groups import AT_CHANNELS, BEHIND, FIRST, SHOWN, review_groups, sources_of
 
@@ -33,7 +34,8 @@ def review_lines(report: Mapping[str, Any], *, verbose: bool) -> Iterator[Line]:
         if not group.questions:
             continue
         yield "", ""
-        yield f"{TITLES[group.key]}: {len(group.questions)}", "bold"
+        count = count_rows(group.questions)
+        yield f"{TITLES[group.key]}: {count.elements}{count.more}", "bold"
         for question in group.questions if verbose else group.now[:SHOWN]:
             steps = f"{counted(question['distance'], 'step')} from a source"
             what = "; ".join((kind_of(question["element"]), steps, review_text(question, brings)))
@@ -58,7 +60,7 @@ def _more(group: ReviewGroup) -> Iterator[Line]:
     left = len(group.now) - SHOWN
     if left > 0:
         yield f"   … and {left} more (-v shows all)", "dim"
-    if waiting := len(group.waiting):
+    if waiting := count_rows(group.waiting).elements:
         yield f"   {waiting} can wait: from there data gets to no leak and no node that is not reviewed (-v)", "dim"
-    if proposed := len(group.proposed):
+    if proposed := count_rows(group.proposed).elements:
         yield f"   {proposed} are lifecycle or other infrastructure channels: {INFRASTRUCTURE}", "dim"

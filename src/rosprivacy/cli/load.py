@@ -15,11 +15,14 @@ from rosprivacy.analysis.text import counted
 from rosprivacy.cli.driver import driver_of
 from rosprivacy.cli.inputs import Inputs, reads_system, refuse
 from rosprivacy.cli.output import emit
+from rosprivacy.report.counts import count_elements
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from rosprivacy.ingest.database.loading import Loaded
+    from rosprivacy.ingest.database.rows import RobotRows
+    from rosprivacy.result import Result
     from rosprivacy.settings import Settings
 
 NAMED = 3  # robots in a message
@@ -79,11 +82,21 @@ def load(
         with _bar(rows.size) as advance:
             done = database.load(driver, [rows], result.vocabulary, advance)
     how = "is there already, nothing to change" if done.unchanged else "is written"
-    count = f"{len(rows.elements):,} elements, {len(rows.flows):,} flows, {len(rows.findings):,} findings"
-    emit(f"robot {shown(name)} {how}: {count}; verdict {result.analysis.verdict}\n", None)
+    emit(f"robot {shown(name)} {how}: {_counts(result, rows)}; verdict {result.analysis.verdict}\n", None)
     if robot is None:
         print(f"robot {shown(name)} has the name of its policy file; --robot NAME says another", file=sys.stderr)
     _tell_replaced(done)
+
+
+def _counts(result: Result, rows: RobotRows) -> str:
+    """What there is, as ``analyze`` counts it, and what that is in the database."""
+    graph = result.analysis.graph
+    elements, flows = counted(count_elements(graph.elements).elements, "element"), counted(len(graph.flows), "flow")
+    stored = f"{len(rows.elements):,} nodes with the legs of services and actions, {len(rows.flows):,} FLOWS_TO with"
+    stands = sum(not finding.dismissed for finding in result.analysis.findings)
+    dismissed = len(result.analysis.findings) - stands
+    more = f", {dismissed:,} more only through another leak" if dismissed else ""
+    return f"{elements} and {flows} ({stored} denied flows), {counted(stands, 'finding')}{more}"
 
 
 def name_of(inputs: Inputs) -> str:
