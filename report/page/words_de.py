@@ -425,7 +425,7 @@ WORDS = {
     "q.channels": "Kanäle",
     "q.behind": "Knoten, die dahinter liegen",
     "q.legs": "{elements}; {legs} mit Anfrage und Antwort von Services und Actions",
-    "q.waits": "{elements}, mit denen es Zeit hat: Von dort gelangen Daten zu keinem Empfänger und zu keinem ungeprüften Knoten",
+    "q.waits": "Hat Zeit ({elements}): Von dort gelangen Daten zu keinem Empfänger und zu keinem ungeprüften Knoten",
     "q.proposed": "{elements}: Lifecycle- oder andere Infrastrukturkanäle, für die die Datei rosprivacy:infrastructure vorschlägt, sie als frei von personenbezogenen Daten zu nehmen",
     "q.brings": "ist selbst eine Quelle ({data}); gibt es weiter, was hereinkommt?",
     "q.reader": "Kanäle mit Daten, die niemand Bekanntes liest: Wer sie liest, kann in einer Policy stehen, die nicht vorlag",

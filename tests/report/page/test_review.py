@@ -69,8 +69,21 @@ def test_the_page_says_the_same_in_both_languages(cli: Cli, folder: Path) -> Non
         ]
         assert [f">{through}<" in row, closes in row] == [True, True]
     page = told(cli, folder, "--lang", "de")
-    for german in ("Kommt über", "Nur darüber erreichbar", "4 weitere offene Elemente, 1 Empfänger", "hat: Von dort"):
+    for german in ("Kommt über", "Nur darüber erreichbar", "4 weitere offene Elemente, 1 Empfänger", "Hat Zeit (1 Element): Von dort"):
         assert german in page
+
+
+def test_a_picture_of_the_page_cuts_no_words(cli: Cli, folder: Path) -> None:
+    """B6: 'laser scan with…tion of a robot with a person'."""
+    makes = "/planner: {derives: [{from: LaserScan, to: RobotPosition}]}"
+    ends = "/camera: {source: [LaserScan]}, /cloud: {leak: [RobotPosition]}"
+    (folder / "l.yaml").write_text(f"labels: 1\nnodes: {{{ends}, {makes}}}\n")
+    page = told(cli, folder)
+    words = "makes position of a robot with a person of laser scan with persons"
+    drawn = [unescape(text) for text in re.findall("<text [^>]*>([^<]*)</text>", page)]
+    assert words in " ".join(drawn).replace("\xa0", " ")
+    assert not [text for text in drawn if "…" in text]
+    assert f"<title>/planner; {words}</title>" in page
 
 
 def test_what_can_wait_is_what_the_terminal_says(cli: Cli, folder: Path) -> None:
