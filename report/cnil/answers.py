@@ -23,7 +23,7 @@ from rosprivacy.report.cnil.markup import (
     some,
     strong,
 )
-from rosprivacy.report.counts import count_elements
+from rosprivacy.report.element_counts import count_elements
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping

@@ -20,7 +20,7 @@ from rosprivacy.report import robots
 from rosprivacy.report.cnil import answers as cnil_answers
 from rosprivacy.report.cnil.answers import NAMES, Known
 from rosprivacy.report.cnil.markup import Html, bullets, counted, escaped, joined, paragraph, prose
-from rosprivacy.report.counts import count_elements
+from rosprivacy.report.element_counts import count_elements
 from rosprivacy.report.inventory import kinds_of
 
 if TYPE_CHECKING:

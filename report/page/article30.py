@@ -13,7 +13,7 @@ from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.text import fit
-from rosprivacy.report.counts import count_rows
+from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import key, name, whole
 from rosprivacy.report.page.entries_of_robots import grouped
 from rosprivacy.report.page.index import Index

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.text import fit, printable
-from rosprivacy.report.counts import count_rows
+from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import text
 
 if TYPE_CHECKING:

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.text import fit
 from rosprivacy.report.compare.changes import ASKED, Changes, changes
-from rosprivacy.report.counts import count_rows
 from rosprivacy.report.document.analysis import files_not_read
+from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import name
 from rosprivacy.report.page import assumed, elements, sanitizers, tables
 from rosprivacy.report.page.closed import Closed, closed

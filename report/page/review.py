@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.report.counts import count_rows
+from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import key
 from rosprivacy.report.page.entries_of_robots import grouped
 from rosprivacy.report.review_groups import review_groups, sources_of

@@ -18,7 +18,7 @@ from rosprivacy.analysis.findings.flows_to_leaks import FlowsToLeaks, flows_to_l
 from rosprivacy.analysis.kernel.states import Net
 from rosprivacy.analysis.model import DISCLOSURE
 from rosprivacy.analysis.text import counted, shortened
-from rosprivacy.report.counts import count_elements
+from rosprivacy.report.element_counts import count_elements
 from rosprivacy.report.pictures.looks import ALLOWED, DATA, DENIED, MATCHES, SHORTEST, WAY
 from rosprivacy.report.pictures.picture import PRIVACY, ROS, Box, Line, Picture, order, sorted_boxes, sorted_lines
 from rosprivacy.report.pictures.privacy import Reached

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.legal import strongest_first
 from rosprivacy.analysis.model import Place, Severity, unread
 from rosprivacy.analysis.text import counted, utf8
-from rosprivacy.report.counts import ElementCount, count_elements
+from rosprivacy.report.element_counts import ElementCount, count_elements
 from rosprivacy.report.places import Places, in_a_file, to_review
 from rosprivacy.report.sarif.flows import flows_between, further_ways, prose, text
 from rosprivacy.report.sarif.results import LAW, ROOT, Files, Results

@@ -13,8 +13,8 @@ from rich.text import Text
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import MERGED
 from rosprivacy.analysis.text import counted
-from rosprivacy.report.counts import count_rows
 from rosprivacy.report.document.analysis import files_not_read
+from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import shown_name
 from rosprivacy.report.review_groups import SHOWN
 from rosprivacy.report.terminal.denied import denied_lines

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import UNREAD_FILE
-from rosprivacy.report.counts import count_rows
+from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import shown_name
 from rosprivacy.report.review_groups import next_round
 from rosprivacy.report.terminal.restriction import asked_at_verdict

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.text import counted
-from rosprivacy.report.counts import count_rows
+from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import key, kind_of, label_name, shown_name
 from rosprivacy.report.review_groups import AT_CHANNELS, BEHIND, FIRST, SHOWN, review_groups, sources_of
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.text import counted
-from rosprivacy.report.counts import count_rows
+from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import shown_name, whole
 
 if TYPE_CHECKING:

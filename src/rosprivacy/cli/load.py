@@ -15,7 +15,7 @@ from rosprivacy.analysis.text import counted
 from rosprivacy.cli.driver import driver_of
 from rosprivacy.cli.inputs import Inputs, reads_system, refuse
 from rosprivacy.cli.output import emit
-from rosprivacy.report.counts import count_elements
+from rosprivacy.report.element_counts import count_elements
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

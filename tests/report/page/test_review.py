@@ -69,7 +69,12 @@ def test_the_page_says_the_same_in_both_languages(cli: Cli, folder: Path) -> Non
         ]
         assert [f">{through}<" in row, closes in row] == [True, True]
     page = told(cli, folder, "--lang", "de")
-    for german in ("Kommt über", "Nur darüber erreichbar", "4 weitere offene Elemente, 1 Empfänger", "Hat Zeit (1 Element): Von dort"):
+    for german in (
+        "Kommt über",
+        "Nur darüber erreichbar",
+        "4 weitere offene Elemente, 1 Empfänger",
+        "Hat Zeit (1 Element): Von dort",
+    ):
         assert german in page
 
 
