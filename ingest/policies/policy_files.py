@@ -70,12 +70,12 @@ def read_policies(
     arguments = tuple(arguments)
     expanded = _expand(arguments)
     named, found, problems = expanded.named, expanded.found, expanded.problems
-    files = sorted({*named, *(file for files in found.values() for file in files)})
-    outside = dict.fromkeys(file for file in files if within is not None and leaves(file, within))
+    everything = sorted({*named, *(file for files in found.values() for file in files)})
+    outside = dict.fromkeys(file for file in everything if within is not None and leaves(file, within))
     problems += [PolicyError(file, 0, what_leaves(file, within or ""), WIDEN) for file in outside]
     policies: list[Policy] = []
     skipped: list[NotAPolicyError] = []
-    for file in progress([file for file in files if file not in outside]):
+    for file in progress([file for file in everything if file not in outside]):
         try:
             policies.append(read_policy(file, include_root=include_root, max_bytes=max_bytes))
         except InputErrors as error:
