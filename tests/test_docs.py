@@ -8,8 +8,6 @@ from __future__ import annotations
 import ast
 import doctest
 import re
-import subprocess
-import sys
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any
 
@@ -32,6 +30,8 @@ from tests.helpers.paths import ROOT
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
+
+    from tests.helpers.command import Cli
 
 ARCHITECTURE = ROOT / "docs" / "architecture.md"
 COMMAND_LINE = ROOT / "docs" / "command-line.md"
@@ -231,12 +231,11 @@ def test_every_public_function_of_the_analysis_has_an_example() -> None:
     assert not without, f"write a short example into the docstring of {without}"
 
 
-def test_the_readmes_first_finding_is_what_is_printed() -> None:
+def test_the_readmes_first_finding_is_what_is_printed(cli: Cli) -> None:
     (command,) = [line for line in blocks(ROOT / "README.md", "console")[1].splitlines() if line]
-    done = subprocess.run(
-        [sys.executable, "-m", *command.split()], cwd=ROOT, capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 1
+    program, *arguments = command.split()
+    done = cli(*arguments, cwd=ROOT)
+    assert (program, done.returncode) == ("rosprivacy", 1)
     (shown,) = [block for block in blocks(ROOT / "README.md", "text") if block.startswith("leak:")]
     for line in shown.splitlines():
         assert line == "…" or line in done.stdout.splitlines(), line

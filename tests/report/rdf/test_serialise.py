@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from rosprivacy.report.answer import Answer
+    from tests.helpers.command import Cli
 
 
 CARE_HOME = ("examples/care-home/care-home.policy.xml", "-l", "examples/care-home/care-home.labels.yaml")
@@ -197,16 +198,16 @@ class TestTime:
         with pytest.raises(InputError, match=r"^SOURCE_DATE_EPOCH: .* is not a time; give whole seconds"):
             source_date({"SOURCE_DATE_EPOCH": given_})
 
-    def test_the_command_line_says_so(self) -> None:
-        done = run("-f", "json-ld", SOURCE_DATE_EPOCH="soon")
+    def test_the_command_line_says_so(self, cli: Cli) -> None:
+        done = cli("analyze", *CARE_HOME, "-f", "json-ld", cwd=ROOT, SOURCE_DATE_EPOCH="soon")
         assert done.returncode == 2
-        assert done.stderr == b"SOURCE_DATE_EPOCH: 'soon' is not a time; give whole seconds since 1970, or unset it\n"
+        assert done.stderr == "SOURCE_DATE_EPOCH: 'soon' is not a time; give whole seconds since 1970, or unset it\n"
 
 
 @FORMS
-def test_the_command_writes_utf_8_wherever_it_goes(form: str, tmp_path: Path) -> None:
+def test_the_command_writes_utf_8_wherever_it_goes(cli: Cli, form: str, tmp_path: Path) -> None:
     file = tmp_path / "findings"
-    assert run("-f", form, "-o", str(file)).returncode == 1
+    assert cli("analyze", *CARE_HOME, "-f", form, "-o", file, cwd=ROOT).returncode == 1
     done = run("-f", form, PYTHONIOENCODING="ascii", PYTHONUTF8="0", LC_ALL="C")
     assert done.stdout == file.read_bytes()
     assert len(strict(done.stdout.decode(), form)) > 100
