@@ -15,6 +15,7 @@ from rosprivacy.analysis.kernel.named_channels import keep_named, named, stated_
 from rosprivacy.analysis.kernel.overruled import overruled
 from rosprivacy.analysis.kernel.roles import NOTHING_SAID, Facts, facts
 from rosprivacy.analysis.kernel.spread import Spread
+from rosprivacy.analysis.model import Method
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
@@ -137,6 +138,8 @@ def _set_vertex(spread: Spread, vertex: int, bound: Bound, stated: Mapping[int, 
     decided = spread.facts[vertex]
     if any(fact.standard for fact in decided.values()):
         spread.standard.add(vertex)
+    if any(fact.method == Method.ABSENT for fact in decided.values()):
+        spread.absent.add(vertex)
     number = {category: i for i, category in enumerate(spread.categories)}
     spread.keeps[vertex] = _bits(spread, decided, lambda fact: fact.passes)
     spread.leaks[vertex] = _bits(spread, decided, lambda fact: fact.leaks)

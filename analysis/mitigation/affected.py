@@ -85,7 +85,7 @@ def _rights(analysis: Analysis) -> dict[Element, _Rights]:
     for index, flow in enumerate(graph.flows):
         source, target = graph.elements[flow.source], graph.elements[flow.target]
         for reads, mine, other in ((True, target, source), (False, source, target)):
-            if mine.is_channel:
+            if mine.is_channel or (flow.target if reads else flow.source) in spread.absent:
                 continue
             if reads:
                 rights[mine].reads[other.shown_as].update(spread.names(spread.along(index)))

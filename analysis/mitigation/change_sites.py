@@ -63,7 +63,7 @@ class ChangeSites:
                 continue
             target = self.graph.flows[here].target
             if not self.graph.elements[target].is_channel:
-                readers.add(target)
+                readers |= {target} - self.spread.absent
                 continue
             new = [after for after in self.out[target] if after not in seen]
             seen.update(new)

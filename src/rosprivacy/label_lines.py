@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from rosprivacy.settings import Settings
 
 Channel = tuple[str, str]  # kind, name; of a node too
+NAME_ONE = "rosprivacy labels --init lists all nodes: name one, such as nodes: {/camera: {source: [Video]}}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +100,7 @@ def next_lines(policies: tuple[str, ...], labels: tuple[str, ...], settings: Set
         if ("node", name) not in written:
             lines["nodes", name] = NewLine("nodes", name, "does it bring personal data in? {source: [Video]}")
     if not report["carries"] and not lines:
-        remarks.append(f"{own.file}: no source is named yet; rosprivacy labels --init lists all nodes")
+        remarks.append(f"{own.file}: no source is named, and no node sounds like a sensor; {NAME_ONE}")
     text = with_lines(own.file, text, list(lines.values()), vocabulary)
     return Written(own.file, text, len(lines), tuple(remarks))
 
