@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from typing import BinaryIO
 
 Key = tuple[int, int] | str  # device and inode, or a whole path
-_NOTES: ContextVar[dict[Key, str] | None] = ContextVar("files_read", default=None)
+_NOTES: ContextVar[dict[Key, tuple[str, os.stat_result]] | None] = ContextVar("files_read", default=None)
 
 
 @contextmanager
@@ -63,7 +63,7 @@ def note(name: str, status: os.stat_result) -> None:
     notes = _NOTES.get()
     if notes is not None:
         for key in _keys(name, status):
-            notes.setdefault(key, name)
+            notes.setdefault(key, (name, status))
 
 
 def read_as(name: str, status: os.stat_result | None) -> str | None:
@@ -84,7 +84,35 @@ def read_as(name: str, status: os.stat_result | None) -> str | None:
     ('policy.xml', 'policy.xml', None)
     """
     notes = _NOTES.get() or {}
-    return next((notes[key] for key in _keys(name, status) if key in notes), None)
+    return next((notes[key][0] for key in _keys(name, status) if key in notes), None)
+
+
+def changed_since(name: str, status: os.stat_result | None) -> bool:
+    """Return whether a file is another one than that which was read in this run, or is there though it was not.
+
+    Parameters
+    ----------
+    name, status
+        As of ``read_as``. Outside of a run nothing is known, and nothing counts as changed.
+
+    Examples
+    --------
+    >>> now = os.stat(os.curdir)
+    >>> with one_run():
+    ...     note("labels.yaml", now)
+    ...     changed_since("labels.yaml", now), changed_since("labels.yaml", None), changed_since("made.yaml", now)
+    (False, True, False)
+    >>> with one_run():
+    ...     changed_since("made.yaml", now), changed_since("made.yaml", None)
+    (True, False)
+    """
+    notes = _NOTES.get()
+    if notes is None:
+        return False
+    before = next((notes[key][1] for key in _keys(name, status) if key in notes), None)
+    if before is None or status is None:
+        return before is not status
+    return (before.st_ino, before.st_mtime_ns, before.st_size) != (status.st_ino, status.st_mtime_ns, status.st_size)
 
 
 def _keys(name: str, status: os.stat_result | None) -> tuple[Key, ...]:

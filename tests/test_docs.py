@@ -218,19 +218,6 @@ def test_what_is_shown_of_python_is_what_it_prints(monkeypatch: pytest.MonkeyPat
     assert ran.attempted > 20
 
 
-def test_every_public_function_of_the_analysis_has_an_example() -> None:
-    """They are run as doctests; ``analysis/example.py`` is the small system that most of them look at."""
-    functions = (
-        (module, node)
-        for module, file in MODULES.items()
-        if module.startswith("rosprivacy.analysis.")
-        for node in ast.parse(file.read_text("utf-8")).body
-        if isinstance(node, ast.FunctionDef) and not node.name.startswith("_")
-    )
-    without = [f"{module}.{node.name}" for module, node in functions if ">>> " not in (ast.get_docstring(node) or "")]
-    assert not without, f"write a short example into the docstring of {without}"
-
-
 def test_the_readmes_first_finding_is_what_is_printed(cli: Cli) -> None:
     (command,) = [line for line in blocks(ROOT / "README.md", "console")[1].splitlines() if line]
     program, *arguments = command.split()

@@ -67,15 +67,35 @@ def meaning(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, categories: It
     >>> labelled.names(labelled.leaks[ARCHIVE]), labelled.arrives
     (('FaceTemplate', 'Video'), {})
     """
-    categories = tuple(sorted(categories))
-    spread = Spread(graph, categories)
+    spread = Spread(graph, tuple(sorted(categories)))
+    problems = _decide(spread, bound, hierarchy)
+    spread.overruled = overruled(spread.facts, graph.elements)
+    problems += [error for one in spread.overruled if (error := one.error())]
+    problems += keep_named(spread.facts, spread.flow_facts, graph, bound, hierarchy)
+    restricted = any(statement.through for said in bound.elements.values() for statement in said)
+    stated = stated_flows(graph) if restricted else {}
+    for category, _, vertex, _ in named(spread.facts, graph, bound):
+        if category in spread.categories:
+            spread.named[vertex] = spread.named.get(vertex, 0) | spread.both(category)
+    for vertex in bound.elements:
+        _set_vertex(spread, vertex, bound, stated)
+    for index, kept in spread.flow_facts.items():
+        spread.flow_keeps[index] = _bits(spread, kept, lambda fact: fact.passes)
+    if problems:
+        raise InputErrors(problems)
+    return spread
+
+
+def _decide(spread: Spread, bound: Bound, hierarchy: Hierarchy) -> list[InputError]:
+    """Put in what each element and flow does with each category; return where statements contradict each other."""
+    elements, flows = spread.graph.elements, spread.graph.flows
     problems: list[InputError] = []
     decided: dict[tuple[tuple[Statement, ...], str], Facts] = {}
 
     def decide(said: tuple[Statement, ...], name: str) -> dict[str, Facts]:
         mentioned = {category for statement in said for category in statement.categories}
         result = {}
-        for category in sorted(mentioned.union(categories) or hierarchy.ancestors):
+        for category in sorted(mentioned.union(spread.categories) or hierarchy.ancestors):
             if (said, category) not in decided:
                 try:
                     decided[said, category] = facts(name, said, category, hierarchy)
@@ -86,25 +106,11 @@ def meaning(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, categories: It
         return result
 
     for vertex, said in bound.elements.items():
-        spread.facts[vertex] = decide(said, graph.elements[vertex].name)
+        spread.facts[vertex] = decide(said, elements[vertex].name)
     for index, said in bound.flows.items():
-        ends = graph.elements[graph.flows[index].source], graph.elements[graph.flows[index].target]
-        spread.flow_facts[index] = decide(said, f"the flow {ends[0].name} -> {ends[1].name}")
-    spread.overruled = overruled(spread.facts, graph.elements)
-    problems += [error for one in spread.overruled if (error := one.error())]
-    problems += keep_named(spread.facts, spread.flow_facts, graph, bound, hierarchy)
-    restricted = any(statement.through for said in bound.elements.values() for statement in said)
-    stated = stated_flows(graph) if restricted else {}
-    for category, _, vertex, _ in named(spread.facts, graph, bound):
-        if category in categories:
-            spread.named[vertex] = spread.named.get(vertex, 0) | spread.both(category)
-    for vertex in bound.elements:
-        _set_vertex(spread, vertex, bound, stated)
-    for index, kept in spread.flow_facts.items():
-        spread.flow_keeps[index] = _bits(spread, kept, lambda fact: fact.passes)
-    if problems:
-        raise InputErrors(problems)
-    return spread
+        source, target = elements[flows[index].source], elements[flows[index].target]
+        spread.flow_facts[index] = decide(said, f"the flow {source.name} -> {target.name}")
+    return problems
 
 
 def emitted(elements: Iterable[Iterable[Statement]]) -> set[str]:

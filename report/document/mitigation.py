@@ -117,7 +117,7 @@ def _findings(proposal: Proposal) -> tuple[Finding, ...]:
 
 
 def _statement(finding: Finding) -> StatementEntry:
-    """What a person could state or arrange at the end of a way, so that no flow has to change (rule S10)."""
+    """What a person could state or arrange at the end of a path, so that no flow has to change (rule S10)."""
     return {
         "finding": finding.id,
         "kind": finding.kind,

@@ -101,6 +101,7 @@ def decide(
     from rosprivacy.clock import today
     from rosprivacy.ingest.decisions.decision_writer import with_decision
     from rosprivacy.ontology.vocabulary import load
+    from rosprivacy.report.editing import editing
 
     names = {"category": category, "source": source, "leak": leak, "robot": robot, "from_robot": from_robot}
     pattern = {key: value for key, value in names.items() if value}
@@ -118,14 +119,16 @@ def decide(
         "ticket": ticket,
     }
     said = {key: value for key, value in entry.items() if value is not None}
-    text, vocabulary = _text(decisions), load(ontologies=tuple(ontology or ()))
-    for target in targets:
-        text = with_decision(str(decisions), text, {**target, **said}, _remark(findings, target), vocabulary)
+    vocabulary = load(ontologies=tuple(ontology or ()))
     about = "; ".join(", ".join(f"{key} {shown(str(value))}" for key, value in target.items()) for target in targets)
     answer = f"{shown(str(decisions))}: {choice.value} {about}\n"
-    if ids and not report:
-        print("the ids were not checked; --report FILE checks them against an analysis", file=sys.stderr)
-    emit(answer, None, {decisions: text or ""}, edited=decisions)  # the one file that is meant to be read and written
+    with editing(decisions):
+        text = _text(decisions)
+        for target in targets:
+            text = with_decision(str(decisions), text, {**target, **said}, _remark(findings, target), vocabulary)
+        if ids and not report:
+            print("the ids were not checked; --report FILE checks them against an analysis", file=sys.stderr)
+        emit(answer, None, {decisions: text or ""}, edited=decisions)  # the one file that is read and written
 
 
 def _check_target(ids: list[str] | None, pattern: Mapping[str, str]) -> None:
