@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
+pytestmark = pytest.mark.xdist_group("house")  # one process reads all modules, once
+
+
 def imported_rooms(file: Path) -> set[str]:
     """The rooms that a module imports, whether at run time or for types only."""
     rooms = set()

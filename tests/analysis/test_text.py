@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -31,6 +32,7 @@ def test_nothing_endless_is_shown(text: str) -> None:
     assert len(shortened(text, 20)) <= 20
 
 
+@pytest.mark.xdist_group("house")
 def test_what_is_unprintable_is_replaced_in_one_module() -> None:
     """Others may refuse such text; to make it printable is here."""
     replacing = set()

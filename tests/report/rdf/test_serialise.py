@@ -36,6 +36,7 @@ from rosprivacy.report.rdf.findings import rdf_graph
 from rosprivacy.report.rdf.serialise import SERIALISERS
 from rosprivacy.report.rdf.terms import RP, element_iri, named
 from tests.helpers.answers import accepting, answer_of
+from tests.helpers.daily import one_in
 from tests.helpers.paths import ROOT
 from tests.helpers.systems import statement
 
@@ -204,7 +205,7 @@ class TestTime:
         assert done.stderr == "SOURCE_DATE_EPOCH: 'soon' is not a time; give whole seconds since 1970, or unset it\n"
 
 
-@FORMS
+@pytest.mark.parametrize("form", one_in(2, SERIALISERS))
 def test_the_command_writes_utf_8_wherever_it_goes(cli: Cli, form: str, tmp_path: Path) -> None:
     file = tmp_path / "findings"
     assert cli("analyze", *CARE_HOME, "-f", form, "-o", file, cwd=ROOT).returncode == 1
