@@ -13,10 +13,12 @@ from typing import TYPE_CHECKING
 import pytest
 
 from rosprivacy.analysis.errors import DatabaseError
+from rosprivacy.ingest.database.loading import load
 from rosprivacy.ingest.database.schema_names import schema_names
 from rosprivacy.private_neo4j import connection
 from rosprivacy.queries.library import pack
-from tests.helpers.command import LINE, run
+from tests.helpers.command import LINE
+from tests.helpers.graphs import care_home, rows_of
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
@@ -65,7 +67,8 @@ def driver(opened: Driver) -> Driver:
 def loaded(opened: Driver) -> Driver:
     """Of a database with the care home as h1; for tests that only read."""
     opened.execute_query("MATCH (n) DETACH DELETE n")
-    assert run(*LOAD).returncode == 0
+    result = care_home()
+    load(opened, [rows_of("h1", result)], result.vocabulary)
     return opened
 
 
@@ -221,12 +224,12 @@ class TestQuery:
         ]
 
     @pytest.mark.parametrize("on_terminal", ["", "1"])
-    def test_no_path_is_cut(self, loaded: Driver, on_terminal: str) -> None:
+    @pytest.mark.usefixtures("loaded")
+    def test_no_path_is_cut(self, cli: Cli, on_terminal: str) -> None:
         """B5 of the users' review: what is too wide for a table is records, wrapped between names."""
         names = [f"/{'namespace/' * 9}node{number}" for number in range(5)]
         text = f"RETURN {names} AS path, 1 AS steps UNION RETURN ['/a'] AS path, 0 AS steps"
-        done = run("query", "--cypher", text, FORCE_COLOR=on_terminal, COLUMNS="60")
-        assert loaded
+        done = cli("query", "--cypher", text, FORCE_COLOR=on_terminal, COLUMNS="60")
         assert done.returncode == 0
         assert " -> ".join(names) in " ".join(done.stdout.split())
         assert "path   /a\n" in done.stdout

@@ -18,7 +18,6 @@ from tests.helpers.command import cli, run
 from tests.helpers.docs import CATEGORIES, blocks
 
 if TYPE_CHECKING:
-    from rosprivacy.private_neo4j.connection import Connection
     from tests.helpers.command import Cli
 
 __all__ = ["cli"]
@@ -109,9 +108,10 @@ def test_a_first_label_file_and_the_schemas_name_an_own_category(cli: Cli, clini
 
 
 @pytest.mark.database
-def test_a_fleet_with_an_own_category_is_loaded_and_unloaded(clinic: Path, neo4j_server: Connection) -> None:  # noqa: ARG001 - the server
+@pytest.mark.usefixtures("neo4j_server")
+def test_a_fleet_with_an_own_category_is_loaded_and_unloaded(cli: Cli, clinic: Path) -> None:
     for command in ("load", "unload"):
-        done = run(command, "--fleet", "f.yaml", "--ontology", "o.ttl", cwd=clinic)
+        done = cli(command, "--fleet", "f.yaml", "--ontology", "o.ttl", cwd=clinic)
         assert (done.returncode, done.stderr) == (0, ""), command
 
 
