@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.text import fit, printable
 from rosprivacy.report.document.ledger import hanging
-from rosprivacy.report.naming import name
+from rosprivacy.report.naming import infrastructure_file, name
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -70,7 +70,10 @@ def _standard(index: Index) -> str:
     if not taken:
         return index.words("a.standard.none")
     channels = index.words.count(index.document["standard_channels"], "channel")
-    return index.words("a.standard", channels=channels, file=fit(taken["file"]), sha=taken["sha256"][:12])
+    said = {"channels": channels, "file": fit(taken["file"]), "sha": taken["sha256"][:12]}
+    if proposed := infrastructure_file(index.document["assumptions"]):
+        return index.words("a.standard.proposed", **said, proposed=proposed)
+    return index.words("a.standard", **said)
 
 
 def _stopped(index: Index) -> Iterator[str]:
@@ -99,14 +102,12 @@ def _globs(index: Index) -> Iterator[str]:
     """What each glob of the label files decides and closes."""
     words = index.words
     for row in index.document["assumptions"].get("globs", ()):
-        text = words(
-            "a.glob",
-            place=fit(f"{row['file']}:{row['line']}"),
-            says=words.row(row["says"]),
-            elements=words.count(row["elements"], "element"),
-            closed=row["closed"],
-            reviewed=row["reviewed"],
-        )
+        at = {"place": fit(f"{row['file']}:{row['line']}"), "says": words.row(row["says"])}
+        if flows := row.get("flows"):
+            text = words("a.glob.flows", **at, flows=words.count(flows, "flow"), closed=row["flows_closed"])
+        else:
+            elements = words.count(row["elements"], "element")
+            text = words("a.glob", **at, elements=elements, closed=row["closed"], reviewed=row["reviewed"])
         warning = row["warning"]
         yield f"{text} {words(f'a.glob.{warning}')}" if warning else text
 

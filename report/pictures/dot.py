@@ -27,6 +27,7 @@ LONGEST_NOTE = 110
 FOLDED_NAMES = 3
 STRAIGHT = 8  # how much a step of a shortest path wants to be short and straight; others 1
 WIDEST_WORDS = 34  # letters of a line on a box
+LONGEST_WORDS = 300  # of all lines of a phrase: what some kinds of data are called goes in whole (users.md, B6)
 
 
 def dot(picture: Picture, *, direction: str = "LR", legend: bool = True) -> str:
@@ -98,7 +99,7 @@ def label_lines(picture: Picture, box: Box) -> list[str]:
         lines += [shortened(name, 36) for name in box.names[:FOLDED_NAMES]]
         more = len(box.names) - FOLDED_NAMES
         lines += [f"and {more} more"] if more > 0 else []
-    return [*lines, *(line for word in box.words for line in wrap(shortened(word, 60), WIDEST_WORDS))]
+    return [*lines, *(line for word in box.words for line in wrap(shortened(word, LONGEST_WORDS), WIDEST_WORDS))]
 
 
 def hover(picture: Picture, box: Box) -> str:
