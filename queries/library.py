@@ -22,16 +22,18 @@ from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import QueryError, shown
+from rosprivacy.queries.graph_values import Path
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
 KINDS = ("path", "table", "count")
 KEYS = ("name", "kind", "description", "order")
-COLUMN_TYPES = {"string": str, "integer": int, "boolean": bool, "list of string": list}
+VALUE_TYPES = {"string": str, "integer": int, "boolean": bool, "list of string": list}
+COLUMN_TYPES = {**VALUE_TYPES, "graph path": Path}
 # Of parameters: a name that must be in the database, with where it stands there (rule S11: never silence).
 NAMES = {"category": ("DataCategory", "name"), "robot": ("Robot", "name"), "element": ("Element", "name")}
-TYPES = {**COLUMN_TYPES, **dict.fromkeys(NAMES, str)}
+TYPES = {**VALUE_TYPES, **dict.fromkeys(NAMES, str)}
 LARGEST = 2**63 - 1  # integers of Cypher have 64 bits
 _LINE = re.compile(r"// (?:(name|kind|description|order)|(param|returns) ([a-z][a-z_0-9]*)): (.+)")
 _PARAMETER = re.compile(r"\$([A-Za-z_][A-Za-z_0-9]*)")
@@ -76,6 +78,11 @@ class Query:
     columns: tuple[Field, ...]
     order: tuple[str, ...]
     text: str
+
+    @property
+    def drawable(self) -> bool:
+        """Whether its rows hold paths of the graph, not only names."""
+        return any(COLUMN_TYPES[column.type] is Path for column in self.columns)
 
     def values(self, given: Mapping[str, str]) -> dict[str, Any]:
         """Return the values of all parameters from text such as the command line gives.
