@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rosprivacy.queries.graph_values import Node, Path
+from rosprivacy.queries.graph_values import GraphValue, Node, Path
 from rosprivacy.report.pictures.dot import dot
 from rosprivacy.report.pictures.layout import drawn
 from rosprivacy.report.pictures.picture import PRIVACY, ROS, Picture
@@ -52,7 +52,7 @@ def test_flows_are_a_ros_graph_and_what_is_none_is_named() -> None:
     request, response = node("/add", "Service", "Leg", leg="request"), node("/add", "Service", "Leg", leg="response")
     wild = node("/im*", "Topic", "Wildcard", side="read")
     category = Node("c", ("DataCategory",), {"name": "Video"})
-    values = [
+    values: list[GraphValue] = [
         relation(CAMERA, "FLOWS_TO", request, role="request", file="p.xml", line=3),
         relation(response, "FLOWS_TO", CAMERA, role="request"),
         relation(CAMERA, "FLOWS_TO", IMAGE, role="publish", decision="deny"),
