@@ -98,7 +98,7 @@ class OpenQuestion:
     distance
         Flows from the nearest source.
     frontier
-        Of a node: whether a category reaches it without another open node or a leak of it on the way.
+        Of a node: whether a category reaches it without another open node or a leak of it on the path.
     missing
         What has to be known of a non-ROS element and is not stated, such as ``country``.
     """
@@ -206,6 +206,15 @@ def robot_verdicts(
         Robots of which grants were not read.
     leaking
         Robots at which a finding begins or ends, where it is known of more than this analysis.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.findings.findings import analyse
+    >>> analysis = analyse(*factory("amr-1"))
+    >>> verdicts = robot_verdicts(analysis, ["amr-1", "amr-2"], lambda element: element.robot)
+    >>> [f"{robot}: {verdict}" for robot, verdict in verdicts.items()]
+    ['amr-1: leak', 'amr-2: undetermined']
     """
     if leaking is None:
         leaking = {

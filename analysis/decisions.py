@@ -201,8 +201,8 @@ class Decisions:
 
     def on(self, case: Case) -> Decision | None:
         """The decision about a case, valid or not; None if there is none, or several of one rank that differ."""
-        found = self.foremost(case)
-        return found[0] if len({entry.choice for entry in found}) == 1 else None
+        foremost = self.foremost(case)
+        return foremost[0] if len({entry.choice for entry in foremost}) == 1 else None
 
     def told_apart(self, robot: str) -> tuple[bool, ...]:
         """Return which entries that name robots mean this one: robots are alike only if all do so alike."""
@@ -264,17 +264,28 @@ def decided(
     ------
     DecisionError
         If two decisions of one rank differ; the message names both lines.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.findings.findings import analyse
+    >>> graph, bound, hierarchy = factory()
+    >>> entry = Decision(Choice.ACCEPT, Place("decisions.yaml", 2), category="Biometric", expires="2026-12-31")
+    >>> decisions = Decisions("decisions.yaml", "", "2027-01-01", (entry,), hierarchy)
+    >>> joined = decided(decisions, analyse(graph, bound, hierarchy).findings, {}, everything=True)
+    >>> len(joined.about[0]), str(joined.states[0]), joined.diagnostics[0].message
+    (2, 'expired', 'the decision to accept a pattern expired on 2026-12-31 and no longer counts; decide anew')
     """
     cases = [(finding, case_of(finding)) for finding in findings]
     on: dict[str, Decision] = {}
     for finding, case in cases:
-        found = decisions.foremost(case)
-        other = next((entry for entry in found if entry.choice != found[0].choice), None)
+        foremost = decisions.foremost(case)
+        other = next((entry for entry in foremost if entry.choice != foremost[0].choice), None)
         if other:
-            what = f"to {other.choice} {finding.id} contradicts line {found[0].place.line}: to {found[0].choice}"
+            what = f"to {other.choice} {finding.id} contradicts line {foremost[0].place.line}: to {foremost[0].choice}"
             raise DecisionError(other.place.file, other.place.line, what, "make one more specific, or remove it")
-        if found:
-            on[finding.id] = found[0]
+        if foremost:
+            on[finding.id] = foremost[0]
     about = tuple(
         tuple(sorted({finding.id for finding, case in cases if entry.about(case, decisions.hierarchy)}))
         for entry in decisions.entries
@@ -325,7 +336,14 @@ def _diagnostics(
 
 
 def missing(entry: Decision, findings: Iterable[Finding], special: Mapping[str, str]) -> Iterator[str]:
-    """Yield the legal bases that an acceptance lacks: Article 6, and 9(2) where a category is special."""
+    """Yield the legal bases that an acceptance lacks: Article 6, and 9(2) where a category is special.
+
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.findings.findings import analyse
+    >>> entry = Decision(Choice.ACCEPT, Place("decisions.yaml", 2), legal_basis=("6(1)(f)",))
+    >>> list(missing(entry, analyse(*factory()).findings, {"FaceTemplate": "GDPR Art. 9(1)"}))
+    ['states no ground under Article 9(2), and FaceTemplate can fall under GDPR Art. 9(1)']
+    """
     if not any(basis.startswith("6(1)") for basis in entry.legal_basis):
         yield "states no legal basis under Article 6(1)"
     if not any(basis.startswith("9(2)") for basis in entry.legal_basis):

@@ -70,6 +70,11 @@ def parse(text: str) -> Duration:
     ValueError
         If it is none, or negative, or has a part of a month, or is longer than a thousand years; the message says
         what is wrong.
+
+    Examples
+    --------
+    >>> parse("P1Y6M").months, parse("PT36H").seconds
+    (18, 129600.0)
     """
     import isodate  # noqa: PLC0415 - light start
 
@@ -97,12 +102,16 @@ def parts(text: str) -> tuple[tuple[str, int], ...]:
     """
     from isodate.isoduration import ISO8601_PERIOD_REGEX  # noqa: PLC0415 - light start
 
-    found = ISO8601_PERIOD_REGEX.fullmatch(text)
-    written = [(unit, found[f"{unit}s"]) for unit in UNITS if found[f"{unit}s"]] if found and not found["sign"] else []
+    match = ISO8601_PERIOD_REGEX.fullmatch(text)
+    written = [(unit, match[f"{unit}s"]) for unit in UNITS if match[f"{unit}s"]] if match and not match["sign"] else []
     whole = all(number[:-1].isdecimal() and len(number) <= LONGEST_NUMBER for _, number in written)
     return tuple((unit, int(number[:-1])) for unit, number in written) if whole else ()
 
 
 def ordered(pairs: Iterable[tuple[str, Duration]]) -> tuple[tuple[str, Duration], ...]:
-    """Return (category, duration) in the one order in which facts hold them (rule S14)."""
+    """Return (category, duration) in the one order in which facts hold them (rule S14).
+
+    >>> [(name, str(kept)) for name, kept in ordered([("Voice", parse("P1M")), ("Video", parse("P1Y"))])]
+    [('Video', 'P1Y'), ('Voice', 'P1M')]
+    """
     return tuple(sorted(pairs, key=lambda pair: (pair[0], str(pair[1]))))

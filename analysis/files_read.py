@@ -19,12 +19,20 @@ if TYPE_CHECKING:
     from typing import BinaryIO
 
 Key = tuple[int, int] | str  # device and inode, or a whole path
-_NOTES: ContextVar[dict[Key, str] | None] = ContextVar("files_read", default=None)
+_NOTES: ContextVar[dict[Key, tuple[str, os.stat_result]] | None] = ContextVar("files_read", default=None)
 
 
 @contextmanager
 def one_run() -> Iterator[None]:
-    """Keep what is read in the block, and forget it at its end; a run within a run has notes of its own."""
+    """Keep what is read in the block, and forget it at its end; a run within a run has notes of its own.
+
+    >>> with one_run():
+    ...     note("labels.yaml", os.stat(os.curdir))
+    ...     read_as("labels.yaml", None)
+    'labels.yaml'
+    >>> read_as("labels.yaml", None) is None
+    True
+    """
     token = _NOTES.set({})
     try:
         yield
@@ -33,17 +41,29 @@ def one_run() -> Iterator[None]:
 
 
 def noted(file: BinaryIO, name: str) -> BinaryIO:
-    """Note a file that is open, under the name that the user knows, and return it to be read."""
+    """Note a file that is open, under the name that the user knows, and return it to be read.
+
+    >>> import tempfile
+    >>> with one_run(), tempfile.TemporaryFile() as file:
+    ...     noted(file, "policy.xml") is file, read_as("link.xml", os.fstat(file.fileno()))
+    (True, 'policy.xml')
+    """
     note(name, os.fstat(file.fileno()))
     return file
 
 
 def note(name: str, status: os.stat_result) -> None:
-    """Note that a file is read; for one that another process reads, which has no notes here."""
+    """Note that a file is read; for one that another process reads, which has no notes here.
+
+    >>> with one_run():
+    ...     note("policy.xml", os.stat(os.curdir))
+    ...     read_as("policy.xml", None)
+    'policy.xml'
+    """
     notes = _NOTES.get()
     if notes is not None:
         for key in _keys(name, status):
-            notes.setdefault(key, name)
+            notes.setdefault(key, (name, status))
 
 
 def read_as(name: str, status: os.stat_result | None) -> str | None:
@@ -55,9 +75,44 @@ def read_as(name: str, status: os.stat_result | None) -> str | None:
         Any name of the file: links, other spellings and relative names lead to the same device and inode.
     status
         What the system says of the file, links followed; None if it is not there (any more).
+
+    Examples
+    --------
+    >>> with one_run():
+    ...     note("policy.xml", os.stat(os.curdir))
+    ...     read_as("link.xml", os.stat(os.curdir)), read_as("./policy.xml", None), read_as("labels.yaml", None)
+    ('policy.xml', 'policy.xml', None)
     """
     notes = _NOTES.get() or {}
-    return next((notes[key] for key in _keys(name, status) if key in notes), None)
+    return next((notes[key][0] for key in _keys(name, status) if key in notes), None)
+
+
+def changed_since(name: str, status: os.stat_result | None) -> bool:
+    """Return whether a file is another one than that which was read in this run, or is there though it was not.
+
+    Parameters
+    ----------
+    name, status
+        As of ``read_as``. Outside of a run nothing is known, and nothing counts as changed.
+
+    Examples
+    --------
+    >>> now = os.stat(os.curdir)
+    >>> with one_run():
+    ...     note("labels.yaml", now)
+    ...     changed_since("labels.yaml", now), changed_since("labels.yaml", None), changed_since("made.yaml", now)
+    (False, True, False)
+    >>> with one_run():
+    ...     changed_since("made.yaml", now), changed_since("made.yaml", None)
+    (True, False)
+    """
+    notes = _NOTES.get()
+    if notes is None:
+        return False
+    before = next((notes[key][1] for key in _keys(name, status) if key in notes), None)
+    if before is None or status is None:
+        return before is not status
+    return (before.st_ino, before.st_mtime_ns, before.st_size) != (status.st_ino, status.st_mtime_ns, status.st_size)
 
 
 def _keys(name: str, status: os.stat_result | None) -> tuple[Key, ...]:

@@ -78,9 +78,9 @@ def _climb(start: str, parents: Mapping[str, tuple[str, ...]]) -> dict[str, int]
 
 
 def _meet(ancestors: Mapping[str, Mapping[str, int]]) -> dict[str, dict[str, int]]:
-    found: dict[str, dict[str, int]] = {name: {} for name in ancestors}
+    overlaps: dict[str, dict[str, int]] = {name: {} for name in ancestors}
     for above in ancestors.values():
         for name, steps in above.items():
             for other in above:
-                found[name][other] = min(steps, found[name].get(other, steps))
-    return found
+                overlaps[name][other] = min(steps, overlaps[name].get(other, steps))
+    return overlaps

@@ -1,4 +1,4 @@
-"""What the law says of categories, closed over the hierarchy; where on a way data become a special category.
+"""What the law says of categories, closed over the hierarchy; where on a path data become a special category.
 
 In: categories with what the ontology states of each. Out: the same with what follows for narrower and broader ones. It
 gives no verdict on a system: a provision is one that a person has to look at.
@@ -31,6 +31,12 @@ def close(categories: Mapping[str, Category], hierarchy: Hierarchy) -> dict[str,
     stronger is not stated of it already.
 
     Complexity: O(categories x depth x statements).
+
+    >>> from rosprivacy.analysis.example import CATEGORIES
+    >>> from rosprivacy.analysis.hierarchy import Hierarchy
+    >>> closed = close(CATEGORIES, Hierarchy.of(CATEGORIES.values()))
+    >>> {name: category.article9 for name, category in closed.items()}
+    {'Biometric': 'may-reveal', 'FaceTemplate': 'conditional', 'Video': 'no'}
     """
     stated = {name: _inherited(category, categories, hierarchy) for name, category in categories.items()}
     narrower: dict[str, list[Category]] = {name: [] for name in categories}
@@ -83,12 +89,12 @@ def _inherited(category: Category, categories: Mapping[str, Category], hierarchy
 def _with_narrower(category: Category, narrower: Iterable[Category]) -> Category:
     """The category with what it may reveal because data of it may be of a narrower kind."""
     covered = {legal.name for legal in category.law}
-    found: dict[str, list[tuple[Category, Legal]]] = {}
+    provisions: dict[str, list[tuple[Category, Legal]]] = {}
     for kind in sorted(narrower, key=lambda kind: kind.name):
         for legal in kind.law:
             if legal.name not in covered and not (legal.special and ARTICLE_9 in covered):
-                found.setdefault(legal.name, []).append((kind, legal))
-    more = [_may_reveal(kinds) for _, kinds in sorted(found.items())]
+                provisions.setdefault(legal.name, []).append((kind, legal))
+    more = [_may_reveal(kinds) for _, kinds in sorted(provisions.items())]
     return replace(category, law=tuple(sorted((*category.law, *more), key=lambda legal: (legal.name, legal.stated_of))))
 
 
@@ -114,7 +120,12 @@ def _may_reveal(kinds: list[tuple[Category, Legal]]) -> Legal:
 
 
 def strongest_first(law: Iterable[Legal]) -> tuple[Legal, ...]:
-    """Return provisions, what holds always first; the same said twice once."""
+    """Return provisions, what holds always first; the same said twice once.
+
+    >>> from rosprivacy.analysis.example import LAW
+    >>> [legal.verdict for legal in strongest_first([replace(LAW, verdict=MAY_REVEAL), LAW, LAW])]
+    ['conditional', 'may-reveal']
+    """
     distinct = {(legal.iri, legal.verdict, legal.condition): legal for legal in law}.values()
     return tuple(sorted(distinct, key=lambda legal: (_STRENGTH.get(legal.verdict, len(_STRENGTH)), legal.name)))
 
@@ -123,6 +134,12 @@ def turned_special(finding: Finding, categories: Mapping[str, Category]) -> Elem
     """Return the element of the witness that makes a special category of data that are none; None if nothing does.
 
     A face recogniser makes face templates, which can fall under Article 9(1), of video, which does not (recital 51).
+
+    >>> from rosprivacy.analysis.example import CATEGORIES, factory
+    >>> from rosprivacy.analysis.findings.findings import analyse
+    >>> faces, *_ = analyse(*factory()).findings
+    >>> turned_special(faces, CATEGORIES).name
+    '/face_id'
     """
     elements = [*(step.source for step in finding.steps), finding.leak]
     kinds = [*(step.category for step in finding.steps), finding.category]

@@ -49,13 +49,24 @@ EVERY = ""  # in place of a category
 
 
 def by_kind(element: Element) -> tuple[Statement, ...]:
-    """Return what is taken of an element when no label says otherwise."""
+    """Return what is taken of an element when no label says otherwise.
+
+    >>> from rosprivacy.analysis.model import Element
+    >>> [statement.role for statement in by_kind(Element("display", "screen"))]
+    ['leak']
+    """
     role = TAKEN.get(element.kind)
     return (Statement(role, (), BY_KIND, NOWHERE),) if role else ()
 
 
 def country_unknown(element: Element, facts: NonRosFacts) -> bool:
-    """Return whether nobody can say if data there has left the EEA (rule S11)."""
+    """Return whether nobody can say if data there has left the EEA (rule S11).
+
+    >>> from rosprivacy.analysis.model import Element
+    >>> disk = Element("storage", "disk")
+    >>> country_unknown(disk, NonRosFacts()), country_unknown(disk, NonRosFacts(country="DE"))
+    (True, False)
+    """
     return element.kind in PLACED and not facts.country and not facts.transfer
 
 
@@ -63,6 +74,12 @@ def kept_too_long(facts: NonRosFacts, category: str, hierarchy: Hierarchy) -> st
     """Return why a storage keeps a category too long; empty if it does not.
 
     The data may be of any narrower kind (rule S7), so each of these is held against the limit nearest to it.
+
+    >>> from rosprivacy.analysis.durations import parse
+    >>> from rosprivacy.analysis.example import factory
+    >>> facts = NonRosFacts(retention=((EVERY, parse("P6M")),), limits=(("Video", parse("P1M")),))
+    >>> kept_too_long(facts, "Video", factory()[2]), kept_too_long(facts, "FaceTemplate", factory()[2])
+    ('kept for P6M, which can be longer than the P1M that Video may be kept', '')
     """
     if facts.backups is True:
         return "it has backups, and nothing says for how long"
@@ -82,12 +99,26 @@ def kept_too_long(facts: NonRosFacts, category: str, hierarchy: Hierarchy) -> st
 
 
 def limited(facts: NonRosFacts, category: str, hierarchy: Hierarchy) -> bool:
-    """Return whether it is stated how long a category may be kept there."""
+    """Return whether it is stated how long a category may be kept there.
+
+    >>> from rosprivacy.analysis.durations import parse
+    >>> from rosprivacy.analysis.example import factory
+    >>> facts = NonRosFacts(limits=(("Biometric", parse("P1M")),))
+    >>> limited(facts, "FaceTemplate", factory()[2]), limited(facts, "Video", factory()[2])
+    (True, False)
+    """
     return bool(_nearest(facts.limits, category, hierarchy))
 
 
 def retention_of(facts: NonRosFacts, category: str, hierarchy: Hierarchy) -> list[Duration]:
-    """Return how long a category is kept there, as stated of it or of the nearest broader one."""
+    """Return how long a category is kept there, as stated of it or of the nearest broader one.
+
+    >>> from rosprivacy.analysis.durations import parse
+    >>> from rosprivacy.analysis.example import factory
+    >>> facts = NonRosFacts(retention=((EVERY, parse("P6M")), ("Biometric", parse("P1D"))))
+    >>> [str(*retention_of(facts, name, factory()[2])) for name in ("FaceTemplate", "Video")]
+    ['P1D', 'P6M']
+    """
     return _nearest(facts.retention, category, hierarchy)
 
 
@@ -101,7 +132,12 @@ def _nearest(stated: Iterable[tuple[str, Duration]], category: str, hierarchy: H
 
 
 def on_day(outside: Mapping[int, NonRosFacts], today: str) -> dict[int, NonRosFacts]:
-    """Return facts as they are on a day: where an adequacy decision has ended, there is none (rule S10)."""
+    """Return facts as they are on a day: where an adequacy decision has ended, there is none (rule S10).
+
+    >>> facts = NonRosFacts(country="US", area=PARTLY, until="2026-06-30")
+    >>> on_day({0: facts}, "2026-06-30")[0].area, on_day({0: facts}, "2026-07-01")[0].area
+    ('partly', 'third')
+    """
     return {
         vertex: replace(facts, area=THIRD) if facts.until and today > facts.until else facts
         for vertex, facts in outside.items()
@@ -109,7 +145,13 @@ def on_day(outside: Mapping[int, NonRosFacts], today: str) -> dict[int, NonRosFa
 
 
 def transferred(facts: NonRosFacts) -> str:
-    """Return why data there has left the EEA without a stated basis; empty if it has not."""
+    """Return why data there has left the EEA without a stated basis; empty if it has not.
+
+    >>> transferred(NonRosFacts(country="CN", area=THIRD))
+    'in CN, for which no adequacy decision is known; no basis for the transfer is stated'
+    >>> transferred(NonRosFacts(country="CN", area=THIRD, transfer="standard-clauses"))
+    ''
+    """
     if facts.area not in (PARTLY, THIRD) or (facts.transfer and (facts.area, facts.transfer) != (THIRD, ADEQUACY)):
         return ""
     ended = f"the adequacy decision ended on {facts.until}" if facts.until else ""

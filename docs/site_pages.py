@@ -26,7 +26,12 @@ BESIDE = {
     "CONTRIBUTING.md": "contributing.md",
     "CHANGELOG.md": "changelog.md",
 }
-FACTS = ("rosprivacy.analysis.answer", "rosprivacy.analysis.model", "rosprivacy.analysis.errors")
+MODEL = ("category", "diagnostic", "element", "flow", "policy", "statement")
+FACTS = (
+    "rosprivacy.analysis.answer",
+    *(f"rosprivacy.analysis.model.{module}" for module in MODEL),
+    "rosprivacy.analysis.errors",
+)
 DRAWN = "![Where video can go in the paper's factory](pictures/factory-privacy.svg)\n"  # a script would draw the other
 
 

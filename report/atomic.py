@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors, reason, shown
-from rosprivacy.analysis.files_read import read_as
+from rosprivacy.analysis.files_read import changed_since, read_as
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -56,12 +56,13 @@ def write_texts(texts: Iterable[tuple[Path, str | bytes | None]], *, edited: Pat
     texts
         File and text; None for a file that is left as it is this time, and refused as if it were written.
     edited
-        The one input that is meant to be replaced by what was made of it.
+        The one input that is meant to be replaced by what was made of it, unless it was changed since it was read.
 
     Raises
     ------
     InputError
-        If a folder is not there or a file cannot be written; what was at the paths is then untouched.
+        If a folder is not there, a file cannot be written, or ``edited`` is not what was read any more; what was at
+        the paths is then untouched.
     InputErrors
         If a file was read in this run, or is named for two outputs; the same.
     """
@@ -72,14 +73,15 @@ def write_texts(texts: Iterable[tuple[Path, str | bytes | None]], *, edited: Pat
     try:
         for at, text in pairs:
             if not at.stream:
-                with _told(at.named):
+                with told(at.named):
                     staged.append((_stage(at, _bytes(text)), at))
         for at, text in pairs:
             if at.stream:
-                with _told(at.named):
+                with told(at.named):
                     at.named.write_bytes(_bytes(text))
+        _check_edited(outputs, edited)
         for temporary, at in staged:
-            with _told(at.named):
+            with told(at.named):
                 temporary.replace(at.file)
                 _keep_name(at.file.parent)
     finally:
@@ -99,7 +101,7 @@ def check_outputs(files: Iterable[Path], *, edited: Path | None = None) -> list[
     """
     outputs = []
     for file in files:
-        with _told(file):
+        with told(file):
             outputs.append(_Output(file, file.resolve(), _status(file)))
     problems = [*_over_inputs(outputs, edited), *_on_one_file(outputs)]
     if problems:
@@ -115,6 +117,13 @@ def _over_inputs(outputs: list[_Output], edited: Path | None) -> Iterator[InputE
         if name is not None:
             same = "" if name == str(at.named) else f"is the same file as {shown(name)}, which "
             yield InputError(str(at.named), 0, f"{same}is read in this run", "name another file to write to")
+
+
+def _check_edited(outputs: list[_Output], edited: Path | None) -> None:
+    """What somebody else wrote into the file meanwhile is not written over."""
+    for at in outputs:
+        if at.named == edited and not at.stream and changed_since(str(at.file), _status(at.file)):
+            raise InputError(str(at.named), 0, "was changed meanwhile, so nothing is written", "run the command again")
 
 
 def _on_one_file(outputs: list[_Output]) -> Iterator[InputError]:
@@ -152,7 +161,8 @@ def _status(file: Path) -> os.stat_result | None:
 
 
 @contextmanager
-def _told(file: Path) -> Iterator[None]:
+def told(file: Path) -> Iterator[None]:
+    """Say of what the system refuses that a file cannot be written."""
     try:
         yield
     except (OSError, RuntimeError, ValueError) as error:

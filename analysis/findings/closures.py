@@ -53,41 +53,47 @@ class Closure:
     itself: bool = False
 
 
-def closures(found: Spread) -> list[Closure]:
-    """Return where data ends: elements, then flows, then denied flows, each in the order of the graph."""
-    return [*_elements(found), *_flows(found), *_denied(found)]
+def closures(spread: Spread) -> list[Closure]:
+    """Return where data ends: elements, then flows, then denied flows, each in the order of the graph.
+
+    >>> from rosprivacy.analysis.example import NAMES, factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> [(closure.by, NAMES[closure.vertex]) for closure in closures(spread(*factory()))]
+    [('sanitizer', '/filter'), ('only', '/faces'), ('standard-channel', '/rosout'), ('deny', '/video')]
+    """
+    return [*_elements(spread), *_flows(spread), *_denied(spread)]
 
 
-def _elements(found: Spread) -> Iterator[Closure]:
-    for vertex, keeps in sorted(found.keeps.items()):
-        stopped = found.arrives.get(vertex, 0) & ~keeps
-        for lines, categories in _by_lines(found, found.facts[vertex], stopped).items():
-            bits = stopped & sum(map(found.both, categories))
-            itself = any(_alone(found.facts[vertex][category]) for category in categories)
+def _elements(spread: Spread) -> Iterator[Closure]:
+    for vertex, keeps in sorted(spread.keeps.items()):
+        stopped = spread.arrives.get(vertex, 0) & ~keeps
+        for lines, categories in _by_lines(spread, spread.facts[vertex], stopped).items():
+            bits = stopped & sum(map(spread.both, categories))
+            itself = any(_alone(spread.facts[vertex][category]) for category in categories)
             yield Closure(_said_by(lines), vertex, -1, bits, lines, itself)
 
 
-def _flows(found: Spread) -> Iterator[Closure]:
-    for index, keeps in sorted(found.flow_keeps.items()):
-        flow = found.graph.flows[index]
-        stopped = (found.sent.get(flow.source, 0) | found.flow_emits.get(index, 0)) & ~keeps
-        for lines, categories in _by_lines(found, found.flow_facts[index], stopped).items():
-            yield Closure(_said_by(lines), flow.source, flow.target, stopped & sum(map(found.both, categories)), lines)
+def _flows(spread: Spread) -> Iterator[Closure]:
+    for index, keeps in sorted(spread.flow_keeps.items()):
+        flow = spread.graph.flows[index]
+        stopped = (spread.sent.get(flow.source, 0) | spread.flow_emits.get(index, 0)) & ~keeps
+        for lines, categories in _by_lines(spread, spread.flow_facts[index], stopped).items():
+            yield Closure(_said_by(lines), flow.source, flow.target, stopped & sum(map(spread.both, categories)), lines)
 
 
-def _denied(found: Spread) -> Iterator[Closure]:
+def _denied(spread: Spread) -> Iterator[Closure]:
     """Flows that a DENY takes back, with data at their start (rule S5)."""
-    for flow in found.graph.taken_back:
-        bits = found.leaves.get(flow.source, 0)
+    for flow in spread.graph.taken_back:
+        bits = spread.leaves.get(flow.source, 0)
         if bits:
             lines = {denial.place: None for denial in sorted(flow.denials, key=lambda denial: line_key(denial.place))}
             yield Closure(DENY, flow.source, flow.target, bits, tuple(lines))
 
 
-def _by_lines(found: Spread, decided: Mapping[str, Facts], stopped: int) -> dict[tuple[Line, ...], list[str]]:
+def _by_lines(spread: Spread, decided: Mapping[str, Facts], stopped: int) -> dict[tuple[Line, ...], list[str]]:
     """What is stopped, by the statements that stop it."""
     by_lines: dict[tuple[Line, ...], list[str]] = defaultdict(list)
-    for category in found.names(stopped) if stopped else ():
+    for category in spread.names(stopped) if stopped else ():
         by_lines[decided[category].closers].append(category)
     return by_lines
 
@@ -103,7 +109,7 @@ def _said_by(lines: tuple[Line, ...]) -> str:
     return ABSENT if statements[0].method is Method.ABSENT else statements[0].role
 
 
-def behind(found: Spread, closed: Sequence[Closure], places: Mapping[int, int]) -> dict[int, int]:
+def behind(spread: Spread, closed: Sequence[Closure], places: Mapping[int, int]) -> dict[int, int]:
     """Return what data would get to if it were not for a closure.
 
     Parameters
@@ -116,56 +122,66 @@ def behind(found: Spread, closed: Sequence[Closure], places: Mapping[int, int]) 
     dict
         Number of the closure -> the nearest place, or ``PERHAPS``; those with nothing behind are absent. A search tells
         for closures by themselves. A line that closes several elements in a row has to be opened as a whole.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import NAMES, factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> carried = spread(*factory())
+    >>> closed = closures(carried)
+    >>> places = behind(carried, closed, carried.leaks)
+    >>> {closure.by: NAMES[places[n]] if n in places else None for n, closure in enumerate(closed)}
+    {'sanitizer': '/archive', 'only': '/archive', 'standard-channel': None, 'deny': '/archive'}
     """
     if not closed or not any(places.values()):
         return {}
-    plain = backward(found, places)
+    plain = backward(spread, places)
     behind = {number: closure for number, closure in enumerate(closed) if _led(closure, plain)}
-    result = _nearest(found, behind, places, plain, NOTHING_OPENED)
+    result = _nearest(spread, behind, places, plain, NOTHING_OPENED)
     left = {number: closure for number, closure in enumerate(closed) if number not in behind}
-    extents = _extents(found, {line for closure in left.values() for line in closure.lines})
+    extents = _extents(spread, {line for closure in left.values() for line in closure.lines})
     if not extents:
         return result
-    together = backward(found, places, Opened.of(extents.values()))
+    together = backward(spread, places, Opened.of(extents.values()))
     left = {number: closure for number, closure in left.items() if _led(closure, together)}
     lines = [line for line in extents if any(line in closure.lines for closure in left.values())]
     for line in lines[:ROUNDS]:
-        by = backward(found, places, extents[line])
+        by = backward(spread, places, extents[line])
         behind = {n: c for n, c in left.items() if line in c.lines and n not in result and _led(c, by)}
-        result |= _nearest(found, behind, places, by, extents[line])
+        result |= _nearest(spread, behind, places, by, extents[line])
     untold = set(lines[ROUNDS:])
     return {number: PERHAPS for number, closure in left.items() if untold.intersection(closure.lines)} | result
 
 
 def _led(closure: Closure, by: Backward) -> int:
     """The bits that would get to a place from here: from the element on, or by the end of the flow."""
-    ways = by.leaving.get(closure.vertex, 0) if closure.to < 0 else by.entering.get(closure.to, 0)
-    return closure.bits & ways
+    leading = by.leaving.get(closure.vertex, 0) if closure.to < 0 else by.entering.get(closure.to, 0)
+    return closure.bits & leading
 
 
 def _nearest(
-    found: Spread, behind: Mapping[int, Closure], places: Mapping[int, int], by: Backward, opened: Opened
+    spread: Spread, behind: Mapping[int, Closure], places: Mapping[int, int], by: Backward, opened: Opened
 ) -> dict[int, int]:
     if not behind:
         return {}
-    near = Nearest.of(found, places, opened)
+    near = Nearest.of(spread, places, opened)
     return {
         number: near.after(c.vertex, _led(c, by)) if c.to < 0 else near.at(c.to, _led(c, by))
         for number, c in behind.items()
     }
 
 
-def _extents(found: Spread, lines: set[Line]) -> dict[Line, Opened]:
+def _extents(spread: Spread, lines: set[Line]) -> dict[Line, Opened]:
     """All that each of some lines closes, reached or not; only lines that close more than one element or flow."""
     elements: dict[Line, dict[int, int]] = defaultdict(lambda: defaultdict(int))
     flows: dict[Line, dict[int, int]] = defaultdict(lambda: defaultdict(int))
     more: dict[Line, set[tuple[int, int]]] = defaultdict(set)
-    for facts, closed in ((found.facts, elements), (found.flow_facts, flows)):
+    for facts, closed in ((spread.facts, elements), (spread.flow_facts, flows)):
         for number, decided in facts.items():
-            for category in found.categories:
+            for category in spread.categories:
                 for line in decided[category].closers if category in decided else ():
-                    closed[line][number] |= found.both(category)
-    for flow in found.graph.taken_back:
+                    closed[line][number] |= spread.both(category)
+    for flow in spread.graph.taken_back:
         for denial in flow.denials:
             more[denial.place].add((flow.source, flow.target))
     extents = {line: Opened(elements[line], flows[line], tuple(sorted(more[line]))) for line in lines}
@@ -174,7 +190,12 @@ def _extents(found: Spread, lines: set[Line]) -> dict[Line, Opened]:
 
 
 def line_key(line: Line) -> tuple[str, int, str]:
-    """Statements by their place and what they say; policy lines by their place."""
+    """Statements by their place and what they say; policy lines by their place.
+
+    >>> lines = [Place("b.yaml", 1), Place("a.yaml", 20), Place("a.yaml", 3)]
+    >>> [str(line) for line in sorted(lines, key=line_key)]
+    ['a.yaml:3', 'a.yaml:20', 'b.yaml:1']
+    """
     if isinstance(line, Place):
         return (line.file, line.line, "")
     return (line.place.file, line.place.line, repr(line))

@@ -25,16 +25,24 @@ class Concern:
     reasons: Mapping[tuple[int, str], str]
 
 
-def concerns(found: Spread, bound: Bound, hierarchy: Hierarchy) -> Iterator[Concern]:
-    """Return where each kind of finding can be (rule S10); disclosure first."""
-    yield Concern(DISCLOSURE, found.leaks, {})
-    elements = found.graph.elements
+def concerns(spread: Spread, bound: Bound, hierarchy: Hierarchy) -> Iterator[Concern]:
+    """Return where each kind of finding can be (rule S10); disclosure first.
+
+    >>> from rosprivacy.analysis.example import DISK, factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> graph, bound, hierarchy = factory()
+    >>> kinds = list(concerns(spread(graph, bound, hierarchy), bound, hierarchy))
+    >>> [(concern.kind, concern.reasons.get((DISK, "Video"), "")) for concern in kinds]
+    [('disclosure', ''), ('storage-limitation', 'no retention is stated'), ('third-country-transfer', '')]
+    """
+    yield Concern(DISCLOSURE, spread.leaks, {})
+    elements = spread.graph.elements
     storages = {v: facts for v, facts in bound.outside.items() if elements[v].kind == "storage"}
-    too_long = {(v, c): kept_too_long(facts, c, hierarchy) for v, facts in storages.items() for c in found.categories}
-    abroad = {(v, c): transferred(facts) for v, facts in bound.outside.items() for c in found.categories}
+    too_long = {(v, c): kept_too_long(facts, c, hierarchy) for v, facts in storages.items() for c in spread.categories}
+    abroad = {(v, c): transferred(facts) for v, facts in bound.outside.items() for c in spread.categories}
     for kind, reasons in ((STORAGE_LIMITATION, too_long), (THIRD_COUNTRY, abroad)):
         bits: dict[int, int] = {}
         for (vertex, category), why in reasons.items():
             if why:
-                bits[vertex] = bits.get(vertex, 0) | found.both(category)
+                bits[vertex] = bits.get(vertex, 0) | spread.both(category)
         yield Concern(kind, bits, {key: why for key, why in reasons.items() if why})

@@ -44,32 +44,40 @@ class Origin:
     past_leak: bool
 
 
-def origins(found: Spread) -> tuple[Origin, ...]:
+def origins(spread: Spread) -> tuple[Origin, ...]:
     """Return the origins of all that is made on the path, sorted by source, category and maker.
 
     Notes
     -----
     One search per source and one per category that is made of its data: O(flows) each. Nothing is searched where
     nothing is made.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import NAMES, factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> (origin,) = origins(spread(*factory()))
+    >>> origin.category, [NAMES[vertex] for vertex in origin.path]
+    ('FaceTemplate', ['/camera', '/video', '/face_id'])
     """
-    if not found.made:
+    if not spread.made:
         return ()
-    net = Net.of(found)
-    sources = sorted(vertex for vertex in found.facts if found.begins(vertex))
+    net = Net.of(spread)
+    sources = sorted(vertex for vertex in spread.facts if spread.begins(vertex))
     return tuple(origin for source in sources for origin in _of(net, source))
 
 
 def _of(net: Net, source: int) -> Iterator[Origin]:
-    found = net.spread
-    whole = search(net, [source], found.all_bits, {})
-    for number in sorted(found.made):
-        category = found.categories[number]
-        both = found.both(category)
-        if not _can_make(found, whole, both):
+    spread = net.spread
+    whole = search(net, [source], spread.all_bits, {})
+    for number in sorted(spread.made):
+        category = spread.categories[number]
+        both = spread.both(category)
+        if not _can_make(spread, whole, both):
             continue
         # Where the category also arrives ready-made through a leak, only the search past no leak shows that it is made.
         makers = _makers(whole, both)
-        free = search(net, [source], found.all_bits, {v: bits & both for v, bits in found.leaks.items()})
+        free = search(net, [source], spread.all_bits, {v: bits & both for v, bits in spread.leaks.items()})
         not_past = _makers(free, both)
         for maker in sorted(makers.keys() | not_past.keys()):
             past = maker not in not_past
@@ -78,11 +86,11 @@ def _of(net: Net, source: int) -> Iterator[Origin]:
             yield Origin(maker, source, category, vertices, tuple(flow for flow, _, _ in path[1:]), past)
 
 
-def _can_make(found: Spread, reach: Search, both: int) -> bool:
+def _can_make(spread: Spread, reach: Search, both: int) -> bool:
     """Whether anything arrives of which a category is made, also where that arrives ready-made as well."""
     return any(
         both >> made & 1 and reach.seen.get(vertex, 0) >> of & 1
-        for vertex, pairs in found.derives.items()
+        for vertex, pairs in spread.derives.items()
         for of, made in pairs
     )
 

@@ -23,10 +23,9 @@ from rosprivacy.analysis.findings.concerns import concerns
 from rosprivacy.analysis.findings.further_paths import Between, further
 from rosprivacy.analysis.findings.open_questions import open_questions
 from rosprivacy.analysis.findings.unknown_ends import unknown_ends
-from rosprivacy.analysis.kernel import standard_channels
+from rosprivacy.analysis.kernel import spreading, standard_channels
 from rosprivacy.analysis.kernel.bits import bits_of
 from rosprivacy.analysis.kernel.search import START, Search, path_to, present, search
-from rosprivacy.analysis.kernel.spreading import spread
 from rosprivacy.analysis.kernel.states import Net
 from rosprivacy.analysis.model import DISCLOSURE, Diagnostic, Element, Place, Severity
 from rosprivacy.analysis.modes import Paths
@@ -89,36 +88,28 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
 
     Notes
     -----
-    The fixpoint says which leaks are reached; only where one is, searches say from which source and along which way:
+    The fixpoint says which leaks are reached; only where one is, searches say from which source and along which path:
     one or two per source, O(flows) each for a fixed number of categories, and networkx's ``edge_disjoint_paths`` on
     the part of the graph between the two.
 
     Examples
     --------
-    >>> from rosprivacy.analysis.hierarchy import Hierarchy
-    >>> from rosprivacy.analysis.model import Bound, Category, Element, Flow, FlowGraph, Place, Statement
-    >>> graph = FlowGraph(
-    ...     (Element("node", "/camera"), Element("node", "/uplink"), Element("topic", "/image")),
-    ...     (Flow(0, 2, "publish"), Flow(2, 1, "subscribe")), denied=(), profiles=(),
-    ... )
-    >>> def said(role, line):
-    ...     return (Statement(role, ("Video",), (1, 1), Place("labels.yaml", line)),)
-    >>> bound = Bound({0: said("source", 3), 1: said("leak", 4)})
-    >>> analysis = analyse(graph, bound, Hierarchy.of([Category("Video", "urn:Video", "Video", "Video", "Video")]))
+    >>> from rosprivacy.analysis.example import factory
+    >>> analysis = analyse(*factory())
     >>> str(analysis.verdict), [element.name for element in analysis.findings[0].witness]
-    ('leak', ['/camera', '/image', '/uplink'])
+    ('leak', ['/camera', '/video', '/face_id', '/faces', '/archive'])
     """
     options = options or Options()
     bound = replace(bound, outside=on_day(bound.outside, options.today))
-    found = spread(graph, bound, hierarchy)
-    kinds = tuple(concerns(found, bound, hierarchy))
-    wanted = [c for c in found.categories if options.categories is None or c in options.categories]
-    mask = sum(found.both(category) for category in wanted)
-    net = Net.of(found)
+    spread = spreading.spread(graph, bound, hierarchy)
+    kinds = tuple(concerns(spread, bound, hierarchy))
+    wanted = [c for c in spread.categories if options.categories is None or c in options.categories]
+    mask = sum(spread.both(category) for category in wanted)
+    net = Net.of(spread)
     findings = tuple(_findings(net, mask, kinds, options))
     unknown = {v for v, facts in bound.outside.items() if country_unknown(graph.elements[v], facts)}
     questions = open_questions(net, mask, unknown)
-    sources = any(found.begins(vertex) & mask for vertex in range(len(graph.elements)))
+    sources = any(spread.begins(vertex) & mask for vertex in range(len(graph.elements)))
     return Analysis(
         graph=graph,
         verdict=Verdict.of(
@@ -129,16 +120,16 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
         emitted=tuple(wanted),
         findings=findings,
         open=questions,
-        carried=_carried(found, mask, hierarchy),
-        roles=_roles(found, mask),
-        standard_channels=_standard_channels(found),
-        standard_reached=standard_channels.reached(found, mask),
-        standard_unchanged=standard_channels.unchanged(found, bound),
-        spread=found,
-        unstated=tuple(_unstated(found)),
-        diagnostics=(*(one.diagnostic() for one in found.overruled), *(() if sources else (_no_source(options),))),
+        carried=_carried(spread, mask, hierarchy),
+        roles=_roles(spread, mask),
+        standard_channels=_standard_channels(spread),
+        standard_reached=standard_channels.reached(spread, mask),
+        standard_unchanged=standard_channels.unchanged(spread, bound),
+        spread=spread,
+        unstated=tuple(_unstated(spread)),
+        diagnostics=(*(one.diagnostic() for one in spread.overruled), *(() if sources else (_no_source(options),))),
         outside={graph.elements[vertex]: facts for vertex, facts in sorted(bound.outside.items())},
-        unknown_ends=unknown_ends(found, mask),
+        unknown_ends=unknown_ends(spread, mask),
     )
 
 
@@ -150,16 +141,16 @@ def _no_source(options: Options) -> Diagnostic:
 
 def _findings(net: Net, mask: int, kinds: Sequence[Concern], options: Options) -> Iterator[Finding]:
     """All findings, sorted by category, source, leak and kind."""
-    found = net.spread
-    ends = [(c, {v: b & mask for v, b in c.bits.items() if b & mask & found.present(v)}) for c in kinds]
+    spread = net.spread
+    ends = [(c, {v: b & mask for v, b in c.bits.items() if b & mask & spread.present(v)}) for c in kinds]
     reached = [(concern, leaks) for concern, leaks in ends if leaks]
     results: list[tuple[int, int, int, str, bool, Finding]] = []
     memory: dict[Any, Any] = {}
-    chosen = options.choose(found, kinds, mask) if options.choose and reached else None
-    sources = [v for v in found.facts if found.begins(v)] if chosen is None else chosen
+    chosen = options.choose(spread, kinds, mask) if options.choose and reached else None
+    sources = [v for v in spread.facts if spread.begins(v)] if chosen is None else chosen
     for source in sorted(sources) if reached else ():
         only = None if chosen is None else chosen[source]
-        whole = search(net, [source], found.all_bits, {})
+        whole = search(net, [source], spread.all_bits, {})
         for concern, leaks in reached:
             for leak, category, finding in _findings_of(net, source, whole, concern, leaks, options, memory, only):
                 results.append((category, source, leak, finding.kind, finding.beside, finding))
@@ -172,22 +163,22 @@ def _findings_of(
 ) -> Iterator[tuple[int, int, Finding]]:  # fmt: skip
     """(leak, number of the category, finding) of one source and kind.
 
-    Only disclosures are dismissed: no leak on the way cures a retention or a transfer (rule S10).
+    Only disclosures are dismissed: no leak on the path cures a retention or a transfer (rule S10).
     """
-    found = net.spread
+    spread = net.spread
     between: dict[tuple[int, bool], Between] = {}
     reached = {v: bits & present(whole, v) for v, bits in leaks.items() if bits & present(whole, v)}
-    accepted = _accepted(found, source, concern.kind, reached, options)
+    accepted = _accepted(spread, source, concern.kind, reached, options)
     free: dict[int, Search] = {}  # number of the category -> search that stops at other leaks of it
     for leak, bits in reached.items():
-        for i in bits_of(found.bits.merged(bits)):
+        for i in bits_of(spread.bits.merged(bits)):
             if only is not None and not {(concern.kind, leak, i, False), (concern.kind, leak, i, True)} & only:
                 continue
             if concern.kind != DISCLOSURE:
                 free[i] = whole
             elif i not in free:
                 _search_free(net, source, i, accepted, free)
-            for beside, (chosen, bit) in enumerate(_shown_forms(free[i], whole, leak, found.bits.forms(i))):
+            for beside, (chosen, bit) in enumerate(_shown_forms(free[i], whole, leak, spread.bits.forms(i))):
                 if only is not None and (concern.kind, leak, i, bool(beside)) not in only:
                     continue
                 anyway = chosen is whole
@@ -196,24 +187,24 @@ def _findings_of(
                 finding = _beside(finding, options) if beside else finding
                 if len(finding.witness) > 1:
                     if (i, anyway) not in between:
-                        stop = {} if anyway else _leaks_of(found, i, accepted)
-                        between[i, anyway] = Between(net, chosen, source, i, _relevant(found, i), stop)
+                        stop = {} if anyway else _leaks_of(spread, i, accepted)
+                        between[i, anyway] = Between(net, chosen, source, i, _relevant(spread, i), stop)
                     more = further(between[i, anyway], leak, memory, options.paths, options.max_paths)
                     finding = replace(finding, disjoint_paths=more.disjoint, paths=more.paths, bounded=more.bounded)
                 yield leak, i, finding
 
 
-def _accepted(found: Spread, source: int, kind: str, reached: Mapping[int, int], options: Options) -> dict[int, int]:
+def _accepted(spread: Spread, source: int, kind: str, reached: Mapping[int, int], options: Options) -> dict[int, int]:
     """Leak -> the bits that a person has accepted there, of those that come from a source."""
     if options.accepts is None:
         return {}
-    from_, elements = found.graph.elements[source], found.graph.elements
+    from_, elements = spread.graph.elements[source], spread.graph.elements
     accepted: dict[int, int] = defaultdict(int)
     for leak, bits in reached.items():
-        for name in found.names(bits):
-            i, to = found.categories.index(name), elements[leak]
-            for bit in found.bits.forms(i):
-                form = found.bits.is_pseudonymised(bit)
+        for name in spread.names(bits):
+            i, to = spread.categories.index(name), elements[leak]
+            for bit in spread.bits.forms(i):
+                form = spread.bits.is_pseudonymised(bit)
                 if options.accepts(Case(finding_id(name, from_, to, kind), kind, name, from_, to, form)):
                     accepted[leak] |= 1 << bit
     return accepted
@@ -221,22 +212,22 @@ def _accepted(found: Spread, source: int, kind: str, reached: Mapping[int, int],
 
 def _search_free(net: Net, source: int, i: int, accepted: Mapping[int, int], free: dict[int, Search]) -> None:
     """Search with the leaks of category i as ends; one search serves all categories that nothing is made into."""
-    found = net.spread
-    together = [i] if i in found.made else [j for j, _ in enumerate(found.categories) if j not in found.made]
-    ends = sum(map(found.bits.both, together))
-    stop = {v: bits & ends & ~accepted.get(v, 0) for v, bits in found.leaks.items()}
-    result = search(net, [source], found.all_bits if i in found.made else ends, stop)
+    spread = net.spread
+    together = [i] if i in spread.made else [j for j, _ in enumerate(spread.categories) if j not in spread.made]
+    ends = sum(map(spread.bits.both, together))
+    stop = {v: bits & ends & ~accepted.get(v, 0) for v, bits in spread.leaks.items()}
+    result = search(net, [source], spread.all_bits if i in spread.made else ends, stop)
     free.update(dict.fromkeys(together, result))
 
 
-def _relevant(found: Spread, i: int) -> int:
+def _relevant(spread: Spread, i: int) -> int:
     """Bits of what a category can be made of: its own, or for simplicity all."""
-    return found.all_bits if i in found.made else found.bits.both(i)
+    return spread.all_bits if i in spread.made else spread.bits.both(i)
 
 
-def _leaks_of(found: Spread, i: int, accepted: Mapping[int, int]) -> dict[int, int]:
-    both = found.bits.both(i)
-    return {v: bits & both & ~accepted.get(v, 0) for v, bits in found.leaks.items() if bits & both}
+def _leaks_of(spread: Spread, i: int, accepted: Mapping[int, int]) -> dict[int, int]:
+    both = spread.bits.both(i)
+    return {v: bits & both & ~accepted.get(v, 0) for v, bits in spread.leaks.items() if bits & both}
 
 
 def _shown_forms(free: Search, whole: Search, leak: int, forms: tuple[int, int]) -> list[tuple[Search, int]]:
@@ -260,19 +251,19 @@ def _finding(
     net: Net, reach: Search, source: int, leak: int, bit: int, concern: Concern, accepted: Mapping[int, int], *,
     dismissed: bool,
 ) -> Finding:  # fmt: skip
-    found = net.spread
-    elements = found.graph.elements
-    i = found.bits.category(bit)
+    spread = net.spread
+    elements = spread.graph.elements
+    i = spread.bits.category(bit)
     own = leak == source and reach.begun[source] >> bit & 1  # a finding by itself, of one element
     path = [(START, source, bit)] if own else path_to(net, reach, leak, bit)
-    through = _other_leaks(found, path, i, accepted)
-    category = found.categories[i]
+    through = _other_leaks(spread, path, i, accepted)
+    category = spread.categories[i]
     shown, steps = _shown(net, path)
     return Finding(
         id=finding_id(category, elements[source], elements[leak], concern.kind),
         kind=concern.kind,
         category=category,
-        pseudonymised=found.bits.is_pseudonymised(bit),
+        pseudonymised=spread.bits.is_pseudonymised(bit),
         source=elements[source],
         leak=elements[leak],
         witness=shown,
@@ -285,10 +276,10 @@ def _finding(
     )
 
 
-def _other_leaks(found: Spread, path: list[tuple[int, int, int]], i: int, accepted: Mapping[int, int]) -> list[int]:
+def _other_leaks(spread: Spread, path: list[tuple[int, int, int]], i: int, accepted: Mapping[int, int]) -> list[int]:
     """Leaks of a category inside a path that are not accepted, where it arrives or is made."""
-    both = found.bits.both(i)
-    leaks = {v: found.leaks.get(v, 0) & both & ~accepted.get(v, 0) for _, v, _ in path}
+    both = spread.bits.both(i)
+    leaks = {v: spread.leaks.get(v, 0) & both & ~accepted.get(v, 0) for _, v, _ in path}
     inside = [(v, bits) for (_, v, arriving), (_, _, leaving) in pairwise(path[1:]) for bits in [{arriving, leaving}]]
     return [v for v, bits in inside if any(leaks[v] >> b & 1 for b in bits)]
 
@@ -321,40 +312,40 @@ def _shown(net: Net, path: list[tuple[int, int, int]]) -> tuple[tuple[Element, .
     return tuple(elements), tuple(steps)
 
 
-def _carried(found: Spread, mask: int, hierarchy: Hierarchy) -> tuple[Carried, ...]:
+def _carried(spread: Spread, mask: int, hierarchy: Hierarchy) -> tuple[Carried, ...]:
     merged: dict[tuple[str, str, str, str], int] = defaultdict(int)
     first: dict[tuple[str, str, str, str], Element] = {}
-    for vertex in sorted({*found.arrives, *found.leaves}):
-        bits = found.present(vertex) & mask
+    for vertex in sorted({*spread.arrives, *spread.leaves}):
+        bits = spread.present(vertex) & mask
         if bits:
-            element = found.graph.elements[vertex]
+            element = spread.graph.elements[vertex]
             merged[element.shown_as] |= bits
             first.setdefault(element.shown_as, element)
     return tuple(
-        Carried(first[key], *(hierarchy.narrowest(names) for names in found.planes(bits)))
+        Carried(first[key], *(hierarchy.narrowest(names) for names in spread.planes(bits)))
         for key, bits in merged.items()
     )
 
 
-def _roles(found: Spread, mask: int) -> dict[Element, dict[str, tuple[str, ...]]]:
+def _roles(spread: Spread, mask: int) -> dict[Element, dict[str, tuple[str, ...]]]:
     roles: dict[Element, dict[str, tuple[str, ...]]] = {}
-    shown = set(found.names(mask))
-    for vertex, decided in sorted(found.facts.items()):
+    shown = set(spread.names(mask))
+    for vertex, decided in sorted(spread.facts.items()):
         said = {c: fact.roles for c, fact in decided.items() if c in shown and fact.roles}
         if said:
-            roles[found.graph.elements[vertex]] = said
+            roles[spread.graph.elements[vertex]] = said
     return roles
 
 
-def _standard_channels(found: Spread) -> int:
+def _standard_channels(spread: Spread) -> int:
     """Channels taken as mundane on a shipped file's word alone (rule S13)."""
-    elements = found.graph.elements
-    return len({elements[v].identity for v in found.standard})
+    elements = spread.graph.elements
+    return len({elements[v].identity for v in spread.standard})
 
 
-def _unstated(found: Spread) -> Iterator[tuple[Element, str]]:
+def _unstated(spread: Spread) -> Iterator[tuple[Element, str]]:
     """Sanitizers whose method was taken as pseudonymise (rule S8)."""
-    for vertex, decided in sorted(found.facts.items()):
+    for vertex, decided in sorted(spread.facts.items()):
         for category, fact in sorted(decided.items()):
-            if fact.unstated and category in found.categories:
-                yield found.graph.elements[vertex], category
+            if fact.unstated and category in spread.categories:
+                yield spread.graph.elements[vertex], category

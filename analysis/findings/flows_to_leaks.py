@@ -75,13 +75,23 @@ def flows_to_leaks(
 
     Returns
     -------
-    Ways
+    FlowsToLeaks
         They hold every flow of every path (up to the length) that meets no state twice.
 
     Notes
     -----
     Rounds of O(flows), for a fixed number of categories, with networkx's immediate dominators on the part between; two
     rounds as a rule, never more than there are flows.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import NAMES, factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> from rosprivacy.analysis.kernel.states import Net
+    >>> net = Net.of(spread(*factory()))
+    >>> flows = [net.spread.graph.flows[index] for index in flows_to_leaks(net, "FaceTemplate").flows]
+    >>> [(NAMES[flow.source], NAMES[flow.target]) for flow in flows]
+    [('/camera', '/video'), ('/face_id', '/faces'), ('/faces', '/archive'), ('/video', '/face_id')]
     """
     walk = _Walk(net, category, ends, past_leaks=past_leaks)
     starts = [v for v in net.spread.facts if net.spread.begins(v)] if sources is None else sources

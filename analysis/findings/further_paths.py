@@ -170,6 +170,19 @@ def further(between: Between, leak: int, memory: dict[Any, Any], asked: str, mos
         ``witness`` (none), ``disjoint`` or ``all``.
     most
         Bound on the list.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import ARCHIVE, CAMERA, factory
+    >>> from rosprivacy.analysis.kernel.search import search
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> from rosprivacy.analysis.kernel.states import Net
+    >>> net = Net.of(spread(*factory()))
+    >>> reach = search(net, [CAMERA], net.spread.all_bits, {})
+    >>> number = net.spread.categories.index("Video")
+    >>> paths = further(Between(net, reach, CAMERA, number, net.spread.all_bits, {}), ARCHIVE, {}, "all", 10)
+    >>> paths.disjoint, [[element.name for element in path] for path in paths.paths]
+    (1, [['/camera', '/video', '/filter', '/filtered', '/archive']])
     """
     mode = Paths(asked)
     disjoint, edges = between.to(leak, memory)

@@ -70,6 +70,17 @@ def globs(
         The ledger.
     beside
         Robots that are not counted: another one stands for them.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.findings.findings import analyse
+    >>> from rosprivacy.analysis.findings.ledger import ledger
+    >>> graph, bound, hierarchy = factory()
+    >>> analysis = analyse(graph, bound, hierarchy)
+    >>> uses = globs(analysis, bound, ledger(analysis, bound, hierarchy))
+    >>> [(str(use.place), use.says, use.elements, use.closed, use.leak.name) for use in uses]
+    [('labels.yaml:5', ('only',), 1, 1, '/archive')]
     """
     says, decides = _decided(analysis, bound, beside)
     rows: dict[Place, list[TakenAway]] = defaultdict(list)
@@ -88,18 +99,18 @@ def _decided(
     analysis: Analysis, bound: Bound, beside: Collection[str]
 ) -> tuple[dict[Place, set[str]], dict[Place, set[Identity]]]:
     """What each line says, and the elements at which it holds; where nothing is emitted, those that it covers."""
-    found = analysis.spread
+    spread = analysis.spread
     says: dict[Place, set[str]] = defaultdict(set)
     decides: dict[Place, set[Identity]] = defaultdict(set)
     for vertex, said in bound.elements.items():
         mine = [statement for statement in said if _of_a_user(statement)]
-        if not mine or found.graph.elements[vertex].robot in beside:
+        if not mine or spread.graph.elements[vertex].robot in beside:
             continue
-        accepted = {s for fact in found.facts.get(vertex, {}).values() for s in fact.accepted}
+        accepted = {s for fact in spread.facts.get(vertex, {}).values() for s in fact.accepted}
         for statement in mine:
             says[statement.place].add(statement.role)
-            if statement in accepted or not found.categories:
-                decides[statement.place].add(found.graph.elements[vertex].identity)
+            if statement in accepted or not spread.categories:
+                decides[statement.place].add(spread.graph.elements[vertex].identity)
     return says, decides
 
 
@@ -109,8 +120,8 @@ def _of_a_user(statement: Statement) -> bool:
 
 def _reached(analysis: Analysis) -> dict[bool, int]:
     """How many channels, and how many other elements, data gets to; whether it goes on or not."""
-    found = analysis.spread
-    there = {found.graph.elements[vertex] for vertex in {*found.arrives, *found.leaves}}
+    spread = analysis.spread
+    there = {spread.graph.elements[vertex] for vertex in {*spread.arrives, *spread.leaves}}
     return {channel: len({e.identity for e in there if e.is_channel == channel}) for channel in (True, False)}
 
 

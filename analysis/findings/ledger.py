@@ -5,7 +5,7 @@ being asked about, stands in a row: a DENY, a label, a standard channel, a decis
 read, a channel that nobody known reads. A row says which leak or open element lies behind it. Nothing that a person
 says can make a finding vanish without a row; a property test holds that on random systems.
 
-Source: rules S5, S7, S8, S11 and S13: what takes data's way away must be stated by somebody, by name, and told.
+Source: rules S5, S7, S8, S11 and S13: what stops data must be stated by somebody, by name, and told.
 """
 
 from __future__ import annotations
@@ -97,58 +97,50 @@ def ledger(
 
     Examples
     --------
+    >>> from rosprivacy.analysis.example import factory
     >>> from rosprivacy.analysis.findings.findings import analyse
-    >>> from rosprivacy.analysis.hierarchy import Hierarchy
-    >>> from rosprivacy.analysis.model import Bound, Category, Element, Flow, FlowGraph, Place, Statement
-    >>> graph = FlowGraph(
-    ...     (Element("node", "/camera"), Element("node", "/uplink"), Element("topic", "/image")),
-    ...     (Flow(0, 2, "publish"), Flow(2, 1, "subscribe")), denied=(), profiles=(),
-    ... )
-    >>> def said(role, line):
-    ...     return (Statement(role, ("Video",), (1, 1), Place("labels.yaml", line)),)
-    >>> bound = Bound({0: said("source", 3), 1: said("leak", 4), 2: said("never", 5)})
-    >>> hierarchy = Hierarchy.of([Category("Video", "urn:Video", "Video", "Video", "Video")])
+    >>> graph, bound, hierarchy = factory()
     >>> rows = ledger(analyse(graph, bound, hierarchy), bound, hierarchy)
-    >>> [(row.by, row.element.name, row.leak.name) for row in rows]
-    [('never', '/image', '/uplink')]
+    >>> [(row.by, *map(str, row.places)) for row in rows if row.leak]
+    [('deny', 'policy.xml:10'), ('only', 'labels.yaml:5'), ('sanitizer', 'labels.yaml:4')]
     """
-    found = analysis.spread
-    asked = sum(found.both(category) for category in analysis.emitted)
-    leaks = _leaks(found, bound, hierarchy)
+    spread = analysis.spread
+    asked = sum(spread.both(category) for category in analysis.emitted)
+    leaks = _leaks(spread, bound, hierarchy)
     rows = [
-        *_closed(found, {v: bits & asked for v, bits in leaks.items()}, _unlabelled(found, bound, asked)),
-        *_outdone(found),
-        *_reviewed(found, asked),
+        *_closed(spread, {v: bits & asked for v, bits in leaks.items()}, _unlabelled(spread, bound, asked)),
+        *_outdone(spread),
+        *_reviewed(spread, asked),
         *_decided(analysis),
-        *_restricted(found, leaks, asked),
+        *_restricted(spread, leaks, asked),
         *_unread(diagnostics),
         *_unknown(analysis),
     ]
     return tuple(sorted(rows, key=_order))
 
 
-def _leaks(found: Spread, bound: Bound, hierarchy: Hierarchy) -> dict[int, int]:
+def _leaks(spread: Spread, bound: Bound, hierarchy: Hierarchy) -> dict[int, int]:
     """Vertex -> the bits of which there would be a finding, of any kind."""
     leaks: dict[int, int] = defaultdict(int)
-    for concern in concerns(found, bound, hierarchy):
+    for concern in concerns(spread, bound, hierarchy):
         for vertex, bits in concern.bits.items():
             leaks[vertex] |= bits
     return leaks
 
 
-def _unlabelled(found: Spread, bound: Bound, asked: int) -> dict[int, int]:
+def _unlabelled(spread: Spread, bound: Bound, asked: int) -> dict[int, int]:
     """Vertex -> the bits for which it is or would be open (rule S11)."""
-    elements = found.graph.elements
+    elements = spread.graph.elements
     unknown = {v for v, facts in bound.outside.items() if country_unknown(elements[v], facts)}
-    covered = {v: bits for v, bits in found.covered.items() if v not in unknown}
+    covered = {v: bits for v, bits in spread.covered.items() if v not in unknown}
     return {v: asked & ~covered.get(v, 0) for v in range(len(elements))}
 
 
-def _closed(found: Spread, leaks: Mapping[int, int], unlabelled: Mapping[int, int]) -> Iterator[TakenAway]:
+def _closed(spread: Spread, leaks: Mapping[int, int], unlabelled: Mapping[int, int]) -> Iterator[TakenAway]:
     """What labels and DENY lines close, with what lies behind."""
-    closed = closures(found)
-    to_leak, to_open = behind(found, closed, leaks), behind(found, closed, unlabelled)
-    elements = found.graph.elements
+    closed = closures(spread)
+    to_leak, to_open = behind(spread, closed, leaks), behind(spread, closed, unlabelled)
+    elements = spread.graph.elements
     for number, closure in enumerate(closed):
         ends = {to_leak.get(number), to_open.get(number)}
         leak, question = (ends_at.get(number) for ends_at in (to_leak, to_open))
@@ -156,7 +148,7 @@ def _closed(found: Spread, leaks: Mapping[int, int], unlabelled: Mapping[int, in
             closure.by,
             elements[closure.vertex],
             None if closure.to < 0 else elements[closure.to],
-            found.names(closure.bits),
+            spread.names(closure.bits),
             _places(closure),
             glob=bool(closure.lines) and all(isinstance(line, Statement) and line.glob for line in closure.lines),
             leak=elements[leak] if leak is not None and leak != PERHAPS else None,
@@ -175,12 +167,12 @@ def _line(place: Place) -> tuple[str, int]:
     return (place.file, place.line)
 
 
-def _outdone(found: Spread) -> Iterator[TakenAway]:
+def _outdone(spread: Spread) -> Iterator[TakenAway]:
     """Sources, and leaks where data is, that a statement of higher rank took away (rule S7)."""
-    elements = found.graph.elements
+    elements = spread.graph.elements
     rows: dict[tuple[int, Place, Place], tuple[set[str], str, bool]] = {}
-    for vertex, decided in sorted(found.facts.items()):
-        here = found.names(found.present(vertex))
+    for vertex, decided in sorted(spread.facts.items()):
+        here = spread.names(spread.present(vertex))
         for category, fact in sorted(decided.items()):
             for statement, by in fact.outdone:
                 if fact.leaks if statement.role == "leak" else fact.emits and not fact.through:
@@ -196,12 +188,12 @@ def _outdone(found: Spread) -> Iterator[TakenAway]:
         )  # fmt: skip
 
 
-def _reviewed(found: Spread, asked: int) -> Iterator[TakenAway]:
+def _reviewed(spread: Spread, asked: int) -> Iterator[TakenAway]:
     """Elements that are not asked about because labels answer for them (rule S11)."""
-    for vertex, decided in sorted(found.facts.items()):
+    for vertex, decided in sorted(spread.facts.items()):
         by_lines: dict[tuple[Statement, ...], list[str]] = defaultdict(list)
         makers = {line for fact in decided.values() for line in fact.reviewers if line.role == "derivation"}
-        for category in found.names(found.present(vertex) & asked):
+        for category in spread.names(spread.present(vertex) & asked):
             fact = decided.get(category, NOTHING_SAID)
             reviewers = {*fact.reviewers, *(line for line in makers if line.to == category)}  # who makes it knows of it
             if reviewers and not fact.leaks and not fact.emits:
@@ -210,7 +202,7 @@ def _reviewed(found: Spread, asked: int) -> Iterator[TakenAway]:
             places = tuple(sorted({line.place for line in lines}, key=_line))
             glob = all(line.glob for line in lines)
             yield TakenAway(
-                REVIEW, found.graph.elements[vertex], None, tuple(categories), places, glob=glob, itself=True
+                REVIEW, spread.graph.elements[vertex], None, tuple(categories), places, glob=glob, itself=True
             )
 
 
@@ -220,14 +212,14 @@ def _decided(analysis: Analysis) -> Iterator[TakenAway]:
             yield TakenAway(DECISION, finding.source, None, (finding.category,), (), leak=finding.leak, note=finding.id)
 
 
-def _restricted(found: Spread, leaks: Mapping[int, int], asked: int) -> Iterator[TakenAway]:
+def _restricted(spread: Spread, leaks: Mapping[int, int], asked: int) -> Iterator[TakenAway]:
     """Kinds of data that are emitted and that the answer is not about."""
-    for category in found.categories:
-        bits = found.both(category)
+    for category in spread.categories:
+        bits = spread.both(category)
         if bits & asked:
             continue
-        reached = [v for v, leaking in sorted(leaks.items()) if leaking & bits & found.present(v)]
-        leak = found.graph.elements[reached[0]] if reached else None
+        reached = [v for v, leaking in sorted(leaks.items()) if leaking & bits & spread.present(v)]
+        leak = spread.graph.elements[reached[0]] if reached else None
         yield TakenAway(RESTRICTION, None, None, (category,), (), leak=leak)
 
 

@@ -36,6 +36,15 @@ def open_questions(net: Net, mask: int, unknown: Collection[int] = ()) -> tuple[
     tuple of OpenQuestion
         Nodes on the frontier first, then by distance and name; O(flows) for each category that others are made into,
         and once for all the rest.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> from rosprivacy.analysis.kernel.states import Net
+    >>> net = Net.of(spread(*factory()))
+    >>> [(question.element.name, question.distance) for question in open_questions(net, net.spread.all_bits)]
+    [('/video', 1), ('/filtered', 3)]
     """
     spread, elements = net.spread, net.spread.graph.elements
     uncovered = open_bits(spread, unknown)
@@ -61,7 +70,14 @@ def open_questions(net: Net, mask: int, unknown: Collection[int] = ()) -> tuple[
 
 
 def open_bits(spread: Spread, unknown: Collection[int]) -> dict[int, int]:
-    """Return what is at elements without a label that covers it, or where it is not known in which country it is."""
+    """Return what is at elements without a label that covers it, or where it is not known in which country it is.
+
+    >>> from rosprivacy.analysis.example import DISK, NAMES, factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> carried = spread(*factory())
+    >>> {NAMES[vertex]: carried.names(bits) for vertex, bits in sorted(open_bits(carried, {DISK}).items())}
+    {'disk': ('FaceTemplate', 'Video'), '/filtered': ('Video',), '/video': ('Video',)}
+    """
     reached = {vertex: spread.present(vertex) for vertex in {*spread.arrives, *spread.leaves}}
     covered = {vertex: bits for vertex, bits in spread.covered.items() if vertex not in unknown}
     uncovered = {vertex: bits & ~covered.get(vertex, 0) for vertex, bits in reached.items()}

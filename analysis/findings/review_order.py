@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Element
 
 START = -1  # before all sources
@@ -30,7 +31,8 @@ class Behind:
     Attributes
     ----------
     through
-        The element that data comes from, on a shortest path; None at a source.
+        The element that the data comes from: most kinds of it, and of several such the nearest to a source; None where
+        it begins.
     closes, leaks
         How many other open elements, and how many leaks, data gets to past this one only, at least.
     waits
@@ -49,20 +51,28 @@ def review_order(analysis: Analysis) -> dict[Shown, Behind]:
     Notes
     -----
     networkx's immediate dominators, on the flows that carry data.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.findings.findings import analyse
+    >>> {name: (behind.closes, behind.leaks) for (_, _, name, _), behind in review_order(analyse(*factory())).items()}
+    {'/video': (1, 1), '/filtered': (0, 0)}
     """
     if not analysis.open:
         return {}
-    found = analysis.spread
-    elements = found.graph.elements
-    asked = {question.element.shown_as for question in analysis.open}
+    spread = analysis.spread
+    elements = spread.graph.elements
+    asked = {q.element.shown_as: spread.bits.merged(sum(map(spread.both, q.categories))) for q in analysis.open}
     following: Following = defaultdict(list)
-    for index, flow in enumerate(found.graph.flows):
-        if found.along(index):
+    for index, flow in enumerate(spread.graph.flows):
+        if spread.along(index):
             following[flow.source].append(flow.target)
-    following[START] = [vertex for vertex in range(len(elements)) if found.begins(vertex)]
-    before = _before(following)
-    open_at = [vertex for vertex in before if vertex != START and elements[vertex].shown_as in asked]
-    leaks = {vertex for vertex, bits in found.leaks.items() if bits & found.present(vertex)}
+    following[START] = [vertex for vertex in range(len(elements)) if spread.begins(vertex)]
+    reached = _reached(following)
+    open_at = [vertex for vertex in reached if elements[vertex].shown_as in asked]
+    through = _through(spread, {vertex: asked[elements[vertex].shown_as] for vertex in open_at}, reached)
+    leaks = {vertex for vertex, bits in spread.leaks.items() if bits & spread.present(vertex)}
     wanted = leaks.union(vertex for vertex in open_at if not elements[vertex].is_channel)
     going_on = _reaching(following, wanted)
     below = _below(following, {elements[v].shown_as: v for v in reversed(open_at)}.values(), leaks)
@@ -70,8 +80,8 @@ def review_order(analysis: Analysis) -> dict[Shown, Behind]:
     for vertex in open_at:
         element = elements[vertex]
         closes, leaking = below.get(vertex, (0, 0))
-        through = elements[before[vertex]] if vertex in before and before[vertex] != START else None
-        one = Behind(through, closes, leaking, waits=element.is_channel and vertex not in going_on)
+        comes_from = elements[through[vertex]] if vertex in through else None
+        one = Behind(comes_from, closes, leaking, waits=element.is_channel and vertex not in going_on)
         other = result.get(element.shown_as)  # the other side of a wildcard
         result[element.shown_as] = one if other is None else _both(one, other)
     return result
@@ -82,18 +92,27 @@ def _both(one: Behind, other: Behind) -> Behind:
     return Behind(one.through or other.through, first.closes, first.leaks, waits=one.waits and other.waits)
 
 
-def _before(following: Following) -> dict[int, int]:
-    """Every vertex that data gets to, with the one before it on a shortest path; of a source, the nearest of others."""
-    before = {START: START}
-    waiting = deque([START])
+def _reached(following: Following) -> list[int]:
+    """Every vertex that data gets to, the nearest to a source first."""
+    reached = dict.fromkeys(sorted(following[START]))
+    waiting = deque(reached)
     while waiting:
-        here = waiting.popleft()
-        for there in sorted(following.get(here, ())):
-            if there not in before:
-                waiting.append(there)
-            if before.get(there, START) == START and there != START:
-                before[there] = here
-    return before
+        new = [there for there in sorted(following.get(waiting.popleft(), ())) if there not in reached]
+        reached.update(dict.fromkeys(new))
+        waiting += new
+    return list(reached)
+
+
+def _through(spread: Spread, asked: Mapping[int, int], reached: Iterable[int]) -> dict[int, int]:
+    """Open vertex -> the vertex from which most of the kinds that are open there come along a flow."""
+    order = {vertex: place for place, vertex in enumerate(reached)}
+    best: dict[int, tuple[int, int, int]] = {}
+    for index, flow in enumerate(spread.graph.flows):
+        bits = spread.bits.merged(spread.along(index)) & asked.get(flow.target, 0)
+        if bits:
+            one = (-bits.bit_count(), order[flow.source], flow.source)
+            best[flow.target] = min(one, best.get(flow.target, one))
+    return {vertex: source for vertex, (_, _, source) in best.items()}
 
 
 def _reaching(following: Following, wanted: Iterable[int]) -> set[int]:

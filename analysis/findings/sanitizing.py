@@ -54,25 +54,31 @@ class Making:
     reached: bool
 
 
-def cleanings(found: Spread, wanted: Collection[str]) -> tuple[Cleaning, ...]:
+def cleanings(spread: Spread, wanted: Collection[str]) -> tuple[Cleaning, ...]:
     """Return what sanitizes any of the categories.
 
     Complexity: O(flows) once, then the channels around each sanitizer.
+
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> (cleaning,) = cleanings(spread(*factory()), ["Video"])
+    >>> cleaning.element.name, cleaning.pseudonymised, [element.name for element in cleaning.beside]
+    ('/filter', ('Video',), ['/face_id'])
     """
-    around = _Around(found)
-    mask = sum(found.both(category) for category in wanted)
+    around = _Around(spread)
+    mask = sum(spread.both(category) for category in wanted)
     rows = []
-    for vertex, decided in sorted(found.facts.items()):
-        leaves = found.planes(found.leaves.get(vertex, 0) & mask)
-        for category in (name for name in found.categories if name in wanted and "sanitizer" in decided[name].roles):
-            both = found.both(category)
+    for vertex, decided in sorted(spread.facts.items()):
+        leaves = spread.planes(spread.leaves.get(vertex, 0) & mask)
+        for category in (name for name in spread.categories if name in wanted and "sanitizer" in decided[name].roles):
+            both = spread.both(category)
             rows.append(
                 Cleaning(
-                    element=found.graph.elements[vertex],
+                    element=spread.graph.elements[vertex],
                     category=category,
                     method=decided[category].method,
                     stated=not decided[category].unstated,
-                    reached=bool(found.arrives.get(vertex, 0) & both),
+                    reached=bool(spread.arrives.get(vertex, 0) & both),
                     leaves=leaves[0],
                     pseudonymised=leaves[1],
                     beside=tuple(around.beside(vertex, category, both)),
@@ -81,19 +87,33 @@ def cleanings(found: Spread, wanted: Collection[str]) -> tuple[Cleaning, ...]:
     return tuple(rows)
 
 
-def makings(found: Spread, wanted: Collection[str]) -> tuple[Making, ...]:
-    """Return what makes any of the categories of another one; what is that kind already is not made."""
+def makings(spread: Spread, wanted: Collection[str]) -> tuple[Making, ...]:
+    """Return what makes any of the categories of another one; what is that kind already is not made.
+
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> (making,) = makings(spread(*factory()), ["FaceTemplate"])
+    >>> making.element.name, making.made_of, making.made, making.reached
+    ('/face_id', 'Video', 'FaceTemplate', True)
+    """
     return tuple(
-        Making(found.graph.elements[vertex], category, made, bool(found.present(vertex) & found.both(category)))
-        for vertex, decided in sorted(found.facts.items())
-        for category in found.categories
+        Making(spread.graph.elements[vertex], category, made, bool(spread.present(vertex) & spread.both(category)))
+        for vertex, decided in sorted(spread.facts.items())
+        for category in spread.categories
         for made in decided[category].derives
         if made in wanted and made != category
     )
 
 
 def absent(bound: Bound, graph: FlowGraph) -> tuple[tuple[Element, str], ...]:
-    """Return the nodes of which a label says that they are not on the robot, with a person's reason."""
+    """Return the nodes of which a label says that they are not on the robot, with a person's reason.
+
+    >>> from rosprivacy.analysis.example import FILTER, factory
+    >>> from rosprivacy.analysis.model import Bound, Place, Statement
+    >>> said = Statement("sanitizer", (), (1, 1), Place("labels.yaml", 4), Method.ABSENT, why="from spring on")
+    >>> [(element.name, why) for element, why in absent(Bound({FILTER: (said,)}), factory()[0])]
+    [('/filter', 'from spring on')]
+    """
     return tuple(
         (graph.elements[vertex], statement.why)
         for vertex, said in sorted(bound.elements.items())
@@ -105,26 +125,26 @@ def absent(bound: Bound, graph: FlowGraph) -> tuple[tuple[Element, str], ...]:
 class _Around:
     """The channels that an element reads, and who else reads them."""
 
-    def __init__(self, found: Spread) -> None:
-        self._found = found
+    def __init__(self, spread: Spread) -> None:
+        self._spread = spread
         self._into: Mapping[int, list[int]] | None = None
         self._out: Mapping[int, list[int]] = {}
 
     def beside(self, vertex: int, category: str, bits: int) -> Iterator[Element]:
         """Elements that get the category from a channel from which the vertex gets it, sanitizers of it left out."""
-        elements = self._found.graph.elements
+        elements = self._spread.graph.elements
         channels = self._walk([vertex], bits, back=True)
         readers = {v for v in self._walk(sorted(channels), bits, back=False) if not elements[v].is_channel} - {vertex}
         named = set()
         for reader in sorted(readers):
-            fact = self._found.facts.get(reader, {}).get(category)
+            fact = self._spread.facts.get(reader, {}).get(category)
             if (fact is None or not fact.method) and elements[reader].shown_as not in named:
                 named.add(elements[reader].shown_as)
                 yield elements[reader]
 
     def _walk(self, begin: Sequence[int], bits: int, *, back: bool) -> set[int]:
         """Channels before an element, or what comes after channels: only other channels lie between (rule S4)."""
-        found, graph = self._found, self._found.graph
+        spread, graph = self._spread, self._spread.graph
         if self._into is None:
             self._into, self._out = self._flows()
         flows = self._into if back else self._out
@@ -133,7 +153,7 @@ class _Around:
         while waiting:
             for index in flows.get(waiting.pop(), ()):
                 other = graph.flows[index].source if back else graph.flows[index].target
-                if other in seen or not found.along(index) & bits or (back and not graph.elements[other].is_channel):
+                if other in seen or not spread.along(index) & bits or (back and not graph.elements[other].is_channel):
                     continue
                 seen.add(other)
                 if graph.elements[other].is_channel:
@@ -142,7 +162,7 @@ class _Around:
 
     def _flows(self) -> tuple[dict[int, list[int]], dict[int, list[int]]]:
         into, out = defaultdict(list), defaultdict(list)
-        for index, flow in enumerate(self._found.graph.flows):
+        for index, flow in enumerate(self._spread.graph.flows):
             into[flow.target].append(index)
             out[flow.source].append(index)
         return into, out

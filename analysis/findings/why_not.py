@@ -14,7 +14,9 @@ from dataclasses import dataclass
 from heapq import heappop, heappush
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.kernel.bits import bits_of
 from rosprivacy.analysis.kernel.roles import NOTHING_SAID
+from rosprivacy.analysis.kernel.states import made
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -96,23 +98,14 @@ def why_not(analysis: Analysis, source: Sequence[int], leak: Sequence[int], cate
 
     Examples
     --------
+    >>> from rosprivacy.analysis.example import ARCHIVE, FACE_ID, factory
     >>> from rosprivacy.analysis.findings.findings import analyse
-    >>> from rosprivacy.analysis.hierarchy import Hierarchy
-    >>> from rosprivacy.analysis.model import Bound, Category, Element, Flow, FlowGraph, Place, Statement
-    >>> graph = FlowGraph(
-    ...     (Element("node", "/camera"), Element("node", "/uplink"), Element("topic", "/image")),
-    ...     (Flow(0, 2, "publish"), Flow(2, 1, "subscribe")), denied=(), profiles=(),
-    ... )
-    >>> def said(role, line):
-    ...     return (Statement(role, ("Video",), (1, 1), Place("labels.yaml", line)),)
-    >>> bound = Bound({0: said("source", 3), 1: said("leak", 4), 2: said("never", 5)})
-    >>> hierarchy = Hierarchy.of([Category("Video", "urn:Video", "Video", "Video", "Video")])
-    >>> answer = why_not(analyse(graph, bound, hierarchy), [0], [1], "Video")
-    >>> [(obstacle.by, obstacle.element.name, str(obstacle.places[0])) for obstacle in answer.obstacles]
-    [('never', '/image', 'labels.yaml:5')]
+    >>> answer = why_not(analyse(*factory()), [FACE_ID], [ARCHIVE], "Video")
+    >>> [(obstacle.by, obstacle.element.name, *map(str, obstacle.places)) for obstacle in answer.obstacles]
+    [('no-source', '/face_id'), ('only', '/faces', 'labels.yaml:5')]
     """
-    found = analysis.spread
-    elements = found.graph.elements
+    spread = analysis.spread
+    elements = spread.graph.elements
     first, last = elements[source[0]], elements[leak[0]]
     finding = next(
         (
@@ -121,19 +114,19 @@ def why_not(analysis: Analysis, source: Sequence[int], leak: Sequence[int], cate
         ),
         None,
     )  # fmt: skip
-    path, obstacles = ((), ()) if finding else _easiest(found, source, leak, category)
+    path, obstacles = ((), ()) if finding else _easiest(spread, source, leak, category)
     return WhyNot(
         category, first, last, finding, finding.witness if finding else path, obstacles,
-        sum(bool(found.present(v) & found.both(category)) for v in range(len(elements))),
+        sum(bool(spread.present(v) & spread.both(category)) for v in range(len(elements))),
     )  # fmt: skip
 
 
 def _easiest(
-    found: Spread, source: Sequence[int], leak: Sequence[int], category: str
+    spread: Spread, source: Sequence[int], leak: Sequence[int], category: str
 ) -> tuple[tuple[Element, ...], tuple[Obstacle, ...]]:
     """The path with the fewest obstacles, then the shortest; ties fall to the lower vertex (rule S14)."""
-    steps = _Steps.of(found)
-    bit = found.bits.plain(found.categories.index(category))
+    steps = _Steps.of(spread)
+    bit = spread.bits.plain(spread.categories.index(category))
     queue: list[tuple[int, int, State]] = []
     best: dict[State, tuple[int, int]] = {}
     came: dict[State, tuple[State | None, tuple[Obstacle, ...]]] = {}
@@ -152,20 +145,20 @@ def _easiest(
         if (closed, length) != best[state]:
             continue
         if state[0] in ends and (state[0] not in source or length):
-            return _read_back(found, came, state)
+            return _read_back(spread, came, state)
         for following, obstacles in steps.after(state, ends):
             reach(following, (closed + len(obstacles), length + 1), state, obstacles)
     return (), ()
 
 
 def _read_back(
-    found: Spread, came: Mapping[State, tuple[State | None, tuple[Obstacle, ...]]], state: State
+    spread: Spread, came: Mapping[State, tuple[State | None, tuple[Obstacle, ...]]], state: State
 ) -> tuple[tuple[Element, ...], tuple[Obstacle, ...]]:
     path: list[Element] = []
     obstacles: list[Obstacle] = []
     at: State | None = state
     while at is not None:
-        path.append(found.graph.elements[at[0]])
+        path.append(spread.graph.elements[at[0]])
         before, here = came[at]
         obstacles = [*here, *obstacles]
         at = before
@@ -184,70 +177,69 @@ class _Steps:
         Vertex -> (target, index of the flow or -1, lines of the DENY).
     """
 
-    found: Spread
+    spread: Spread
     flows: Mapping[int, list[tuple[int, int, tuple[Place, ...]]]]
 
     @classmethod
-    def of(cls, found: Spread) -> _Steps:
+    def of(cls, spread: Spread) -> _Steps:
         flows: dict[int, list[tuple[int, int, tuple[Place, ...]]]] = defaultdict(list)
-        for index, flow in enumerate(found.graph.flows):
+        for index, flow in enumerate(spread.graph.flows):
             flows[flow.source].append((flow.target, index, ()))
-        for flow in found.graph.taken_back:
+        for flow in spread.graph.taken_back:
             flows[flow.source].append((flow.target, -1, _sorted(denial.place for denial in flow.denials)))
-        return cls(found, flows)
+        return cls(spread, flows)
 
     def begins(self, vertex: int, bit: int) -> tuple[Obstacle, ...]:
         """What is missing for an element to be a source."""
-        if self.found.begins(vertex) >> bit & 1:
+        if self.spread.begins(vertex) >> bit & 1:
             return ()
         name = self._name(bit)
-        return (Obstacle(NO_SOURCE, self.found.graph.elements[vertex], None, name),)
+        return (Obstacle(NO_SOURCE, self.spread.graph.elements[vertex], None, name),)
 
     def after(self, state: State, ends: set[int]) -> Iterator[tuple[State, tuple[Obstacle, ...]]]:
         """The states that follow, with the obstacles of the step and of the element where it ends."""
         vertex, bit = state
-        elements, name = self.found.graph.elements, self._name(bit)
+        elements, name = self.spread.graph.elements, self._name(bit)
         for target, index, denials in self.flows.get(vertex, ()):
             along: tuple[Obstacle, ...] = ()
             if denials:
                 along = (Obstacle("deny", elements[vertex], elements[target], name, denials),)
-            elif not self.found.flow_keeps.get(index, -1) >> bit & 1:
-                lines = self.found.flow_facts[index][name].closers
+            elif not self.spread.flow_keeps.get(index, -1) >> bit & 1:
+                lines = self.spread.flow_facts[index][name].closers
                 along = (self._closed(lines, vertex, target, name),)
             elif self._elsewhere(vertex, bit, index):
                 along = (Obstacle(THROUGH, elements[vertex], elements[target], name),)
-            for made, here in self._arriving(target, bit, end=target in ends):
-                yield (target, made), (*along, *here)
+            for onward, here in self._arriving(target, bit, end=target in ends):
+                yield (target, onward), (*along, *here)
 
     def _name(self, bit: int) -> str:
-        return self.found.categories[self.found.bits.category(bit)]
+        return self.spread.categories[self.spread.bits.category(bit)]
 
     def _elsewhere(self, vertex: int, bit: int, index: int) -> bool:
         """Whether a source names other channels than this one for what it emits."""
-        found = self.found
-        single = found.flow_begins.get(vertex, 0) >> bit & 1
-        arrives = found.arrives.get(vertex, 0) | found.emits.get(vertex, 0)
-        return bool(single) and not arrives >> bit & 1 and not found.flow_emits.get(index, 0) >> bit & 1
+        spread = self.spread
+        single = spread.flow_begins.get(vertex, 0) >> bit & 1
+        arrives = spread.arrives.get(vertex, 0) | spread.emits.get(vertex, 0)
+        return bool(single) and not arrives >> bit & 1 and not spread.flow_emits.get(index, 0) >> bit & 1
 
     def _arriving(self, vertex: int, bit: int, *, end: bool) -> Iterator[tuple[int, tuple[Obstacle, ...]]]:
         """What goes on from an element that data arrives at (or ends there): as it is, and as what is made of it."""
-        found = self.found
-        element, name = found.graph.elements[vertex], self._name(bit)
+        spread = self.spread
+        element, name = spread.graph.elements[vertex], self._name(bit)
         if end:
-            leaks = found.leaks.get(vertex, 0) >> bit & 1
+            leaks = spread.leaks.get(vertex, 0) >> bit & 1
             yield bit, () if leaks else (Obstacle(NO_LEAK, element, None, name),)
-        elif found.keeps.get(vertex, -1) >> bit & 1:
+        elif spread.keeps.get(vertex, -1) >> bit & 1:
             yield bit, ()
         else:
-            lines = found.facts[vertex].get(name, NOTHING_SAID).closers
+            lines = spread.facts[vertex].get(name, NOTHING_SAID).closers
             yield bit, (self._closed(lines, vertex, -1, name),)
-        for before, after in found.derives.get(vertex, ()):
-            if before == bit and not found.bits.is_pseudonymised(after):
-                leaks = not end or found.leaks.get(vertex, 0) >> after & 1
-                yield after, () if leaks else (Obstacle(NO_LEAK, element, None, self._name(after)),)
+        for after in bits_of(spread.bits.planes(made(spread, vertex, 1 << bit))[0]):
+            leaks = not end or spread.leaks.get(vertex, 0) >> after & 1
+            yield after, () if leaks else (Obstacle(NO_LEAK, element, None, self._name(after)),)
 
     def _closed(self, lines: tuple[Statement, ...], vertex: int, target: int, name: str) -> Obstacle:
-        elements = self.found.graph.elements
+        elements = self.spread.graph.elements
         to = elements[target] if target >= 0 else None
         return Obstacle(lines[0].role, elements[vertex], to, name, _sorted(line.place for line in lines))
 

@@ -27,7 +27,7 @@ class Counts:
 
 
 def counted(
-    graph: FlowGraph, found: Spread, likeness: Likeness, elsewhere: Collection[int] = (), unreal: Collection[int] = ()
+    graph: FlowGraph, spread: Spread, likeness: Likeness, elsewhere: Collection[int] = (), unreal: Collection[int] = ()
 ) -> Counts:
     """Return the counts of a graph.
 
@@ -37,6 +37,15 @@ def counted(
         Vertices that are counted elsewhere; flows to or from them are counted here.
     unreal
         Vertices that are none of the fleet; flows to or from them are not counted.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.fleet.likeness import Likeness
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> graph, bound, hierarchy = factory("amr-1")
+    >>> counted(graph, spread(graph, bound, hierarchy), Likeness({"amr-1": ("amr-1", "amr-2")}))
+    Counts(elements=18, flows=18, denied_flows=2, standard_channels=2)
     """
     elements = graph.elements
 
@@ -51,7 +60,7 @@ def counted(
     identities = {
         element.identity for vertex, element in enumerate(elements) if vertex not in elsewhere and vertex not in unreal
     }
-    taken = {elements[vertex].identity for vertex in found.standard}
+    taken = {elements[vertex].identity for vertex in spread.standard}
     return Counts(
         sum(likeness.weight(robot) for robot, *_ in identities),
         sum(weight(f.source, f.target) for f in graph.flows if f.source not in unreal and f.target not in unreal),

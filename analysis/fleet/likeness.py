@@ -79,13 +79,29 @@ NO_ROBOTS = Likeness({})
 
 
 def pattern_id(finding: Finding, likeness: Likeness) -> str:
-    """Return the id of the pattern of a finding; without robots it is that of the finding."""
+    """Return the id of the pattern of a finding; without robots it is that of the finding.
+
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.findings.findings import analyse
+    >>> likeness = Likeness({"amr-1": ("amr-1",), "amr-2": ("amr-2",)})
+    >>> one, other = (analyse(*factory(robot)).findings[0] for robot in likeness.members)
+    >>> one.id == other.id, {pattern_id(finding, likeness) for finding in (one, other)}
+    (False, {'97ef632758ef7fc3'})
+    """
     return pattern_of(finding.kind, finding.category, finding.source, finding.leak, likeness, beside=finding.beside)
 
 
 def pattern_of(
     kind: str, category: str, source: Element, leak: Element, likeness: Likeness, *, beside: bool = False
 ) -> str:
-    """Return the id of the pattern of what would be a finding."""
+    """Return the id of the pattern of what would be a finding.
+
+    >>> from rosprivacy.analysis.model import Element
+    >>> likeness = Likeness({"amr-1": ("amr-1",), "amr-2": ("amr-2",)})
+    >>> camera = Element("node", "/camera", "amr-1")
+    >>> archives = [Element("node", "/archive", name) for name in likeness.members]
+    >>> [pattern_of("disclosure", "Video", camera, archive, likeness) for archive in archives]  # of one robot, across
+    ['1158fa035bd7d664', 'f8c322aefdae946b']
+    """
     kind = f"across {kind}" if likeness.apart(source, leak) else kind
     return finding_id(category, likeness.alike(source), likeness.alike(leak), kind, beside=beside)

@@ -89,7 +89,7 @@ class FleetView:
     def counted(cls, tallies: Tallies, analysis: Analysis, likeness: Likeness) -> FleetView:
         """Return the same when its findings are counted already."""
         patterns = patterns_of(tallies.groups(), analysis.findings)
-        return cls(likeness, patterns, deviants_of(tallies.shares, analysis.open, likeness))
+        return cls(likeness, patterns, _deviants_of(tallies.shares, analysis.open, likeness))
 
     def shown(self, analysis: Analysis) -> Analysis:
         """Return the analysis with one finding of each pattern, and without robots that only stand beside others."""
@@ -109,7 +109,16 @@ class FleetView:
 
 
 def tallied(findings: Iterable[Finding], likeness: Likeness) -> Tallies:
-    """Count the findings that differ only in the robot together; linear in the findings and the robots listed."""
+    """Count the findings that differ only in the robot together; linear in the findings and the robots listed.
+
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.findings.findings import analyse
+    >>> from rosprivacy.analysis.fleet.likeness import Likeness
+    >>> likeness = Likeness({"amr-1": ("amr-1", "amr-2")})
+    >>> groups = tallied(analyse(*factory("amr-1")).findings, likeness).groups()
+    >>> [(group.pair.category, group.count.all, group.robots) for group in groups if group.pair.leak.name == "/archive"]
+    [('FaceTemplate', 2, ('amr-1', 'amr-2')), ('Video', 2, ('amr-1', 'amr-2'))]
+    """
     tallies = Tallies(likeness)
     for finding in findings:
         if count := likeness.count(finding):
@@ -121,7 +130,16 @@ def tallied(findings: Iterable[Finding], likeness: Likeness) -> Tallies:
 
 
 def patterns_of(groups: Iterable[Group], findings: Iterable[Finding]) -> tuple[Pattern, ...]:
-    """Return the patterns, each with the finding that was made of what it shows, in the order of these."""
+    """Return the patterns, each with the finding that was made of what it shows, in the order of these.
+
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.findings.findings import analyse
+    >>> from rosprivacy.analysis.fleet.likeness import Likeness
+    >>> findings = analyse(*factory("amr-1")).findings
+    >>> groups = tallied(findings, Likeness({"amr-1": ("amr-1", "amr-2")})).groups()
+    >>> [(pattern.finding.category, pattern.count) for pattern in patterns_of(groups, findings)]
+    [('FaceTemplate', 2), ('FaceTemplate', 2), ('Video', 2), ('Video', 2)]
+    """
     order = {(f.kind, f.category, f.source, f.leak, f.beside): (n, f) for n, f in enumerate(findings)}
     return tuple(
         Pattern(
@@ -141,7 +159,7 @@ def patterns_of(groups: Iterable[Group], findings: Iterable[Finding]) -> tuple[P
 Result = tuple[frozenset[Share], frozenset["Element"]]
 
 
-def deviants_of(
+def _deviants_of(
     shares: Mapping[str, Collection[Share]], questions: Iterable[OpenQuestion], likeness: Likeness
 ) -> tuple[Deviant, ...]:
     """Return the robots that differ from most of their model, by model and id; of equally many, the first are most.
@@ -160,7 +178,15 @@ def deviants_of(
 def different(
     shares: Mapping[str, Collection[Share]], open_at: Mapping[str, Collection[Element]], likeness: Likeness
 ) -> tuple[Deviant, ...]:
-    """Return the same, when it is also known what is open on each; without its robot."""
+    """Return the same, when it is also known what is open on each; without its robot.
+
+    >>> from rosprivacy.analysis.fleet.likeness import Likeness
+    >>> robots = ("amr-1", "amr-2", "amr-3")
+    >>> likeness = Likeness({name: (name,) for name in robots}, models=dict.fromkeys(robots, "amr"))
+    >>> shares = {"amr-3": [Share("1158fa035bd7d664", False, False, False)]}
+    >>> [(deviant.robots, [share.pattern for share in deviant.more]) for deviant in different(shares, {}, likeness)]
+    [(('amr-3',), ['1158fa035bd7d664'])]
+    """
     results = {
         robot: (frozenset(shares.get(robot, ())), frozenset(open_at.get(robot, ()))) for robot in likeness.members
     }
@@ -168,16 +194,16 @@ def different(
     for robot, model in sorted(likeness.models.items()):
         if model:
             of_model[model].append(robot)
-    found = []
+    deviants = []
     for model, robots in sorted(of_model.items()):
         many: Counter[Result] = Counter()
         for robot in robots:
             many[results[robot]] += likeness.weight(robot)
         usual = max(many, key=lambda result: many[result])  # of equally many the first that was put in
-        found += [
+        deviants += [
             _deviant(robot, model, results[robot], usual, likeness) for robot in robots if results[robot] != usual
         ]
-    return tuple(found)
+    return tuple(deviants)
 
 
 def _deviant(robot: str, model: str, result: Result, usual: Result, likeness: Likeness) -> Deviant:

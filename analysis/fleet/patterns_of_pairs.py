@@ -1,4 +1,4 @@
-"""Pairs of a fleet -> patterns, before any way is looked for: counted in arrays, one pair of each chosen to be shown.
+"""Pairs of a fleet -> patterns, before any path is looked for: counted in arrays, one pair of each chosen to be shown.
 
 In: the pairs of the kernel, and which robot stands for which. Out: for ``analyse``, the findings to make; for the
 report, patterns and robots that differ. The same as ``patterns.py`` makes of all findings; a test holds this.
@@ -69,17 +69,17 @@ class Groups:
         self._likeness = likeness
         self._tallies = Tallies(likeness)
 
-    def __call__(self, found: Spread, kinds: Sequence[Concern], mask: int) -> Wanted:
+    def __call__(self, spread: Spread, kinds: Sequence[Concern], mask: int) -> Wanted:
         """Return the findings to make."""
-        table = _Table(found.graph.elements, self._likeness)
+        table = _Table(spread.graph.elements, self._likeness)
         wanted: Wanted = defaultdict(set)
-        for part in pairs(found, kinds, mask):
+        for part in pairs(spread, kinds, mask):
             for some, beside in ((part, False), (_plain_beside(part), True)):
-                for source, leak in self._take(found, some, table, beside=beside):
+                for source, leak in self._take(spread, some, table, beside=beside):
                     wanted[source].add((part.kind, leak, part.category, beside))
         return dict(wanted)
 
-    def _take(self, found: Spread, part: Pairs, table: _Table, *, beside: bool) -> Iterator[tuple[int, int]]:
+    def _take(self, spread: Spread, part: Pairs, table: _Table, *, beside: bool) -> Iterator[tuple[int, int]]:
         """Group the pairs of one kind and category; return one of each."""
         counts = table.counts(table.robot[part.sources], table.robot[part.leaks])
         chosen = np.flatnonzero(counts)
@@ -94,7 +94,7 @@ class Groups:
         ids: dict[int, str] = {}
         starts = np.flatnonzero(np.diff(keys[order], prepend=-1))
         ends = [*starts[1:].tolist(), len(order)]
-        elements, category = found.graph.elements, found.categories[part.category]
+        elements, category = spread.graph.elements, spread.categories[part.category]
         for start, end in zip(starts.tolist(), ends, strict=True):
             rows = order[start:end]
             source, leak = int(sources[rows[0]]), int(leaks[rows[0]])

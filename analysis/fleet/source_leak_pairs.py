@@ -71,6 +71,17 @@ def pairs(spread: Spread, kinds: Sequence[Concern], mask: int) -> Iterator[Pairs
     -----
     Two runs of the kernel per category and so many sources: one that stops at leaks of the category, one that does not.
     So many are ``MOST_WORDS`` times 64 for each form, fewer in a large graph.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import NAMES, factory
+    >>> from rosprivacy.analysis.findings.concerns import concerns
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> graph, bound, hierarchy = factory()
+    >>> carried = spread(graph, bound, hierarchy)
+    >>> rows = pairs(carried, tuple(concerns(carried, bound, hierarchy)), carried.all_bits)
+    >>> [(carried.categories[row.category], NAMES[row.leaks[0]], bool(row.pseudonymised[0])) for row in rows][1:3]
+    [('FaceTemplate', 'disk', False), ('Video', '/archive', True)]
     """
     ends = [as_bits(spread, len(spread.graph.elements), concern.bits, 0) for concern in kinds]
     network: GraphArrays | None = None
@@ -96,6 +107,13 @@ def forms(category: int, bits: CategoryBits, steps: Collection[tuple[int, int]])
         Its number.
     steps
         (bit that arrives, bit that leaves for it), wherever data is made into other data.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.kernel.bits import CategoryBits
+    >>> bits = CategoryBits(2)  # 0: face templates, 1: video
+    >>> forms(0, bits, {(1, 0)})  # templates are made of video
+    (0, 1)
     """
     back = _closure(set(bits.forms(category)), {(after, before) for before, after in steps})
     ahead = _closure(
@@ -215,7 +233,11 @@ class CategoryRun:
 
 
 def unpacked(rows: Bits, first: int, n: int) -> Flags:
-    """Return n bits of each row, from one on: shape (rows, n)."""
+    """Return n bits of each row, from one on: shape (rows, n).
+
+    >>> unpacked(np.array([[0b1010], [0b0110]], np.uint64), 1, 3).astype(int).tolist()
+    [[1, 0, 1], [1, 1, 0]]
+    """
     low = first // WORD
     some = np.ascontiguousarray(rows[:, low : -(-(first + n) // WORD)], "<u8")  # the lowest byte of a word first
     bits = np.unpackbits(some.view(np.uint8), axis=1, bitorder="little")

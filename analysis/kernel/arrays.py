@@ -86,7 +86,13 @@ class GraphArrays:
 
 
 def as_bits(spread: Spread, count: int, numbers: Mapping[int, int], otherwise: int) -> Bits:
-    """Return sets of bits by vertex as rows of words; those that are not given are all alike."""
+    """Return sets of bits by vertex as rows of words; those that are not given are all alike.
+
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> as_bits(spread(*factory()), 3, {1: 0b10}, 0b1111).tolist()
+    [[15], [2], [15]]
+    """
     words = max(1, -(-spread.all_bits.bit_length() // WORD))
     rows = np.empty((count, words), np.uint64)
     rows[:] = np.array(_words(otherwise, words), np.uint64)
@@ -96,7 +102,12 @@ def as_bits(spread: Spread, count: int, numbers: Mapping[int, int], otherwise: i
 
 
 def as_numbers(bits: Bits) -> dict[int, int]:
-    """Return rows that are not empty, as numbers of any length."""
+    """Return rows that are not empty, as numbers of any length.
+
+    >>> rows = np.array([[0, 0], [1, 2]], np.uint64)
+    >>> as_numbers(rows) == {1: 1 + (2 << 64)}
+    True
+    """
     numbers = {}
     for vertex in np.flatnonzero(bits.any(axis=1)).tolist():
         numbers[vertex] = sum(word << WORD * i for i, word in enumerate(bits[vertex].tolist()))

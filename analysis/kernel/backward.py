@@ -93,6 +93,15 @@ def backward(spread: Spread, places: Mapping[int, int], opened: Opened = NOTHING
     Notes
     -----
     O(levels · vertices + flows visited), like the fixpoint itself.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import ARCHIVE, FACE_ID, FACES, factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> carried = spread(*factory())
+    >>> entering = backward(carried, {ARCHIVE: carried.both("FaceTemplate")}).entering
+    >>> carried.names(entering[FACE_ID]), carried.names(entering[FACES])
+    (('FaceTemplate', 'Video'), ('FaceTemplate',))
     """
     graph, everything = spread.graph, spread.all_bits
     count = len(graph.elements)

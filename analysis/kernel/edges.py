@@ -132,7 +132,11 @@ def _by_length(incoming: Indices, low: int, high: int) -> Iterator[tuple[int, In
 
 
 def ranges(starts: Indices, lengths: Indices) -> Indices:
-    """The numbers start … start + length - 1 of each range, one after the other."""
+    """The numbers start … start + length - 1 of each range, one after the other.
+
+    >>> ranges(np.array([3, 10]), np.array([2, 3])).tolist()
+    [3, 4, 10, 11, 12]
+    """
     ends = np.cumsum(lengths)
     numbers = np.repeat(starts - ends + lengths, lengths)
     numbers += np.arange(len(numbers))

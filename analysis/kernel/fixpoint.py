@@ -124,6 +124,15 @@ def fixpoint(edges: Edges, emitted: Bits, keep: Bits, derivations: Indices) -> t
     Notes
     -----
     A word takes O(levels · slots + edges visited), an edge being visited once per change of its source.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.kernel.edges import Edges
+    >>> line = Edges.of(3, np.array([0, 1]), np.array([1, 2]))  # 0 -> 1 -> 2
+    >>> emitted, keep = np.array([[1], [0], [0]], np.uint64), np.array([[0], [0], [0]], np.uint64)
+    >>> arrives, leaves = fixpoint(line, emitted, keep, np.array([[1, 0, 1]]))  # vertex 1 makes bit 1 of bit 0
+    >>> arrives.ravel().tolist(), leaves.ravel().tolist()
+    ([0, 1, 2], [1, 2, 0])
     """
     vertices, incoming, outgoing = derivations.reshape(-1, 3).T
     graph = _Folded.of(edges, _busy(emitted, keep, vertices, outgoing))

@@ -26,12 +26,18 @@ if TYPE_CHECKING:
 
 
 def stated_flows(graph: FlowGraph) -> dict[int, list[int]]:
-    """Return vertex -> the flows out of it that a person states: channels that a source names do not restrict these."""
-    found: dict[int, list[int]] = defaultdict(list)
+    """Return vertex -> the flows out of it that a person states: channels that a source names do not restrict these.
+
+    >>> from rosprivacy.analysis.example import NAMES, factory
+    >>> graph, _, _ = factory()
+    >>> {NAMES[vertex]: [NAMES[graph.flows[i].target] for i in flows] for vertex, flows in stated_flows(graph).items()}
+    {'/archive': ['disk']}
+    """
+    stated: dict[int, list[int]] = defaultdict(list)
     for index, flow in enumerate(graph.flows):
         if flow.role == STATED:
-            found[flow.source].append(index)
-    return dict(found)
+            stated[flow.source].append(index)
+    return dict(stated)
 
 
 def keep_named(
@@ -43,6 +49,18 @@ def keep_named(
     ----------
     elements, flows
         What statements mean for each.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import CAMERA, VIDEO, factory
+    >>> from rosprivacy.analysis.model import Bound, Place, Statement
+    >>> graph, _, hierarchy = factory()
+    >>> source = Statement("source", ("Video",), (1, 1), Place("labels.yaml", 2), through=("/video",))
+    >>> never = Statement("never", ("Video",), (1, 1), Place("labels.yaml", 9))
+    >>> bound = Bound({CAMERA: (source,), VIDEO: (never,)}, through={(CAMERA, source.through): (2,)})
+    >>> elements = {v: {"Video": facts("", said, "Video", hierarchy)} for v, said in bound.elements.items()}
+    >>> print(*keep_named(elements, {}, graph, bound, hierarchy))
+    labels.yaml:9: /video is never [Video] here, and the source at labels.yaml:2 names it for Video; keep one of them
     """
     told: set[tuple[Place, Place]] = set()
     for category, source, vertex, index in named(elements, graph, bound):
@@ -62,8 +80,18 @@ def keep_named(
 def named(
     elements: Mapping[int, Mapping[str, Facts]], graph: FlowGraph, bound: Bound
 ) -> list[tuple[str, Statement, int, int]]:
-    """Return (category, statement of a source, channel that it names, flow to it), with what wildcards match there."""
-    found: list[tuple[str, Statement, int, int]] = []
+    """Return (category, statement of a source, channel that it names, flow to it), with what wildcards match there.
+
+    >>> from rosprivacy.analysis.example import CAMERA, NAMES, factory
+    >>> from rosprivacy.analysis.model import Bound, Place, Statement
+    >>> graph, _, hierarchy = factory()
+    >>> source = Statement("source", ("Video",), (1, 1), Place("labels.yaml", 2), through=("/video",))
+    >>> bound = Bound({CAMERA: (source,)}, through={(CAMERA, source.through): (2,)})
+    >>> elements = {CAMERA: {"Video": facts("/camera", (source,), "Video", hierarchy)}}
+    >>> [(category, NAMES[channel], flow) for category, _, channel, flow in named(elements, graph, bound)]
+    [('Video', '/video', 2)]
+    """
+    rows: list[tuple[str, Statement, int, int]] = []
     matches: dict[int, list[int]] = defaultdict(list)
     for index, flow in enumerate(graph.flows if bound.through else ()):
         if flow.role == "matches":
@@ -72,19 +100,19 @@ def named(
         for category, fact in decided.items():
             for source in fact.by_role("source")[:1] if fact.through else ():
                 indices = bound.through.get((vertex, fact.through), ())
-                found += [(category, source, graph.flows[i].target, i) for i in _with_matches(indices, graph, matches)]
-    return found
+                rows += [(category, source, graph.flows[i].target, i) for i in _with_matches(indices, graph, matches)]
+    return rows
 
 
 def _with_matches(indices: Iterable[int], graph: FlowGraph, matches: Mapping[int, list[int]]) -> list[int]:
     """Flows, and those from the wildcards at their ends to the channels that these match."""
-    found = list(indices)
-    seen = set(found)
-    for index in found:
+    flows = list(indices)
+    seen = set(flows)
+    for index in flows:
         new = [after for after in matches.get(graph.flows[index].target, ()) if after not in seen]
         seen.update(new)
-        found += new
-    return found
+        flows += new
+    return flows
 
 
 def _contradiction(name: str, category: str, closer: Statement, source: Statement) -> LabelError:

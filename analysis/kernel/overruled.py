@@ -72,16 +72,26 @@ def overruled(meaning: Mapping[int, Mapping[str, Facts]], elements: tuple[Elemen
 
     What elements outside ROS are taken to be is nobody's word, and an exception for a narrower kind in one file and
     of one name is no surprise: these are not told.
+
+    >>> from rosprivacy.analysis.example import ARCHIVE, factory
+    >>> from rosprivacy.analysis.kernel.roles import facts
+    >>> from rosprivacy.analysis.model import Place, Statement
+    >>> graph, _, hierarchy = factory()
+    >>> leak = Statement("leak", ("Video",), (1, 0), Place("site.yaml", 3))
+    >>> none = Statement("no-leak", ("Video",), (1, 1), Place("robot.yaml", 7))
+    >>> meaning = {ARCHIVE: {"Video": facts("/archive", (leak, none), "Video", hierarchy)}}
+    >>> [one.message for one in overruled(meaning, graph.elements)]
+    ['/archive: leak: none takes away the leak of Video at site.yaml:3']
     """
-    found: dict[tuple[Statement, Statement], tuple[set[str], set[str]]] = defaultdict(lambda: (set(), set()))
+    outdone: dict[tuple[Statement, Statement], tuple[set[str], set[str]]] = defaultdict(lambda: (set(), set()))
     for vertex, decided in meaning.items():
         for category, fact in decided.items():
             for lost, by in fact.outdone:
                 if _counts(fact, lost, by):
-                    categories, names = found[lost, by]
+                    categories, names = outdone[lost, by]
                     categories.add(category)
                     names.add(elements[vertex].name)
-    together = (Overruled(*pair, tuple(sorted(c)), tuple(sorted(n))) for pair, (c, n) in found.items())
+    together = (Overruled(*pair, tuple(sorted(c)), tuple(sorted(n))) for pair, (c, n) in outdone.items())
     return tuple(sorted(_merged(together), key=_order))
 
 

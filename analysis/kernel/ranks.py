@@ -3,7 +3,7 @@
 In: statements, a category, the hierarchy. Out: ``Decided``.
 
 Of statements that contradict each other the higher rank wins, then the one nearer in the hierarchy. ``mundane``,
-``sensitive``, ``only`` and ``never`` are of one kind in this: each lets a category pass or closes the way to it. A leak
+``sensitive``, ``only`` and ``never`` are of one kind in this: each lets a category pass or stops it. A leak
 is never outdone by a statement about a broader or an overlapping category, and the standard channels' file is not
 outdone by a glob of the user's whose last segment is not written out. Equals that contradict are an error.
 """
@@ -57,6 +57,16 @@ def decided(name: str, said: Sequence[Statement], category: str, hierarchy: Hier
     ------
     LabelError
         If two statements of equal rank contradict each other; the message names both lines.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.model import Place, Statement
+    >>> leak = Statement("leak", ("Video",), (1, 0), Place("labels.yaml", 3), naming=GLOB)
+    >>> none = Statement("no-leak", ("Video",), (1, 1), Place("labels.yaml", 7))
+    >>> holding = decided("/archive", (leak, none), "Video", factory()[2])
+    >>> [statement.role for statement in holding.accepted], [lost.role for lost, _ in holding.outdone]
+    (['no-leak'], ['leak'])
     """
     ranked = [
         ((*statement.rank, -distance), statement)
@@ -81,7 +91,14 @@ def decided(name: str, said: Sequence[Statement], category: str, hierarchy: Hier
 
 
 def closes(statement: Statement, category: str, hierarchy: Hierarchy) -> bool:
-    """Return whether a statement about a channel or a flow says that it does not carry a category."""
+    """Return whether a statement about a channel or a flow says that it does not carry a category.
+
+    >>> from rosprivacy.analysis.example import FACES, factory
+    >>> _, bound, hierarchy = factory()
+    >>> (only,) = bound.elements[FACES]  # only: [FaceTemplate]
+    >>> closes(only, "Video", hierarchy), closes(only, "FaceTemplate", hierarchy)
+    (True, False)
+    """
     if statement.role == "only":
         return _named_distance(statement, category, hierarchy) is None
     return statement.role == "mundane" or (
@@ -90,12 +107,25 @@ def closes(statement: Statement, category: str, hierarchy: Hierarchy) -> bool:
 
 
 def by_line(statement: Statement) -> tuple[str, int, str]:
-    """Return the key by which statements stand in the order of files and lines."""
+    """Return the key by which statements stand in the order of files and lines.
+
+    >>> from rosprivacy.analysis.example import ARCHIVE, CAMERA, factory
+    >>> _, bound, _ = factory()
+    >>> said = (*bound.elements[CAMERA], *bound.elements[ARCHIVE])
+    >>> [(str(statement.place), statement.role) for statement in sorted(said, key=by_line)]
+    [('labels.yaml:1', 'leak'), ('labels.yaml:2', 'source')]
+    """
     return (statement.place.file, statement.place.line, statement.role)
 
 
 def in_words(statement: Statement) -> str:
-    """Return what a statement says, in the words of label files."""
+    """Return what a statement says, in the words of label files.
+
+    >>> from rosprivacy.analysis.example import FACE_ID, FACES, FILTER, factory
+    >>> _, bound, _ = factory()
+    >>> [in_words(*bound.elements[vertex]) for vertex in (FACE_ID, FILTER, FACES)]
+    ['derives FaceTemplate from Video', 'sanitizer (pseudonymise)', 'only [FaceTemplate]']
+    """
     if statement.role in NONE_OF.values():
         return f"{statement.role.removeprefix('no-')}: none"
     if statement.role == "sanitizer":

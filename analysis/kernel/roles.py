@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Statement
 
 TAKE_BACK = ("no-source", "no-leak")  # they hold, but review nothing
-ADDS = frozenset({"source", "leak", *TAKE_BACK})  # what they say takes no data's way away
+ADDS = frozenset({"source", "leak", *TAKE_BACK})  # what they say stops no data
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,12 +101,20 @@ def facts(name: str, said: Sequence[Statement], category: str, hierarchy: Hierar
     ------
     LabelError
         If two statements of equal rank contradict each other; the message names both lines.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import FILTER, factory
+    >>> _, bound, hierarchy = factory()
+    >>> cleaning = facts("/filter", bound.elements[FILTER], "Video", hierarchy)
+    >>> cleaning.roles, cleaning.passes, cleaning.pseudonymises
+    (('sanitizer',), False, True)
     """
     return _sum_up(decided(name, said, category, hierarchy), category, hierarchy)
 
 
-def _sum_up(found: Decided, category: str, hierarchy: Hierarchy) -> Facts:
-    accepted = found.accepted
+def _sum_up(decided: Decided, category: str, hierarchy: Hierarchy) -> Facts:
+    accepted = decided.accepted
     by_role = {role: [s for s in accepted if s.role == role] for role in {s.role for s in accepted}}
     sanitizers = by_role.get("sanitizer", [])
     mundane = by_role.get("mundane", [])
@@ -129,6 +137,6 @@ def _sum_up(found: Decided, category: str, hierarchy: Hierarchy) -> Facts:
         method=method,
         accepted=accepted,
         closers=tuple(sorted(closers, key=by_line)),
-        outdone=found.outdone,
+        outdone=decided.outdone,
         reviewers=tuple(sorted((s for s in accepted if s not in closers and s.role not in ADDS), key=by_line)),
     )

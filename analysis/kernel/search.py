@@ -77,6 +77,17 @@ def search(net: Net, starts: Iterable[int], allowed: int, stop: Mapping[int, int
     Notes
     -----
     O(flows · levels at which bits are new to their source).
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import ARCHIVE, CAMERA, FACE_ID, factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> from rosprivacy.analysis.kernel.states import Net
+    >>> net = Net.of(spread(*factory()))
+    >>> reach = search(net, [CAMERA], net.spread.all_bits, {})
+    >>> past = search(net, [CAMERA], net.spread.all_bits, {FACE_ID: net.spread.all_bits})
+    >>> [some.level(ARCHIVE, net.spread.both("FaceTemplate")) for some in (reach, past)]
+    [4, None]
     """
     spread = net.spread
     reach = Search()
@@ -161,7 +172,16 @@ def _leave(reach: Search, vertex: int, bits: int, origin: int | None, leaving: d
 
 
 def present(reach: Search, vertex: int) -> int:
-    """Bits that arrive at a vertex, start there, or are made there."""
+    """Bits that arrive at a vertex, start there, or are made there.
+
+    >>> from rosprivacy.analysis.example import CAMERA, FACE_ID, FACES, factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> from rosprivacy.analysis.kernel.states import Net
+    >>> net = Net.of(spread(*factory()))
+    >>> reach = search(net, [CAMERA], net.spread.all_bits, {})
+    >>> [net.spread.names(present(reach, vertex)) for vertex in (CAMERA, FACE_ID, FACES)]
+    [('Video',), ('FaceTemplate', 'Video'), ('FaceTemplate',)]
+    """
     made = 0
     for bits, origin in reach.left.get(vertex, ()):
         if origin is not None:
@@ -176,6 +196,17 @@ def path_to(net: Net, reach: Search, vertex: int, bit: int) -> list[tuple[int, i
     -------
     steps
         (flow, or ``START`` for the first; vertex; bit with which data is there), source first.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import ARCHIVE, CAMERA, NAMES, factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> from rosprivacy.analysis.kernel.states import Net
+    >>> net = Net.of(spread(*factory()))
+    >>> reach = search(net, [CAMERA], net.spread.all_bits, {})
+    >>> templates = net.spread.bits.plain(net.spread.categories.index("FaceTemplate"))
+    >>> [(NAMES[v], *net.spread.names(1 << bit)) for _, v, bit in path_to(net, reach, ARCHIVE, templates)][1:4]
+    [('/video', 'Video'), ('/face_id', 'Video'), ('/faces', 'FaceTemplate')]
     """
     graph, single = net.spread.graph, net.spread.flow_emits
     steps: list[tuple[int, int, int]] = []

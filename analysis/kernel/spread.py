@@ -43,6 +43,8 @@ class Spread:
         Channel -> bits that a source names it for.
     standard
         Channels taken as mundane on a shipped file's word alone (rule S13).
+    absent
+        Nodes that a label says are not on the robot; what is sent to them gets to nobody.
     overruled
         Sources and leaks that a statement says and another takes away.
     made
@@ -69,6 +71,7 @@ class Spread:
     flow_begins: dict[int, int] = field(default_factory=dict)
     named: dict[int, int] = field(default_factory=dict)
     standard: set[int] = field(default_factory=set)
+    absent: set[int] = field(default_factory=set)
     overruled: tuple[Overruled, ...] = ()
     made: set[int] = field(default_factory=set)
     arrives: dict[int, int] = field(default_factory=dict)
@@ -89,7 +92,9 @@ class Spread:
         return self.bits.both(self.categories.index(category)) if category in self.categories else 0
 
     def present(self, vertex: int) -> int:
-        """What arrives at or starts from an element, or is carried by a channel."""
+        """What arrives at or starts from an element, or is carried by a channel; nothing at what is not there."""
+        if vertex in self.absent:
+            return 0
         arrives, leaves = self.arrives.get(vertex, 0), self.leaves.get(vertex, 0)
         return leaves if self.graph.elements[vertex].is_channel else arrives | leaves
 

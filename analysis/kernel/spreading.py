@@ -15,6 +15,7 @@ from rosprivacy.analysis.kernel.named_channels import keep_named, named, stated_
 from rosprivacy.analysis.kernel.overruled import overruled
 from rosprivacy.analysis.kernel.roles import NOTHING_SAID, Facts, facts
 from rosprivacy.analysis.kernel.spread import Spread
+from rosprivacy.analysis.model import Method
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
@@ -32,11 +33,18 @@ def spread(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy) -> Spread:
     ------
     InputErrors
         If statements of equal rank contradict each other.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import ARCHIVE, factory
+    >>> carried = spread(*factory())
+    >>> carried.planes(carried.arrives[ARCHIVE])  # as they are, pseudonymised
+    (('FaceTemplate',), ('Video',))
     """
-    found = meaning(graph, bound, hierarchy, emitted(bound.elements.values()))
-    network = GraphArrays.of(found)
-    fill(found, *fixpoint(network.edges, network.emitted, network.keep, network.derivations))
-    return found
+    result = meaning(graph, bound, hierarchy, emitted(bound.elements.values()))
+    network = GraphArrays.of(result)
+    fill(result, *fixpoint(network.edges, network.emitted, network.keep, network.derivations))
+    return result
 
 
 def meaning(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, categories: Iterable[str]) -> Spread:
@@ -51,16 +59,43 @@ def meaning(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, categories: It
     ------
     InputErrors
         If statements of equal rank contradict each other.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import ARCHIVE, factory
+    >>> labelled = meaning(*factory(), ["FaceTemplate", "Video"])
+    >>> labelled.names(labelled.leaks[ARCHIVE]), labelled.arrives
+    (('FaceTemplate', 'Video'), {})
     """
-    categories = tuple(sorted(categories))
-    found = Spread(graph, categories)
+    spread = Spread(graph, tuple(sorted(categories)))
+    problems = _decide(spread, bound, hierarchy)
+    spread.overruled = overruled(spread.facts, graph.elements)
+    problems += [error for one in spread.overruled if (error := one.error())]
+    problems += keep_named(spread.facts, spread.flow_facts, graph, bound, hierarchy)
+    restricted = any(statement.through for said in bound.elements.values() for statement in said)
+    stated = stated_flows(graph) if restricted else {}
+    for category, _, vertex, _ in named(spread.facts, graph, bound):
+        if category in spread.categories:
+            spread.named[vertex] = spread.named.get(vertex, 0) | spread.both(category)
+    for vertex in bound.elements:
+        _set_vertex(spread, vertex, bound, stated)
+    for index, kept in spread.flow_facts.items():
+        spread.flow_keeps[index] = _bits(spread, kept, lambda fact: fact.passes)
+    if problems:
+        raise InputErrors(problems)
+    return spread
+
+
+def _decide(spread: Spread, bound: Bound, hierarchy: Hierarchy) -> list[InputError]:
+    """Put in what each element and flow does with each category; return where statements contradict each other."""
+    elements, flows = spread.graph.elements, spread.graph.flows
     problems: list[InputError] = []
     decided: dict[tuple[tuple[Statement, ...], str], Facts] = {}
 
     def decide(said: tuple[Statement, ...], name: str) -> dict[str, Facts]:
         mentioned = {category for statement in said for category in statement.categories}
         result = {}
-        for category in sorted(mentioned.union(categories) or hierarchy.ancestors):
+        for category in sorted(mentioned.union(spread.categories) or hierarchy.ancestors):
             if (said, category) not in decided:
                 try:
                     decided[said, category] = facts(name, said, category, hierarchy)
@@ -71,29 +106,21 @@ def meaning(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, categories: It
         return result
 
     for vertex, said in bound.elements.items():
-        found.facts[vertex] = decide(said, graph.elements[vertex].name)
+        spread.facts[vertex] = decide(said, elements[vertex].name)
     for index, said in bound.flows.items():
-        ends = graph.elements[graph.flows[index].source], graph.elements[graph.flows[index].target]
-        found.flow_facts[index] = decide(said, f"the flow {ends[0].name} -> {ends[1].name}")
-    found.overruled = overruled(found.facts, graph.elements)
-    problems += [error for one in found.overruled if (error := one.error())]
-    problems += keep_named(found.facts, found.flow_facts, graph, bound, hierarchy)
-    restricted = any(statement.through for said in bound.elements.values() for statement in said)
-    stated = stated_flows(graph) if restricted else {}
-    for category, _, vertex, _ in named(found.facts, graph, bound):
-        if category in categories:
-            found.named[vertex] = found.named.get(vertex, 0) | found.both(category)
-    for vertex in bound.elements:
-        _set_vertex(found, vertex, bound, stated)
-    for index, kept in found.flow_facts.items():
-        found.flow_keeps[index] = _bits(found, kept, lambda fact: fact.passes)
-    if problems:
-        raise InputErrors(problems)
-    return found
+        source, target = elements[flows[index].source], elements[flows[index].target]
+        spread.flow_facts[index] = decide(said, f"the flow {source.name} -> {target.name}")
+    return problems
 
 
 def emitted(elements: Iterable[Iterable[Statement]]) -> set[str]:
-    """Return the categories that a source names or a derivation makes: only these have bits (rule S7)."""
+    """Return the categories that a source names or a derivation makes: only these have bits (rule S7).
+
+    >>> from rosprivacy.analysis.example import factory
+    >>> _, bound, _ = factory()
+    >>> sorted(emitted(bound.elements.values()))
+    ['FaceTemplate', 'Video']
+    """
     names: set[str] = set()
     for said in elements:
         for statement in said:
@@ -104,46 +131,48 @@ def emitted(elements: Iterable[Iterable[Statement]]) -> set[str]:
     return names
 
 
-def _bits(found: Spread, decided: Mapping[str, Facts], test: Any) -> int:
+def _bits(spread: Spread, decided: Mapping[str, Facts], test: Any) -> int:
     """The bits, in both planes, of the emitted categories whose facts pass a test."""
     bits = 0
     for category, fact in decided.items():
-        if category in found.categories and test(fact):
-            bits |= found.both(category)
+        if category in spread.categories and test(fact):
+            bits |= spread.both(category)
     return bits
 
 
-def _set_vertex(found: Spread, vertex: int, bound: Bound, stated: Mapping[int, Collection[int]]) -> None:
-    decided = found.facts[vertex]
+def _set_vertex(spread: Spread, vertex: int, bound: Bound, stated: Mapping[int, Collection[int]]) -> None:
+    decided = spread.facts[vertex]
     if any(fact.standard for fact in decided.values()):
-        found.standard.add(vertex)
-    number = {category: i for i, category in enumerate(found.categories)}
-    found.keeps[vertex] = _bits(found, decided, lambda fact: fact.passes)
-    found.leaks[vertex] = _bits(found, decided, lambda fact: fact.leaks)
-    found.covered[vertex] = _bits(found, decided, lambda fact: fact.covered)
+        spread.standard.add(vertex)
+    if any(fact.method == Method.ABSENT for fact in decided.values()):
+        spread.absent.add(vertex)
+    number = {category: i for i, category in enumerate(spread.categories)}
+    spread.keeps[vertex] = _bits(spread, decided, lambda fact: fact.passes)
+    spread.leaks[vertex] = _bits(spread, decided, lambda fact: fact.leaks)
+    spread.covered[vertex] = _bits(spread, decided, lambda fact: fact.covered)
     for to in {to for fact in decided.values() for to in fact.derives}:  # who makes it knows of it
-        found.covered[vertex] |= found.both(to)
-    made = _closed({c: decided[c].derives for c in found.categories if c in decided})
+        spread.covered[vertex] |= spread.both(to)
+    made = _closed({c: decided[c].derives for c in spread.categories if c in decided})
     pairs: set[tuple[int, int]] = set()
     emits = 0
     for category, i in number.items():
         fact = decided.get(category, NOTHING_SAID)
-        plain, pseudonymised = found.bits.forms(i)
+        plain, pseudonymised = spread.bits.forms(i)
         after = {number[to] for to in made.get(category, ())}
         for j in after:
-            pairs.update(zip((plain, pseudonymised), found.bits.forms(j), strict=True))
-        found.made.update(after)
+            pairs.update(zip((plain, pseudonymised), spread.bits.forms(j), strict=True))
+        spread.made.update(after)
         if fact.pseudonymises:
             pairs.add((plain, pseudonymised))
-            found.keeps[vertex] |= 1 << pseudonymised  # what is pseudonymised already goes on so (rule S8)
+            spread.keeps[vertex] |= 1 << pseudonymised  # what is pseudonymised already goes on so (rule S8)
         if fact.emits:  # what a node makes of its own data leaves it like what it makes of others'
-            emits |= sum(1 << found.bits.plain(j) for j in after)
+            emits |= sum(1 << spread.bits.plain(j) for j in after)
             emits |= 0 if fact.through else 1 << plain
         for flow in {*bound.through.get((vertex, fact.through), ()), *stated.get(vertex, ())} if fact.through else ():
-            found.flow_emits[flow] = found.flow_emits.get(flow, 0) | 1 << plain
-            found.flow_begins[vertex] = found.flow_begins.get(vertex, 0) | 1 << plain
-    found.derives[vertex] = tuple(sorted(pairs))
-    found.emits[vertex] = emits
+            spread.flow_emits[flow] = spread.flow_emits.get(flow, 0) | 1 << plain
+            spread.flow_begins[vertex] = spread.flow_begins.get(vertex, 0) | 1 << plain
+    spread.derives[vertex] = tuple(sorted(pairs))
+    spread.emits[vertex] = emits
 
 
 def _closed(derives: Mapping[str, tuple[str, ...]]) -> dict[str, set[str]]:
@@ -159,11 +188,19 @@ def _closed(derives: Mapping[str, tuple[str, ...]]) -> dict[str, set[str]]:
     return {category: after - {category} for category, after in made.items()}
 
 
-def fill(found: Spread, arrives: Bits, leaves: Bits) -> None:
-    """Put the fixpoint in; rows are vertices of its network, of which elements are the first."""
-    count = len(found.graph.elements)
-    found.arrives = as_numbers(arrives[:count])
-    found.leaves = as_numbers(leaves[:count])
-    found.sent = dict(found.leaves)
-    for vertex, bits in found.flow_begins.items():  # through one channel only is still from here
-        found.leaves[vertex] = found.leaves.get(vertex, 0) | bits
+def fill(spread: Spread, arrives: Bits, leaves: Bits) -> None:
+    """Put the fixpoint in; rows are vertices of its network, of which elements are the first.
+
+    >>> from rosprivacy.analysis.example import ROSOUT, factory
+    >>> labelled = meaning(*factory(), ["FaceTemplate", "Video"])
+    >>> network = GraphArrays.of(labelled)
+    >>> fill(labelled, *fixpoint(network.edges, network.emitted, network.keep, network.derivations))
+    >>> labelled.names(labelled.arrives[ROSOUT]), labelled.leaves.get(ROSOUT, 0)
+    (('Video',), 0)
+    """
+    count = len(spread.graph.elements)
+    spread.arrives = as_numbers(arrives[:count])
+    spread.leaves = as_numbers(leaves[:count])
+    spread.sent = dict(spread.leaves)
+    for vertex, bits in spread.flow_begins.items():  # through one channel only is still from here
+        spread.leaves[vertex] = spread.leaves.get(vertex, 0) | bits

@@ -18,28 +18,46 @@ if TYPE_CHECKING:
 SAYS_OTHERWISE = ("sensitive", "only")
 
 
-def reached(found: Spread, mask: int) -> tuple[tuple[Element, tuple[str, ...]], ...]:
-    """Return (channel, categories that get to it and stop there), one for both legs and sides of a channel."""
-    elements = found.graph.elements
+def reached(spread: Spread, mask: int) -> tuple[tuple[Element, tuple[str, ...]], ...]:
+    """Return (channel, categories that get to it and stop there), one for both legs and sides of a channel.
+
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> carried = spread(*factory())
+    >>> [(channel.name, names) for channel, names in reached(carried, carried.all_bits)]
+    [('/rosout', ('Video',))]
+    """
+    elements = spread.graph.elements
     bits: dict[tuple[str, str, str], int] = defaultdict(int)
     first: dict[tuple[str, str, str], Element] = {}
-    for index, flow in enumerate(found.graph.flows if found.standard else ()):
-        if flow.target in found.standard:
-            stopped = found.sends(index) & mask & ~found.keeps.get(flow.target, found.all_bits)
-            standard = [c for c in found.names(stopped) if found.facts[flow.target][c].standard]
+    for index, flow in enumerate(spread.graph.flows if spread.standard else ()):
+        if flow.target in spread.standard:
+            stopped = spread.sends(index) & mask & ~spread.keeps.get(flow.target, spread.all_bits)
+            standard = [c for c in spread.names(stopped) if spread.facts[flow.target][c].standard]
             if standard:
                 element = elements[flow.target]
-                bits[element.identity] |= sum(found.both(name) for name in standard)
+                bits[element.identity] |= sum(spread.both(name) for name in standard)
                 first.setdefault(element.identity, element)
-    return tuple((first[key], found.names(bits[key])) for key in sorted(bits))
+    return tuple((first[key], spread.names(bits[key])) for key in sorted(bits))
 
 
-def unchanged(found: Spread, bound: Bound) -> tuple[Element, ...]:
-    """Return the channels of which a glob with an open end says that they may carry data, and does not count."""
-    elements = found.graph.elements
+def unchanged(spread: Spread, bound: Bound) -> tuple[Element, ...]:
+    """Return the channels of which a glob with an open end says that they may carry data, and does not count.
+
+    >>> from dataclasses import replace
+    >>> from rosprivacy.analysis.example import ROSOUT, factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> from rosprivacy.analysis.model import Place, Statement
+    >>> graph, bound, hierarchy = factory()
+    >>> said = Statement("sensitive", (), (1, 0), Place("labels.yaml", 6), naming=GLOB)
+    >>> bound = replace(bound, elements={**bound.elements, ROSOUT: (*bound.elements[ROSOUT], said)})
+    >>> [channel.name for channel in unchanged(spread(graph, bound, hierarchy), bound)]
+    ['/rosout']
+    """
+    elements = spread.graph.elements
     globs = {
         elements[vertex].identity: elements[vertex]
-        for vertex in sorted(found.standard, reverse=True)
+        for vertex in sorted(spread.standard, reverse=True)
         for said in bound.elements[vertex]
         if said.naming == GLOB and said.rank[0] > STANDARD and said.role in SAYS_OTHERWISE
     }

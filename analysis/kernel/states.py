@@ -90,7 +90,14 @@ class States:
 
 
 def made(spread: Spread, vertex: int, bits: int) -> int:
-    """Return the bits that an element makes of some that arrive."""
+    """Return the bits that an element makes of some that arrive.
+
+    >>> from rosprivacy.analysis.example import FACE_ID, factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> carried = spread(*factory())
+    >>> carried.names(made(carried, FACE_ID, carried.both("Video")))
+    ('FaceTemplate',)
+    """
     result = 0
     for before, after in spread.derives.get(vertex, ()):
         result |= (bits >> before & 1) << after
@@ -104,12 +111,27 @@ def onward(spread: Spread, vertex: int, bits: int, opened: int = 0) -> int:
     ----------
     opened
         Bits that pass although labels close the element for them.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import FILTER, factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> carried = spread(*factory())
+    >>> carried.planes(onward(carried, FILTER, carried.both("Video")))  # as it is, pseudonymised
+    ((), ('Video',))
     """
     return bits & (spread.keeps.get(vertex, spread.all_bits) | opened) | made(spread, vertex, bits)
 
 
 def back(spread: Spread, vertex: int, bits: int, opened: int = 0) -> int:
-    """Return the bits that have to arrive at an element for some to leave it: ``onward``, turned around."""
+    """Return the bits that have to arrive at an element for some to leave it: ``onward``, turned around.
+
+    >>> from rosprivacy.analysis.example import FACE_ID, factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> carried = spread(*factory())
+    >>> carried.names(back(carried, FACE_ID, carried.both("FaceTemplate")))
+    ('FaceTemplate', 'Video')
+    """
     result = bits & (spread.keeps.get(vertex, spread.all_bits) | opened)
     for before, after in spread.derives.get(vertex, ()):
         result |= (bits >> after & 1) << before
@@ -117,5 +139,12 @@ def back(spread: Spread, vertex: int, bits: int, opened: int = 0) -> int:
 
 
 def back_from(spread: Spread, vertex: int, bits: int, opened: int = 0) -> int:
-    """Return the bits that have to arrive for some to be there: a node has what arrives, a channel what it carries."""
+    """Return the bits that have to arrive for some to be there: a node has what arrives, a channel what it carries.
+
+    >>> from rosprivacy.analysis.example import FACES, FILTER, factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> carried = spread(*factory())
+    >>> [carried.planes(back_from(carried, vertex, carried.both("Video"))) for vertex in (FACES, FILTER)]
+    [((), ()), (('Video',), ('Video',))]
+    """
     return back(spread, vertex, bits, opened) | (0 if spread.graph.elements[vertex].is_channel else bits)

@@ -51,9 +51,19 @@ class _Rights:
 
 
 def affected(before: Analysis, after: Analysis) -> tuple[Affected, ...]:
-    """Return who gets less after than before; O(flows)."""
+    """Return who gets less after than before; O(flows).
+
+    >>> from dataclasses import replace
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.findings.findings import analyse
+    >>> graph, bound, hierarchy = factory()
+    >>> denied = replace(graph, flows=graph.flows[:7] + graph.flows[8:])  # /video -> /face_id
+    >>> less = affected(analyse(graph, bound, hierarchy), analyse(denied, bound, hierarchy))
+    >>> [(one.element.name, [name for _, _, name, _ in one.unread], bool(one.filtered)) for one in less]
+    [('/archive', [], True), ('/face_id', ['/video'], False), ('disk', [], True)]
+    """
     was, becomes = _rights(before), _rights(after)
-    found = []
+    rows = []
     for element in sorted(was, key=lambda e: e.sort_key()):
         old, new = was[element], becomes.get(element, _Rights.none())
         lost = {at: names - new.reads[at] for at, names in old.reads.items() if at in new.reads}
@@ -65,20 +75,20 @@ def affected(before: Analysis, after: Analysis) -> tuple[Affected, ...]:
             tuple(sorted(at for at, names in new.without.items() if at in old.without and names - old.without[at])),
         )
         if less != Affected(element):
-            found.append(less)
-    return tuple(found)
+            rows.append(less)
+    return tuple(rows)
 
 
 def _rights(analysis: Analysis) -> dict[Element, _Rights]:
-    graph, found = analysis.graph, analysis.spread
+    graph, spread = analysis.graph, analysis.spread
     rights: dict[Element, _Rights] = defaultdict(_Rights.none)
     for index, flow in enumerate(graph.flows):
         source, target = graph.elements[flow.source], graph.elements[flow.target]
         for reads, mine, other in ((True, target, source), (False, source, target)):
-            if mine.is_channel:
+            if mine.is_channel or (flow.target if reads else flow.source) in spread.absent:
                 continue
             if reads:
-                rights[mine].reads[other.shown_as].update(found.names(found.along(index)))
+                rights[mine].reads[other.shown_as].update(spread.names(spread.along(index)))
             else:
                 rights[mine].writes.add(other.shown_as)
             if other.pattern:

@@ -1,7 +1,7 @@
 """What could be changed so that data no longer gets there: filters, reviews, grants set to DENY, each with its cost.
 
-In: an analysis, the places on the ways to its open findings, the limits that the user sets. Out: ``Candidate``s. What
-is on its way to a time-critical node is never filtered nor cut.
+In: an analysis, the places on the paths to its open findings, the limits that the user sets. Out: ``Candidate``s. What
+is on a path to a time-critical node is never filtered nor cut.
 """
 
 from __future__ import annotations
@@ -79,7 +79,13 @@ class Candidate:
 
 
 def uncut(changes: Iterable[Candidate]) -> Callable[[Arc], bool]:
-    """Return the test whether an arc is cut by none of some changes, made once for many arcs."""
+    """Return the test whether an arc is cut by none of some changes, made once for many arcs.
+
+    >>> from rosprivacy.analysis.mitigation.cut_network import Arc
+    >>> passes = uncut([Candidate(FILTER, 10, flows=frozenset({7}), categories=frozenset({1}))])
+    >>> [passes(Arc(2, 3, category, flow)) for category, flow in ((1, 7), (0, 7), (1, 8))]
+    [False, True, True]
+    """
     flows: set[int] = set()
     filtered: set[At] = set()
     reviewed: set[At] = set()
@@ -96,12 +102,27 @@ def uncut(changes: Iterable[Candidate]) -> Callable[[Arc], bool]:
 def candidates(
     places: ChangeSites, arcs: Sequence[Arc], denials: Callable[[Collection[int]], Sequence[Denial]]
 ) -> tuple[Candidate, ...]:
-    """Return the changes that could be made on some ways, in a stable order: reviews, filters, denials.
+    """Return the changes that could be made on some paths, in a stable order: reviews, filters, denials.
 
     Parameters
     ----------
     denials
         Says of flows what grants would have to be set to DENY for each to go, and what else would go with it.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import ARCHIVE, CAMERA, NAMES, factory
+    >>> from rosprivacy.analysis.findings.findings import analyse
+    >>> from rosprivacy.analysis.kernel.states import Net
+    >>> from rosprivacy.analysis.mitigation.change_sites import ChangeSites
+    >>> from rosprivacy.analysis.mitigation.cut_network import Group, cut_network
+    >>> from rosprivacy.analysis.mitigation.limits import Limits
+    >>> analysis = analyse(*factory())
+    >>> net = Net.of(analysis.spread)
+    >>> network = cut_network(net, [Group((CAMERA,))], [net.spread.categories.index("FaceTemplate")])
+    >>> changes = candidates(ChangeSites(analysis, Limits(), {ARCHIVE}, {}), network.arcs, lambda flows: ())
+    >>> [(change.kind, change.cost, [NAMES[v] for v in (*change.channels, *change.readers)]) for change in changes[:3]]
+    [('review', 1, ['/video']), ('filter', 30, ['/face_id', '/filter']), ('filter', 10, ['/archive'])]
     """
     by_flow: dict[int, set[int]] = defaultdict(set)
     by_channel: dict[int, set[int]] = defaultdict(set)
@@ -110,14 +131,14 @@ def candidates(
             by_flow[arc.flow].add(arc.category)
         if arc.channel >= 0:
             by_channel[arc.channel].add(arc.category)
-    found = [*_reviews(places, by_channel), *_filters(places, by_flow)]
+    changes = [*_reviews(places, by_channel), *_filters(places, by_flow)]
     if DENY in places.limits.kinds:
-        found += _denied(places, denials(sorted(by_flow)))
-    return tuple(found)
+        changes += _denied(places, denials(sorted(by_flow)))
+    return tuple(changes)
 
 
 def _reviews(places: ChangeSites, by_channel: Mapping[int, set[int]]) -> Iterator[Candidate]:
-    """A channel on the way that nobody has reviewed may turn out to carry none; a wildcard is not one channel."""
+    """A channel on a path that nobody has reviewed may turn out to carry none; a wildcard is not one channel."""
     elements, spread = places.graph.elements, places.spread
     parts: dict[tuple[str, str, str], list[int]] = defaultdict(list)
     for vertex, element in enumerate(elements):

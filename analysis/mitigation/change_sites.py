@@ -54,7 +54,7 @@ class ChangeSites:
 
     def readers(self, flow: int, categories: int | None = None) -> set[int]:
         """Who gets what goes along a flow, next after the channel: of some categories, or of all there is."""
-        found: set[int] = set()
+        readers: set[int] = set()
         seen = {flow}
         waiting = [flow]
         while waiting:
@@ -63,12 +63,12 @@ class ChangeSites:
                 continue
             target = self.graph.flows[here].target
             if not self.graph.elements[target].is_channel:
-                found.add(target)
+                readers |= {target} - self.spread.absent
                 continue
             new = [after for after in self.out[target] if after not in seen]
             seen.update(new)
             waiting += new
-        return found
+        return readers
 
     def _before_critical(self) -> frozenset[At]:
         """Where (vertex, category) arrives and goes on to a time-critical node, not through a leak, or is at one."""

@@ -29,6 +29,17 @@ def with_changes(
     ----------
     wild
         Per kind of channel, the wildcards that cover a channel whatever it is called.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import VIDEO, factory
+    >>> from rosprivacy.analysis.findings.findings import analyse
+    >>> from rosprivacy.analysis.mitigation.proposals import ProposedStep
+    >>> graph, bound, hierarchy = factory()
+    >>> review = ProposedStep("review", 1, ("Video",), channel=graph.elements[VIDEO])
+    >>> changed = with_changes(graph, bound, [review], {})
+    >>> len(analyse(graph, bound, hierarchy).findings), len(analyse(*changed, hierarchy).findings)
+    (4, 0)
     """
     elements, flows = dict(bound.elements), dict(bound.flows)
     filtered: list[int] = []
@@ -47,7 +58,15 @@ def with_changes(
 
 
 def opens(graph: FlowGraph, flow: int, wild: Mapping[str, frozenset[int]]) -> Iterator[tuple[int, int]]:
-    """Yield (from, to), vertices, of the flows that come to be with a filter in a flow."""
+    """Yield (from, to), vertices, of the flows that come to be with a filter in a flow.
+
+    >>> from rosprivacy.analysis.example import FILTER, factory
+    >>> from rosprivacy.analysis.model import Element
+    >>> graph, _, _ = factory()
+    >>> graph = replace(graph, elements=(*graph.elements, Element("topic", "/*", side="read")))
+    >>> list(opens(graph, 4, {"topic": frozenset({9})})) == [(FILTER, 9)]
+    True
+    """
     source, target = graph.flows[flow].source, graph.flows[flow].target
     before = graph.elements[target].is_channel
     channel = graph.elements[target if before else source]
@@ -71,6 +90,16 @@ def opened(
         Flows with a filter in them.
     changed
         The statements to add to; ``bound`` are those before the filters.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.model import Element
+    >>> graph, bound, _ = factory()
+    >>> graph = replace(graph, elements=(*graph.elements, Element("topic", "/*", side="read")))
+    >>> grown, _ = opened(graph, bound, [4], {"topic": frozenset({9})}, bound)
+    >>> grown.flows[len(graph.flows):]
+    (Flow(source=3, target=9, role='matches', grants=(), denials=()),)
     """
     more: list[Flow] = []
     flows, through = dict(changed.flows), {key: list(indices) for key, indices in changed.through.items()}

@@ -87,6 +87,17 @@ def cut_network(net: Net, groups: Iterable[Group], categories: Collection[int]) 
     -----
     O(flows · categories) per group and category. They share no state but the two ends: what ends a path of one category
     does not end one on which it is made into another.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import CAMERA, NAMES, factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> from rosprivacy.analysis.kernel.states import Net
+    >>> net = Net.of(spread(*factory()))
+    >>> network = cut_network(net, [Group((CAMERA,))], [net.spread.categories.index("FaceTemplate")])
+    >>> flows = [net.spread.graph.flows[arc.flow] for arc in network.arcs if arc.flow >= 0]
+    >>> [(NAMES[flow.source], NAMES[flow.target]) for flow in flows]
+    [('/camera', '/video'), ('/video', '/face_id'), ('/face_id', '/faces'), ('/faces', '/archive')]
     """
     network = CutNetwork()
     for group in groups:
@@ -186,7 +197,18 @@ def _pruned(network: CutNetwork) -> CutNetwork:
 
 
 def a_path(network: CutNetwork, passable: Callable[[Arc], bool]) -> list[Arc] | None:
-    """Return a shortest path from the beginning to the end along arcs that are passable; None if there is none."""
+    """Return a shortest path from the beginning to the end along arcs that are passable; None if there is none.
+
+    >>> from rosprivacy.analysis.example import CAMERA, factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> from rosprivacy.analysis.kernel.states import Net
+    >>> net = Net.of(spread(*factory()))
+    >>> network = cut_network(net, [Group((CAMERA,))], [net.spread.categories.index("FaceTemplate")])
+    >>> [arc.flow for arc in a_path(network, lambda arc: True) if arc.flow >= 0]
+    [2, 7, 3, 5]
+    >>> a_path(network, lambda arc: arc.flow != 7) is None
+    True
+    """
     ahead = _ahead(network.arcs, passable)
     came: dict[int, Arc] = {}
     waiting = deque([BEGIN])
@@ -212,6 +234,16 @@ def open_ends(network: CutNetwork, passable: Callable[[Arc], bool]) -> Iterator[
         Vertex, and number of the category.
     past
         Whether it is a finding of another kind than disclosure.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import CAMERA, NAMES, factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> from rosprivacy.analysis.kernel.states import Net
+    >>> net = Net.of(spread(*factory()))
+    >>> network = cut_network(net, [Group((CAMERA,))], [net.spread.categories.index("FaceTemplate")])
+    >>> [(NAMES[vertex], past, len(path)) for (vertex, _), past, path in open_ends(network, lambda arc: True)]
+    [('/archive', False, 9)]
     """
     ahead = _ahead(network.arcs, passable)
     came: dict[int, Arc] = {}

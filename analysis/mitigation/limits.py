@@ -56,7 +56,7 @@ class Limits:
     kinds
         Of changes that are allowed at all.
     critical
-        Nodes for which data may not come late: nothing on the way to them is filtered or cut. What comes back from
+        Nodes for which data may not come late: nothing on a path to them is filtered or cut. What comes back from
         a leak is not counted, as in rule S10.
     """
 

@@ -1,4 +1,4 @@
-"""The cheapest set of changes that cuts every way of a network, and how certain it is that none is cheaper.
+"""The cheapest set of changes that cuts every path of a network, and how certain it is that none is cheaper.
 
 In: ``CutNetwork`` and ``Candidate``s. Out: ``ChangeSet``s. networkx's minimum cut gives a set of changes, and with the
 cost of a change shared among the arcs that it cuts a bound that no set undercuts. Where every change cuts one arc the
@@ -29,14 +29,14 @@ WHOLE = 720_720  # parts of a cost; many numbers divide it
 
 @dataclass(frozen=True, slots=True)
 class ChangeSet:
-    """Some changes that cut every way.
+    """Some changes that cut every path.
 
     Attributes
     ----------
     chosen
         Numbers of changes, sorted.
     lower
-        No set of the changes that cuts every way costs less.
+        No set of the changes that cuts every path costs less.
     sure
         Whether it cuts them by what is certain of the changes; else only a new analysis can tell.
     """
@@ -47,30 +47,39 @@ class ChangeSet:
     sure: bool
 
 
-def cheapest(ways: CutNetwork, changes: Sequence[Candidate], budget: int = BUDGET) -> tuple[ChangeSet, ...]:
-    """Return cuts, the one to try first coming first; the last is sure. Every way must have an arc that can be cut.
+def cheapest(network: CutNetwork, changes: Sequence[Candidate], budget: int = BUDGET) -> tuple[ChangeSet, ...]:
+    """Return cuts, the one to try first coming first; the last is sure. Every path must have an arc that can be cut.
 
     Notes
     -----
     networkx's maximum flow on the network, twice; then at most ``budget`` steps, each O(arcs) at worst.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.mitigation.candidates import Candidate
+    >>> from rosprivacy.analysis.mitigation.cut_network import Arc, CutNetwork
+    >>> network = CutNetwork([Arc(BEGIN, 2, 0, flow=5), Arc(BEGIN, 2, 0, flow=6), Arc(2, END, 0, flow=7)])
+    >>> changes = [Candidate("deny", cost, flows=frozenset({flow})) for flow, cost in ((5, 10), (6, 10), (7, 15))]
+    >>> cheapest(network, changes)
+    (ChangeSet(chosen=(2,), cost=15, lower=15, sure=True),)
     """
-    if not ways.arcs:
+    if not network.arcs:
         return (ChangeSet((), 0, 0, sure=True),)
-    sure = maybe = _Network.of(ways.arcs, changes, lambda change, arc: change.cuts(arc))
+    sure = maybe = _Network.of(network.arcs, changes, lambda change, arc: change.cuts(arc))
     if any(change.touched for change in changes):
-        maybe = _Network.of(ways.arcs, changes, lambda change, arc: change.may_cut(arc))
+        maybe = _Network.of(network.arcs, changes, lambda change, arc: change.may_cut(arc))
     certain = sure.without_the_needless(sure.minimum_cut())
     lower = maybe.bound()
     if lower < sure.cost(certain):
-        found, least = maybe.search(budget)
+        hitting, least = maybe.search(budget)
         lower = max(lower, least)
-        if found is not None and sure.cuts(found):
-            certain = found
-        elif found is not None:
+        if hitting is not None and sure.cuts(hitting):
+            certain = hitting
+        elif hitting is not None:
             other, _ = sure.search(budget)
             certain = other if other is not None else certain
-            if sure.cost(found) < sure.cost(certain):
-                return tuple(sure.cut(chosen, lower) for chosen in (found, certain))
+            if sure.cost(hitting) < sure.cost(certain):
+                return tuple(sure.cut(chosen, lower) for chosen in (hitting, certain))
     return (sure.cut(certain, lower),)
 
 
@@ -113,11 +122,11 @@ class _Network:
         return sum(self.costs[number] for number in chosen)
 
     def cuts(self, chosen: frozenset[int]) -> bool:
-        """Whether no way is left."""
-        return self.way(chosen) is None
+        """Whether no path is left."""
+        return self.cutters(chosen) is None
 
-    def way(self, chosen: frozenset[int]) -> frozenset[int] | None:
-        """The changes that would cut a way that is left, of those with the fewest arcs to cut; None if none is left."""
+    def cutters(self, chosen: frozenset[int]) -> frozenset[int] | None:
+        """The changes that would cut a path that is left, one with the fewest arcs to cut; None if none is left."""
         ahead: dict[int, list[tuple[int, tuple[int, ...]]]] = defaultdict(list)
         for tail, head, numbers in self.arcs:
             if chosen.isdisjoint(numbers):
@@ -139,12 +148,12 @@ class _Network:
         return None
 
     def _on(self, came: Mapping[int, tuple[int, tuple[int, ...]]]) -> frozenset[int]:
-        found: set[int] = set()
+        cutters: set[int] = set()
         at = END
         while at != BEGIN:
             at, numbers = came[at]
-            found.update(numbers)
-        return frozenset(found)
+            cutters.update(numbers)
+        return frozenset(cutters)
 
     def without_the_needless(self, chosen: Iterable[int]) -> frozenset[int]:
         """Some changes less those that are not needed, the dearest first."""
@@ -195,9 +204,9 @@ class _Network:
                 return None, least
             least = self.cost(hitting)
             chosen = hitting
-            while (way := self.way(chosen)) is not None:  # as many ways at once as share no change
-                sets.append(way)
-                chosen |= way
+            while (cutters := self.cutters(chosen)) is not None:  # as many paths at once as share no change
+                sets.append(cutters)
+                chosen |= cutters
             if chosen == hitting:
                 return hitting, least
 
@@ -209,13 +218,13 @@ class _Hitting:
         self.sets = sorted(set(sets), key=lambda one: (len(one), sorted(one)))
         self.costs = costs
         self.budget = budget
-        self.found: frozenset[int] | None = None
+        self.chosen: frozenset[int] | None = None
         self.least = sum(costs) + 1
 
     def best(self) -> tuple[frozenset[int] | None, int]:
         """The set, and what is left of the budget; None if that was spent."""
         self._choose(frozenset(), frozenset(), 0)
-        return (self.found if self.budget > 0 else None), self.budget
+        return (self.chosen if self.budget > 0 else None), self.budget
 
     def _choose(self, chosen: frozenset[int], refused: frozenset[int], cost: int) -> None:
         self.budget -= 1
@@ -225,7 +234,7 @@ class _Hitting:
             return
         if not left:
             if cost < self.least:
-                self.found, self.least = chosen, cost
+                self.chosen, self.least = chosen, cost
             return
         if not all(left) or cost + self._at_least(left) >= self.least:
             return

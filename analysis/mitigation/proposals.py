@@ -57,14 +57,14 @@ class Kept:
     Attributes
     ----------
     reason
-        ``itself``: the source is the leak, only another role helps. ``not-allowed``: a way has no place for a change.
-    way
-        That way.
+        ``itself``: the source is the leak, only another role helps. ``not-allowed``: a path has no place for a change.
+    path
+        That path.
     """
 
     finding: Finding
     reason: str
-    way: tuple[Element, ...]
+    path: tuple[Element, ...]
 
 
 @dataclass(frozen=True, slots=True)

@@ -62,7 +62,12 @@ class System:
 
 
 def open_findings(analysis: Analysis) -> tuple[Finding, ...]:
-    """Return the findings that are neither dismissed nor accepted."""
+    """Return the findings that are neither dismissed nor accepted.
+
+    >>> from rosprivacy.analysis.example import factory
+    >>> [(finding.category, finding.leak.name) for finding in open_findings(analyse(*factory()))]
+    [('FaceTemplate', '/archive'), ('FaceTemplate', 'disk'), ('Video', '/archive'), ('Video', 'disk')]
+    """
     return tuple(finding for finding in analysis.findings if finding.stands)
 
 
@@ -77,6 +82,18 @@ def mitigate(
         Of the system, by its options.
     budget
         Steps of the search for the cheapest set, see ``cuts``.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import factory
+    >>> graph, bound, hierarchy = factory()
+    >>> analysis = analyse(graph, bound, hierarchy)
+    >>> system = System(graph, bound, hierarchy, Options(), lambda flows: (), lambda grants: (graph, bound))
+    >>> for proposal in mitigate(system, analysis):
+    ...     print(*proposal.categories, [(step.kind, step.channel.name, step.cost) for step in proposal.steps])
+    FaceTemplate [('review', '/video', 1)]
+    Video [('review', '/filtered', 1)]
+    FaceTemplate Video [('review', '/video', 1)]
     """
     limits = limits or Limits()
     names = list(dict.fromkeys(finding.category for finding in open_findings(analysis)))
@@ -85,7 +102,7 @@ def mitigate(
 
 
 class _Work:
-    """The way to one proposal."""
+    """How one proposal is made."""
 
     def __init__(self, system: System, analysis: Analysis, limits: Limits, names: tuple[str, ...]) -> None:
         self.system = system

@@ -53,14 +53,14 @@ class PartNetwork:
     exits: Indices
 
     @classmethod
-    def of(cls, found: Spread, border: Sequence[int], unit: Sequence[int]) -> PartNetwork:
+    def of(cls, spread: Spread, border: Sequence[int], unit: Sequence[int]) -> PartNetwork:
         """Make the arrays; O(flows · log flows)."""
-        network = GraphArrays.of(found)
+        network = GraphArrays.of(spread)
         number = {vertex: i for i, vertex in enumerate(border)}
         special = {index: network.count + i for i, index in enumerate(network.special)}
         exits = [
             (special.get(index, flow.source), number[flow.target], unit[flow.source])
-            for index, flow in enumerate(found.graph.flows)
+            for index, flow in enumerate(spread.graph.flows)
             if flow.target in number
         ]
         at = np.array(border, np.int64)
@@ -88,7 +88,7 @@ class PartNetwork:
         new
             Shape (border, words).
         """
-        found: Bringer = {}
+        brought_by: Bringer = {}
         for at in np.flatnonzero(new.any(axis=1)).tolist():
             exits = self.exits[self.exits[:, 1] == at]
             for word, bits in enumerate(new[at].tolist()):
@@ -97,8 +97,8 @@ class PartNetwork:
                     if bits >> bit & 1:
                         has = brought >> np.uint64(bit) & np.uint64(1)
                         if has.any():
-                            found[at, word * WORD + bit] = int(exits[np.argmax(has), 2])
-        return found
+                            brought_by[at, word * WORD + bit] = int(exits[np.argmax(has), 2])
+        return brought_by
 
 
 @dataclass(frozen=True, slots=True)

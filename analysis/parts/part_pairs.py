@@ -155,7 +155,17 @@ def _within(units: Indices) -> Indices:
 
 
 def ends_of(spread: Spread, number: int, kinds: Sequence[Concern]) -> dict[str, Indices]:
-    """Return, by kind of finding, the vertices where data of a category ends in one; sorted."""
+    """Return, by kind of finding, the vertices where data of a category ends in one; sorted.
+
+    >>> from rosprivacy.analysis.example import NAMES, factory
+    >>> from rosprivacy.analysis.findings.concerns import concerns
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> graph, bound, hierarchy = factory()
+    >>> carried = spread(graph, bound, hierarchy)
+    >>> ends = ends_of(carried, carried.categories.index("Video"), tuple(concerns(carried, bound, hierarchy)))
+    >>> {kind: [NAMES[vertex] for vertex in vertices] for kind, vertices in ends.items()}
+    {'disclosure': ['/archive'], 'storage-limitation': ['disk'], 'third-country-transfer': []}
+    """
     both = spread.both(spread.categories[number])
     return {c.kind: np.array(sorted(v for v, bits in c.bits.items() if bits & both), np.int64) for c in kinds}
 
@@ -176,6 +186,19 @@ def how(
         What arrives at and leaves each vertex, in the order of ``STOPS``.
     sources, numbers
         Those whose own data counts, too.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import ARCHIVE, factory
+    >>> from rosprivacy.analysis.kernel.arrays import GraphArrays
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> carried = spread(*factory())
+    >>> video, one = carried.categories.index("Video"), np.array([0])
+    >>> run = CategoryRun(carried, GraphArrays.of(carried), video, carried.bits.forms(video))
+    >>> runs = [run.carried(run.begun(run.sources, one, 1), 1, stop=stop) for stop in STOPS]
+    >>> codes = how(run, runs, {DISCLOSURE: np.array([ARCHIVE])}, 1)
+    >>> forms_of(int(codes[DISCLOSURE][0, 0]))
+    ((False, True, False),)
     """
 
     def there(number: int, at: Indices) -> tuple[Flags, Flags]:

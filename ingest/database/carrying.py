@@ -93,7 +93,7 @@ class Carrying:
             self._split(vertex, labels[vertex])
 
     def _split(self, vertex: int, labels: Sequence[str]) -> None:
-        """Set apart the kinds that arrive where the label of their source stands, and go on another way than these.
+        """Set apart the kinds that arrive where the label of their source stands, and go on along other flows.
 
         A source of a narrower kind has the label, too; there nothing of the kind begins.
         """

@@ -7,35 +7,37 @@ that says the kind, a name, a ``FLOWS_TO``. A role without ``tier`` is a person'
 
 from __future__ import annotations
 
-import json
 from collections import defaultdict
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import GraphError, InputError, InputErrors, shown
 from rosprivacy.analysis.fleet.likeness import NO_ROBOTS, Likeness
 from rosprivacy.analysis.model import (
-    NAME,
     NON_ROS,
-    SEGMENT,
     STANDARD,
     Bound,
     Element,
-    Flow,
     FlowGraph,
-    Grant,
-    Method,
     Place,
     Profile,
     Statement,
 )
 from rosprivacy.analysis.non_ros import by_kind
-from rosprivacy.ingest.database.flow_statements import DATABASE, HAND, names_of, statements_of
+from rosprivacy.ingest.database.flow_statements import DATABASE, names_of, statements_of
 from rosprivacy.ingest.database.non_ros_properties import facts_of
 from rosprivacy.ingest.database.other_schemas import HINT, of_other_schemas
+from rosprivacy.ingest.database.row_facts import (
+    ADDED,
+    MATCHES,
+    denied_flow_of,
+    flow_of,
+    flows_through,
+    grants_of,
+    role_facts_of,
+    subjects_of,
+)
 from rosprivacy.ingest.database.schema import KIND_LABELS, ROLES
-from rosprivacy.ingest.labels.entries import EXACT, as_ranked_now
-from rosprivacy.ingest.policies.names import covered
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -45,8 +47,6 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import NonRosFacts
     from rosprivacy.ontology.vocabulary import Vocabulary
 
-ADDED = "flow"  # the role of a flow that a person added
-MATCHES = "matches"
 _FLOW_ROLES = {"publish", "subscribe", "request", "reply", "call", "execute", MATCHES}
 _KIND_OF = {label: kind for kind, label in KIND_LABELS.items()}
 _ROLE_OF = {kind.type: role for role, kind in ROLES.items()}
@@ -181,7 +181,7 @@ class _Reader:
                 self.problems.append(_problem(f"what is {shown(name)!r}? its labels do not say its kind", hint))
                 continue
             try:
-                _subjects(properties)
+                subjects_of(properties)
             except TypeError as error:
                 self.problems.append(_problem(f"{shown(name)!r}: {error}", "SET n.subjects = ['residents', 'staff']"))
                 continue
@@ -213,7 +213,7 @@ class _Reader:
                 continue
             said = record["properties"]
             try:
-                _grants(said, ADDED, ends[0])
+                grants_of(said, ADDED, ends[0])
                 unknown = names_of(said) - set(self._vocabulary.categories)
             except (KeyError, TypeError, ValueError, AttributeError) as error:
                 which = f"{shown(ends[0].name)} -> {shown(ends[1].name)}"
@@ -246,10 +246,10 @@ class _Reader:
         rows = [(number[a], number[b], role, key, said) for a, b, role, key, said in self._flows]
         rows.sort(key=lambda row: (*row[:3], str(row[4].get("file")), str(row[4].get("line")), row[3]))
         allowed = [row for row in rows if row[4].get("decision") != "deny"]
-        refused = [(_denied(row, elements), row[2]) for row in rows if row[4].get("decision") == "deny"]
+        refused = [(denied_flow_of(row, elements), row[2]) for row in rows if row[4].get("decision") == "deny"]
         graph = FlowGraph(
             elements,
-            tuple(_flow(row, elements) for row in allowed),
+            tuple(flow_of(row, elements) for row in allowed),
             tuple(flow for flow, role in refused if role != MATCHES),
             tuple(sorted(set(self._profiles), key=lambda p: (p.enclave, p.node, p.place.file, p.place.line))),
             view,
@@ -267,9 +267,9 @@ class _Reader:
             Bound(
                 {v: said for v, said in statements.items() if said},
                 {i: said for i, said in restrictions.items() if said},
-                _through(graph, statements),
+                flows_through(graph, statements),
                 outside,
-                subjects={v: groups for v, vertex in enumerate(vertices) if (groups := _subjects(vertex.properties))},
+                subjects={v: groups for v, vertex in enumerate(vertices) if (groups := subjects_of(vertex.properties))},
             ),
             robots,
             tuple(vertex.key for vertex in vertices),
@@ -284,7 +284,7 @@ class _Reader:
         together: dict[tuple[Any, ...], list[str]] = defaultdict(list)
         for role, category, said in self._said.get(key, ()):
             try:
-                facts = _facts(role, category, said)
+                facts = role_facts_of(role, category, said)
             except (TypeError, ValueError) as error:
                 what = (
                     f"{ROLES[role].type} of {shown(self._by_key[key].name)!r} cannot be understood: {shown(str(error))}"
@@ -301,91 +301,3 @@ class _Reader:
                 to = categories[0]  # noqa: PLW2901 - it is stored the other way round: the target is what is made
             shipped = role == "mundane" and rank[0] <= STANDARD
             yield Statement(role, names, rank, place, method, stated, to, through, shipped, naming, why)
-
-
-def _flow(row: tuple[int, int, str, str, Mapping[str, Any]], elements: tuple[Element, ...]) -> Flow:
-    source, target, role, _, said = row
-    return Flow(source, target, role, _grants(said, role, elements[target if elements[target].is_channel else source]))
-
-
-def _denied(row: tuple[int, int, str, str, Mapping[str, Any]], elements: tuple[Element, ...]) -> Flow:
-    """A flow that DENY lines take back."""
-    flow, channel = _flow(row, elements), elements[row[1] if elements[row[1]].is_channel else row[0]]
-    lines = [json.loads(line) for line in row[4].get("denials") or ()]
-    return replace(flow, denials=_lines(lines, row[2], channel, allow=False))
-
-
-def _grants(said: Mapping[str, Any], role: str, channel: Element) -> tuple[Grant, ...]:
-    """The policy lines behind a flow."""
-    lines = [said] if said.get("file") else []
-    lines += [json.loads(line) for line in said.get("further") or ()]
-    return _lines(lines, role, channel, allow=True)
-
-
-def _lines(lines: Iterable[Mapping[str, Any]], role: str, channel: Element, *, allow: bool) -> tuple[Grant, ...]:
-    return tuple(
-        Grant(
-            allow=allow,
-            role=role,
-            kind=channel.kind,
-            name=channel.name,
-            enclave=str(line.get("enclave") or ""),
-            node=str(line.get("profile") or ""),
-            place=Place(str(line["file"]), int(line.get("line") or 0)),
-        )
-        for line in lines
-    )
-
-
-def _subjects(properties: Mapping[str, Any]) -> tuple[str, ...]:
-    """Whom the data of a source are about."""
-    groups = properties.get("subjects") or []
-    if not isinstance(groups, list) or not all(isinstance(group, str) for group in groups):
-        raise TypeError("subjects is not a list of texts")
-    return tuple(sorted(set(groups)))
-
-
-def _facts(role: str, category: str, said: Mapping[str, Any]) -> tuple[Any, ...]:
-    """(role, rank, place, method, stated, what it is made of, through, every, naming, why) of a relationship."""
-    tier, specificity = said.get("tier", HAND), said.get("specificity", EXACT)
-    place = Place(str(said.get("file") or DATABASE), int(said.get("line") or 0))
-    method, stated = None, True
-    if role == "sanitizer":
-        method = Method(said["method"]) if said.get("method") else Method.PSEUDONYMISE
-        stated = bool(said.get("stated", bool(said.get("method"))))
-    made_of = str(said.get("of") or "")
-    if role == "derivation" and not made_of:
-        raise ValueError(f"it does not say of what it makes {category}: SET r.of = 'Video'")
-    through = tuple(str(name) for name in said.get("through") or ())
-    return (
-        role,
-        (int(tier), as_ranked_now(int(specificity))),
-        place,
-        method,
-        stated,
-        made_of,
-        through,
-        bool(said.get("every")),
-        str(said.get("naming") or (NAME if int(specificity) >= EXACT else SEGMENT)),  # absent in earlier versions
-        str(said.get("why") or ""),
-    )
-
-
-def _through(
-    graph: FlowGraph, statements: Mapping[int, tuple[Statement, ...]]
-) -> dict[tuple[int, tuple[str, ...]], tuple[int, ...]]:
-    """The flows of sources that are sources only through some channels."""
-    wanted = {(vertex, s.through) for vertex, said in statements.items() for s in said if s.through}
-    vertices = {vertex for vertex, _ in wanted}
-    leaving: dict[int, list[int]] = defaultdict(list)
-    for index, flow in enumerate(graph.flows):
-        if flow.source in vertices:
-            leaving[flow.source].append(index)
-    return {
-        (vertex, names): tuple(
-            index
-            for index in leaving[vertex]
-            if any(covered(name, (graph.elements[graph.flows[index].target].name,)) for name in names)
-        )
-        for vertex, names in sorted(wanted)
-    }

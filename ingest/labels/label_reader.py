@@ -11,20 +11,19 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.errors import InputError, LabelError, shown
+from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.kernel.ranks import NONE_OF
 from rosprivacy.analysis.model import CLEANS, GLOB, NAME, Diagnostic, Method, Place, Severity, Statement
-from rosprivacy.ingest.labels.entries import EXACT, SHIPPED, End, Entry, FlowEntry, naming, specificity
+from rosprivacy.ingest.labels.entries import EXACT, SHIPPED, Entry, FlowEntry, naming, specificity
+from rosprivacy.ingest.labels.name_reader import NameReader
 from rosprivacy.ingest.labels.non_ros_reader import is_non_ros, read_element, read_limits
 from rosprivacy.ingest.policies.names import LONGEST_NAME
-from rosprivacy.ingest.reading.format_reader import FileReader
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from rosprivacy.ingest.labels.non_ros_reader import Limit, Stated
     from rosprivacy.ingest.reading.yaml_values import Value
-    from rosprivacy.ontology.vocabulary import Vocabulary
 
 SECTIONS = {
     "nodes": ("node",),
@@ -37,7 +36,6 @@ SIX_LISTS = ("source", "leak", "conduit", "sanitizer", "sensitive", "mundane")
 NODE_KEYS = ("source", "leak", "sanitizer", "conduit", "derives", "subjects", "absent", "note")
 SAYS_NOTHING = ("subjects", "note")  # of what data does
 CHANNEL_KEYS = ("only", "never", "note")
-END_KINDS = ("node", "topic", "service", "action")
 FLOW_KEYS = ("from", "to", "only", "never", "note")
 OUTSIDE = ("elements", "limits")
 NONE = "none"  # in place of categories: takes back what labels of lower rank say (rule S7)
@@ -45,19 +43,16 @@ LONGEST_GROUP = 100  # characters of a group of persons
 
 
 @dataclass
-class LabelReader(FileReader):
+class LabelReader(NameReader):
     """Walks the file once, from the outside in."""
 
-    vocabulary: Vocabulary
     category: str
     tier: int
     above: int = 0
-    diagnostics: list[Diagnostic] = field(default_factory=list)
     entries: list[Entry] = field(default_factory=list)
     flows: list[FlowEntry] = field(default_factory=list)
     elements: list[Stated] = field(default_factory=list)
     limits: list[Limit] = field(default_factory=list)
-    error: type[InputError] = field(default=LabelError, kw_only=True)
 
     def rank(self, specific: int) -> tuple[int, int]:
         """Return the rank of a statement."""
@@ -138,7 +133,7 @@ class LabelReader(FileReader):
             elif key == "source":
                 yield from self._source(value, at, rank)
             elif key in ("leak", "conduit"):
-                for name in self._categories(value, key):
+                for name in self.categories_of(value, key):
                     yield Statement(key, (name,), rank, at)
             elif key == "sanitizer":
                 yield from self._sanitizer(value, at, rank)
@@ -149,14 +144,14 @@ class LabelReader(FileReader):
 
     def _source(self, value: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
         if value.kind != "map":
-            for name in self._categories(value, "source"):
+            for name in self.categories_of(value, "source"):
                 yield Statement("source", (name,), rank, place)
             return
-        self._not_empty(value, "source")
+        self.not_empty(value, "source")
         for written, line, channels in value.entries:
             name = self.kind_of_data(written, line)
             through = tuple(
-                sorted({self._name(item) for item in self.list_of(channels, f"source of {shown(written)}")})
+                sorted({self.absolute_name(item) for item in self.list_of(channels, f"source of {shown(written)}")})
             )
             if not through:
                 self.problem(line, f"source of {shown(written)} names no channel", "name them: [/topic]")
@@ -164,10 +159,10 @@ class LabelReader(FileReader):
 
     def _sanitizer(self, value: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
         if value.kind != "map":
-            for name in self._categories(value, "sanitizer"):
+            for name in self.categories_of(value, "sanitizer"):
                 yield Statement("sanitizer", (name,), rank, place, Method.PSEUDONYMISE, stated=False)
             return
-        self._not_empty(value, "sanitizer")
+        self.not_empty(value, "sanitizer")
         for written, line, method in value.entries:
             name = self.kind_of_data(written, line)
             if method.kind == "empty":
@@ -187,7 +182,7 @@ class LabelReader(FileReader):
                     item.line, f"a derivation is a map, not a {item.kind}", "write {from: Video, to: FaceTemplate}"
                 )
                 continue
-            ends = {key: self._category_of(end) for key, _, end in self.entries_of(item, ("from", "to"))}
+            ends = {key: self.category_of(end) for key, _, end in self.entries_of(item, ("from", "to"))}
             if len(ends) < len(("from", "to")):
                 self.problem(item.line, "a derivation needs from and to", "write {from: Video, to: FaceTemplate}")
             elif all(ends.values()):
@@ -233,7 +228,7 @@ class LabelReader(FileReader):
         named: set[str] = set()
         for key, line, value in self.entries_of(label, keys):
             if key in ("only", "never"):
-                names = tuple(self._categories(value, key))
+                names = tuple(self.categories_of(value, key))
                 for name in sorted(named.intersection(names)):
                     self.problem(line, f"{name} is under only and under never", "name it under one of them")
                 named.update(names)
@@ -272,7 +267,7 @@ class LabelReader(FileReader):
         for role, line, value in self.entries_of(top, SIX_LISTS):
             kinds = SECTIONS["channels" if role in ("sensitive", "mundane") else "nodes"]
             for item in self.list_of(value, role):
-                element = self._name(item)
+                element = self.absolute_name(item)
                 place, rank = Place(self.file, item.line), self.rank(specificity(element))
                 method = Method.ANONYMISE if role == "sanitizer" else None
                 statement = Statement(role, (name,), rank, place, method, naming=naming(element))
@@ -280,72 +275,6 @@ class LabelReader(FileReader):
             if role == "sanitizer" and value.items:
                 message = "a sanitizer of the paper's six lists ends the category; the method is not stated"
                 self.diagnostics.append(Diagnostic(Place(self.file, line), Severity.NOTICE, message))
-
-    def entries_of(self, value: Value, known: tuple[str, ...]) -> Iterable[tuple[str, int, Value]]:
-        """Return the entries of a map but for notes, those with unknown keys reported."""
-        for key, line, child in super().entries_of(value, known):
-            if key != "note":
-                yield key, line, child
-            elif child.kind != "text":
-                self.problem(line, f"note takes text, not a {child.kind}", "write it, or remove it")
-
-    def _not_empty(self, value: Value, what: str) -> None:
-        if not value.entries:
-            self.problem(value.line, f"{what} names no category", "name one, such as {Video: …}, or remove it")
-
-    def _categories(self, value: Value, what: str) -> Iterable[str]:
-        if value.kind == "empty" or (value.kind == "list" and not value.items):
-            self.problem(value.line, f"{what} names no category", "name one, such as [Video], or remove it")
-        for item in self.list_of(value, what):
-            name = self._category_of(item)
-            if name:
-                yield name
-
-    def _category_of(self, value: Value) -> str:
-        if value.kind != "text":
-            self.problem(value.line, f"a {value.kind} where a category is named", "write its name, such as Video")
-            return ""
-        return self.kind_of_data(value.text, value.line)
-
-    def kind_of_data(self, written: str, line: int) -> str:
-        """Return the category's name; rule S11: one that is not there is an error with the nearest."""
-        category = self.vocabulary.find(written)
-        if category is None:
-            self.problem(line, f"unknown category {shown(written)!r}", self.vocabulary.hint(written))
-            return ""
-        if new := self.vocabulary.respelt_as(written):
-            message = f"{shown(written)} is a former spelling; DPV spells it {new}"
-            self.diagnostics.append(Diagnostic(Place(self.file, line), Severity.NOTICE, message))
-        return category.name
-
-    def end(self, value: Value) -> End:
-        """Return an end of a flow: a name or glob of ROS, with its kind where that is said, or a name outside ROS."""
-        if value.kind == "map":
-            return self._end_of_kind(value)
-        if value.kind == "text" and value.text and is_non_ros(value.text):
-            return End(value.text)
-        return End(self._name(value))
-
-    def _end_of_kind(self, value: Value) -> End:
-        entries = list(self.entries_of(value, END_KINDS))
-        if len(entries) != 1:
-            self.problem(value.line, "the end of a flow names one element", "write {topic: /map}, or {node: /map}, …")
-            return End("")
-        ((kind, _, name),) = entries
-        return End(self.name_on_flow(name), kind)
-
-    def name_on_flow(self, value: Value) -> str:
-        """Return the name or glob of ROS at the end of a flow."""
-        return self._name(value)
-
-    def _name(self, value: Value) -> str:
-        if value.kind != "text" or is_non_ros(value.text):
-            self.problem(value.line, f"{shown(value.text or value.kind)!r} is not an absolute name", "begin it with /")
-        elif len(value.text) > LONGEST_NAME:
-            what = f"a name of {len(value.text)} characters"
-            self.problem(value.line, what, f"no more than {LONGEST_NAME} are read")
-            return ""
-        return value.text
 
 
 def check_mundane(reader: LabelReader, top: Value) -> None:

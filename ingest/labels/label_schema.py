@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.model import CLEANS, NON_ROS
 from rosprivacy.analysis.non_ros import RECIPIENTS, TRANSFERS
-from rosprivacy.ingest.labels.label_reader import END_KINDS, LONGEST_GROUP, NONE, SAYS_NOTHING
+from rosprivacy.ingest.labels.label_reader import LONGEST_GROUP, NONE, SAYS_NOTHING
+from rosprivacy.ingest.labels.name_reader import END_KINDS
 from rosprivacy.ingest.labels.non_ros_reader import CARRIERS
 
 if TYPE_CHECKING:

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     Stated = Mapping[tuple[str, str, str], Mapping[str, str]]
 
 NAMES = 30  # named in a row
-WAYS = 50  # findings shown with their way, recipients
+SHOWN = 50  # findings shown with their path, recipients
 THREATS = 100
 STORED = "storage-limitation"  # the kind of findings whose end is a storage, told under 'Kept in'
 NOTHING_FOLLOWED = Html(
@@ -95,12 +95,12 @@ def _data_of(kind: Kind, known: Known) -> Iterator[Html]:
 
 
 def life_cycle(known: Known) -> Html:
-    """Return the answer to 122: from source to recipient, with the shortest way of each finding."""
+    """Return the answer to 122: from source to recipient, with the shortest path of each finding."""
     parts = [part for kind in known.kinds for part in _life_of(kind)]
     findings = known.findings()
     if findings:
         parts.append(paragraph(strong(Html("Shortest path to each recipient"))))
-        parts.append(bullets(_bounded([_way(finding, known) for finding in findings[:WAYS]], len(findings))))
+        parts.append(bullets(_bounded([_way(finding, known) for finding in findings[:SHOWN]], len(findings))))
     parts.append(paragraph(Html("What happens outside the analysed system, archiving and erasure: to be completed.")))
     return joined(*parts) if known.kinds else NOTHING_FOLLOWED
 
@@ -160,7 +160,7 @@ def retention(known: Known) -> Html:
             escaped(_name(carried.element)),
             joined(_held(carried), Html("; "), _stated("retention", known.of(carried.element, "retention"))),
         )
-        for carried in stored[:WAYS]
+        for carried in stored[:SHOWN]
     ]
     why = paragraph(Html("Why each duration is needed: to be completed."))
     return joined(bullets(_bounded(rows, len(stored))), why) if rows else paragraph(NO_STORAGE)
@@ -180,7 +180,7 @@ def transfers(known: Known) -> Html:
                 _stated("basis of a transfer", known.of(element, "basis")),
             ),
         )
-        for element in list(recipients.values())[:WAYS]
+        for element in list(recipients.values())[:SHOWN]
     ]
     return bullets(_bounded(rows, len(recipients))) if rows else paragraph(NO_RECIPIENT)
 
@@ -279,8 +279,8 @@ def _way(finding: Finding, known: Known) -> Html:
     if left_out > 0:
         names = [*names[: NAMES // 2], f"{left_out} more", *names[-(NAMES // 2) :]]
     decided = Html(f" (accepted: {prose(known.accepted[finding.id])})") if finding.id in known.accepted else Html("")
-    way = Html(" → ".join(escaped(name) for name in names))
-    return joined(escaped(f"{_form(finding)}{finding.category}"), Html(": "), way, decided)
+    path = Html(" → ".join(escaped(name) for name in names))
+    return joined(escaped(f"{_form(finding)}{finding.category}"), Html(": "), path, decided)
 
 
 def _stated(what: str, value: str) -> Html:

@@ -1,6 +1,6 @@
-"""What changed between two JSON documents: verdict, ways, open elements, kinds of data, and how they were made.
+"""What changed between two JSON documents: verdict, paths, open elements, kinds of data, and how they were made.
 
-In: the earlier document and the new one. Out: ``Changes``. A way that is gone because less was asked is no answer, so
+In: the earlier document and the new one. Out: ``Changes``. A path that is gone because less was asked is no answer, so
 everything that was asked or assumed otherwise is named first. This is for a person who assessed the earlier report;
 ``difference.py`` is for CI, has grants and labels too, and says what is worse. What is the same in both is told apart
 alike, by ``identity.py`` and ``report/compare/matching.py``.
@@ -78,10 +78,10 @@ def changes(before: Mapping[str, Any], now: Mapping[str, Any]) -> Changes:
     """Compare two documents. Complexity: O(size of both)."""
     were, are = Identity.of(before), Identity.of(now)
     old, new = _findings(before, were), _findings(now, are)
-    ways = paired(old, new)
-    differ = {new[b]["id"]: tuple(_different(old[a], new[b], were, are)) for a, b in ways.both}
-    appeared = {new[key]["id"] for key in ways.new}
-    vanished = {old[key]["id"] for key in ways.gone}
+    pairs = paired(old, new)
+    differ = {new[b]["id"]: tuple(_different(old[a], new[b], were, are)) for a, b in pairs.both}
+    appeared = {new[key]["id"] for key in pairs.new}
+    vanished = {old[key]["id"] for key in pairs.gone}
     left, arrived = _open(before, were), _open(now, are)
     elements = paired(left, arrived)
     opened, closed = set(elements.new), set(elements.gone)

@@ -17,8 +17,9 @@ if TYPE_CHECKING:
 
 Key = tuple[str, ...]
 Record = dict[str, Any]
-# At the end of a part of a name: an address (hexadecimal, with a digit), or a number of three digits or more.
-_MADE_UP = re.compile(r"(?:_(?:(?=[a-f]*[0-9])[0-9a-f]{8,}|[0-9]{3,}))+(?=/|$)")
+# At the end of a part of a name: an address (hexadecimal, with a digit), or a number of three digits or more. Eight
+# digits are both: a name is tried as one of them only (?>), or each such word would double the work.
+_MADE_UP = re.compile(r"(?:_(?>(?=[a-f]*[0-9])[0-9a-f]{8,}|[0-9]{3,}))+(?=/|$)")
 
 
 @dataclass(frozen=True, slots=True)

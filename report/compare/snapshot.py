@@ -38,7 +38,7 @@ class Snapshot:
         (robot or model, kind, name, leg) -> what gets there, what labels say, what is stated about it. Elements that
         nothing gets to and nothing is said of are not listed.
     findings
-        (kind, category, source, leak, whether it goes across robots) -> in which form, along which way, on which
+        (kind, category, source, leak, whether it goes across robots) -> in which form, along which path, on which
         robots.
     lines
         Key of a finding -> the policy line that lets the data in, as ``file:line``; it may move, and is not compared.

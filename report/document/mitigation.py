@@ -97,7 +97,7 @@ def _proposal(proposal: Proposal, critical: set[Element]) -> ProposalEntry:
                 "kind": kept.finding.kind,
                 "category": kept.finding.category,
                 "reason": kept.reason,
-                "way": [element_dict(one) for one in kept.way],
+                "way": [element_dict(one) for one in kept.path],
             }
             for kept in proposal.kept
         ],
@@ -117,7 +117,7 @@ def _findings(proposal: Proposal) -> tuple[Finding, ...]:
 
 
 def _statement(finding: Finding) -> StatementEntry:
-    """What a person could state or arrange at the end of a way, so that no flow has to change (rule S10)."""
+    """What a person could state or arrange at the end of a path, so that no flow has to change (rule S10)."""
     return {
         "finding": finding.id,
         "kind": finding.kind,

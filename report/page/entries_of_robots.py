@@ -1,7 +1,7 @@
 """What differs only in the robot is one entry, with its robots counted and listed (rule S10).
 
 In: rows of a document. Out: the same in groups, the first of each in its place. Robots of one row are told apart by
-the order in which they are named, so that a way from one robot to another is not one inside a robot.
+the order in which they are named, so that a path from one robot to another is not one inside a robot.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The pictures of a report: one of each way to assess, as many as a file that can be mailed holds, and their legend.
+"""The pictures of a report: one of each path to assess, as many as a file that can be mailed holds, and their legend.
 
 In: an ``Analysis`` and the entries of the report. Out: ``Figures``, which know what is missing, and why.
 """
@@ -60,21 +60,23 @@ def figures(
     if not available():
         return Figures(installed=False)
     findings = {finding.id: finding for finding in analysis.findings}
-    entries = [way for way in report.ways if way.id in findings]
+    entries = [entry for entry in report.entries if entry.id in findings]
     words = report.words
     titles = {kind.name: kind.title for kind in report.kinds}
     say = Phrases({name: words.places(f"p.{name}") for name in TEXTS}, titles)
-    labels = {way.id: printable(words("f.picture", way=way.brief)) for way in entries}
+    labels = {entry.id: printable(words("f.picture", way=entry.brief)) for entry in entries}
     wishes = Wishes(say=say, labels=labels)
     if aliases is not None:
         wishes = replace(wishes, change=lambda picture: renamed(picture, aliases))
     found = {}
-    for way, made in zip(entries, pictures_of(analysis, (findings[way.id] for way in entries), wishes), strict=True):
+    for entry, made in zip(
+        entries, pictures_of(analysis, (findings[entry.id] for entry in entries), wishes), strict=True
+    ):
         room -= len(made.svg.encode()) if made else 0
         if room < 0:
             break
         if made:
-            found[way.id] = made
+            found[entry.id] = made
     return Figures(found)
 
 

@@ -1,6 +1,6 @@
-"""Findings -> the entries of a report: one way to assess each, hop by hop, with policy lines and what is to be asked.
+"""Findings -> the entries of a report: one path to assess each, hop by hop, with policy lines and what is to be asked.
 
-In: an ``Index``. Out: ``Way``, in the order of the document; findings that differ only in the robot are one (rule S10).
+In: an ``Index``. Out: ``Entry``, in the order of the document; those that differ only in the robot are one (rule S10).
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class Line:
 
 @dataclass(frozen=True, slots=True)
 class Hop:
-    """An element of a way, and the step that leaves it.
+    """An element of a path, and the step that leaves it.
 
     Attributes
     ----------
@@ -58,8 +58,8 @@ class Hop:
 
 
 @dataclass(frozen=True, slots=True)
-class Way:
-    """One entry.
+class Entry:
+    """A path to assess: a finding, or findings that differ only in the robot.
 
     Attributes
     ----------
@@ -76,7 +76,7 @@ class Way:
     pattern
         On a fleet, the id of the pattern: what decisions name.
     through
-        Other recipients that every way leads through.
+        Other recipients that every path leads through.
     notes
         What a person has to know or answer.
     mark
@@ -108,11 +108,11 @@ class Way:
 
     @property
     def brief(self) -> str:
-        """The way in one line, for those who do not see its picture."""
+        """The path in one line, for those who do not see its picture."""
         return " → ".join(hop.name for hop in self.hops)
 
 
-def ways(index: Index, marks: Mapping[str, str] | None = None) -> tuple[Way, ...]:
+def finding_entries(index: Index, marks: Mapping[str, str] | None = None) -> tuple[Entry, ...]:
     """Return the entries.
 
     Parameters
@@ -130,21 +130,21 @@ def ways(index: Index, marks: Mapping[str, str] | None = None) -> tuple[Way, ...
 
     fleet = index.patterns  # there each finding is one of its pattern
     groups = [[finding] for finding in index.findings] if fleet else grouped(index.findings, pattern)
-    return tuple(_way(number, group, index, decided, marks) for number, group in enumerate(groups, 1))
+    return tuple(_entry(number, group, index, decided, marks) for number, group in enumerate(groups, 1))
 
 
-def _way(
+def _entry(
     number: int,
     group: list[Mapping[str, Any]],
     index: Index,
     decided: Mapping[str, Decision | None],
     marks: Mapping[str, str],
-) -> Way:
+) -> Entry:
     finding = group[0]
     decision = decided[finding["id"]]
     stands = state(finding)
     robots = _robots(group, index)
-    return Way(
+    return Entry(
         id=finding["id"],
         anchor=anchor(finding["id"]),
         number=number,

@@ -14,7 +14,7 @@ from rosprivacy.report.naming import name
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from rosprivacy.report.page.finding_entries import Way
+    from rosprivacy.report.page.finding_entries import Entry
     from rosprivacy.report.page.index import Index
 
 
@@ -35,16 +35,16 @@ class Difference:
     ----------
     more
         Whether they have it and most do not; else the other way round.
-    way
-        The entry; None where the difference is an element that nobody has reviewed, or one that is reviewed there.
+    entry
+        The finding; None where the difference is an element that nobody has reviewed, or one that is reviewed there.
     ends
-        Source and place of the way, whatever the robot.
+        Source and place of the path, whatever the robot.
     text
         In words.
     """
 
     more: bool
-    way: Way | None
+    entry: Entry | None
     ends: tuple[str, str]
     text: str
 
@@ -74,15 +74,15 @@ class Fleet:
     deviants: tuple[Deviant, ...]
 
 
-def fleet_told(index: Index, entries: Iterable[Way]) -> Fleet | None:
+def fleet_told(index: Index, entries: Iterable[Entry]) -> Fleet | None:
     """Return the fleet of a document; None if it is of a single robot. Complexity: O(robots + differences)."""
     fleet = index.document.get("fleet")
     if not fleet:
         return None
     words = index.words
-    by_finding = {way.id: way for way in entries}
+    by_finding = {entry.id: entry for entry in entries}
     findings = {finding["id"]: finding for finding in index.findings}
-    ways = {
+    of_pattern = {
         pattern["id"]: (by_finding[pattern["finding"]], _ends(findings[pattern["finding"]], index))
         for pattern in fleet["patterns"]
     }
@@ -94,13 +94,15 @@ def fleet_told(index: Index, entries: Iterable[Way]) -> Fleet | None:
         words("fl.intro", robots=words.count(fleet["robots"], "robot"), kinds=words.count(len(alike), "robotkind")),
         tuple((fit(model) or words("none"), number) for model, number in fleet["models"].items()),
         alike,
-        tuple(_deviant(deviant, ways, index) for deviant in fleet["deviants"]),
+        tuple(_deviant(deviant, of_pattern, index) for deviant in fleet["deviants"]),
     )
 
 
-def _deviant(deviant: Mapping[str, Any], ways: Mapping[str, tuple[Way, tuple[str, str]]], index: Index) -> Deviant:
+def _deviant(
+    deviant: Mapping[str, Any], of_pattern: Mapping[str, tuple[Entry, tuple[str, str]]], index: Index
+) -> Deviant:
     shares = [
-        Difference(more, *ways[share["pattern"]], _form(share, index))
+        Difference(more, *of_pattern[share["pattern"]], _form(share, index))
         for more, key in ((True, "more"), (False, "fewer"))
         for share in deviant[key]
     ]

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from rosprivacy.report.pictures.phrases import Phrases
     from rosprivacy.report.pictures.picture import Picture
 
-MOST = 16  # boxes, unless the shortest way itself is longer
+MOST = 16  # boxes, unless the shortest path itself is longer
 SECONDS = 5.0  # a picture; it takes a hundredth of one
 WIDEST = 680.0  # points; what is wider is drawn downwards
 
@@ -41,11 +41,11 @@ class Wishes:
     Attributes
     ----------
     most
-        Elements in a picture; the shortest way is there whatever its length.
+        Elements in a picture; the shortest path is there whatever its length.
     say
         The words on the boxes; English by default.
     labels
-        Id of a finding -> what its picture shows, for people who do not see it; else its notes and way, in English.
+        Id of a finding -> what its picture shows, for people who do not see it; else its notes and path, in English.
     change
         What is done to each picture before it is drawn, such as replacing names.
     """
@@ -63,7 +63,7 @@ class Inline:
     Attributes
     ----------
     whole
-        Whether every way of the finding is in it, not the shorter ones only.
+        Whether every path of the finding is in it, not the shorter ones only.
     """
 
     svg: Markup
@@ -95,14 +95,14 @@ def pictures_of(
     views = FindingViews(analysis, wishes.say)
     with Graphviz() as graphviz:
         for finding in findings:
-            ways = folded(views.of(finding, PER_BOX * wishes.most))
-            picture = bounded(ways, wishes.most)
-            yield _drawn(graphviz, picture, wishes, finding, whole=_whole(ways, picture))
+            whole = folded(views.of(finding, PER_BOX * wishes.most))
+            picture = bounded(whole, wishes.most)
+            yield _drawn(graphviz, picture, wishes, finding, whole=_is_whole(picture, whole))
 
 
-def _whole(ways: Picture, picture: Picture) -> bool:
-    cut = any(note.startswith(LONGER) for note in ways.notes)
-    return not cut and (len(ways.boxes), len(ways.lines)) == (len(picture.boxes), len(picture.lines))
+def _is_whole(picture: Picture, whole: Picture) -> bool:
+    cut = any(note.startswith(LONGER) for note in whole.notes)
+    return not cut and (len(picture.boxes), len(picture.lines)) == (len(whole.boxes), len(whole.lines))
 
 
 def _drawn(graphviz: Graphviz, picture: Picture, wishes: Wishes, finding: Finding, *, whole: bool) -> Inline | None:

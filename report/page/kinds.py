@@ -14,7 +14,7 @@ from rosprivacy.report.naming import text
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from rosprivacy.report.page.finding_entries import Way
+    from rosprivacy.report.page.finding_entries import Entry
     from rosprivacy.report.page.index import Index
 
 NARROWER = "⊇ "  # how the ontology writes, in other languages than English: if the data are of one of these kinds
@@ -52,7 +52,7 @@ class Kind:
     origins
         Who brings it in, or makes it: (name, of what it makes it, empty if it brings it in).
     places
-        Names that it can reach by a way that is to be assessed or accepted.
+        Names that it can reach by a path that is to be assessed or accepted.
     open
         How many elements that it gets to are not reviewed.
     """
@@ -67,7 +67,7 @@ class Kind:
     reason: str
     law: tuple[Provision, ...]
     origins: tuple[tuple[str, str], ...]
-    ways: tuple[Way, ...]
+    entries: tuple[Entry, ...]
     places: tuple[str, ...]
     open: int
 
@@ -79,21 +79,21 @@ class Kind:
     @property
     def to_assess(self) -> int:
         """How many entries are to be assessed."""
-        return sum(way.state in ("open", "decided") for way in self.ways)
+        return sum(entry.state in ("open", "decided") for entry in self.entries)
 
 
-def kinds(index: Index, entries: Iterable[Way]) -> tuple[Kind, ...]:
+def kinds(index: Index, entries: Iterable[Entry]) -> tuple[Kind, ...]:
     """Return the kinds of data."""
-    by_category: dict[str, list[Way]] = {}
-    for way in entries:
-        by_category.setdefault(way.category, []).append(way)
+    by_category: dict[str, list[Entry]] = {}
+    for entry in entries:
+        by_category.setdefault(entry.category, []).append(entry)
     return tuple(
         _kind(category, index, tuple(by_category.get(category["name"], ())))
         for category in index.document["categories"]
     )
 
 
-def _kind(category: Mapping[str, Any], index: Index, entries: tuple[Way, ...]) -> Kind:
+def _kind(category: Mapping[str, Any], index: Index, entries: tuple[Entry, ...]) -> Kind:
     language, of = index.words.language, category["name"]
     reached = [finding["leak"] for finding in index.findings if finding["category"] == of and not finding["dismissed"]]
     return Kind(
@@ -107,7 +107,7 @@ def _kind(category: Mapping[str, Any], index: Index, entries: tuple[Way, ...]) -
         reason=text(category, "reason", language),
         law=tuple(provision(legal, of, index) for legal in category["law"]),
         origins=tuple(_origins(of, index)),
-        ways=entries,
+        entries=entries,
         places=index.names(reached),
         open=sum(of in question["categories"] for question in index.document["open"]),
     )

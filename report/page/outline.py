@@ -17,7 +17,7 @@ from rosprivacy.report.page import assumed, elements, sanitizers, tables
 from rosprivacy.report.page.closed import Closed, closed
 from rosprivacy.report.page.criteria import Criterion, criteria
 from rosprivacy.report.page.decision_texts import Decision, orphans
-from rosprivacy.report.page.finding_entries import Way, ways
+from rosprivacy.report.page.finding_entries import Entry, finding_entries
 from rosprivacy.report.page.fleet_section import Fleet, fleet_told
 from rosprivacy.report.page.index import CAN_BE_SPECIAL, Index
 from rosprivacy.report.page.kinds import Kind, kinds
@@ -51,14 +51,14 @@ class Changed:
     new, changed
         Entries; of a changed one also what changed.
     gone
-        (kind of data, way) as they were.
+        (kind of data, ends, id) as they were.
     """
 
     intro: str
     sentences: tuple[str, ...]
     scope: tuple[str, ...]
-    new: tuple[Way, ...]
-    changed: tuple[tuple[Way, str], ...]
+    new: tuple[Entry, ...]
+    changed: tuple[tuple[Entry, str], ...]
     gone: tuple[tuple[str, str, str], ...]
     opened: tuple[str, ...]
     closed: tuple[str, ...]
@@ -103,7 +103,7 @@ class Outline:
     silent: tuple[str, ...]
     recipients: tables.Table
     kinds: tuple[Kind, ...]
-    ways: tuple[Way, ...]
+    entries: tuple[Entry, ...]
     orphans: tuple[Decision, ...]
     outside: tuple[Outside, ...]
     cleanings: tuple[sanitizers.Cleaning, ...]
@@ -149,7 +149,7 @@ def outline(
     index = Index(document, Words(language))
     words = index.words
     differ = changes(earlier.document, document) if earlier else None
-    entries = ways(index, differ.marks() if differ else None)
+    entries = finding_entries(index, differ.marks() if differ else None)
     links = tables.Links(entries)
     subjects, silent = tables.subjects(index, links)
     there = {"changes": bool(differ), "fleet": bool(index.alike)}
@@ -176,7 +176,7 @@ def outline(
         silent=silent,
         recipients=tables.recipients(index, links),
         kinds=kinds(index, entries),
-        ways=entries,
+        entries=entries,
         orphans=orphans(index),
         outside=outside(index),
         cleanings=sanitizers.cleanings(index, entries),
@@ -242,34 +242,20 @@ def _numbers(index: Index) -> Iterator[tuple[int, str]]:
             yield number, words(f"n.{what}")
 
 
-def _changed(differ: Changes, earlier: Earlier, entries: tuple[Way, ...], index: Index) -> Changed:
+def _changed(differ: Changes, earlier: Earlier, entries: tuple[Entry, ...], index: Index) -> Changed:
     words = index.words
-    of_finding = {finding: way for way in entries for finding in (way.id, *way.others)}
+    of_finding = {finding: entry for entry in entries for finding in (entry.id, *entry.others)}
     old = Index(earlier.document, words)
-
-    def titles(names: tuple[str, ...], of: Index) -> str:
-        return of.all_data(names)
-
-    verdict = words(
-        "ch.verdict.same" if differ.before == differ.now else "ch.verdict", before=differ.before, now=differ.now
-    )
-    sentences = [verdict]
-    sentences += [words("ch.none")] if differ.nothing else []
-    sentences += [
-        words("ch.files", names=words.row(map(fit, differ.files))) if differ.files else words("ch.files.same")
-    ]
-    sentences += [words("ch.kinds.new", names=titles(differ.kinds_new, index))] if differ.kinds_new else []
-    sentences += [words("ch.kinds.gone", names=titles(differ.kinds_gone, old))] if differ.kinds_gone else []
-    by_way: dict[Way, list[str]] = {}
+    by_entry: dict[Entry, list[str]] = {}
     for finding, what in differ.changed.items():
-        by_way.setdefault(of_finding[finding], []).extend(what)
+        by_entry.setdefault(of_finding[finding], []).extend(what)
     return Changed(
         intro=words("ch.intro", file=fit(earlier.file), sha=earlier.sha256[:12]),
-        sentences=tuple(sentences),
+        sentences=tuple(_sentences(differ, index, old)),
         scope=tuple(_scope(differ, words)),
         new=tuple(dict.fromkeys(of_finding[finding] for finding in differ.new)),
         changed=tuple(
-            (way, words.row(words(f"ch.what.{w}") for w in dict.fromkeys(what))) for way, what in by_way.items()
+            (entry, words.row(words(f"ch.what.{w}") for w in dict.fromkeys(what))) for entry, what in by_entry.items()
         ),
         gone=tuple(
             (
@@ -282,6 +268,20 @@ def _changed(differ: Changes, earlier: Earlier, entries: tuple[Way, ...], index:
         opened=index.names(differ.opened),
         closed=old.names(differ.closed),
     )
+
+
+def _sentences(differ: Changes, index: Index, old: Index) -> Iterator[str]:
+    """What changed on the whole: the verdict, the files, the kinds of data."""
+    words = index.words
+    same = "ch.verdict.same" if differ.before == differ.now else "ch.verdict"
+    yield words(same, before=differ.before, now=differ.now)
+    if differ.nothing:
+        yield words("ch.none")
+    yield words("ch.files", names=words.row(map(fit, differ.files))) if differ.files else words("ch.files.same")
+    if differ.kinds_new:
+        yield words("ch.kinds.new", names=index.all_data(differ.kinds_new))
+    if differ.kinds_gone:
+        yield words("ch.kinds.gone", names=old.all_data(differ.kinds_gone))
 
 
 def _scope(differ: Changes, words: Words) -> Iterator[str]:

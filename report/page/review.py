@@ -46,7 +46,7 @@ def review(index: Index) -> tuple[Group, ...]:
 
 
 def unknown_ends(index: Index) -> tuple[Group, ...]:
-    """Return the ends of data's way of which nothing is known, by what is not; the groups that are not empty."""
+    """Return the ends of data's path of which nothing is known, by what is not; the groups that are not empty."""
     rows: dict[str, list[Mapping[str, Any]]] = {"q.reader": [], "q.flow": []}
     for row in index.document["unknown_ends"]:
         rows[f"q.{row['unknown']}"].append({**row, "distance": None})

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from rosprivacy.report.naming import Key
-    from rosprivacy.report.page.finding_entries import Way
+    from rosprivacy.report.page.finding_entries import Entry
     from rosprivacy.report.page.index import Index
 
 
@@ -33,7 +33,7 @@ class Cleaning:
     beside
         Who reads the same channels and gets the data as they are.
     past
-        Entries of these kinds whose way does not lead through the element: (anchor, number).
+        Entries of these kinds whose path does not lead through the element: (anchor, number).
     """
 
     name: str
@@ -56,7 +56,7 @@ class Making:
     special: bool
 
 
-def cleanings(index: Index, entries: Iterable[Way]) -> tuple[Cleaning, ...]:
+def cleanings(index: Index, entries: Iterable[Entry]) -> tuple[Cleaning, ...]:
     """Return what sanitizers do."""
     past = _Past(index, entries)
 
@@ -68,20 +68,20 @@ def cleanings(index: Index, entries: Iterable[Way]) -> tuple[Cleaning, ...]:
 
 
 class _Past:
-    """Ways to assess on which a kind of data arrives as it is, and the elements that each leads through."""
+    """Paths to assess on which a kind of data arrives as it is, and the elements that each leads through."""
 
-    def __init__(self, index: Index, entries: Iterable[Way]) -> None:
-        entry = {finding: (way.anchor, way.number) for way in entries for finding in (way.id, *way.others)}
-        self._ways: dict[str, list[tuple[set[Key], tuple[str, int]]]] = {}
+    def __init__(self, index: Index, entries: Iterable[Entry]) -> None:
+        places = {finding: (entry.anchor, entry.number) for entry in entries for finding in (entry.id, *entry.others)}
+        self._paths: dict[str, list[tuple[set[Key], tuple[str, int]]]] = {}
         for finding in index.to_assess:
             if not finding["pseudonymised"]:
                 through = {whole(element) for element in finding["witness"]}
-                self._ways.setdefault(finding["category"], []).append((through, entry[finding["id"]]))
+                self._paths.setdefault(finding["category"], []).append((through, places[finding["id"]]))
 
     def of(self, elements: set[Key], categories: Iterable[str]) -> tuple[tuple[str, int], ...]:
         """Entries of the categories that lead through none of the elements."""
-        ways = (way for category in categories for way in self._ways.get(category, ()))
-        return tuple(sorted({entry for through, entry in ways if not through & elements}, key=lambda entry: entry[1]))
+        paths = (path for category in categories for path in self._paths.get(category, ()))
+        return tuple(sorted({place for through, place in paths if not through & elements}, key=lambda place: place[1]))
 
 
 def _cleaning(group: list[Mapping[str, Any]], past: _Past, index: Index) -> Cleaning:

@@ -82,7 +82,7 @@ class Links:
     """Where the entry of a finding stands: findings that differ only in the robot share one."""
 
     def __init__(self, entries: Iterable[Any]) -> None:
-        self._first = {finding: way.anchor for way in entries for finding in (way.id, *way.others)}
+        self._first = {finding: entry.anchor for entry in entries for finding in (entry.id, *entry.others)}
 
     def to(self, findings: Sequence[Mapping[str, Any]]) -> str:
         """Return the anchor of the first entry."""
@@ -153,10 +153,10 @@ def _about(
     origins: Mapping[str, set[Key]], index: Index, links: Links,
 ) -> Cell:  # fmt: skip
     here = [finding for member in sorted(members) for finding in findings.get((member, category), ())]
-    open_ways = [finding for finding in here if state(finding) == "open"]
+    open_findings = [finding for finding in here if state(finding) == "open"]
     words = index.words
-    if open_ways:
-        return Cell(words.count(len(open_ways), "way"), links.to(open_ways), strong=True)
+    if open_findings:
+        return Cell(words.count(len(open_findings), "way"), links.to(open_findings), strong=True)
     if here:
         accepted = any(state(finding) == "accepted" for finding in here)
         return Cell(words("cell.accepted" if accepted else "cell.through"), links.to(here))

@@ -39,7 +39,7 @@ class Reached:
     Parameters
     ----------
     categories
-        That arrive; what they are made of on the way is drawn too. None for all.
+        That arrive; what they are made of on the path is drawn too. None for all.
     say
         The words on the boxes.
     """

@@ -4,7 +4,7 @@ In: an ``Analysis``. Out: a ``Picture``, with nothing of it left out in silence.
 
 Source: the paper, section II-B, for what the views hold and for their colours. Two things differ. A sanitizer is gone
 from the privacy view only where it ends all that comes to it: one that pseudonymises passes data on (rule S8). And all
-flows on ways to leaks are marked, not only those of paths that share no edge, since which of these are found is chance.
+flows on paths to leaks are marked, not only of paths that share no edge, since which of these are found is chance.
 """
 
 from __future__ import annotations
@@ -175,7 +175,7 @@ def _place(place: Place) -> tuple[str, int]:
 
 
 def privacy_view(analysis: Analysis, beside: Collection[str] = ()) -> Picture:
-    """Return what some category reaches, with the ways to leaks marked.
+    """Return what some category reaches, with the paths to leaks marked.
 
     Parameters
     ----------
@@ -208,7 +208,7 @@ def privacy_view(analysis: Analysis, beside: Collection[str] = ()) -> Picture:
 
 
 def _ways_to_all(analysis: Analysis, net: Net, findings: Iterable[Finding]) -> Iterator[dict[int, int]]:
-    """The ways to the leaks of each category, and to where data are kept too long or leave the EEA (rule S10)."""
+    """The paths to the leaks of each category, and to where data are kept too long or leave the EEA (rule S10)."""
     number = {element: vertex for vertex, element in enumerate(analysis.graph.elements)}
     ends: dict[str, dict[int, int]] = {}
     for finding in findings:
@@ -241,14 +241,14 @@ class FindingViews:
         self._reached: dict[str, Reached] = {}
 
     def of(self, finding: Finding, about: int | None = None) -> Picture:
-        """Return the ways of one finding, from its source to its leak: the shortest, and the longer ones.
+        """Return the paths of one finding, from its source to its leak: the shortest, and the longer ones.
 
-        A dismissed one shows its ways through other leaks. What else the data reaches is in the privacy view.
+        A dismissed one shows its paths through other leaks. What else the data reaches is in the privacy view.
 
         Parameters
         ----------
         about
-            Take only the shorter ways, with about so many flows: on a large graph much quicker. None for all.
+            Take only the shorter paths, with about so many flows: on a large graph much quicker. None for all.
         """
         category, graph = finding.category, self._analysis.graph
         if category not in self._reached:
@@ -284,14 +284,14 @@ class FindingViews:
 
 
 def finding_view(analysis: Analysis, finding: Finding, about: int | None = None) -> Picture:
-    """Return the ways of one finding, see ``FindingViews``."""
+    """Return the paths of one finding, see ``FindingViews``."""
     return FindingViews(analysis).of(finding, about)
 
 
 def bounded(picture: Picture, most: int) -> Picture:
-    """Return the privacy view with the shorter ways to leaks only, so that it has no more boxes than asked for.
+    """Return the privacy view with the shorter paths to leaks only, so that it has no more boxes than asked for.
 
-    The shortest way of each finding is always there; what was left out is said.
+    The shortest path of each finding is always there; what was left out is said.
     """
     if len(picture.boxes) <= most:
         return picture
@@ -317,7 +317,7 @@ def _joined(lines: Iterable[Line]) -> set[Key]:
 
 
 def _pairs(findings: Iterable[Finding]) -> set[tuple[Key, Key]]:
-    """The steps of the shortest ways."""
+    """The steps of the shortest paths."""
     return {(step.source.identity, step.target.identity) for finding in findings for step in finding.steps}
 
 
@@ -332,7 +332,7 @@ def _data_lines(
     lengths: Mapping[int, int],
     shortest: Collection[tuple[Key, Key]],
 ) -> _Lines:
-    """What goes along some flows; ``lengths`` has those on ways to leaks."""
+    """What goes along some flows; ``lengths`` has those on paths to leaks."""
     lines = _Lines(boxes)
     for index in flows:
         carries, pseudonymised = reached.along(index)
@@ -347,6 +347,6 @@ def _data_lines(
 
 
 def in_words(finding: Finding) -> str:
-    """Return a finding's shortest way as a sentence."""
+    """Return a finding's shortest path as a sentence."""
     form = "pseudonymised " if finding.pseudonymised else ""
     return f"{form}{finding.category}: " + " to ".join(shortened(element.name, 60) for element in finding.witness)

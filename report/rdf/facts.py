@@ -1,4 +1,4 @@
-"""What a finding tells beside its fields: where data change on the way, its law, its terms in other vocabularies.
+"""What a finding tells beside its fields: where data change on the path, its law, its terms in other vocabularies.
 
 In: a finding, the vocabulary, what its source brings in. Out: plain values.
 """

@@ -1,4 +1,4 @@
-"""Findings -> RDF: each a ``dpv:Process`` with its data, its way and its law, in the words of DPV 2.3 and our own.
+"""Findings -> RDF: each a ``dpv:Process`` with its data, its path and its law, in the words of DPV 2.3 and our own.
 
 In: an ``Answer``. Out: an rdflib graph without time or chance in it (rule S14),
 which ``serialise.py`` writes. Nothing here is a legal verdict: a provision is one that a person has to look at.
@@ -227,7 +227,7 @@ class _Findings:
             )
 
     def _witness(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:
-        """The shortest way, element by element, with what arrives and leaves and the lines that allow it."""
+        """The shortest path, element by element, with what arrives and leaves and the lines that allow it."""
         kinds = kinds_along(finding)
         hops = [below(iri, "hop", number) for number in range(1, len(kinds) + 1)]
         first, cells = listed(hops)
@@ -265,13 +265,15 @@ class _Findings:
                 yield from about(hop, (RP.notReviewedFor, category))
 
     def _paths(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:
-        """Further ways, if they were asked for."""
+        """Further paths, if they were asked for."""
         for number, path in enumerate(finding.paths, 1):
-            way = below(iri, "path", number)
+            resource = below(iri, "path", number)
             elements, cells = listed([self.things.element(element) for element in path])
-            yield iri, RP.path, way
+            yield iri, RP.path, resource
             yield from cells
-            yield from about(way, (RDF.type, [RP.Path]), (RP.position, [Literal(number)]), (RP.elements, [elements]))
+            yield from about(
+                resource, (RDF.type, [RP.Path]), (RP.position, [Literal(number)]), (RP.elements, [elements])
+            )
         if finding.paths:
             yield iri, RP.pathsBounded, Literal(finding.bounded)
 

@@ -1,4 +1,4 @@
-"""A finding's ways as SARIF's ``codeFlows``: the witness first, each step at the policy line that allows it.
+"""A finding's paths as SARIF's ``codeFlows``: the witness first, each step at the policy line that allows it.
 
 In: a ``Finding`` and where things stand. Out: plain dicts. Names come from anybody's files: they are made printable,
 short, and neither links nor placeholders.
@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     Physical = Callable[[Place], dict[str, Any]]
     Pair = tuple[tuple[str, ...], tuple[str, ...]]
 
-MAX_FLOWS = 10  # ways of a finding
-MAX_STEPS = 1_000  # locations of a way: what GitHub shows; 10 of them are what it takes
+MAX_FLOWS = 10  # paths of a finding
+MAX_STEPS = 1_000  # locations of a path: what GitHub shows; 10 of them are what it takes
 
 
 def text(name: str) -> str:
@@ -61,9 +61,9 @@ def logical(element: Element) -> dict[str, str]:
 
 
 def flows_between(analysis: Analysis) -> dict[Pair, Flow]:
-    """Return the flow behind each step of the further ways that were asked for; O(flows), and nothing without them."""
-    ways = [path for finding in analysis.findings for path in finding.paths]
-    wanted = {(a.shown_as, b.shown_as) for path in ways for a, b in pairwise(path)}
+    """Return the flow behind each step of the further paths that were asked for; O(flows), and nothing without them."""
+    paths = [path for finding in analysis.findings for path in finding.paths]
+    wanted = {(a.shown_as, b.shown_as) for path in paths for a, b in pairwise(path)}
     elements = analysis.graph.elements
     found: dict[Pair, Flow] = {}
     for flow in analysis.graph.flows if wanted else ():
@@ -73,24 +73,24 @@ def flows_between(analysis: Analysis) -> dict[Pair, Flow]:
     return found
 
 
-def further_ways(finding: Finding) -> int:
-    """Return how many ways of a finding are known beside its witness."""
+def further_paths(finding: Finding) -> int:
+    """Return how many paths of a finding are known beside its witness."""
     return len(_others(finding))
 
 
 def flows_of(
     finding: Finding, between: Mapping[Pair, Flow], places: Places, physical: Physical
 ) -> list[dict[str, Any]]:
-    """Return the ``codeFlows`` of a finding: the witness, then further ways up to a bound, one ``threadFlow`` each."""
-    ways: list[Sequence[Step]] = [finding.steps]
-    ways += [_steps(path, between) for path in _others(finding)[: MAX_FLOWS - 1]]
+    """Return the ``codeFlows`` of a finding: the witness, then further paths up to a bound, one ``threadFlow`` each."""
+    paths: list[Sequence[Step]] = [finding.steps]
+    paths += [_steps(path, between) for path in _others(finding)[: MAX_FLOWS - 1]]
     start = _start(finding, places)
     return [
         {
             "threadFlows": [{"locations": _locations(finding, steps, start, physical)}],
             "message": {"text": _about(number)},
         }
-        for number, steps in enumerate(ways)
+        for number, steps in enumerate(paths)
     ]
 
 
@@ -103,14 +103,14 @@ def _others(finding: Finding) -> list[tuple[Element, ...]]:
 
 
 def _steps(path: Iterable[Element], between: Mapping[Pair, Flow]) -> list[Step]:
-    """The steps of a way that is known by its elements; what the data is on each step is not known."""
+    """The steps of a path that is known by its elements; what the data is on each step is not known."""
     nothing = Flow(0, 0, "flow")
     found = [(a, b, between.get((a.shown_as, b.shown_as), nothing)) for a, b in pairwise(path)]
     return [Step(a, b, flow.role, "", pseudonymised=False, grants=flow.grants) for a, b, flow in found]
 
 
 def _start(finding: Finding, places: Places) -> Place:
-    """Where a way begins: the label of the source, its profile, or the first line that lets the data go."""
+    """Where a path begins: the label of the source, its profile, or the first line that lets the data go."""
     said = places.of_role(finding.source, "source", finding.steps[0].category if finding.steps else finding.category)
     lines = (place for step in finding.steps for place in of_step(step))
     return said or places.of_profile(finding.source) or next(lines, None) or places.of_finding(finding)

@@ -1,4 +1,4 @@
-"""Analysis -> SARIF 2.1.0, for code scanning and editors: each finding at the line that allows it, with the way there.
+"""Analysis -> SARIF 2.1.0, for code scanning and editors: each finding at the line that allows it, with the path there.
 
 In: an ``Answer``. Out: plain dicts and lists, sorted, with no time in them
 (rule S14). Nothing is suppressed by itself: only what a person accepted, and that stays in the file.
@@ -16,7 +16,7 @@ from rosprivacy.analysis.legal import strongest_first
 from rosprivacy.analysis.model import Place, Severity, unread
 from rosprivacy.analysis.text import utf8
 from rosprivacy.report.places import Places, in_a_file, to_review
-from rosprivacy.report.sarif.flows import flows_between, further_ways, prose, text
+from rosprivacy.report.sarif.flows import flows_between, further_paths, prose, text
 from rosprivacy.report.sarif.results import LAW, ROOT, Files, Results
 from rosprivacy.report.sarif.robots import with_robots
 from rosprivacy.report.sarif.rules import (
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 MAX_RESULTS = 25_000
-MAX_LOCATIONS = 200_000  # of ways in the whole file, some 120 MB
+MAX_LOCATIONS = 200_000  # of paths in the whole file, some 120 MB
 MAX_NOTIFICATIONS = 1_000
 LEVELS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.NOTICE: "note"}
 
@@ -105,7 +105,7 @@ def _log(answer: Answer, root: Path) -> dict[str, Any]:
 
 
 def _within(results: Iterable[dict[str, Any]]) -> Iterator[dict[str, Any]]:
-    """Results whose ways together have no more locations than the bound: further ways go first, then the witness."""
+    """Results whose paths together have no more locations than the bound: further paths go first, then the witness."""
     room = MAX_LOCATIONS
     for result in results:
         kept = []
@@ -163,10 +163,10 @@ def _about(analysis: Analysis, results: Sequence[Mapping[str, Any]]) -> Iterator
     left_out = len(analysis.findings) + len(to_review(analysis)) - len(results)
     if left_out > 0:
         yield _notice("warning", "bound", f"{left_out} results are left out: a viewer takes {MAX_RESULTS} at most.")
-    ways = sum(1 + further_ways(finding) for finding in analysis.findings)
-    ways -= sum(len(result.get("codeFlows", ())) for result in results)
-    if ways:
-        yield _notice("note", "bound", f"{ways} paths of findings are left out; --format json lists them.")
+    left = sum(1 + further_paths(finding) for finding in analysis.findings)
+    left -= sum(len(result.get("codeFlows", ())) for result in results)
+    if left:
+        yield _notice("note", "bound", f"{left} paths of findings are left out; --format json lists them.")
     bounded = sum(finding.bounded for finding in analysis.findings)
     if bounded:
         yield _notice("note", "bound", f"{bounded} findings have more paths than were looked for (--max-paths).")

@@ -60,7 +60,7 @@ class Results:
     taxa, rules
         Numbers of provisions by IRI, and of rules by id.
     between
-        The flows behind the steps of further ways.
+        The flows behind the steps of further paths.
     accepted
         Id of a finding -> why a person accepted it.
     """

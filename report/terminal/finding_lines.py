@@ -154,7 +154,7 @@ def _way(
 
 
 def _of_another(finding: Mapping[str, Any], hop: int, role: str, name: str) -> str:
-    """Why a leak on the way does not dismiss a finding: it lets out what this one is not about (rule S10)."""
+    """Why a leak on the path does not dismiss a finding: it lets out what this one is not about (rule S10)."""
     between = role == "leak" and hop < len(finding["steps"]) and name != finding["category"]
     return ", which is a finding of its own" if between else ""
 

@@ -13,6 +13,7 @@ from rich.text import Text
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.mitigation.limits import DENY, FILTER, REVIEW
 from rosprivacy.analysis.mitigation.proposals import ITSELF
+from rosprivacy.analysis.model import STATED as STATED_FLOW
 from rosprivacy.analysis.model import STORAGE_LIMITATION, THIRD_COUNTRY
 from rosprivacy.analysis.text import counted
 from rosprivacy.report.document.analysis import SECTIONS
@@ -133,9 +134,12 @@ def _of_step(step: Mapping[str, Any]) -> Iterator[Line]:
 
 
 def _policy(grants: Iterable[Mapping[str, Any]]) -> Iterator[Line]:
-    """The lines, each once: several enclaves may include it."""
+    """The lines, each once: several enclaves may include it. A flow that a person states has none (rule S9)."""
     lines: dict[str, list[str]] = {}
     for grant in grants:
+        if grant["role"] == STATED_FLOW:
+            yield f"      {shown(grant['file'])}:{grant['line']}  stated flow", "dim"
+            continue
         what = f"{grant['role']} {grant['kind']} {shown(grant['name'])}  (profile {shown(grant['profile'])}, enclave"
         lines.setdefault(f"{shown(grant['file'])}:{grant['line']}  {what}", []).append(shown(grant["enclave"]))
     for line, enclaves in lines.items():

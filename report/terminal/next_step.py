@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
 Line = tuple[str, str]  # text, style
 NAMED = 5  # candidates
-SENSORS = (  # what is in the name of a node that brings personal data in, more often than not
+SENSORS = (  # what is in the name of a node that brings personal data in, more often than not; the surest first
     "camera", "video", "image", "kinect", "realsense", "depth", "thermal", "microphone", "audio", "voice", "speech",
-    "laser", "lidar", "scan", "radar", "localiz", "amcl", "slam", "gnss", "face", "person", "people", "teleop",
+    "laser", "lidar", "scan", "radar", "gnss", "face", "person", "people", "teleop", "amcl", "slam", "localiz",
 )  # fmt: skip
 SHORT = ("cam", "rgb", "zed", "mic", "asr", "gps", "joy", "user")  # of these only whole words
 SOURCE = "name a source in a label file, such as nodes: {/camera: {source: [Video]}}"
@@ -48,7 +48,8 @@ def _step(report: Mapping[str, Any]) -> str:
         return f"ask about all kinds, or {SOURCE}{restriction}"
     if not followed(report):
         named = candidates(report)
-        more = f"; candidates by name: {', '.join(named)}" if named else ""
+        rest = f" and {len(named) - NAMED} more" if len(named) > NAMED else ""
+        more = f"; candidates by name: {', '.join(named[:NAMED])}{rest}" if named else ""
         return f"{SOURCE}{more} (rosprivacy labels --init lists all nodes)"
     if report["open"]:
         first = next_round(report)[0]["element"]
@@ -59,12 +60,15 @@ def _step(report: Mapping[str, Any]) -> str:
 
 
 def candidates(report: Mapping[str, Any]) -> list[str]:
-    """Return the first nodes whose names say that they bring data in: a guess, for a person to judge."""
+    """Return the nodes whose names say that they bring data in, the surest first: a guess, for a person to judge."""
     nodes = [element for element in report["unreached"] if element["kind"] == "node"]
-    return [shown_name(node) for node in nodes if _sounds_like_a_sensor(node["name"])][:NAMED]
+    likely = [(_likely(node["name"]), shown_name(node)) for node in nodes]
+    return [name for rank, name in sorted(likely) if rank < len(SENSORS)]
 
 
-def _sounds_like_a_sensor(name: str) -> bool:
+def _likely(name: str) -> int:
+    """Return how surely a name is that of a sensor: the place of its word in the list; its length if it is none."""
     words = re.sub("([a-z])([A-Z])", r"\1_\2", name).casefold()
-    parts = re.split("[^a-z]+", words)
-    return any(sensor in words for sensor in SENSORS) or not set(parts).isdisjoint(SHORT)
+    if not set(re.split("[^a-z]+", words)).isdisjoint(SHORT):
+        return 0
+    return next((place for place, sensor in enumerate(SENSORS) if sensor in words), len(SENSORS))

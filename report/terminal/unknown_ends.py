@@ -1,4 +1,4 @@
-"""What is not known in the report for the terminal: where data's way ends without anybody known (rule S11).
+"""What is not known in the report for the terminal: where data's path ends without anybody known (rule S11).
 
 In: a JSON document of the contract. Out: parts of the verdict's line, and lines.
 """

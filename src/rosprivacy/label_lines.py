@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from rosprivacy.settings import Settings
 
 Channel = tuple[str, str]  # kind, name; of a node too
+NAME_ONE = "rosprivacy labels --init lists all nodes: name one, such as nodes: {/camera: {source: [Video]}}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,20 +100,32 @@ def next_lines(policies: tuple[str, ...], labels: tuple[str, ...], settings: Set
         if ("node", name) not in written:
             lines["nodes", name] = NewLine("nodes", name, "does it bring personal data in? {source: [Video]}")
     if not report["carries"] and not lines:
-        remarks.append(f"{own.file}: no source is named yet; rosprivacy labels --init lists all nodes")
+        remarks.append(f"{own.file}: no source is named, and no node sounds like a sensor; {NAME_ONE}")
     text = with_lines(own.file, text, list(lines.values()), vocabulary)
     return Written(own.file, text, len(lines), tuple(remarks))
 
 
-def _own(labels: tuple[str, ...], vocabulary: Vocabulary, settings: Settings) -> tuple[Labels, str]:
-    """The label file that is written, the first of a person's, with its text; one that is not there is begun."""
+def own_file(labels: tuple[str, ...]) -> str:
+    """Return the label file that is written: the first of a person's.
+
+    Raises
+    ------
+    InputError
+        If there is none.
+    """
     for file in labels:
         if not file.startswith(OURS):
-            if not Path(file).exists():
-                return parse_labels(NEW, vocabulary, name=file), NEW
-            data = read_regular(file, MAX_BYTES, partial(LabelError, file))
-            return read_labels(file, vocabulary, category=settings.category), data.decode("utf-8-sig")
+            return file
     raise InputError("--labels", 0, "names no file to write into", "add -l labels.yaml; it is made if it is not there")
+
+
+def _own(labels: tuple[str, ...], vocabulary: Vocabulary, settings: Settings) -> tuple[Labels, str]:
+    """The label file that is written, with its text; one that is not there is begun."""
+    file = own_file(labels)
+    if not Path(file).exists():
+        return parse_labels(NEW, vocabulary, name=file), NEW
+    data = read_regular(file, MAX_BYTES, partial(LabelError, file))
+    return read_labels(file, vocabulary, category=settings.category), data.decode("utf-8-sig")
 
 
 def _meant(elements: Iterable[Element], entry: Entry) -> Iterator[Channel]:

@@ -14,6 +14,8 @@ from rosprivacy.ingest.labels.label_writer import NewLine, with_lines
 from rosprivacy.label_lines import next_lines
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.settings import Settings
+from tests.helpers.policies import policy
+from tests.helpers.turtlebot import TURTLEBOT3
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -34,7 +36,6 @@ nodes:
 topics:
   "/safety_*": sensitive
 """
-TURTLEBOT3 = "policies/ros-swg__turtlebot3_demo/policies/tb3_gazebo_policy.xml"
 STEP_5 = "categorizations/JonasWoh__ROS2PrivacyGraph/categorizations/categorization_turtlebot3_step_5.json"
 OFFICE = "policies/open-rmf__rmf_demos/rmf_demos/sros2/policies/office.policy.xml"
 
@@ -101,6 +102,23 @@ def test_next_begins_a_file_with_what_sounds_like_a_sensor(cli: Cli, factory: tu
     assert labels_of(file) == {"labels": 1, "nodes": {"/robot_camera": None, "/safety_camera": None}}
 
 
+def test_where_no_name_sounds_like_a_sensor_it_says_how_to_name_a_source(cli: Cli, tmp_path: Path) -> None:
+    (tmp_path / "p.xml").write_text(policy('<topics publish="ALLOW"><topic>/x</topic></topics>'))
+    done = cli("labels", "--next", "p.xml", "-l", "l.yaml", cwd=tmp_path)
+    assert "l.yaml: no source is named, and no node sounds like a sensor; rosprivacy labels --init" in done.stderr
+    assert not (tmp_path / "l.yaml").exists()
+
+
+@pytest.mark.corpus
+def test_the_candidates_begin_with_the_scanner(cli: Cli, corpus: Path, tmp_path: Path) -> None:
+    """In the order of names the first five of TurtleBot3 left out its only sensor."""
+    step = cli("analyze", corpus / TURTLEBOT3).stdout.splitlines()[-1]
+    assert "by name: /turtlebot3_laserscan, /teleop_keyboard, /amcl, " in step
+    file = tmp_path / "l.yaml"
+    cli("labels", "--next", corpus / TURTLEBOT3, "-l", file)
+    assert {"/turtlebot3_laserscan", "/slam_toolbox", "/lifecycle_manager_slam"} <= set(labels_of(file)["nodes"])
+
+
 def test_next_writes_the_lines_of_the_next_round_with_where_data_comes_from(
     cli: Cli, tmp_path: Path, examples: Path
 ) -> None:
@@ -113,6 +131,21 @@ def test_next_writes_the_lines_of_the_next_round_with_where_data_comes_from(
     offered = {q["element"]["name"] for q in rosprivacy.analyze(policy, str(file)).document()["open"]}
     said = labels_of(file)
     assert {name for names in list(said.values())[1:] for name in names} - {"/robot_camera"} <= offered
+
+
+def test_what_data_comes_through_carries_that_data(cli: Cli, tmp_path: Path, examples: Path) -> None:
+    """/robot_video is as near and carries Video only; the voice comes along another flow."""
+    policy, file = str(examples / "factory" / "before.policy.xml"), tmp_path / "l.yaml"
+    file.write_text(
+        "labels: 1\nnodes:\n  /robot_camera: {source: [Video]}\n  /safety_camera: {source: [Voice]}\n"
+        "  /navigator: {conduit: [Video]}\ntopics: {/robot_video: {only: [Video]}, /safety_video: {only: [Voice]}}\n"
+        "flows:\n  - {from: /safety_camera, to: memory}\n  - {from: memory, to: /navigator}\n"
+        "elements: {memory: {kind: shared-memory}}\n"
+    )
+    assert (
+        "   /navigator  (node; 2 steps from a source; Voice through memory;"
+        in cli("analyze", policy, "-l", file).stdout
+    )
 
 
 def test_a_source_is_asked_about_the_kinds_that_it_does_not_bring(cli: Cli, tmp_path: Path, examples: Path) -> None:

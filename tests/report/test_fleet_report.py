@@ -78,13 +78,13 @@ def test_robots_that_stand_beside_others_are_in_no_row_of_the_document() -> None
 
 def test_each_way_says_on_how_many_robots_it_is_and_lists_them() -> None:
     patterns = {pattern["finding"]: pattern for pattern in document()["fleet"]["patterns"]}
-    for way in told().ways:
-        assert list(way.robots) == patterns[way.id]["robots"]
-        assert way.spread.startswith(f"On {len(way.robots)} of 40 robots.")
-        assert ("From one robot to another; 468 such paths" in way.spread) == patterns[way.id]["across"]
-    (video,) = (way for way in told().ways if way.leak == "base:reviewer")
+    for entry in told().entries:
+        assert list(entry.robots) == patterns[entry.id]["robots"]
+        assert entry.spread.startswith(f"On {len(entry.robots)} of 40 robots.")
+        assert ("From one robot to another; 468 such paths" in entry.spread) == patterns[entry.id]["across"]
+    (video,) = (entry for entry in told().entries if entry.leak == "base:reviewer")
     assert video.spread == "On 24 of 40 robots. In 23 of 24 like it the data are pseudonymised."
-    assert len(told().ways) == len(document()["findings"]) == 6  # patterns, not put together a second time
+    assert len(told().entries) == len(document()["findings"]) == 6  # patterns, not put together a second time
 
 
 def test_names_count_the_robots_of_the_fleet_not_those_that_are_shown() -> None:
@@ -136,7 +136,7 @@ def test_a_redacted_report_of_a_fleet_names_no_robot_and_no_model() -> None:
     before, after = document()["fleet"], copy["fleet"]
     assert [len(group["robots"]) for group in after["alike"]] == [len(group["robots"]) for group in before["alike"]]
     assert sorted(after["models"].values()) == sorted(before["models"].values())
-    assert len(outline(copy, "en").ways) == 6
+    assert len(outline(copy, "en").entries) == 6
     assert outline(copy, "en").fleet
 
 

@@ -16,6 +16,7 @@ from rosprivacy.cli.output import emit
 
 if TYPE_CHECKING:
     from rosprivacy.formats import Style
+    from rosprivacy.result import Result
     from rosprivacy.settings import Settings
 
 SPARK = "Where it is computed"  # a panel of help
@@ -93,20 +94,9 @@ def analyze(
     settings = replace(
         inputs.settings, article9=article9, data_types=tuple(data_type or ()), paths=paths.value, max_paths=max_paths
     )
-    saved = [*(["--save-graph"] if save_graph else []), *(["--per-policy"] if per_policy else [])]
-    if inputs.from_database:
-        refuse("--from-database", "what is in the database", saved)
-    if inputs.fleet:
-        refuse("--fleet", "what the fleet file names", saved)
-    if engine is Engine.spark:
-        refuse("--engine spark", "a fleet that nobody has decided about", inputs.given("decisions"))
-        if not inputs.fleet:
-            raise typer.BadParameter("--engine spark is for fleets: give --fleet too")
-    elif master or results:
-        raise typer.BadParameter("--master and --results are for --engine spark")
+    _check(inputs, engine, save_graph=bool(save_graph), per_policy=per_policy, of_spark=bool(master or results))
     style = Style(verbose=verbose, quiet=quiet, colour=output is None)
     if per_policy:
-        refuse("--per-policy", "policies by themselves", [*inputs.given("add"), *saved[:-1]])
         raise typer.Exit(_each_alone(inputs, settings, format, style, output, fail_on))
     if results and output:
         from rosprivacy.report.atomic import check_outputs
@@ -118,14 +108,34 @@ def analyze(
         result = run_on_spark(inputs.fleet, settings, master, results)
     else:
         result = inputs.result(settings)
-    texts = {}
-    if save_graph:
-        from rosprivacy.ingest.policies.saved_graph import as_dict
-        from rosprivacy.report.document.analysis import as_text
-
-        texts[save_graph] = as_text(as_dict(result.policies, result.diagnostics))
-    emit(written(result, format.value, style), output, texts)
+    graphs = {save_graph: _saved_graph(result)} if save_graph else {}
+    emit(written(result, format.value, style), output, graphs)
     raise typer.Exit(exit_code(result, fail_on))
+
+
+def _check(inputs: Inputs, engine: Engine, *, save_graph: bool, per_policy: bool, of_spark: bool) -> None:
+    """Refuse options that make no sense beside others."""
+    saved = ["--save-graph"] if save_graph else []
+    both = [*saved, *(["--per-policy"] if per_policy else [])]
+    if inputs.from_database:
+        refuse("--from-database", "what is in the database", both)
+    if inputs.fleet:
+        refuse("--fleet", "what the fleet file names", both)
+    if engine is Engine.spark:
+        refuse("--engine spark", "a fleet that nobody has decided about", inputs.given("decisions"))
+        if not inputs.fleet:
+            raise typer.BadParameter("--engine spark is for fleets: give --fleet too")
+    elif of_spark:
+        raise typer.BadParameter("--master and --results are for --engine spark")
+    if per_policy:
+        refuse("--per-policy", "policies by themselves", [*inputs.given("add"), *saved])
+
+
+def _saved_graph(result: Result) -> str:
+    from rosprivacy.ingest.policies.saved_graph import as_dict
+    from rosprivacy.report.document.analysis import as_text
+
+    return as_text(as_dict(result.policies, result.diagnostics))
 
 
 def _each_alone(

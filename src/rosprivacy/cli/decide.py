@@ -8,13 +8,16 @@ import sys
 from datetime import date
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from rosprivacy.analysis.errors import DecisionError, InputError, InputErrors, shown
 from rosprivacy.cli.options import Ontologies, complete_category
 from rosprivacy.cli.output import emit
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 PATTERN = "A pattern of findings"  # a panel of help
 SHORTEST = 4  # digits of an id, where the report says which are meant
@@ -97,25 +100,15 @@ def decide(
     """Decide about findings, or about a pattern of them, in a file that analyze and mitigate take into account."""
     from rosprivacy.clock import today
     from rosprivacy.ingest.decisions.decision_writer import with_decision
-    from rosprivacy.ingest.decisions.decisions_file import is_date, is_id
     from rosprivacy.ontology.vocabulary import load
+    from rosprivacy.report.editing import editing
 
-    pattern = {"category": category, "source": source, "leak": leak, "robot": robot, "from_robot": from_robot}
-    targets = [{key: value for key, value in pattern.items() if value}] if not ids else [{"id": one} for one in ids]
-    if ids and any(pattern.values()):
-        raise typer.BadParameter("name findings by their ids, or a pattern of them, not both")
-    if not ids and not any(pattern.values()):
-        raise typer.BadParameter("name a finding's id, or a pattern: --category, --source, --leak")
-    if expires is not None and not is_date(expires):
-        raise typer.BadParameter(f"{expires!r} is not a date: write YYYY-MM-DD", param_hint="--expires")
-    if expires is not None and expires < today(os.environ):
-        raise typer.BadParameter(f"{expires} is over: it would decide nothing", param_hint="--expires")
-    if not report and (short := [one for one in ids or () if not is_id(one)]):
-        hint = "write its 16 digits and letters, or give --report, and its beginning will do"
-        raise InputErrors([DecisionError("ID", 0, f"{shown(short[0])!r} is not the id of a finding", hint)])
-    found = _findings(report) if report else None
-    if found is not None and ids:
-        targets = [_chosen(found, one, str(report)) for one in ids]
+    names = {"category": category, "source": source, "leak": leak, "robot": robot, "from_robot": from_robot}
+    pattern = {key: value for key, value in names.items() if value}
+    _check_target(ids, pattern)
+    _check_expiry(expires)
+    findings = _findings(report) if report else None
+    targets = _targets(ids, findings, str(report)) if ids else [pattern]
     entry = {
         "decision": choice.value,
         "reason": reason,
@@ -126,15 +119,45 @@ def decide(
         "ticket": ticket,
     }
     said = {key: value for key, value in entry.items() if value is not None}
-    text, vocabulary = _text(decisions), load(ontologies=tuple(ontology or ()))
-    for target in targets:
-        remark = _remark(found, target)
-        text = with_decision(str(decisions), text, {**target, **said}, remark, vocabulary)
+    vocabulary = load(ontologies=tuple(ontology or ()))
     about = "; ".join(", ".join(f"{key} {shown(str(value))}" for key, value in target.items()) for target in targets)
     answer = f"{shown(str(decisions))}: {choice.value} {about}\n"
-    if ids and not report:
-        print("the ids were not checked; --report FILE checks them against an analysis", file=sys.stderr)
-    emit(answer, None, {decisions: text or ""}, edited=decisions)  # the one file that is meant to be read and written
+    with editing(decisions):
+        text = _text(decisions)
+        for target in targets:
+            text = with_decision(str(decisions), text, {**target, **said}, _remark(findings, target), vocabulary)
+        if ids and not report:
+            print("the ids were not checked; --report FILE checks them against an analysis", file=sys.stderr)
+        emit(answer, None, {decisions: text or ""}, edited=decisions)  # the one file that is read and written
+
+
+def _check_target(ids: list[str] | None, pattern: Mapping[str, str]) -> None:
+    if ids and pattern:
+        raise typer.BadParameter("name findings by their ids, or a pattern of them, not both")
+    if not ids and not pattern:
+        raise typer.BadParameter("name a finding's id, or a pattern: --category, --source, --leak")
+
+
+def _check_expiry(expires: str | None) -> None:
+    from rosprivacy.clock import today
+    from rosprivacy.ingest.decisions.decisions_file import is_date
+
+    if expires is not None and not is_date(expires):
+        raise typer.BadParameter(f"{expires!r} is not a date: write YYYY-MM-DD", param_hint="--expires")
+    if expires is not None and expires < today(os.environ):
+        raise typer.BadParameter(f"{expires} is over: it would decide nothing", param_hint="--expires")
+
+
+def _targets(ids: list[str], findings: dict[str, dict[str, Any]] | None, report: str) -> list[dict[str, Any]]:
+    """The findings that are meant; without a report to look them up in, their ids have to be whole."""
+    from rosprivacy.ingest.decisions.decisions_file import is_id
+
+    if findings is not None:
+        return [_chosen(findings, one, report) for one in ids]
+    if short := [one for one in ids if not is_id(one)]:
+        hint = "write its 16 digits and letters, or give --report, and its beginning will do"
+        raise InputErrors([DecisionError("ID", 0, f"{shown(short[0])!r} is not the id of a finding", hint)])
+    return [{"id": one} for one in ids]
 
 
 def _text(file: Path) -> str | None:

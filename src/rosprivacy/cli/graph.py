@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -51,6 +52,24 @@ class Direction(StrEnum):
 
     right = "right"
     down = "down"
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """What is drawn of a view, as the options of these names say."""
+
+    finding: str | None
+    robot: str | None
+    around: list[str] | None
+    steps: int
+    most: int | None
+    fold: bool
+    loose_ends: bool | None
+
+    @property
+    def chosen(self) -> bool:
+        """Whether a user chose any of it."""
+        return bool(self.finding or self.robot or self.around or self.most or self.fold) or self.loose_ends is not None
 
 
 DRAWN = "What is drawn of it"  # panels of help
@@ -151,34 +170,36 @@ def graph(
     ] = False,
 ) -> None:
     """Draw the ROS graph, or where personal data can go in it. Gives no verdict: exit code 0 once it is drawn."""
-    if show is Shown.ros and (finding or most):
-        raise typer.BadParameter("--finding and --most are for --show privacy")
-    chosen = bool(finding or robot or around or most or fold) or loose_ends is not None
-    if everything and most:
-        raise typer.BadParameter("--all draws everything, --most does not: choose one of them")
-    show = show or (Shown.privacy if finding or most else Shown.ros)
+    part = Part(finding, robot, around, steps, most, fold=fold, loose_ends=loose_ends)
+    show = _shown(show, part, everything=everything)
     form = _format(format, output)
     not_for_a_terminal(form.upper() if form is not PictureFormat.mermaid else "a drawing", output)
     result, own = _drawn_of(inputs)
-    picture = _view(result, show, finding, most, carried_only=bool(inputs.categories), standard=draw_standard_channels)
+    picture = _view(result, show, part, carried_only=bool(inputs.categories), standard=draw_standard_channels)
     if result.fleet and not finding:
         from rosprivacy.report.pictures.fleet_view import label, represented
 
         picture = represented(picture, result.fleet.likeness)
         own = {label(name, result.fleet.likeness): profiles for name, profiles in own.items()}
-        robot = label(robot, result.fleet.likeness) if robot else None
-    picture = _narrowed(picture, robot, around, steps, most, fold=fold, loose_ends=loose_ends is not False)
-    if not everything and not chosen and form is not PictureFormat.graphml:
-        from rosprivacy.report.pictures.legible import legible
-
-        picture, left = legible(picture)
-        for said in left:
-            print(said, file=sys.stderr)
+        part = replace(part, robot=label(robot, result.fleet.likeness) if robot else None)
+    picture = _narrowed(picture, part)
+    if not everything and not part.chosen and form is not PictureFormat.graphml:
+        picture = _legible(picture)
     if cluster is not Cluster.none:
         from rosprivacy.report.pictures.narrow import grouped
 
         picture = grouped(picture, cluster.value, result.analysis.graph.profiles, own)
     _write(picture, form, output, direction, seconds)
+
+
+def _shown(show: Shown | None, part: Part, *, everything: bool) -> Shown:
+    """The view that is asked for; some options are of one view only."""
+    of_privacy = bool(part.finding or part.most)
+    if show is Shown.ros and of_privacy:
+        raise typer.BadParameter("--finding and --most are for --show privacy")
+    if everything and part.most:
+        raise typer.BadParameter("--all draws everything, --most does not: choose one of them")
+    return show or (Shown.privacy if of_privacy else Shown.ros)
 
 
 def _drawn_of(inputs: Inputs) -> tuple[Result, dict[str, tuple[Profile, ...]]]:
@@ -207,43 +228,42 @@ def _format(given: PictureFormat | None, output: Path | None) -> PictureFormat:
     raise typer.BadParameter(f"what format is {output.name}? Name it with --format: {', '.join(PictureFormat)}")
 
 
-def _view(
-    result: Result, show: Shown, finding: str | None, most: int | None, *, carried_only: bool, standard: bool
-) -> Picture:
+def _view(result: Result, show: Shown, part: Part, *, carried_only: bool, standard: bool) -> Picture:
     from rosprivacy.report.pictures import narrow, views
 
     beside = result.fleet.likeness.second if result.fleet else ()
     if show is Shown.privacy:
-        if finding:
-            about = views.PER_BOX * most if most else None
-            return views.finding_view(result.analysis, narrow.the_finding(result.analysis, finding), about)
+        if part.finding:
+            about = views.PER_BOX * part.most if part.most else None
+            return views.finding_view(result.analysis, narrow.the_finding(result.analysis, part.finding), about)
         return views.privacy_view(result.analysis, beside)
     denials = [grant for policy in result.policies for grant in policy.grants if not grant.allow]
     picture = views.ros_view(result.analysis, denials, standard=standard, beside=beside)
     return narrow.carrying(picture, result.analysis) if carried_only else picture
 
 
-def _narrowed(
-    picture: Picture,
-    robot: str | None,
-    around: list[str] | None,
-    steps: int,
-    most: int | None,
-    *,
-    fold: bool,
-    loose_ends: bool,
-) -> Picture:
+def _narrowed(picture: Picture, part: Part) -> Picture:
     from rosprivacy.report.pictures import narrow, views
 
-    if robot:
-        picture = narrow.of_robot(picture, robot)
-    if around:
-        picture = narrow.around(picture, around, steps)
-    if fold:
+    if part.robot:
+        picture = narrow.of_robot(picture, part.robot)
+    if part.around:
+        picture = narrow.around(picture, part.around, part.steps)
+    if part.fold:
         picture = narrow.folded(picture)
-    if not loose_ends:
+    if part.loose_ends is False:
         picture = narrow.without_loose_ends(picture)
-    return views.bounded(picture, most) if most else picture
+    return views.bounded(picture, part.most) if part.most else picture
+
+
+def _legible(picture: Picture) -> Picture:
+    """The picture, smaller where it is too large to be read; what is left out is said."""
+    from rosprivacy.report.pictures.legible import legible
+
+    picture, left = legible(picture)
+    for said in left:
+        print(said, file=sys.stderr)
+    return picture
 
 
 def _write(

@@ -53,15 +53,17 @@ def labels(
 
 def _add(inputs: Inputs, output: Path | None, *, update: bool) -> None:
     """Lines into the label file that is named, the one that people edit; remarks go to the terminal."""
-    from rosprivacy.label_lines import next_lines, updated
+    from rosprivacy.label_lines import next_lines, own_file, updated
+    from rosprivacy.report.editing import editing
 
     labels = tuple(inputs.labels or ())
-    written = (updated if update else next_lines)(inputs.named, labels, inputs.settings)
-    for remark in written.remarks:
-        typer.echo(remark, err=True)
-    file = output or Path(written.file)
-    if written.added or output:
-        emit(written.text, file, edited=Path(written.file))
+    file = output or Path(own_file(labels))
+    with editing(file):
+        written = (updated if update else next_lines)(inputs.named, labels, inputs.settings)
+        for remark in written.remarks:
+            typer.echo(remark, err=True)
+        if written.added or output:
+            emit(written.text, file, edited=Path(written.file))
     typer.echo(f"{file}: {counted(written.added, 'line')} added", err=True)
 
 

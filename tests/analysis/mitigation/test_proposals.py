@@ -212,6 +212,6 @@ def test_nothing_on_the_way_to_a_time_critical_node_is_filtered(random: Random, 
         assert not any(goes_on(random, random.edges[f], c) & critical for f in touched for c in PARENTS)
         for kept in proposal.kept:
             if kept.reason == NOT_ALLOWED:
-                way = [number[element] for element in kept.way]
+                way = [number[element] for element in kept.path]
                 assert (way[0], way[-1]) == (number[kept.finding.source], number[kept.finding.leak])
                 assert set(pairwise(way)) <= set(random.edges)

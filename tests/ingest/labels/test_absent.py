@@ -12,6 +12,7 @@ from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.ingest.database.loading import load as load_robots
 from rosprivacy.ingest.labels.label_file import parse_labels
 from rosprivacy.ingest.labels.label_schema import label_schema
+from rosprivacy.mitigation import run_mitigation
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.private_neo4j import connection
 from rosprivacy.robot_system import robot_of
@@ -33,8 +34,8 @@ PROFILES = [
 ENDS = "nodes:\n  /camera: {source: [Video]}\n  /uplink: {leak: [Video]}\n"
 
 
-def analyze(folder: Path, labels: str, **options: str) -> Result:
-    (folder / "p.xml").write_text(POLICY.format("".join(PROFILE.format(*profile) for profile in PROFILES)))
+def analyze(folder: Path, labels: str, *more: tuple[str, str, str], **options: str) -> Result:
+    (folder / "p.xml").write_text(POLICY.format("".join(PROFILE.format(*profile) for profile in (*PROFILES, *more))))
     (folder / "l.yaml").write_text(f"labels: 1\n{labels}")
     return rosprivacy.analyze(str(folder / "p.xml"), str(folder / "l.yaml"), **options)  # type: ignore[arg-type]
 
@@ -54,6 +55,20 @@ def test_nothing_goes_through_what_is_absent_and_every_report_says_so(tmp_path: 
     assert (row["by"], row["leak"]["name"]) == ("absent", "/uplink")  # who says so is in the ledger
     assert "   /shell is not on the robot: a debug tool" in result.to("text")
     assert "/shell has a profile and is not on the robot: a debug tool" in result.to("markdown")
+
+
+def test_nobody_is_told_that_data_gets_to_what_is_absent(tmp_path: Path) -> None:
+    """docs/labels.md: nothing gets to it, so it is in no inventory, and no proposal takes anything from it."""
+    labels = (
+        f"{ENDS}  /shell: {{absent: a debug tool}}\n  /screen: {{leak: [Video]}}\nchannels: {{/image: sensitive}}\n"
+    )
+    result = analyze(tmp_path, labels, ("screen", "subscribe", "image"))
+    document = result.document()
+    assert "/shell" not in {row["element"]["name"] for row in document["carries"]}
+    assert "/shell" in {element["name"] for element in document["unreached"]}
+    (proposal,) = run_mitigation(result).document()["proposals"]
+    assert [step["spares"] for step in proposal["steps"]] == [[]]
+    assert "/shell" not in {less["element"]["name"] for less in proposal["affected"]}
 
 
 def test_what_is_absent_brings_nothing_in(tmp_path: Path) -> None:

@@ -91,10 +91,10 @@ def test_what_is_not_whole_says_so_and_how_to_get_the_rest() -> None:
     result = factory(2)
     told = outline(result.document(), "en")
     one = made(result.analysis)[0]
-    page = html(told, Figures({told.ways[0].id: inline.Inline(one.svg, whole=False)}))
+    page = html(told, Figures({told.entries[0].id: inline.Inline(one.svg, whole=False)}))
     assert "Only the shorter paths are drawn" in page
-    assert f"rosprivacy graph … --finding {told.ways[0].id}" in page
-    assert "Only the shorter paths" not in html(told, Figures({told.ways[0].id: one}))
+    assert f"rosprivacy graph … --finding {told.entries[0].id}" in page
+    assert "Only the shorter paths" not in html(told, Figures({told.entries[0].id: one}))
 
 
 def test_hostile_names_stay_text() -> None:
@@ -129,7 +129,7 @@ def test_each_way_has_its_picture_and_says_it_in_words() -> None:
         "Picture of the path: " + " → ".join(e["name"] for e in finding["witness"]) for finding in care()["findings"]
     ]
     assert "no picture" not in page.text_content()
-    assert set(drawn.of) == {way.id for way in told.ways}
+    assert set(drawn.of) == {entry.id for entry in told.entries}
 
 
 def test_boxes_speak_the_language_of_the_report() -> None:
@@ -145,18 +145,18 @@ def test_what_has_no_room_is_left_out_in_order_and_it_says_how_many_and_how_to_g
     result = care_home()
     told = outline(result.document(), "en")
     every = figures(result.analysis, told)
-    first = [way.id for way in told.ways][:1]
+    first = [entry.id for entry in told.entries][:1]
     some = figures(result.analysis, told, room=len(every.of[first[0]].svg.encode()))
     assert list(some.of) == first
     page = html(told, some)
     assert "2 of the paths below have no picture here" in page
-    assert [f"--finding {way.id}" in page for way in told.ways] == [False, True, True]
+    assert [f"--finding {entry.id}" in page for entry in told.entries] == [False, True, True]
 
 
 def test_what_graphviz_cannot_draw_is_left_out_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     result = care_home()
     told = outline(result.document(), "en")
-    second = told.ways[1].source
+    second = told.entries[1].source
     real = dot_module.dot
 
     def dot(picture: Any, **options: Any) -> str:
@@ -165,9 +165,9 @@ def test_what_graphviz_cannot_draw_is_left_out_alone(monkeypatch: pytest.MonkeyP
 
     monkeypatch.setattr(inline, "dot", dot)
     drawn = figures(result.analysis, told)
-    missing = [way.id for way in told.ways if way.id not in drawn.of]
+    missing = [entry.id for entry in told.entries if entry.id not in drawn.of]
     assert missing
-    assert told.ways[1].id in missing
+    assert told.entries[1].id in missing
     assert f"{len(missing)} of the paths below have no picture here" in html(told, drawn)
 
 
@@ -192,11 +192,11 @@ def test_a_redacted_report_has_redacted_pictures() -> None:
     drawn = figures(result.analysis, told, aliases_of(document, copy))
     page = html(told, drawn)
     names = {element.name for element in result.analysis.graph.elements if len(element.name) > 4}
-    assert len(drawn.of) == len(told.ways)
+    assert len(drawn.of) == len(told.entries)
     assert not [name for name in names if name in page]
-    shown = texts(etree.fromstring(drawn.of[told.ways[0].id].svg))
-    assert told.ways[0].source in shown
-    assert told.ways[0].leak in shown
+    shown = texts(etree.fromstring(drawn.of[told.entries[0].id].svg))
+    assert told.entries[0].source in shown
+    assert told.entries[0].leak in shown
 
 
 def test_what_has_no_alias_has_no_name() -> None:

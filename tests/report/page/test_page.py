@@ -161,7 +161,7 @@ def test_a_redacted_copy_names_nobody(language: str) -> None:
     for text in every:
         assert [name for name in names if name in text] == []
         assert document["findings"][0]["id"] in text
-    assert [way.id for way in told(copy).ways] == [way.id for way in told(document).ways]
+    assert [entry.id for entry in told(copy).entries] == [entry.id for entry in told(document).entries]
 
 
 def test_a_name_is_replaced_by_the_same_one_in_both_documents() -> None:

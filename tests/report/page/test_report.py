@@ -159,7 +159,7 @@ def test_a_way_that_does_not_lead_through_a_sanitizer_is_named_beside_it() -> No
         }
     ]  # fmt: skip
     report = told(document)
-    assert [number for _, number in report.cleanings[0].past] == [way.number for way in report.ways]
+    assert [number for _, number in report.cleanings[0].past] == [entry.number for entry in report.entries]
 
 
 def test_the_elements_that_nothing_reaches_are_told_too() -> None:

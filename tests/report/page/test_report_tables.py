@@ -84,7 +84,7 @@ def test_storages_are_told_with_their_retention_and_what_is_missing() -> None:
 def test_decisions_stand_beside_their_way_with_what_they_lack() -> None:
     document = with_decisions(care())
     report = told(document)
-    assert [way.state for way in report.ways] == ["accepted", "decided", "open"]
+    assert [entry.state for entry in report.entries] == ["accepted", "decided", "open"]
     for text in texts(document):
         assert "staff has to know" in text
         assert "6(1)(c)" in text
@@ -100,7 +100,7 @@ def test_findings_that_differ_only_in_the_robot_are_one_with_its_robots_listed()
     document = fleet(care(), robots)
     report = told(document)
     assert len(document["findings"]) == 60
-    assert [len(way.robots) for way in report.ways] == [20, 20, 20]
+    assert [len(entry.robots) for entry in report.entries] == [20, 20, 20]
     assert [row.name for row in report.recipients.rows] == ["/recorder (20 robots)", "/uplink (20 robots)"]
     for text in texts(document):
         assert all(robot in text for robot in robots)
@@ -111,4 +111,4 @@ def test_findings_that_differ_only_in_the_robot_are_one_with_its_robots_listed()
 def test_a_way_from_robot_to_robot_is_another_pattern_than_one_inside_a_robot() -> None:
     document = fleet(care(), ["a", "b"])
     document["findings"][0]["leak"]["robot"] = "b"
-    assert [len(way.robots) for way in told(document).ways] == [0, 2, 2, 0]
+    assert [len(entry.robots) for entry in told(document).entries] == [0, 2, 2, 0]

@@ -1,0 +1,90 @@
+"""The facts that the rooms hand to each other, as frozen dataclasses. Names are those of the glossary.
+
+Nothing here reads or writes anything; validation is done where a fact is made.
+"""
+
+from rosprivacy.analysis.model.category import ARTICLE_9, ARTICLE_9_VERDICTS, Category, Legal
+from rosprivacy.analysis.model.diagnostic import (
+    DEAD_DENY,
+    EMPTY_GROUP,
+    FALLBACK_TAKEN,
+    MERGED,
+    NOT_READ,
+    REFUSED_NAME,
+    SHARED_ENCLAVE,
+    UNREAD_FILE,
+    Diagnostic,
+    Place,
+    Severity,
+    unread,
+)
+from rosprivacy.analysis.model.element import (
+    CHANNELS,
+    DISCLOSURE,
+    KINDS,
+    NON_ROS,
+    STORAGE_LIMITATION,
+    THIRD_COUNTRY,
+    Element,
+)
+from rosprivacy.analysis.model.flow import Flow, FlowGraph
+from rosprivacy.analysis.model.policy import Grant, Policy, Profile
+from rosprivacy.analysis.model.statement import (
+    CHANGED,
+    CLEANS,
+    GLOB,
+    NAME,
+    NOWHERE,
+    SEGMENT,
+    STANDARD,
+    STATED,
+    Bound,
+    Method,
+    NonRosFacts,
+    Statement,
+    UnknownEnd,
+)
+
+__all__ = [
+    "ARTICLE_9",
+    "ARTICLE_9_VERDICTS",
+    "CHANGED",
+    "CHANNELS",
+    "CLEANS",
+    "DEAD_DENY",
+    "DISCLOSURE",
+    "EMPTY_GROUP",
+    "FALLBACK_TAKEN",
+    "GLOB",
+    "KINDS",
+    "MERGED",
+    "NAME",
+    "NON_ROS",
+    "NOT_READ",
+    "NOWHERE",
+    "REFUSED_NAME",
+    "SEGMENT",
+    "SHARED_ENCLAVE",
+    "STANDARD",
+    "STATED",
+    "STORAGE_LIMITATION",
+    "THIRD_COUNTRY",
+    "UNREAD_FILE",
+    "Bound",
+    "Category",
+    "Diagnostic",
+    "Element",
+    "Flow",
+    "FlowGraph",
+    "Grant",
+    "Legal",
+    "Method",
+    "NonRosFacts",
+    "Place",
+    "Policy",
+    "Profile",
+    "Severity",
+    "Statement",
+    "UnknownEnd",
+    "unread",
+]

@@ -1,0 +1,126 @@
+"""A category of personal data, and the law that can apply to it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+ARTICLE_9 = "GDPR Art. 9(1)"
+ARTICLE_9_VERDICTS = ("always", "conditional", "may-reveal", "no", "unknown")
+
+
+@dataclass(frozen=True, slots=True)
+class Legal:
+    """That data of a category can be what a provision speaks of.
+
+    Attributes
+    ----------
+    iri, name, meaning
+        Of the provision; its meaning in one sentence of our own.
+    as_of
+        Date of the law, ``YYYY-MM-DD``.
+    verdict
+        ``always``, ``conditional`` or ``may-reveal``.
+    condition
+        When, where it is not always.
+    sources
+        Names of the provisions and guidelines that the verdict rests on, sorted.
+    stated_of
+        Name of the category that the ontology says it of: this one, a broader one, or narrower ones.
+    translations
+        Language -> ``meaning``, ``condition``, ``name`` and ``sources`` (in a row) in it.
+    """
+
+    iri: str
+    name: str
+    meaning: str
+    as_of: str
+    verdict: str
+    condition: str = ""
+    sources: tuple[str, ...] = ()
+    stated_of: str = ""
+    translations: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+
+    @property
+    def special(self) -> bool:
+        """Whether it is Article 9(1) GDPR."""
+        return self.name == ARTICLE_9 or self.name.startswith(f"{ARTICLE_9} ")
+
+    def text(self, what: str, language: str) -> str:
+        """Return its ``meaning``, ``condition`` or ``name`` in a language, in English if there is no translation."""
+        return self.translations.get(language, {}).get(what) or str(getattr(self, what))
+
+
+@dataclass(frozen=True, slots=True)
+class Category:
+    """A kind of personal data.
+
+    Attributes
+    ----------
+    name
+        Short name, the IRI's last part; used in label files.
+    iri
+        Full IRI.
+    label
+        Neo4j label name, an identifier, unique.
+    title
+        English name for people.
+    definition
+        One sentence.
+    broader
+        Names of the direct broader categories (``skos:broader``), sorted.
+    synonyms
+        Other names that find it, in any language, sorted.
+    law
+        Provisions that it falls under, sorted by name.
+    reason
+        Why it does not fall under Article 9(1), where the ontology says so.
+    stated_of
+        Names of the categories that ``law`` and ``reason`` are stated of; empty as read from the ontology.
+    data_types
+        How it is represented: image, audio, position, …, sorted.
+    gdpr
+        Name of the provision that defines its GDPR category.
+    same_as, within
+        IRIs of other vocabularies: the same concept, broader ones; sorted.
+    note
+        For readers of the ontology.
+    translations
+        Language -> ``title``, ``definition``, ``reason`` and ``gdpr`` in it.
+    """
+
+    name: str
+    iri: str
+    label: str
+    title: str
+    definition: str
+    broader: tuple[str, ...] = ()
+    synonyms: tuple[str, ...] = ()
+    law: tuple[Legal, ...] = ()
+    reason: str = ""
+    stated_of: tuple[str, ...] = ()
+    data_types: tuple[str, ...] = ()
+    gdpr: str = ""
+    same_as: tuple[str, ...] = ()
+    within: tuple[str, ...] = ()
+    note: str = ""
+    translations: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """All that it is called: a text that is one of them, in upper or lower case, means it."""
+        return tuple(filter(None, (self.name, self.iri, self.label, self.title, *self.synonyms)))
+
+    @property
+    def article9(self) -> str:
+        """The strongest verdict under Article 9(1) GDPR: one of ``ARTICLE_9_VERDICTS``."""
+        verdicts = {legal.verdict for legal in self.law if legal.special}
+        stated = "no" if self.reason else "unknown"
+        return next((verdict for verdict in ARTICLE_9_VERDICTS[:3] if verdict in verdicts), stated)
+
+    def text(self, what: str, language: str) -> str:
+        """Return its ``title``, ``definition``, ``reason`` or ``gdpr`` in a language, else in English."""
+        return self.translations.get(language, {}).get(what) or str(getattr(self, what))

@@ -1,0 +1,65 @@
+"""A line of a file, and what a reader of a report has to know about it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+NOT_READ = "not-read"  # a file that was passed over, or read only where a policy includes it
+UNREAD_FILE = "unread-file"  # grants that no policy brings in: what they allow is not known (rule S11)
+DEAD_DENY = "dead-deny"
+SHARED_ENCLAVE = "shared-enclave"
+MERGED = "merged"  # policies that make one graph, and may not have been meant to
+FALLBACK_TAKEN = "fallback-taken"
+EMPTY_GROUP = "empty-group"
+REFUSED_NAME = "refused-name"
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A line of a file; line 0 where there is none."""
+
+    file: str
+    line: int
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line}" if self.line else self.file
+
+
+class Severity(StrEnum):
+    """How much a diagnostic weighs. An error ends the run, so a report shows warnings and notices only."""
+
+    ERROR = "error"
+    WARNING = "warning"
+    NOTICE = "notice"
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnostic:
+    """Something that the reader of a report has to know about an input.
+
+    Attributes
+    ----------
+    code
+        What it is, for programs: ``UNREAD_FILE`` and others; empty where nobody has to tell it from others.
+    """
+
+    place: Place
+    severity: Severity
+    message: str
+    code: str = ""
+
+
+def unread(diagnostics: Iterable[Diagnostic]) -> tuple[Place, ...]:
+    """Return where grants stand that were not read (rule S11), sorted.
+
+    >>> said = [Diagnostic(Place(file, 1), Severity.WARNING, "", UNREAD_FILE) for file in ("b.xml", "a.xml")]
+    >>> [str(place) for place in unread([*said, Diagnostic(Place("c.xml", 1), Severity.NOTICE, "")])]
+    ['a.xml:1', 'b.xml:1']
+    """
+    places = {said.place for said in diagnostics if said.code == UNREAD_FILE}
+    return tuple(sorted(places, key=lambda place: (place.file, place.line)))

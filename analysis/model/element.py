@@ -1,0 +1,73 @@
+"""An element of the graph, and the kinds of elements there are (rules S1, S9)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+CHANNELS = ("action", "service", "topic")
+NON_ROS = ("device", "display", "external-system", "person", "shared-memory", "side-channel", "storage")  # rule S9
+KINDS = ("node", *NON_ROS, *CHANNELS)  # channels last: kernel/fixpoint.py sweeps them and the others in turn
+DISCLOSURE, STORAGE_LIMITATION, THIRD_COUNTRY = "disclosure", "storage-limitation", "third-country-transfer"  # S10
+
+
+@dataclass(frozen=True, slots=True)
+class Element:
+    """Anything in the graph; identity is (robot, kind, name), rule S1.
+
+    Attributes
+    ----------
+    kind
+        One of ``KINDS``.
+    name
+        Fully qualified; with wildcards where the element is a pattern.
+    robot
+        Empty where there is only one.
+    leg
+        ``request`` or ``response`` of a service or action, rule S2; empty otherwise.
+    side
+        Only of a pattern (rule S4): ``write`` for what is written to names that it matches, ``read`` for what is
+        read from them. Two vertices, so that nothing flows from one name to another through a wildcard.
+    without
+        Only of a pattern: the DDS expressions that a DENY of its enclave takes out of it (rule S5), sorted.
+    """
+
+    kind: str
+    name: str
+    robot: str = ""
+    leg: str = ""
+    side: str = ""
+    without: tuple[str, ...] = ()
+
+    @property
+    def pattern(self) -> bool:
+        """Whether the name is a wildcard expression."""
+        return bool(self.side)
+
+    @property
+    def is_node(self) -> bool:
+        """Whether this is a ROS node."""
+        return self.kind == "node"
+
+    @property
+    def is_channel(self) -> bool:
+        """Whether this is a topic, service or action: it only passes on; all others take part like nodes (rule S9)."""
+        return self.kind in CHANNELS
+
+    @property
+    def full_name(self) -> str:
+        """The name, with the robot's where there are several."""
+        return f"{self.robot}:{self.name}" if self.robot else self.name
+
+    @property
+    def identity(self) -> tuple[str, str, str]:
+        """(robot, kind, name), rule S1: legs and sides are parts of one element."""
+        return (self.robot, self.kind, self.name)
+
+    @property
+    def shown_as(self) -> tuple[str, str, str, str]:
+        """What a reader sees: the identity and the leg, without the side of a pattern."""
+        return (self.robot, self.kind, self.name, self.leg)
+
+    def sort_key(self) -> tuple[object, ...]:
+        """Nodes first, then by robot, name and part: the order of all output (rule S14)."""
+        return (KINDS.index(self.kind), self.robot, self.name, self.leg, self.side, self.without)

@@ -1,0 +1,70 @@
+"""What a policy file grants (rules S3, S5)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rosprivacy.analysis.model.diagnostic import Diagnostic, Place
+
+
+@dataclass(frozen=True, slots=True)
+class Profile:
+    """A node's entry in an enclave, ``<profile ns node>``."""
+
+    enclave: str
+    node: str
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Grant:
+    """What one policy line allows or denies to one profile.
+
+    Attributes
+    ----------
+    allow
+        False for DENY.
+    role
+        As written: ``publish``, ``subscribe``, ``reply``, ``request``, ``call`` or ``execute``.
+    kind
+        Of the channel as written: ``topic``, ``service`` or ``action``.
+    name
+        Fully qualified.
+    policy
+        The policy file that was read, whatever it includes: a DENY counts in its own policy only (rule S5).
+    dead
+        Whether the line stands after the first ``<profiles>`` of the first ``<enclave>`` of its path: sros2 does not
+        read it there. An ALLOW is taken all the same, a DENY takes nothing away (rule S5).
+    absolute
+        Whether the policy writes the name so: then it stays as it is under a namespace that is pushed (rule S1).
+    """
+
+    allow: bool
+    role: str
+    kind: str
+    name: str
+    enclave: str
+    node: str
+    place: Place
+    policy: str = ""
+    dead: bool = False
+    absolute: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Policy:
+    """What one policy file grants, with everything that it includes.
+
+    Attributes
+    ----------
+    sources
+        (file, SHA-256) of the policy and of all that it includes, sorted.
+    """
+
+    file: str
+    sources: tuple[tuple[str, str], ...]
+    profiles: tuple[Profile, ...]
+    grants: tuple[Grant, ...]
+    diagnostics: tuple[Diagnostic, ...] = ()

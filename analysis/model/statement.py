@@ -1,0 +1,189 @@
+"""What labels state of elements and flows, and what nobody states (rules S7 to S9, S11)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.model.diagnostic import Place
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rosprivacy.analysis.durations import Duration
+    from rosprivacy.analysis.model.element import Element
+
+
+class Method(StrEnum):
+    """What a sanitizer does, rule S8. Pseudonymise does not end the category (recital 26), the others do."""
+
+    ANONYMISE = "anonymise"
+    AGGREGATE = "aggregate"
+    DROP = "drop"
+    PSEUDONYMISE = "pseudonymise"
+    ABSENT = "absent"  # no cleaning: a label says that the node is not on the robot, so nothing gets to it
+
+    @property
+    def ends(self) -> bool:
+        """Whether nothing of the category leaves the sanitizer."""
+        return self is not Method.PSEUDONYMISE
+
+
+CLEANS = tuple(method for method in Method if method is not Method.ABSENT)  # what a label of a sanitizer can say
+NAME, SEGMENT, GLOB = "name", "segment", "glob"  # how a label names an element
+STANDARD = 0  # the tier of the file of standard channels (rule S13); users' files are above it
+CHANGED = 3  # the tier of what a proposal changes: above all that is said now, in files and in a database
+STATED = "flow"  # the role of a flow that a person states (rule S9)
+
+
+@dataclass(frozen=True, slots=True)
+class Statement:
+    """One thing that a label says of an element or a flow.
+
+    Attributes
+    ----------
+    role
+        Of a node: ``source``, ``leak``, ``sanitizer``, ``conduit``, ``derivation``, and ``no-source`` and ``no-leak``,
+        which take back what is said by lower ranks. Of a channel: ``mundane``, ``sensitive``, ``only``, ``never``. Of a
+        flow: ``only``, ``never``.
+    categories
+        Names; empty means every category. One name for the roles of a node.
+    rank
+        (tier, specificity): shipped files below the user's own, globs below names; the higher wins.
+    place
+        Of the label.
+    method
+        Of a sanitizer.
+    stated
+        Whether the label states the method.
+    to
+        Of a derivation: the category that comes out.
+    through
+        Of a source: name expressions of the channels that carry it; empty means all.
+    shipped
+        Whether it comes from a file of mundane channels that is not the user's (rule S13).
+    naming
+        How the label names the element: by a full ``NAME``, by a glob with its last ``SEGMENT`` written out, or by
+        another ``GLOB``.
+    why
+        Of a node that is not on the robot: a person's reason.
+    """
+
+    role: str
+    categories: tuple[str, ...]
+    rank: tuple[int, int]
+    place: Place
+    method: Method | None = None
+    stated: bool = True
+    to: str = ""
+    through: tuple[str, ...] = ()
+    shipped: bool = False
+    naming: str = NAME
+    why: str = ""
+
+    @property
+    def by_name(self) -> bool:
+        """Whether a user says it of a full name."""
+        return self.naming == NAME and self.rank[0] > STANDARD
+
+    @property
+    def glob(self) -> bool:
+        """Whether a glob names what it is about."""
+        return self.naming != NAME
+
+
+NOWHERE = Place("", 0)
+
+
+@dataclass(frozen=True, slots=True)
+class NonRosFacts:
+    """What is stated about a non-ROS element (rule S9).
+
+    Attributes
+    ----------
+    retention
+        (category, or ``EVERY``; how long it is kept), sorted.
+    limits
+        (category, or ``EVERY``; how long it may be kept), sorted; where several hold, the shortest counts.
+    backups
+        How long data stays in backups after it is deleted; True where that is not known, False without backups,
+        None where nothing is said.
+    country
+        ISO 3166-1 alpha-2 code.
+    area
+        Where that lies: ``INSIDE`` the EEA, outside with an adequacy decision (``ADEQUATE``), with one for some
+        recipients (``PARTLY``), or ``THIRD``.
+    adequacy
+        Whom a partial decision covers.
+    until
+        The last day of an adequacy decision that ends by itself, ``YYYY-MM-DD``.
+    encrypted
+        Whether it is at rest; None where nothing is said.
+    operator
+        Who runs it.
+    recipient
+        One of ``RECIPIENTS``.
+    transfer
+        Basis of a transfer out of the EEA, one of ``TRANSFERS``, as a person states it.
+    place
+        Where it is stated.
+    """
+
+    retention: tuple[tuple[str, Duration], ...] = ()
+    limits: tuple[tuple[str, Duration], ...] = ()
+    backups: Duration | bool | None = None
+    country: str = ""
+    area: str = ""
+    adequacy: str = ""
+    until: str = ""
+    encrypted: bool | None = None
+    operator: str = ""
+    recipient: str = ""
+    transfer: str = ""
+    place: Place = NOWHERE
+
+
+@dataclass(frozen=True, slots=True)
+class Bound:
+    """Statements joined to a graph.
+
+    Attributes
+    ----------
+    elements
+        By vertex.
+    flows
+        By index of an allowed flow.
+    through
+        (vertex, ``Statement.through``) -> the flows out of the vertex that these name expressions mean.
+    outside
+        What is stated about non-ROS elements, by vertex (rule S9).
+    subjects
+        By vertex: whom the data of a source are about, sorted. It changes no flow.
+    """
+
+    elements: Mapping[int, tuple[Statement, ...]]
+    flows: Mapping[int, tuple[Statement, ...]] = field(default_factory=dict)
+    through: Mapping[tuple[int, tuple[str, ...]], tuple[int, ...]] = field(default_factory=dict)
+    outside: Mapping[int, NonRosFacts] = field(default_factory=dict)
+    subjects: Mapping[int, tuple[str, ...]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class UnknownEnd:
+    """An element at which data's way ends without anybody known, rule S11.
+
+    Attributes
+    ----------
+    element
+        A channel, or a leg of one, with data; or an element outside ROS.
+    what
+        What is not known: the ``reader`` of a channel, of a service's leg its server or client; the ``flow`` that
+        leads to an element outside ROS.
+    categories
+        What is on the channel, sorted.
+    """
+
+    element: Element
+    what: str
+    categories: tuple[str, ...] = ()

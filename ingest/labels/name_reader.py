@@ -1,0 +1,103 @@
+"""Names in label files: of categories, and of elements (rules S7, S11).
+
+In: one value with its line. Out: the category that it means, or the name that it is; a problem for what is neither.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.errors import InputError, LabelError, shown
+from rosprivacy.analysis.model import Diagnostic, Place, Severity
+from rosprivacy.ingest.labels.entries import End
+from rosprivacy.ingest.labels.non_ros_reader import is_non_ros
+from rosprivacy.ingest.policies.names import LONGEST_NAME
+from rosprivacy.ingest.reading.format_reader import FileReader
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rosprivacy.ingest.reading.yaml_values import Value
+    from rosprivacy.ontology.vocabulary import Vocabulary
+
+END_KINDS = ("node", "topic", "service", "action")
+
+
+@dataclass
+class NameReader(FileReader):
+    """Reads what label files name."""
+
+    vocabulary: Vocabulary
+    diagnostics: list[Diagnostic] = field(default_factory=list, kw_only=True)
+    error: type[InputError] = field(default=LabelError, kw_only=True)
+
+    def entries_of(self, value: Value, known: tuple[str, ...]) -> Iterable[tuple[str, int, Value]]:
+        """Return the entries of a map but for notes, those with unknown keys reported."""
+        for key, line, child in super().entries_of(value, known):
+            if key != "note":
+                yield key, line, child
+            elif child.kind != "text":
+                self.problem(line, f"note takes text, not a {child.kind}", "write it, or remove it")
+
+    def not_empty(self, value: Value, what: str) -> None:
+        """Report a map that names nothing."""
+        if not value.entries:
+            self.problem(value.line, f"{what} names no category", "name one, such as {Video: …}, or remove it")
+
+    def categories_of(self, value: Value, what: str) -> Iterable[str]:
+        """Return the categories of a list, or of one text, that are known; the others are problems."""
+        if value.kind == "empty" or (value.kind == "list" and not value.items):
+            self.problem(value.line, f"{what} names no category", "name one, such as [Video], or remove it")
+        for item in self.list_of(value, what):
+            name = self.category_of(item)
+            if name:
+                yield name
+
+    def category_of(self, value: Value) -> str:
+        """Return the name of the category; empty where there is none, which is a problem."""
+        if value.kind != "text":
+            self.problem(value.line, f"a {value.kind} where a category is named", "write its name, such as Video")
+            return ""
+        return self.kind_of_data(value.text, value.line)
+
+    def kind_of_data(self, written: str, line: int) -> str:
+        """Return the category's name; rule S11: one that is not there is an error with the nearest."""
+        category = self.vocabulary.find(written)
+        if category is None:
+            self.problem(line, f"unknown category {shown(written)!r}", self.vocabulary.hint(written))
+            return ""
+        if new := self.vocabulary.respelt_as(written):
+            message = f"{shown(written)} is a former spelling; DPV spells it {new}"
+            self.diagnostics.append(Diagnostic(Place(self.file, line), Severity.NOTICE, message))
+        return category.name
+
+    def end(self, value: Value) -> End:
+        """Return an end of a flow: a name or glob of ROS, with its kind where that is said, or a name outside ROS."""
+        if value.kind == "map":
+            return self._end_of_kind(value)
+        if value.kind == "text" and value.text and is_non_ros(value.text):
+            return End(value.text)
+        return End(self.absolute_name(value))
+
+    def _end_of_kind(self, value: Value) -> End:
+        entries = list(self.entries_of(value, END_KINDS))
+        if len(entries) != 1:
+            self.problem(value.line, "the end of a flow names one element", "write {topic: /map}, or {node: /map}, …")
+            return End("")
+        ((kind, _, name),) = entries
+        return End(self.name_on_flow(name), kind)
+
+    def name_on_flow(self, value: Value) -> str:
+        """Return the name or glob of ROS at the end of a flow."""
+        return self.absolute_name(value)
+
+    def absolute_name(self, value: Value) -> str:
+        """Return a name or glob of ROS as it is written; one that does not begin with ``/`` is a problem."""
+        if value.kind != "text" or is_non_ros(value.text):
+            self.problem(value.line, f"{shown(value.text or value.kind)!r} is not an absolute name", "begin it with /")
+        elif len(value.text) > LONGEST_NAME:
+            what = f"a name of {len(value.text)} characters"
+            self.problem(value.line, what, f"no more than {LONGEST_NAME} are read")
+            return ""
+        return value.text

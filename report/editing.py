@@ -1,0 +1,52 @@
+"""One writer at a time: a file of people's work is read, changed and written back by one run after the other.
+
+In: a file that a command edits, decisions or labels. Out: a block in which no other run of the program edits it. An
+editor or another program knows nothing of this; ``write_texts`` sees what they wrote meanwhile and writes nothing.
+"""
+
+from __future__ import annotations
+
+from contextlib import contextmanager, suppress
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.errors import InputError
+from rosprivacy.report.atomic import told
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+LOCK_LIMIT = 60.0  # seconds; an edit takes one or two
+
+
+@contextmanager
+def editing(file: Path) -> Iterator[None]:
+    """Let one run at a time edit a file; the others wait.
+
+    The lock is a neighbour of the file, so that it holds for all users and containers that see the folder. The system
+    drops the lock of a process that dies.
+
+    Raises
+    ------
+    InputError
+        If another run edits the file for longer than ``LOCK_LIMIT``, or its folder cannot be written.
+    """
+    import filelock  # noqa: PLC0415 - light start
+
+    with told(file):
+        target = file.resolve()
+        target.parent.stat()  # filelock would make the folder
+        neighbour = target.with_name(f".{target.name[:50]}.lock")
+        lock = filelock.FileLock(neighbour, timeout=LOCK_LIMIT)
+        try:
+            lock.acquire()
+        except filelock.Timeout:
+            what = f"another rosprivacy has been editing it for {LOCK_LIMIT:.0f} s"
+            raise InputError(str(file), 0, what, "wait until it has ended, or end it, and try again") from None
+    try:
+        yield
+    finally:
+        with suppress(OSError):  # those who wait see that it is gone, and make a new one
+            if not neighbour.stat().st_size:
+                neighbour.unlink()
+        lock.release()

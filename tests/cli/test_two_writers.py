@@ -1,0 +1,123 @@
+"""Two runs that edit one file at once: nothing is lost, and nothing of a person's is written over."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from threading import Thread
+from typing import TYPE_CHECKING
+
+import pytest
+import yaml
+
+from rosprivacy.analysis.errors import InputError
+from rosprivacy.analysis.files_read import one_run
+from rosprivacy.ingest.reading.bounded_file import contents
+from rosprivacy.report import editing as editing_module
+from rosprivacy.report.atomic import write_texts
+from rosprivacy.report.editing import editing
+from tests.helpers.command import Cli, refused
+from tests.helpers.factory import BEFORE
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+DECIDES = """
+import sys
+from rosprivacy.cli.app import main
+_, file, *ids = sys.argv
+for one in ids:
+    sys.argv = ["rosprivacy", "decide", "mitigate", one, "--decisions", file]
+    try:
+        main()
+    except SystemExit as ended:
+        assert not ended.code
+"""
+
+
+def deciding(file: Path, ids: range) -> subprocess.Popen[bytes]:
+    """A process that makes one decision after the other."""
+    command = [sys.executable, "-c", DECIDES, str(file), *(f"{one:016x}" for one in ids)]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+
+
+def decided(file: Path) -> set[int]:
+    return {int(str(entry["id"]), 16) for entry in yaml.safe_load(file.read_text("utf-8"))["findings"]}
+
+
+@pytest.mark.parametrize("each", [6, pytest.param(50, marks=pytest.mark.slow)])
+def test_no_decision_of_two_that_decide_at_once_is_lost(tmp_path: Path, each: int) -> None:
+    """Defect 5 of the review: in 12 of 20 rounds one was lost."""
+    file = tmp_path / "decisions.yaml"
+    processes = [deciding(file, range(first, first + each)) for first in (1, 1 + each)]
+    assert [process.communicate(timeout=240) and process.returncode for process in processes] == [0, 0]
+    assert decided(file) == set(range(1, 1 + 2 * each))
+    assert [path.name for path in tmp_path.iterdir()] == ["decisions.yaml"]
+
+
+@pytest.mark.slow
+def test_whoever_is_killed_leaves_the_file_whole_and_unlocked(tmp_path: Path) -> None:
+    file = tmp_path / "decisions.yaml"
+    for start in range(0, 40_000, 1000):
+        process = deciding(file, range(start, start + 1000))
+        assert process.stdout is not None
+        assert process.stdout.readline(), "it decided something"
+        before = decided(file)
+        time.sleep(start / 40_000 / 10)
+        process.kill()
+        process.communicate(timeout=10)
+        assert before <= decided(file)
+        assert start in before
+    last = deciding(file, range(10**6, 10**6 + 1))
+    last.communicate(timeout=60)
+    assert last.returncode == 0
+    assert 10**6 in decided(file)
+
+
+@pytest.mark.parametrize("name", ["labels.yaml", "link.yaml"])
+def test_a_second_edit_waits_for_the_first(cli: Cli, tmp_path: Path, name: str) -> None:
+    file = tmp_path / "labels.yaml"
+    file.write_text("labels: 1\nnodes:\n  /safety_camera: {source: [Video]}\n", "utf-8")
+    (tmp_path / "link.yaml").symlink_to(file)
+    done = []
+    with editing(file):
+        second = Thread(target=lambda: done.append(cli("labels", "--next", BEFORE, "-l", tmp_path / name)))
+        second.start()
+        second.join(3)
+        assert not done
+        file.write_text(file.read_text("utf-8") + "  /robot_camera: {source: [Video]}  # said meanwhile\n", "utf-8")
+    second.join(60)
+    assert done[0].returncode == 0
+    assert "/robot_camera: {source: [Video]}  # said meanwhile\n" in file.read_text("utf-8")
+    assert "/emergency_stop" in file.read_text("utf-8")
+
+
+def test_who_waits_too_long_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(editing_module, "LOCK_LIMIT", 0.1)
+    file = tmp_path / "labels.yaml"
+    told = pytest.raises(InputError, match=r"another rosprivacy has been editing it for 0 s; wait")
+    with editing(file), told, editing(file):
+        pass
+
+
+@pytest.mark.parametrize("before", ["labels: 1\n", None])
+def test_what_an_editor_wrote_meanwhile_is_not_written_over(tmp_path: Path, before: str | None) -> None:
+    file = tmp_path / "labels.yaml"
+    with one_run():
+        if before:
+            file.write_text(before, "utf-8")
+            contents(file)
+        file.write_text("labels: 1\nnodes: {}\n", "utf-8")
+        os.utime(file, ns=(1, 1))
+        with pytest.raises(InputError, match="was changed meanwhile, so nothing is written; run the command again"):
+            write_texts([(file, "labels: 1\n")], edited=file)
+    assert file.read_text("utf-8") == "labels: 1\nnodes: {}\n"
+    assert [path.name for path in tmp_path.iterdir()] == ["labels.yaml"]
+
+
+def test_a_folder_that_cannot_be_written_is_one_line(cli: Cli, tmp_path: Path) -> None:
+    done = cli("decide", "mitigate", "7ac677bf059b5beb", "--decisions", tmp_path / "nowhere" / "decisions.yaml")
+    assert len(refused(done)) == 1
+    assert "cannot be written" in done.stderr
