@@ -132,7 +132,7 @@ def _open(page: str) -> None:
     import webbrowser
 
     desktop = sys.platform in ("win32", "darwin") or any(os.environ.get(name) for name in DISPLAYS)
-    if not desktop or not webbrowser.open(page):
+    if not desktop or not webbrowser.open_new_tab(page):
         print("There is no desktop to open the page on; open its address yourself", file=sys.stderr)
 
 
