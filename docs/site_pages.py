@@ -32,15 +32,12 @@ FACTS = (
     *(f"rosprivacy.analysis.model.{module}" for module in MODEL),
     "rosprivacy.analysis.errors",
 )
-DRAWN = "![Where video can go in the paper's factory](pictures/factory-privacy.svg)\n"  # a script would draw the other
 
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:
     """Add the pages that do not lie in ``docs/``."""
     for name, page in BESIDE.items():
-        text = (ROOT / name).read_text("utf-8")
-        text = re.sub(r"```mermaid\n.*?```\n", lambda _: DRAWN, text, flags=re.DOTALL)
-        files.append(File.generated(config, page, content=linked(text, "")))
+        files.append(File.generated(config, page, content=linked((ROOT / name).read_text("utf-8"), "")))
     files.append(File.generated(config, "reference.md", content=reference()))
     return files
 

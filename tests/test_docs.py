@@ -8,6 +8,8 @@ from __future__ import annotations
 import ast
 import doctest
 import re
+import shlex
+import shutil
 import subprocess
 import sys
 from enum import StrEnum
@@ -16,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 import typer
 
+import rosprivacy
 from rosprivacy.cli.app import app
 from rosprivacy.cli.exit_code import CODES
 from rosprivacy.cli.inputs import WRITTEN
@@ -33,10 +36,13 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
+    from tests.helpers.command import Cli
+
 ARCHITECTURE = ROOT / "docs" / "architecture.md"
 COMMAND_LINE = ROOT / "docs" / "command-line.md"
 DATABASE = ROOT / "docs" / "database.md"
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md"]
+NEEDS_SERVER = ("load", "query", "db")  # their tests are those of the database
 SECURITY = ROOT / "docs" / "security.md"
 PAGES.append(ROOT / "SECURITY.md")
 
@@ -228,6 +234,34 @@ def test_the_readmes_first_finding_is_what_is_printed() -> None:
     (shown,) = [block for block in blocks(ROOT / "README.md", "text") if block.startswith("leak:")]
     for line in shown.splitlines():
         assert line == "…" or line in done.stdout.splitlines(), line
+
+
+def test_the_readmes_commands_run_as_they_stand_there(cli: Cli, tmp_path: Path) -> None:
+    """In their order, in one folder, with a policy, the examples and an environment as a reader has them."""
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
+    shutil.copytree(ROOT / "examples" / "factory", tmp_path, dirs_exist_ok=True)
+    for name in ("my_robot", "old", "new"):
+        shutil.copy(tmp_path / "before.policy.xml", tmp_path / f"{name}.policy.xml")
+    lines = [line for block in blocks(ROOT / "README.md", "console") for line in block.splitlines()]
+    ran = {}
+    for line in lines:
+        program, *arguments = shlex.split(line, comments=True)
+        if program == "rosprivacy" and arguments[0] not in NEEDS_SERVER:
+            done = cli(*arguments, cwd=tmp_path)
+            ran[arguments[0]] = done.returncode
+            assert done.returncode in (0, 1, 4), (line, done.stderr)
+    assert ran.keys() == {"analyze", "decide", "labels", "mitigate", "report", "graph", "diff"}
+    assert "- id: 7ac677bf059b5beb" in (tmp_path / "decisions.yaml").read_text("utf-8")
+    assert (tmp_path / "report.html").stat().st_size > 10_000
+
+
+def test_every_id_in_the_readme_is_of_the_system_that_it_analyses() -> None:
+    folder = ROOT / "examples" / "factory"
+    document = rosprivacy.analyze(str(folder / "before.policy.xml"), str(folder / "run2.labels.yaml")).document()
+    known = [finding["id"] for finding in document["findings"]]
+    named = re.findall(r"\b(?=[a-f]*\d)(?=\d*[a-f])[0-9a-f]{4,16}\b", (ROOT / "README.md").read_text("utf-8"))
+    assert len(named) > 1
+    assert not [one for one in named if not any(full.startswith(one) for full in known)]
 
 
 def test_the_list_of_categories_is_that_of_the_ontology() -> None:

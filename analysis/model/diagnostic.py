@@ -58,7 +58,7 @@ def unread(diagnostics: Iterable[Diagnostic]) -> tuple[Place, ...]:
     """Return where grants stand that were not read (rule S11), sorted.
 
     >>> said = [Diagnostic(Place(file, 1), Severity.WARNING, "", UNREAD_FILE) for file in ("b.xml", "a.xml")]
-    >>> [str(place) for place in unread([*said, Diagnostic(Place("c.xml", 1), Severity.NOTICE, "")])]
+    >>> list(map(str, unread([*said, Diagnostic(Place("c.xml", 1), Severity.NOTICE, "")])))
     ['a.xml:1', 'b.xml:1']
     """
     places = {said.place for said in diagnostics if said.code == UNREAD_FILE}

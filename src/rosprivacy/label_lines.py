@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from rosprivacy.settings import Settings
 
 Channel = tuple[str, str]  # kind, name; of a node too
-NAME_ONE = "rosprivacy labels --init lists all nodes: name one, such as nodes: {/camera: {source: [Video]}}"
+NAME_ONE = "say which, such as nodes: {/camera: {source: [Video]}} (rosprivacy labels --init lists all nodes)"
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,11 +96,13 @@ def next_lines(policies: tuple[str, ...], labels: tuple[str, ...], settings: Set
             remarks.append(f"{place}: {shown(at['name'])} is not reviewed: {why}")
         elif at["section"] in SECTIONS:
             lines.setdefault((at["section"], at["name"]), NewLine(at["section"], at["name"], why))
-    for name in candidates(report) if not report["carries"] else ():
+    likely = candidates(report) if not report["carries"] else []
+    for name in likely:
         if ("node", name) not in written:
             lines["nodes", name] = NewLine("nodes", name, "does it bring personal data in? {source: [Video]}")
     if not report["carries"] and not lines:
-        remarks.append(f"{own.file}: no source is named, and no node sounds like a sensor; {NAME_ONE}")
+        guess = f"candidates by name: {', '.join(likely)}" if likely else "no node sounds like a sensor"
+        remarks.append(f"{own.file}: no source is named; {guess}; {NAME_ONE}")
     text = with_lines(own.file, text, list(lines.values()), vocabulary)
     return Written(own.file, text, len(lines), tuple(remarks))
 

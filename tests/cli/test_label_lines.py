@@ -105,8 +105,16 @@ def test_next_begins_a_file_with_what_sounds_like_a_sensor(cli: Cli, factory: tu
 def test_where_no_name_sounds_like_a_sensor_it_says_how_to_name_a_source(cli: Cli, tmp_path: Path) -> None:
     (tmp_path / "p.xml").write_text(policy('<topics publish="ALLOW"><topic>/x</topic></topics>'))
     done = cli("labels", "--next", "p.xml", "-l", "l.yaml", cwd=tmp_path)
-    assert "l.yaml: no source is named, and no node sounds like a sensor; rosprivacy labels --init" in done.stderr
+    assert "l.yaml: no source is named; no node sounds like a sensor; say which, such as nodes: {" in done.stderr
     assert not (tmp_path / "l.yaml").exists()
+
+
+def test_in_a_template_that_is_empty_the_candidates_are_told(cli: Cli, factory: tuple[str, Path]) -> None:
+    policy, file = factory
+    file.write_text(cli("labels", "--init", policy).stdout)
+    done = cli("labels", "--next", policy, "-l", file)
+    assert "no source is named; candidates by name: /robot_camera, /safety_camera; say which" in done.stderr
+    assert done.stderr.endswith(": 0 lines added\n")
 
 
 @pytest.mark.corpus
