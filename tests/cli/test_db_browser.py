@@ -153,6 +153,6 @@ def test_the_browser_takes_colours_and_questions(loaded: Connection, page: WebDr
     there("[data-testid=expandFolder-rosprivacy]")
     page.find_element(By.CSS_SELECTOR, "[data-testid=expandFolder-rosprivacy]").click()
     there("[data-testid^=scriptTitle-]")
-    listed = [title.text for title in page.find_elements(By.CSS_SELECTOR, "[data-testid^=scriptTitle-]")]
-    assert listed == [f"{query.name}: {query.description}" for query in pack().values()]
+    listed = {title.text for title in page.find_elements(By.CSS_SELECTOR, "[data-testid^=scriptTitle-]")}
+    assert listed == {f"{query.name}: {query.description}" for query in pack().values()}
     chrome.screenshot(page, tmp_path / "questions.png", 1400)
