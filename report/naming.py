@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
     Key = tuple[str, str, str, str]
 
+PROPOSED = "rosprivacy:infrastructure"
+
 
 def name(element: Mapping[str, Any]) -> str:
     """Return an element's name, with its robot where there are several.
@@ -40,6 +42,15 @@ def label_name(question: Mapping[str, Any]) -> str:
     element = question["element"]
     written = question.get("label", element)["name"]  # documents of earlier versions do not say
     return shown(_full_name({**element, "name": written}))
+
+
+def infrastructure_file(assumptions: Mapping[str, Any]) -> str:
+    """Return the file that proposes more channels than the standard ones, if it was used; its channels count with them.
+
+    >>> infrastructure_file({"labels": [{"file": "l.yaml"}, {"file": "rosprivacy:infrastructure"}]})
+    'rosprivacy:infrastructure'
+    """
+    return next((file["file"] for file in assumptions.get("labels", ()) if file["file"] == PROPOSED), "")
 
 
 def kind_of(element: Mapping[str, Any]) -> str:

@@ -19,6 +19,7 @@ from rosprivacy.ingest.fleet.fleet_reader import GROUP_KEYS, ID, ID_HINT, ROBOT_
 from rosprivacy.ingest.labels.entries import OWN
 from rosprivacy.ingest.labels.label_file import OURS
 from rosprivacy.ingest.reading import yaml_values
+from rosprivacy.ingest.reading.confined import WIDEN, leaves, what_leaves
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -77,6 +78,8 @@ class Fleet:
         By id, sorted.
     elements, entries, limits, flows
         As in ``Labels``; the ends of flows name robots too (``ROBOTS:/name``).
+    root
+        The folder that the files which it names do not leave.
     """
 
     name: str
@@ -87,10 +90,16 @@ class Fleet:
     entries: tuple[Entry, ...]
     limits: tuple[Limit, ...]
     flows: tuple[FlowEntry, ...]
+    root: str
 
 
-def read_fleet(file: str, vocabulary: Vocabulary) -> Fleet:
+def read_fleet(file: str, vocabulary: Vocabulary, *, include_root: str | None = None) -> Fleet:
     """Read a fleet file.
+
+    Parameters
+    ----------
+    include_root
+        Folder that the files which it names may not leave, links followed; by default its own.
 
     Raises
     ------
@@ -101,7 +110,7 @@ def read_fleet(file: str, vocabulary: Vocabulary) -> Fleet:
     -----
     Linear in the number of robots.
     """
-    reader = _Fleet(vocabulary)
+    reader = _Fleet(vocabulary, os.path.realpath(include_root or os.path.dirname(file) or os.curdir))  # noqa: PTH120
     reader.read(file, ())
     fleet = reader.fleet(file)
     if reader.problems:
@@ -112,8 +121,9 @@ def read_fleet(file: str, vocabulary: Vocabulary) -> Fleet:
 class _Fleet:
     """Gathers what fleet files say, and puts robots together at the end."""
 
-    def __init__(self, vocabulary: Vocabulary) -> None:
+    def __init__(self, vocabulary: Vocabulary, root: str) -> None:
         self.problems: list[InputError] = []
+        self._root = root
         self._vocabulary = vocabulary
         self._name = ""
         self._sources: dict[str, str] = {}
@@ -183,7 +193,9 @@ class _Fleet:
             part.problem(item.line, f"include: a {item.kind}", "name fleet files, relative to this one")
             return
         file = str(Path(part.file).parent / item.text)
-        if os.path.realpath(file) in within:
+        if leaves(file, self._root):
+            part.problem(item.line, what_leaves(file, self._root), WIDEN)
+        elif os.path.realpath(file) in within:
             part.problem(item.line, f"{shown(item.text)} includes itself, on a ring", "remove one of the includes")
         elif not Path(file).is_file():
             part.problem(item.line, f"{shown(item.text)}: file not found", "correct the path")
@@ -214,6 +226,7 @@ class _Fleet:
             tuple(entry for part in self._parts for entry in part.entries),
             tuple(limit for part in self._parts for limit in part.limits),
             tuple(flow for part in self._parts for flow in part.flows),
+            self._root,
         )
 
     def _add(self, name: str, spec: Spec, *, shared: bool) -> None:
@@ -274,10 +287,13 @@ class _Fleet:
             part.problem(line.line, f"{shown(pattern)!r} has more than one *", "write one *, for the robot's id")
             return
         before, after = pattern.split(STAR)
-        found = sorted(glob(pattern))  # noqa: PTH207 - absolute patterns too
-        if not found:
+        if leaves(pattern, self._root):
+            part.problem(line.line, what_leaves(pattern, self._root), WIDEN)
+            return
+        files = sorted(glob(pattern))  # noqa: PTH207 - absolute patterns too
+        if not files:
             part.problem(line.line, f"{shown(pattern)!r} matches no file", "correct the pattern")
-        for file in found:
+        for file in files:
             name = file[len(before) : len(file) - len(after)]
             if ID.fullmatch(name):
                 yield name, _of_robot(spec, name)
@@ -291,8 +307,11 @@ class _Fleet:
             for key, files in (("policies", robot.policies), ("labels", (*robot.labels, *robot.own))):
                 for file in [file for file in files if file not in seen]:
                     seen.add(file)
-                    there = Path(file).exists() or (key == "policies" and has_magic(file)) or file.startswith(OURS)
-                    if not there:
+                    if file.startswith(OURS):
+                        continue
+                    if leaves(file, self._root):
+                        self._problem(self._place_of(key, file, robot), what_leaves(file, self._root), WIDEN)
+                    elif not (Path(file).exists() or (key == "policies" and has_magic(file))):
                         self._problem(self._place_of(key, file, robot), f"{shown(file)}: file not found", "correct it")
 
     def _place_of(self, key: str, file: str, robot: Robot) -> Place:

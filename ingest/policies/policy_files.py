@@ -19,6 +19,7 @@ from rosprivacy.analysis.model import NOT_READ, UNREAD_FILE, Diagnostic, Place, 
 from rosprivacy.ingest.policies.folders import contents
 from rosprivacy.ingest.policies.policy_xml import NotAPolicyError, read_policy
 from rosprivacy.ingest.policies.xinclude import MAX_BYTES
+from rosprivacy.ingest.reading.confined import WIDEN, leaves, what_leaves
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
@@ -38,6 +39,7 @@ def read_policies(
     arguments: Iterable[str],
     *,
     include_root: str | None = None,
+    within: str | None = None,
     max_bytes: int = MAX_BYTES,
     progress: Callable[[Sequence[str]], Iterable[str]] = lambda files: files,
 ) -> tuple[tuple[Policy, ...], tuple[Diagnostic, ...]]:
@@ -47,6 +49,8 @@ def read_policies(
     ----------
     arguments
         Files, folders (read with all below them) and glob patterns.
+    within
+        A folder that no file may lie outside of, links followed; for arguments that a file names.
     progress
         Wraps the list of files, to show how far it is.
 
@@ -66,9 +70,12 @@ def read_policies(
     arguments = tuple(arguments)
     expanded = _expand(arguments)
     named, found, problems = expanded.named, expanded.found, expanded.problems
+    everything = sorted({*named, *(file for files in found.values() for file in files)})
+    outside = dict.fromkeys(file for file in everything if within is not None and leaves(file, within))
+    problems += [PolicyError(file, 0, what_leaves(file, within or ""), WIDEN) for file in outside]
     policies: list[Policy] = []
     skipped: list[NotAPolicyError] = []
-    for file in progress(sorted({*named, *(file for files in found.values() for file in files)})):
+    for file in progress([file for file in everything if file not in outside]):
         try:
             policies.append(read_policy(file, include_root=include_root, max_bytes=max_bytes))
         except InputErrors as error:

@@ -23,6 +23,7 @@ from lxml import etree
 from rosprivacy.analysis.errors import InputError, InputErrors, PolicyError, reason, shown
 from rosprivacy.analysis.model import FALLBACK_TAKEN, Diagnostic, Place, Severity
 from rosprivacy.ingest.reading.bounded_file import contents, nearest_file
+from rosprivacy.ingest.reading.confined import WIDEN, leaves, what_leaves
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -176,9 +177,8 @@ class Documents:
             path = Path(file).resolve()
         except (OSError, RuntimeError, ValueError) as error:
             raise _error(place, f"include of {shown(repr(href))}: {shown(str(error))}", "name another file") from None
-        if not path.is_relative_to(self.root):
-            what = f"include of {shown(repr(href))} leaves the folder {shown(str(self.root))}"
-            raise _error(place, what, "move the file inside it, or widen with --include-root")
+        if leaves(path, self.root):
+            raise _error(place, f"include of {what_leaves(href, self.root)}", WIDEN)
         return path, file
 
     def _fallback(self, include: Item, href: str) -> Iterator[Item]:

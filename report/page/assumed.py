@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.text import fit, printable
-from rosprivacy.report.naming import name
+from rosprivacy.report.naming import infrastructure_file, name
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -69,7 +69,10 @@ def _standard(index: Index) -> str:
     if not taken:
         return index.words("a.standard.none")
     channels = index.words.count(index.document["standard_channels"], "channel")
-    return index.words("a.standard", channels=channels, file=fit(taken["file"]), sha=taken["sha256"][:12])
+    said = {"channels": channels, "file": fit(taken["file"]), "sha": taken["sha256"][:12]}
+    if proposed := infrastructure_file(index.document["assumptions"]):
+        return index.words("a.standard.proposed", **said, proposed=proposed)
+    return index.words("a.standard", **said)
 
 
 def _stopped(index: Index) -> Iterator[str]:

@@ -143,6 +143,7 @@ WORDS = {
     "a.view.enforced": "Sicht 'enforced': Jeder Knoten darf alles, was irgendein Profil seiner Enklave erlaubt, denn nur das setzt die Middleware durch. Sie zeigt, was bleibt, wenn ein Knoten sich nicht an sein Profil hält.",
     "a.unlabelled": "Ein Element, zu dem keine Angabe vorliegt, leitet alle Daten weiter, die zu ihm gelangen, und zählt als nicht geprüft; ein Kanal zählt als fähig, personenbezogene Daten zu tragen.",
     "a.standard": "{channels}: angenommen, dass sie keine personenbezogenen Daten tragen, nach der Datei {file} (SHA-256 {sha}).",
+    "a.standard.proposed": "{channels}: angenommen, dass sie keine personenbezogenen Daten tragen, nach der Datei {file} (SHA-256 {sha}) oder nach {proposed}.",
     "a.standard.none": "Von keinem Standardkanal von ROS wurde angenommen, dass er keine personenbezogenen Daten trägt.",
     "a.standard.reached": "{data}: würde zu {element} gelangen und endet deshalb dort.",
     "a.standard.unchanged": "Eine Angabe mit Platzhaltern sagt, dass {element} Daten tragen kann; sie zählt gegen diese Datei nicht.",

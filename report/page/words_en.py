@@ -166,6 +166,7 @@ WORDS = {
         "counts as able to carry personal data."
     ),
     "a.standard": "{channels} taken to carry no personal data, by the file {file} (SHA-256 {sha}).",
+    "a.standard.proposed": "{channels} taken to carry no personal data, by the file {file} (SHA-256 {sha}), or by {proposed}.",
     "a.standard.none": "No standard ROS channel was taken to carry no personal data.",
     "a.standard.reached": "{data} would get to {element}, and stops there for this.",
     "a.standard.unchanged": "A label by a glob says that {element} may carry data; it does not count against that file.",

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.text import counted
-from rosprivacy.report.naming import shown_name
+from rosprivacy.report.naming import infrastructure_file, shown_name
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -28,7 +28,9 @@ def standard_lines(report: Mapping[str, Any], most: int | None) -> Iterator[Line
     count = report["standard_channels"]
     by = f"by {shown(taken['file'])} (sha256 {taken['sha256'][:12]})"
     by = "(rosprivacy labels --standard)" if taken["file"] == SHIPPED else by
-    yield f"   {counted(count, 'standard ROS channel')} taken as mundane {by}", ""
+    proposed = infrastructure_file(assumptions)
+    more = f", or by {proposed} (rosprivacy labels --infrastructure)" if proposed else ""
+    yield f"   {counted(count, 'standard ROS channel')} taken as mundane {by}{more}", ""
     reached = [f"{shown_name(row['element'])} ({', '.join(row['categories'])})" for row in reached_of(report)]
     if reached:
         yield f"   data gets to {len(reached):,} of them and stops there: {_listed(reached, most)}", ""

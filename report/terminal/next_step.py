@@ -54,7 +54,8 @@ def _step(report: Mapping[str, Any]) -> str:
     if report["open"]:
         first = next_round(report)[0]["element"]
         others = len({whole(question["element"]) for question in report["open"]}) - 1
-        return f"review {shown_name(first)}{f' and {others:,} more' if others else ''}, say it in a label file, repeat"
+        more = f" and {others:,} more" if others else ""
+        return f"review {shown_name(first)}{more}, say it in a label file (rosprivacy labels --next), repeat"
     unread = sorted({shown(said["file"]) for said in report["diagnostics"] if said.get("code") == UNREAD_FILE})
     return f"name the policy that includes {unread[0]}, or remove it" if unread else ""
 

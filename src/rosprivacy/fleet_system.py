@@ -82,9 +82,9 @@ def fleet_system(file: str, question: Question) -> FleetSystem:
         With every problem of the input, one line each.
     """
     settings, vocabulary, decisions = question.settings, question.vocabulary, question.decisions
-    fleet = read_fleet(file, vocabulary)
+    fleet = read_fleet(file, vocabulary, include_root=settings.include_root)
     groups = alike(fleet, decisions.told_apart) if decisions else alike(fleet)
-    reader = Reader(vocabulary, settings)
+    reader = Reader(vocabulary, settings, fleet.root)
     members = {}
     problems: list[InputError] = []
     for group in groups:
@@ -130,10 +130,11 @@ def rows_of_fleet(system: FleetSystem, question: Question, result: Result) -> Fl
 class Reader:
     """Reads policies and label files, each once, and makes the graph of one robot of them."""
 
-    def __init__(self, vocabulary: Vocabulary, settings: Settings) -> None:
+    def __init__(self, vocabulary: Vocabulary, settings: Settings, root: str) -> None:
         self.labels: dict[tuple[str, bool], Labels] = {}
         self._vocabulary = vocabulary
         self._settings = settings
+        self._root = root
         self._policies: dict[tuple[str, ...], tuple[tuple[Policy, ...], tuple[Diagnostic, ...]]] = {}
         self._members: dict[object, Member] = {}
 
@@ -153,6 +154,7 @@ class Reader:
             self._policies[robot.policies] = read_policies(
                 robot.policies,
                 include_root=settings.include_root,
+                within=self._root,
                 max_bytes=settings.max_bytes,
                 progress=settings.progress,
             )

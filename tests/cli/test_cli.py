@@ -158,7 +158,9 @@ def test_where_no_source_of_what_is_asked_is_named_no_build_is_green(cli: Cli, b
 
 def test_the_next_step_stands_last(cli: Cli, before: Path, after: Path, runs: list[Path]) -> None:
     last = [cli("analyze", before, "-l", labels).stdout.splitlines()[-1] for labels in runs[:2]]
-    assert last[0] == "Next: review /emergency_stop and 8 more, say it in a label file, repeat"
+    assert (
+        last[0] == "Next: review /emergency_stop and 8 more, say it in a label file (rosprivacy labels --next), repeat"
+    )
     assert last[1].startswith("Next: decide about each finding (rosprivacy decide)")
     assert "Next:" not in cli("analyze", after, "-l", runs[4]).stdout
 

@@ -194,7 +194,11 @@ def in_list(file: str, size: int = 1) -> Result:
     vocabulary = load()
     fleet = read_fleet(file, vocabulary)
     asked = Task(
-        fleet, alike(fleet), "declared", partial(file_reader, Settings(), str(Path.cwd())), vocabulary.hierarchy
+        fleet,
+        alike(fleet),
+        "declared",
+        partial(file_reader, Settings(), str(Path.cwd()), fleet.root),
+        vocabulary.hierarchy,
     )
     found = analyse_in_parts(asked, partial(scattered, size=size))
     return result(asked, found, shown(asked, found, "witness", 100), Question(Settings(), vocabulary, None, None, ""))

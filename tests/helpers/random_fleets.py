@@ -62,7 +62,7 @@ class Case:
             FlowEntry(source, target, HERE, (statement("never", *sorted(never)),) if never else ())
             for source, target, never in self.flows
         ]
-        return Fleet("the fleet", (), tuple(robots), (), tuple(elements), tuple(entries), (), tuple(flows))
+        return Fleet("the fleet", (), tuple(robots), (), tuple(elements), tuple(entries), (), tuple(flows), ".")
 
     def placed(self) -> Placed:
         fleet = self.fleet()

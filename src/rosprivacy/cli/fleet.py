@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from rosprivacy.cli.inputs import Inputs
-from rosprivacy.cli.options import DecisionsFile, Ontologies, Output
+from rosprivacy.cli.options import DecisionsFile, IncludeRoot, Ontologies, Output
 from rosprivacy.cli.output import emit
 
 if TYPE_CHECKING:
@@ -22,6 +22,7 @@ def fleet(
     schema: Annotated[bool, typer.Option("--schema", help="Print the JSON Schema of fleet files.")] = False,
     ontology: Ontologies = None,
     decisions: DecisionsFile = None,
+    include_root: IncludeRoot = None,
     output: Output = None,
 ) -> None:
     """List the robots of a fleet file, those that are alike together; or print the schema of such files."""
@@ -40,7 +41,7 @@ def fleet(
     from rosprivacy.ingest.fleet.alike_robots import alike
     from rosprivacy.ingest.fleet.fleet_file import read_fleet
 
-    read = read_fleet(file, vocabulary)
+    read = read_fleet(file, vocabulary, include_root=str(include_root) if include_root else None)
     decided = decisions_of(Inputs(decisions=decisions).settings, vocabulary)
     groups = alike(read, decided.told_apart) if decided else alike(read)
     emit("".join(f"{line}\n" for line in _lines(read, groups)), output)

@@ -121,7 +121,7 @@ IncludeRoot = Annotated[
     Path | None,
     typer.Option(
         metavar="DIR",
-        help="Folder that includes may read from; by default the policy's own.",
+        help="Folder that policies and fleet files may read from; by default the file's own.",
         show_default=False,
         rich_help_panel=READ,
     ),

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from rosprivacy.analysis.errors import QueryError, shown
 from rosprivacy.cli.driver import driver_of
-from rosprivacy.cli.options import FleetFile, Ontologies, Server
+from rosprivacy.cli.options import FleetFile, IncludeRoot, Ontologies, Server
 from rosprivacy.cli.output import emit
 
 
@@ -18,6 +19,7 @@ def unload(
     ] = None,
     fleet: FleetFile = None,
     ontology: Ontologies = None,
+    include_root: IncludeRoot = None,
     neo4j: Server = None,
 ) -> None:
     """Remove a robot from Neo4j, or a fleet; what people added by hand stays, but for what hangs on its elements."""
@@ -25,7 +27,7 @@ def unload(
 
     if bool(robot) == bool(fleet):
         raise typer.BadParameter("name robots with --robot, or a fleet file with --fleet")
-    robot = list(robot or ()) or _names_in(fleet or "", tuple(ontology or ()))
+    robot = list(robot or ()) or _names_in(fleet or "", tuple(ontology or ()), include_root)
     with driver_of(neo4j) as driver:
         gone = unload(driver, robot)
     missing = [name for name in robot if name not in gone]
@@ -34,11 +36,11 @@ def unload(
         raise QueryError(f"no robot {', '.join(map(shown, missing))} in the database; see rosprivacy query robots")
 
 
-def _names_in(fleet: str, ontologies: tuple[str, ...]) -> list[str]:
+def _names_in(fleet: str, ontologies: tuple[str, ...], include_root: Path | None) -> list[str]:
     """The names under which a fleet is filed in the database."""
     from rosprivacy.ingest.fleet.alike_robots import known_to_flows
     from rosprivacy.ingest.fleet.fleet_file import read_fleet
     from rosprivacy.ontology.vocabulary import load
 
-    read = read_fleet(fleet, load(ontologies=ontologies))
+    read = read_fleet(fleet, load(ontologies=ontologies), include_root=str(include_root) if include_root else None)
     return [*known_to_flows(read), *([read.name] if read.elements else [])]

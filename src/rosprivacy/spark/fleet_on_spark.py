@@ -71,10 +71,11 @@ def run_on_spark(file: str, settings: Settings, master: str | None = None, resul
         )
     plain = replace(settings, progress=unchanged, today=settings.today or judged_on(os.environ))
     question = question_of(plain)
-    fleet, vocabulary = read_fleet(file, question.vocabulary), question.vocabulary
+    vocabulary = question.vocabulary
+    fleet = read_fleet(file, vocabulary, include_root=settings.include_root)
     task = Task(
-        fleet, alike(fleet), settings.view, partial(file_reader, plain, str(Path.cwd())), vocabulary.hierarchy,
-        question.asked, question.today,
+        fleet, alike(fleet), settings.view, partial(file_reader, plain, str(Path.cwd()), fleet.root),
+        vocabulary.hierarchy, question.asked, question.today,
     )  # fmt: skip
     if results:
         check_new(results)
@@ -147,9 +148,9 @@ def result(task: Task, found: Found, told: Shown, question: Question) -> Result:
     return concluded(system, question, told.analysis, told.view, Options(), found.counts)
 
 
-def file_reader(settings: Settings, folder: str) -> Read:
-    """Return what reads robots from files, on a worker; names are relative to a folder there."""
-    reader = Reader(load(ontologies=settings.ontologies), settings)
+def file_reader(settings: Settings, folder: str, root: str) -> Read:
+    """Return what reads robots from files below a root, on a worker; names are relative to a folder there."""
+    reader = Reader(load(ontologies=settings.ontologies), settings, root)
 
     def read(robot: Robot) -> Member:
         if folder == os.getcwd():  # noqa: PTH109 - as it is compared

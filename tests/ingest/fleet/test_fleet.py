@@ -103,7 +103,8 @@ class TestRobots:
 
     def test_files_are_looked_for_beside_the_fleet_file(self) -> None:
         write("site/f.yaml", "fleet: 1\nrobots: {a: {policies: ../eye.xml}}\n")
-        assert [p.file for p in answer_fleet("site/f.yaml", Settings()).policies] == ["site/../eye.xml"]
+        settings = Settings(include_root=".")
+        assert [p.file for p in answer_fleet("site/f.yaml", settings).policies] == ["site/../eye.xml"]
 
     def test_includes_are_one_with_the_file(self) -> None:
         write("site/models.yaml", "fleet: 1\nmodels: {eye: {policies: ../eye.xml}}\nlimits: {Video: P1D}\n")
@@ -294,7 +295,7 @@ class TestOneByOne:
             for name, (ps, ls) in systems.items()
         }
         robots = {**spec, "work1": spec["work2"]}
-        whole = run(f"robots: {json.dumps(robots)}\n").document()
+        whole = run(f"robots: {json.dumps(robots)}\n", include_root="/").document()
         rows: dict[str, Any] = {"findings": [], "open": [], "carries": []}
         counts = dict.fromkeys(("elements", "flows", "denied_flows", "standard_channels"), 0)
         stands_for = {"care": 1, "work1": 2, "work5": 1}

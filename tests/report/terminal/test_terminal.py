@@ -33,6 +33,17 @@ def care_home() -> dict[str, Any]:
     return analyze("care-home/care-home.policy.xml", "care-home/care-home.labels.yaml")
 
 
+def test_the_channels_of_the_infrastructure_file_are_not_said_to_be_the_standard_files() -> None:
+    """S13: what was taken away is told with whose word it was."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(ROOT / "examples" / "factory")
+        result = rosprivacy.analyze("before.policy.xml", ["run1.labels.yaml", "rosprivacy:infrastructure"])
+    assert "(rosprivacy labels --standard), or by rosprivacy:infrastructure (rosprivacy labels --inf" in result.to(
+        "text"
+    )
+    assert ", or by rosprivacy:infrastructure." in result.to("markdown")
+
+
 def test_the_first_line_is_the_verdict(care_home: dict[str, Any]) -> None:
     assert report(care_home)[0] == "leak: data can reach a leak"
     assert report(care_home, quiet=True) == ["leak: data can reach a leak"]

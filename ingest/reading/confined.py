@@ -1,0 +1,28 @@
+"""What a file names is read only below a folder: a stranger's file opens nothing else with our rights.
+
+In: a name, and the folder. Out: whether it lies below. Symbolic links are followed first; a hard link cannot be told
+from the file.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from rosprivacy.analysis.errors import shown
+
+WIDEN = "move the file inside it, or widen with --include-root"
+
+
+def leaves(file: str | Path, root: str | Path) -> bool:
+    """Return whether a file, or what a link leads to, lies outside a folder; one that is not there by its name.
+
+    >>> leaves("policies/robot.xml", "."), leaves("policies/../../robot.xml", "."), leaves("/etc/passwd", ".")
+    (False, True, True)
+    """
+    return not Path(os.path.realpath(file)).is_relative_to(os.path.realpath(root))
+
+
+def what_leaves(name: str, root: str | Path) -> str:
+    """Return what to say of a name that leaves a folder."""
+    return f"{shown(repr(name))} leaves the folder {shown(os.path.realpath(root))}"
