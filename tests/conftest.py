@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import subprocess
 import sys
@@ -37,7 +38,7 @@ STOP_AT_THE_END = (
 )
 
 
-settings.register_profile("everyday", max_examples=8, deadline=None)
+settings.register_profile("everyday", max_examples=5, deadline=None)
 settings.register_profile("thorough", max_examples=200, deadline=None, print_blob=True)
 
 
@@ -47,6 +48,17 @@ def pytest_configure(config: pytest.Config) -> None:
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--slow", action="store_true", help="also run what builds, installs or fuzzes")
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Generator[None, object, object]:
+    """Hundreds of modules are loaded, and stay: to look for garbage in them costs as much as to load them."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.freeze()
+        gc.enable()
 
 
 def pytest_itemcollected(item: pytest.Item) -> None:

@@ -9,17 +9,20 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.helpers.house import ROOMS
+from tests.helpers.house import ROOMS, parsed
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
     from pathlib import Path
 
 
+pytestmark = pytest.mark.xdist_group("house")  # one process reads all modules, once
+
+
 def imported_rooms(file: Path) -> set[str]:
     """The rooms that a module imports, whether at run time or for types only."""
     rooms = set()
-    for node in ast.walk(ast.parse(file.read_text("utf-8"))):
+    for node in ast.walk(parsed(file.resolve())):
         names = []
         if isinstance(node, ast.ImportFrom):
             assert not node.level, f"{file}: relative import"
@@ -42,7 +45,7 @@ def test_one_module_knows_which_bit_is_which() -> None:
     asking = set()
     for folder in [*ROOMS, "src/rosprivacy", "benchmarks"]:
         for file in (ROOT / folder).rglob("*.py"):
-            for node in ast.walk(ast.parse(file.read_text("utf-8"))):
+            for node in ast.walk(parsed(file.resolve())):
                 if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "len":
                     counted = ast.unparse(node.args[0]).rpartition(".")[2]
                     asking |= {file.resolve().relative_to(ROOT).as_posix()} if counted == "categories" else set()
@@ -80,7 +83,7 @@ def test_there_is_one_writer_of_files_and_every_reader_notes_them() -> None:
     for file in sorted(path for folder in folders for path in (ROOT / folder).rglob("*.py")):
         if any(link in file.parents for link in (ROOT / "src" / "rosprivacy" / room for room in ROOMS)):
             continue
-        calls = (node.func for node in ast.walk(ast.parse(file.read_text("utf-8"))) if isinstance(node, ast.Call))
+        calls = (node.func for node in ast.walk(parsed(file.resolve())) if isinstance(node, ast.Call))
         names = {call.attr if isinstance(call, ast.Attribute) else getattr(call, "id", "") for call in calls}
         if names & (OPENERS | WRITERS):
             touching.add(str(file.relative_to(ROOT)))

@@ -5,11 +5,12 @@ from __future__ import annotations
 import ast
 import re
 from collections import defaultdict
+from functools import cache
 from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.helpers.house import MODULES, PACKAGE, ROOMS, WINGS
+from tests.helpers.house import MODULES, PACKAGE, ROOMS, WINGS, parsed
 from tests.helpers.paths import ROOT, TESTS
 
 if TYPE_CHECKING:
@@ -41,7 +42,7 @@ SAME_PART = {
 
 def imports(module: str) -> Iterator[str]:
     """The modules of the program that a module imports, at run time, for types, or in a function."""
-    for node in ast.walk(ast.parse(MODULES[module].read_text("utf-8"))):
+    for node in ast.walk(parsed(MODULES[module])):
         if isinstance(node, ast.ImportFrom):
             for alias in node.names:
                 inner = f"{node.module}.{alias.name}"
@@ -50,7 +51,12 @@ def imports(module: str) -> Iterator[str]:
             yield from (alias.name for alias in node.names if alias.name in MODULES)
 
 
-IMPORTS: Mapping[str, frozenset[str]] = {module: frozenset(imports(module)) - {module} for module in MODULES}
+pytestmark = pytest.mark.xdist_group("house")  # one process reads all modules, once
+
+
+@cache
+def all_imports() -> Mapping[str, frozenset[str]]:
+    return {module: frozenset(imports(module)) - {module} for module in MODULES}
 
 
 def room_and_wing(module: str) -> tuple[str, str]:
@@ -70,7 +76,7 @@ def test_a_wing_imports_from_those_below_it(room: str) -> None:
         assert wing in WINGS[room], (
             f"{module}: name its wing in WINGS of tests/helpers/house.py, and what it may import from"
         )
-        for target in IMPORTS[module]:
+        for target in all_imports()[module]:
             other, below = room_and_wing(target)
             if other == room and below != wing:
                 assert below in WINGS[room][wing], (
@@ -93,12 +99,12 @@ def test_every_wing_is_there_and_says_what_it_is(room: str) -> None:
     for wing in WINGS[room]:
         init = folder / wing / "__init__.py"
         if not (folder / f"{wing}.py").is_file():
-            assert ast.get_docstring(ast.parse(init.read_text("utf-8"))), f"{init}: a line that says what it is"
+            assert ast.get_docstring(parsed(init)), f"{init}: a line that says what it is"
 
 
 def test_nobody_imports_in_a_circle() -> None:
     """Take away modules that import none of those left, until there are none; what stays stands in a circle."""
-    left = dict(IMPORTS)
+    left = dict(all_imports())
     left["rosprivacy"] = frozenset()  # the public API imports what it needs when it is called
     while free := {module for module, targets in left.items() if not targets & left.keys()}:
         left = {module: targets for module, targets in left.items() if module not in free}
@@ -116,10 +122,15 @@ def test_no_name_stands_twice_but_of_the_same_part() -> None:
     assert {name: where for name, where in wings.items() if len(where) > 1} == SAME_PART
 
 
+TAKING = re.compile(r"^\s*(?:from|import) tests\b.*(?:\b(?:test_|conftest)|\($)", re.MULTILINE)  # or may go on so
+
+
 def test_no_test_imports_from_test_modules() -> None:
     """What several tests need stands in ``tests/helpers``, or is a fixture of a ``conftest.py``."""
     for file in TESTS.rglob("*.py"):
-        for node in ast.walk(ast.parse(file.read_text("utf-8"))):
+        if not TAKING.search(file.read_text("utf-8")):
+            continue
+        for node in ast.walk(parsed(file)):
             if isinstance(node, ast.ImportFrom):
                 names = [f"{node.module}.{alias.name}" for alias in node.names]
             elif isinstance(node, ast.Import):

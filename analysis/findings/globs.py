@@ -9,7 +9,7 @@ Source: rules S7, S11 and S12: what is taken away is told, by name, with how muc
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.answer import Verdict
@@ -18,21 +18,24 @@ from rosprivacy.analysis.findings.ledger import REVIEW
 from rosprivacy.analysis.model import STANDARD
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable
+    from collections.abc import Collection, Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.findings.ledger import TakenAway
-    from rosprivacy.analysis.model import Bound, Element, Place, Statement
+    from rosprivacy.analysis.kernel.roles import Facts
+    from rosprivacy.analysis.kernel.spread import Spread
+    from rosprivacy.analysis.model import Bound, Element, FlowGraph, Place, Statement
 
 HALF, LAST = "half", "last-path"
 WATCHED = frozenset({"mundane", "conduit", "sanitizer"})  # what one word too much turns into a wrong 'nothing found'
 CLOSERS = frozenset({"mundane", "only", "never", "sanitizer", ABSENT})
 Identity = tuple[str, str, str]
+Ends = tuple[Identity, Identity]
 
 
 @dataclass(frozen=True, slots=True)
 class GlobUse:
-    """What one line of labels does that names elements by a glob.
+    """What one line of labels does that names elements, or the ends of flows, by a glob.
 
     Attributes
     ----------
@@ -42,10 +45,13 @@ class GlobUse:
         How many elements it decides: it is about them, and no label of higher rank says otherwise.
     closed, reviewed
         At how many of them data ends for it; how many are not asked about for it.
+    flows, flows_closed
+        How many flows between two elements it decides, and along how many data ends for it.
     leak, open
         A leak, and an open element, behind what it closes; None where there is none.
     warning
-        ``HALF`` if it closes, or answers for, more than half of the nodes or of the channels that data gets to;
+        ``HALF`` if it closes, or answers for, more than half of the nodes or of the channels that data gets to, or
+        closes more than half of the flows along which data would go;
         ``LAST`` if without it the answer would not be that no leak was found; else empty.
     """
 
@@ -57,12 +63,14 @@ class GlobUse:
     leak: Element | None = None
     open: Element | None = None
     warning: str = ""
+    flows: int = 0
+    flows_closed: int = 0
 
 
 def globs(
     analysis: Analysis, bound: Bound, taken: Iterable[TakenAway], beside: Collection[str] = ()
 ) -> tuple[GlobUse, ...]:
-    """Return a row for each line of a user's label files that names elements by a glob, in the order of the lines.
+    """Return a row for each line of a user's label files that names by a glob, in the order of the lines.
 
     Parameters
     ----------
@@ -82,70 +90,107 @@ def globs(
     >>> [(str(use.place), use.says, use.elements, use.closed, use.leak.name) for use in uses]
     [('labels.yaml:5', ('only',), 1, 1, '/archive')]
     """
-    says, decides = _decided(analysis, bound, beside)
+    decided = _decided(analysis, bound, beside)
     rows: dict[Place, list[TakenAway]] = defaultdict(list)
     for row in taken:
-        if row.glob and row.to is None and (row.by in CLOSERS or row.by == REVIEW):
+        if row.glob and (row.by in CLOSERS or row.by == REVIEW):
             for place in row.places:
                 rows[place].append(row)
     reached = _reached(analysis)
     return tuple(
-        _use(place, tuple(sorted(says[place])), decides[place], rows[place], reached, analysis.verdict)
-        for place in sorted(says, key=lambda place: (place.file, place.line))
+        _use(place, decided[place], rows[place], reached, analysis.verdict)
+        for place in sorted(decided, key=lambda place: (place.file, place.line))
     )
 
 
-def _decided(
-    analysis: Analysis, bound: Bound, beside: Collection[str]
-) -> tuple[dict[Place, set[str]], dict[Place, set[Identity]]]:
-    """What each line says, and the elements at which it holds; where nothing is emitted, those that it covers."""
+@dataclass(frozen=True, slots=True)
+class _Decided:
+    """What one line says, and the elements and flows at which it holds; all that it covers where nothing is emitted."""
+
+    says: set[str] = field(default_factory=set)
+    elements: set[Identity] = field(default_factory=set)
+    flows: set[Ends] = field(default_factory=set)
+
+
+def _decided(analysis: Analysis, bound: Bound, beside: Collection[str]) -> dict[Place, _Decided]:
     spread = analysis.spread
-    says: dict[Place, set[str]] = defaultdict(set)
-    decides: dict[Place, set[Identity]] = defaultdict(set)
+    lines: dict[Place, _Decided] = defaultdict(_Decided)
     for vertex, said in bound.elements.items():
-        mine = [statement for statement in said if _of_a_user(statement)]
-        if not mine or spread.graph.elements[vertex].robot in beside:
+        element = spread.graph.elements[vertex]
+        if element.robot in beside:
             continue
-        accepted = {s for fact in spread.facts.get(vertex, {}).values() for s in fact.accepted}
-        for statement in mine:
-            says[statement.place].add(statement.role)
-            if statement in accepted or not spread.categories:
-                decides[statement.place].add(spread.graph.elements[vertex].identity)
-    return says, decides
+        for statement, holds in _stated(said, spread.facts.get(vertex, {}), spread):
+            lines[statement.place].says.add(statement.role)
+            lines[statement.place].elements.update([element.identity] if holds else ())
+    for index, said in bound.flows.items():
+        source, target = _ends(spread.graph, index)
+        if source.robot in beside:
+            continue
+        for statement, holds in _stated(said, spread.flow_facts.get(index, {}), spread):
+            lines[statement.place].says.add(statement.role)
+            lines[statement.place].flows.update([(source.identity, target.identity)] if holds else ())
+    return lines
+
+
+def _stated(said: Iterable[Statement], facts: Mapping[str, Facts], spread: Spread) -> Iterator[tuple[Statement, bool]]:
+    """What globs of a user say of an element or a flow, and whether it holds there."""
+    accepted = {statement for fact in facts.values() for statement in fact.accepted}
+    for statement in said:
+        if _of_a_user(statement):
+            yield statement, statement in accepted or not spread.categories
+
+
+def _ends(graph: FlowGraph, index: int) -> tuple[Element, Element]:
+    flow = graph.flows[index]
+    return graph.elements[flow.source], graph.elements[flow.target]
 
 
 def _of_a_user(statement: Statement) -> bool:
     return statement.glob and statement.rank[0] > STANDARD
 
 
-def _reached(analysis: Analysis) -> dict[bool, int]:
-    """How many channels, and how many other elements, data gets to; whether it goes on or not."""
+def _reached(analysis: Analysis) -> dict[str, int]:
+    """How many channels, and how many other elements, data gets to; along how many flows; whether it goes on or not."""
     spread = analysis.spread
     there = {spread.graph.elements[vertex] for vertex in {*spread.arrives, *spread.leaves}}
-    return {channel: len({e.identity for e in there if e.is_channel == channel}) for channel in (True, False)}
+    sent = [
+        _ends(spread.graph, index)
+        for index, flow in enumerate(spread.graph.flows)
+        if spread.sent.get(flow.source, 0) | spread.flow_emits.get(index, 0)
+    ]
+    return {
+        "channels": len({e.identity for e in there if e.is_channel}),
+        "others": len({e.identity for e in there if not e.is_channel}),
+        "flows": len({(source.identity, target.identity) for source, target in sent}),
+    }
 
 
 def _use(
-    place: Place, says: tuple[str, ...], decides: set[Identity], rows: list[TakenAway], reached: dict[bool, int],
-    verdict: Verdict,
-) -> GlobUse:  # fmt: skip
-    closed = {row.element for row in rows if row.element and row.by in CLOSERS}
-    reviewed = {row.element for row in rows if row.element and row.by == REVIEW}
+    place: Place, decided: _Decided, rows: list[TakenAway], reached: Mapping[str, int], verdict: Verdict
+) -> GlobUse:
+    at = [row for row in rows if row.element and not row.to]
+    closed = {row.element for row in at if row.element and row.by in CLOSERS}
+    reviewed = {row.element for row in at if row.element and row.by == REVIEW}
+    flows = {(row.element.identity, row.to.identity) for row in rows if row.element and row.to}
     warning = ""
-    if WATCHED.intersection(says):
-        halves = (
-            2 * len({e.identity for e in closed | reviewed if e.is_channel == channel}) > number > 1
-            for channel, number in reached.items()
-        )
+    if decided.flows or WATCHED.intersection(decided.says):
+        touched = {e.identity: e.is_channel for e in closed | reviewed}
+        most = {
+            "channels": sum(touched.values()),
+            "others": len(touched) - sum(touched.values()),
+            "flows": len(flows),
+        }
         last = verdict is Verdict.NO_LEAK_FOUND and any(row.closes or row.itself for row in rows)
-        warning = LAST if last else HALF if any(halves) else ""
+        warning = LAST if last else HALF if any(2 * most[what] > reached[what] > 1 for what in most) else ""
     return GlobUse(
         place,
-        says,
-        len(decides),
+        tuple(sorted(decided.says)),
+        len(decided.elements),
         len({element.identity for element in closed}),
         len({element.identity for element in reviewed}),
         next((row.leak for row in rows if row.leak), None),
         next((row.open for row in rows if row.open), None),
         warning,
+        len(decided.flows),
+        len(flows),
     )

@@ -40,6 +40,8 @@ class Pattern:
         Whether data gets from one robot to another.
     dismissed, pseudonymised, accepted
         How many of the findings are.
+    forms
+        The robots by how their finding stands: each under the form that stands most, these forms first.
     """
 
     id: str
@@ -50,6 +52,7 @@ class Pattern:
     dismissed: int
     pseudonymised: int
     accepted: int = 0
+    forms: tuple[tuple[Form, tuple[str, ...]], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,6 +154,7 @@ def patterns_of(groups: Iterable[Group], findings: Iterable[Finding]) -> tuple[P
             group.count.dismissed,
             group.count.pseudonymised,
             group.count.accepted,
+            group.forms,
         )
         for group in sorted(groups, key=lambda group: order[group.pair][0])
     )

@@ -57,13 +57,14 @@ class Pair(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Group:
-    """A pattern without a path: the pair that is shown of it, its id, and what is counted."""
+    """A pattern without a path: the pair that is shown of it, its id, what is counted, and the robots by form."""
 
     pair: Pair
     id: str
     count: Count
     robots: tuple[str, ...]
     across: bool
+    forms: tuple[tuple[Form, tuple[str, ...]], ...] = ()
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -140,6 +141,7 @@ class Tallies:
 
     def groups(self) -> tuple[Group, ...]:
         """Return the patterns, without a path."""
+        forms = self._forms()
         return tuple(
             Group(
                 tally.shown,
@@ -147,6 +149,21 @@ class Tallies:
                 tally.count,
                 tuple(sorted(tally.robots)),
                 self._likeness.apart(tally.shown.source, tally.shown.leak),
+                tuple((form, tuple(sorted(robots))) for form, robots in sorted(forms[key].items())),
             )
             for key, tally in self._tallies.items()
         )
+
+    def _forms(self) -> dict[str, dict[Form, set[str]]]:
+        """Pattern -> the robots where its findings begin, each under the form that stands most."""
+        least: dict[str, dict[str, Form]] = defaultdict(dict)
+        for name, shares in self.shares.items():
+            for share in shares:
+                form = Form(share.dismissed, share.accepted, share.pseudonymised)
+                for robot in () if share.ends else self._likeness.placed(name):
+                    least[share.pattern][robot] = min(form, least[share.pattern].get(robot, form))
+        forms: dict[str, dict[Form, set[str]]] = defaultdict(lambda: defaultdict(set))
+        for pattern, robots in least.items():
+            for robot, form in robots.items():
+                forms[pattern][form].add(robot)
+        return forms

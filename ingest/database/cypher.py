@@ -126,6 +126,7 @@ READ_ROBOTS = (
 )
 READ_DIGESTS = (
     f"UNWIND $names AS name MATCH {_node('r', ROBOT, 'name')} RETURN name, r.`digest` AS digest, "
+    "r.`assumptions` AS assumptions, "
     f"r.`elements` = COUNT {{ (r)<-[:`OF_ROBOT` {{`robot`: name}}]-(n) WHERE NOT n:{quoted(INTAKE)} }} AND "
     f"r.`carried` = COUNT {{ (r)<-[:`OF_ROBOT` {{`robot`: name}}]-()-[c]->() WHERE {_IS_CARRIES} }} AND "
     "r.`flows` = COUNT { (r)<-[:`OF_ROBOT`]-()-[f:`FLOWS_TO` {`robot`: name}]->() } AND "

@@ -7,8 +7,9 @@ people added by hand (without our mark ``robot``) stays, as do other robots.
 
 from __future__ import annotations
 
+import json
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import DatabaseError, InputError, shown
@@ -26,7 +27,7 @@ from rosprivacy.ingest.database.schema import (
 from rosprivacy.ingest.database.schema import constraints as schema_statements
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Sequence
+    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 
     from neo4j import Driver, ManagedTransaction
 
@@ -40,10 +41,25 @@ _BROADER = next(kind for kind in RELATIONSHIPS if kind.type == "BROADER")
 
 @dataclass(frozen=True, slots=True)
 class Loaded:
-    """How many robots were written, and how many were there already as they are."""
+    """How many robots were written, and how many were there already as they are.
+
+    Attributes
+    ----------
+    replaced
+        Of those written, by name: the policies of the robot that was there, where these are others.
+    """
 
     written: int
     unchanged: int
+    replaced: Mapping[str, Collection[str]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class _There:
+    """A robot of the database: its digest, where its counts are still those that were loaded; (file, SHA-256) of it."""
+
+    digest: str
+    policies: frozenset[tuple[str, str]]
 
 
 def load(
@@ -72,18 +88,27 @@ def load(
     """
     labels = sorted(label + suffix for label in category_labels(vocabulary).values() for suffix in SUFFIXES)
     written = unchanged = 0
+    replaced: dict[str, Collection[str]] = {}
     with refusals(), driver.session() as session:
         for statement in schema_statements():
             session.run(statement).consume()
         session.execute_write(_write_vocabulary, vocabulary)
         for batch in _batches(robots):
-            changed = _changed(session.execute_read(_read_digests, [rows.robot for rows in batch]), batch)
+            there = session.execute_read(_read_there, [rows.robot for rows in batch])
+            changed = _changed(there, batch)
+            replaced |= _of_other_policies(there, changed)
             if changed:
                 session.execute_write(_write_robots, changed, labels)
             written += len(changed)
             unchanged += len(batch) - len(changed)
             progress(sum(rows.size for rows in batch))
-    return Loaded(written, unchanged)
+    return Loaded(written, unchanged, replaced)
+
+
+def others_there(driver: Driver, rows: RobotRows) -> Collection[str]:
+    """Return the policies of the robot of that name in the database, if there is one and these are others."""
+    with refusals(), driver.session() as session:
+        return _of_other_policies(session.execute_read(_read_there, [rows.robot]), [rows]).get(rows.robot, ())
 
 
 def unload(driver: Driver, names: Sequence[str]) -> list[str]:
@@ -148,14 +173,37 @@ def _batches(robots: Iterable[RobotRows]) -> Iterator[list[RobotRows]]:
         yield batch
 
 
-def _read_digests(transaction: ManagedTransaction, names: list[str]) -> dict[str, str]:
-    """The digests of robots whose counts are still those that were loaded."""
-    found = transaction.run(cypher.READ_DIGESTS, names=names)
-    return {record["name"]: record["digest"] for record in found if record["whole"]}
+def _read_there(transaction: ManagedTransaction, names: list[str]) -> dict[str, _There]:
+    """Those of some robots that are there."""
+    records = transaction.run(cypher.READ_DIGESTS, names=names)
+    return {r["name"]: _There(r["digest"] if r["whole"] else "", _policies(r["assumptions"])) for r in records}
 
 
-def _changed(digests: dict[str, str], batch: list[RobotRows]) -> list[RobotRows]:
-    return [rows for rows in sorted(batch, key=lambda rows: rows.robot) if digests.get(rows.robot) != rows.digest]
+def _policies(assumptions: str | None) -> frozenset[tuple[str, str]]:
+    """The (file, SHA-256) of a robot's policies, as its assumptions name them; none of what earlier versions wrote."""
+    return frozenset((entry["file"], entry["sha256"]) for entry in json.loads(assumptions or "{}").get("policies", ()))
+
+
+def _changed(there: Mapping[str, _There], batch: list[RobotRows]) -> list[RobotRows]:
+    known = {name: robot.digest for name, robot in there.items()}
+    return [rows for rows in sorted(batch, key=lambda rows: rows.robot) if known.get(rows.robot) != rows.digest]
+
+
+def _of_other_policies(there: Mapping[str, _There], robots: Iterable[RobotRows]) -> dict[str, Collection[str]]:
+    """Robots that are to be replaced, and were loaded from other files; a file more or less that is included is none.
+
+    Files of other names with the same contents are the same.
+    """
+    replaced: dict[str, Collection[str]] = {}
+    for rows in robots:
+        before = there[rows.robot].policies if rows.robot in there else frozenset()
+        now = _policies(rows.properties.get("assumptions"))
+        (old, contents), (new, same) = (
+            [{entry[part] for entry in files} for part in (0, 1)] for files in (before, now)
+        )
+        if before and contents != same and not (old <= new or new <= old):
+            replaced[rows.robot] = sorted(old)
+    return replaced
 
 
 def _write_vocabulary(transaction: ManagedTransaction, vocabulary: Vocabulary) -> None:

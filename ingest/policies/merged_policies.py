@@ -21,17 +21,24 @@ NAMED = 3  # of nodes, files and parts
 EVERYBODY = ("rosout", "parameter_events", "clock")  # channels of every node: they join no two systems
 COMPARED = 1_000_000  # wildcards with names; beyond that nothing is said of parts
 ALONE = "--per-policy analyses each alone"
+OF_ONE_ROBOT = "name for a robot of the fleet only what runs on it"
 
 
-def merging_notices(policies: Iterable[Policy]) -> tuple[Diagnostic, ...]:
-    """Return a notice for files that state one node differently, and one for files that have nothing in common."""
+def merging_notices(policies: Iterable[Policy], instead: str = ALONE) -> tuple[Diagnostic, ...]:
+    """Return a notice for files that state one node differently, and one for files that have nothing in common.
+
+    Parameters
+    ----------
+    instead
+        What to do if they were not meant to make one graph.
+    """
     policies = sorted((policy for policy in policies if policy.profiles), key=lambda policy: policy.file)
     if len(policies) < 2:  # noqa: PLR2004 - two make one
         return ()
-    return (*_stated_differently(policies), *_without_common_names(policies))
+    return (*_stated_differently(policies, instead), *_without_common_names(policies, instead))
 
 
-def _stated_differently(policies: Sequence[Policy]) -> Iterator[Diagnostic]:
+def _stated_differently(policies: Sequence[Policy], instead: str) -> Iterator[Diagnostic]:
     """One notice for all nodes that the same files state."""
     places: dict[str, dict[str, Place]] = defaultdict(dict)
     allowed: dict[tuple[str, str], set[tuple[object, ...]]] = defaultdict(set)
@@ -48,16 +55,16 @@ def _stated_differently(policies: Sequence[Policy]) -> Iterator[Diagnostic]:
         first = min(stated)
         what = f"{_some(stated, 'node')} stated differently in {_files(files_of)}"
         message = f"{len(policies):,} policies make one graph, with what each of them allows: {what}"
-        yield Diagnostic(places[first][files_of[0]], Severity.NOTICE, f"{message}; {ALONE}", MERGED)
+        yield Diagnostic(places[first][files_of[0]], Severity.NOTICE, f"{message}; {instead}", MERGED)
 
 
-def _without_common_names(policies: Sequence[Policy]) -> Iterator[Diagnostic]:
+def _without_common_names(policies: Sequence[Policy], instead: str) -> Iterator[Diagnostic]:
     parts = _parts(policies)
     if len(parts) > 1:
         more = f" | and {len(parts) - NAMED} more" if len(parts) > NAMED else ""
         named = " | ".join(_files([policy.file for policy in part]) for part in parts[:NAMED]) + more
         what = f"{len(policies):,} policies make one graph of {len(parts):,} parts that share no node and no channel"
-        message = f"{what}: {named}; if these are several systems, {ALONE}"
+        message = f"{what}: {named}; if these are several systems, {instead}"
         yield Diagnostic(parts[0][0].profiles[0].place, Severity.NOTICE, message, MERGED)
 
 

@@ -23,6 +23,7 @@ from rosprivacy.report.cnil.markup import (
     some,
     strong,
 )
+from rosprivacy.report.element_counts import count_elements
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -192,7 +193,8 @@ def threats(known: Known) -> list[str]:
     if len(findings) > THREATS:
         said.append(f"{len(findings) - THREATS:,} more paths to assess")
     if known.analysis.open:
-        said.append(f"{counted(len(known.analysis.open), 'element')} reached by personal data and not reviewed")
+        unreviewed = count_elements(question.element for question in known.analysis.open).elements
+        said.append(f"{counted(unreviewed, 'element')} reached by personal data and not reviewed")
     return said
 
 

@@ -20,6 +20,7 @@ from rosprivacy.report import robots
 from rosprivacy.report.cnil import answers as cnil_answers
 from rosprivacy.report.cnil.answers import NAMES, Known
 from rosprivacy.report.cnil.markup import Html, bullets, counted, escaped, joined, paragraph, prose
+from rosprivacy.report.element_counts import count_elements
 from rosprivacy.report.inventory import kinds_of
 
 if TYPE_CHECKING:
@@ -173,7 +174,8 @@ def _rows(rows: list[Html]) -> Html:
 def _note(analysis: Analysis, assumptions: Mapping[str, Any], about: str) -> Html:
     """Whose word this is."""
     program = escaped(f"rosprivacy {assumptions.get('rosprivacy', '')}".strip())
-    rests = f"view {analysis.graph.view}, verdict {analysis.verdict}, {len(analysis.open):,} elements not reviewed"
+    unreviewed = counted(count_elements(question.element for question in analysis.open).elements, "element")
+    rests = f"view {analysis.graph.view}, verdict {analysis.verdict}, {unreviewed} not reviewed"
     more = f" {prose(about)}." if about else ""
     said = f"Filled in by {program} from policies and labels ({rests}).{more} A person has to check it."
     return Html(f"<p><em>{said}</em></p>")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypedDict
+from typing import TYPE_CHECKING, NotRequired, TypedDict
 
 if TYPE_CHECKING:
     from rosprivacy.report.contract.records import ElementEntry
@@ -16,6 +16,15 @@ class AlikeEntry(TypedDict):
     robots: list[str]
 
 
+class FormEntry(TypedDict):
+    """Robots of a pattern, and how their finding stands."""
+
+    robots: list[str]
+    dismissed: bool
+    accepted: bool
+    pseudonymised: bool
+
+
 class PatternEntry(TypedDict):
     """Findings that differ only in the robot."""
 
@@ -27,6 +36,7 @@ class PatternEntry(TypedDict):
     pseudonymised: int
     accepted: int
     robots: list[str]
+    forms: NotRequired[list[FormEntry]]
 
 
 class ShareEntry(TypedDict):

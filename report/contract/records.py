@@ -188,6 +188,8 @@ class GlobEntry(PlaceEntry):
     elements: int
     closed: int
     reviewed: int
+    flows: NotRequired[int]
+    flows_closed: NotRequired[int]
     leak: ElementEntry | None
     open: ElementEntry | None
     warning: str

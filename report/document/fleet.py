@@ -10,6 +10,7 @@ from collections import Counter
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.report.document.analysis import element_dict
+from rosprivacy.report.robots import form_rows
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -88,6 +89,7 @@ def _pattern(pattern: Pattern) -> PatternEntry:
         "pseudonymised": pattern.pseudonymised,
         "accepted": pattern.accepted,
         "robots": list(pattern.robots),
+        "forms": form_rows(pattern),
     }
 
 

@@ -54,6 +54,8 @@ def globs(used: Iterable[GlobUse], element_dict: Shown) -> list[GlobEntry]:
             "elements": use.elements,
             "closed": use.closed,
             "reviewed": use.reviewed,
+            "flows": use.flows,
+            "flows_closed": use.flows_closed,
             "leak": element_dict(use.leak) if use.leak else None,
             "open": element_dict(use.open) if use.open else None,
             "warning": use.warning,

@@ -13,6 +13,7 @@ from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.text import fit
+from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import key, name, whole
 from rosprivacy.report.page.entries_of_robots import grouped
 from rosprivacy.report.page.index import Index
@@ -183,5 +184,5 @@ def _measures(category: str, facts: _Facts) -> Iterator[str]:
 
 
 def _note(category: str, index: Index) -> str:
-    unknown = sum(category in question["categories"] for question in index.document["open"])
+    unknown = count_rows(q for q in index.document["open"] if category in q["categories"]).elements
     return index.words("r.note.open", elements=index.words.count(unknown, "element")) if unknown else ""

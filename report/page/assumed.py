@@ -99,14 +99,12 @@ def _globs(index: Index) -> Iterator[str]:
     """What each glob of the label files decides and closes."""
     words = index.words
     for row in index.document["assumptions"].get("globs", ()):
-        text = words(
-            "a.glob",
-            place=fit(f"{row['file']}:{row['line']}"),
-            says=words.row(row["says"]),
-            elements=words.count(row["elements"], "element"),
-            closed=row["closed"],
-            reviewed=row["reviewed"],
-        )
+        at = {"place": fit(f"{row['file']}:{row['line']}"), "says": words.row(row["says"])}
+        if flows := row.get("flows"):
+            text = words("a.glob.flows", **at, flows=words.count(flows, "flow"), closed=row["flows_closed"])
+        else:
+            elements = words.count(row["elements"], "element")
+            text = words("a.glob", **at, elements=elements, closed=row["closed"], reviewed=row["reviewed"])
         warning = row["warning"]
         yield f"{text} {words(f'a.glob.{warning}')}" if warning else text
 

@@ -9,13 +9,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.text import fit, printable
+from rosprivacy.report.finding_order import in_order
 from rosprivacy.report.naming import key, line, name
 from rosprivacy.report.page.decision_texts import Decision, decision_of
 from rosprivacy.report.page.entries_of_robots import finding_pattern, grouped
 from rosprivacy.report.page.index import anchor, state
+from rosprivacy.report.robots import forms_in_words
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator, Mapping
+    from collections.abc import Collection, Iterator, Mapping, Sequence
 
     from rosprivacy.report.page.index import Index
 
@@ -73,6 +75,9 @@ class Entry:
         That it is the same on, the first included; empty where there is one.
     spread
         On how many robots it is, in a sentence; empty where there is one.
+    where
+        The same robots by how the finding stands there, in words, with their names: of those that are alike on a fleet
+        the one that is shown.
     pattern
         On a fleet, the id of the pattern: what decisions name.
     through
@@ -105,6 +110,7 @@ class Entry:
     mark: str = ""
     spread: str = ""
     pattern: str = ""
+    where: tuple[tuple[str, tuple[str, ...]], ...] = ()
 
     @property
     def brief(self) -> str:
@@ -129,7 +135,8 @@ def finding_entries(index: Index, marks: Mapping[str, str] | None = None) -> tup
         return finding_pattern(finding), marks.get(finding["id"]), decided[finding["id"]]
 
     fleet = index.patterns  # there each finding is one of its pattern
-    groups = [[finding] for finding in index.findings] if fleet else grouped(index.findings, pattern)
+    findings = in_order(index.findings)
+    groups = [[finding] for finding in findings] if fleet else grouped(findings, pattern)
     return tuple(_entry(number, group, index, decided, marks) for number, group in enumerate(groups, 1))
 
 
@@ -167,6 +174,7 @@ def _entry(
         mark=marks.get(finding["id"], ""),
         spread=_spread(finding, robots, index),
         pattern=index.patterns.get(finding["id"], {}).get("id", ""),
+        where=tuple(_where(finding, robots, index)),
     )
 
 
@@ -184,10 +192,42 @@ def _spread(finding: Mapping[str, Any], robots: tuple[str, ...], index: Index) -
         return words("f.fleet.none")
     said = [words("f.fleet", n=len(robots), all=words.count(len(index.robots()), "robot"))]
     said += [words("f.fleet.across", n=pattern["findings"])] if pattern["across"] else []
-    for what in ("dismissed", "accepted", "pseudonymised"):
-        if 0 < pattern[what] < pattern["findings"]:
-            said.append(words(f"f.fleet.{what}", n=pattern[what], all=pattern["findings"]))
+    said += [f"{words.count(len(some), 'robot')}: {form}." for some, form in _forms(pattern, index)]
     return " ".join(said)
+
+
+def _forms(pattern: Mapping[str, Any], index: Index) -> list[tuple[Sequence[str], str]]:
+    words = index.words
+    said = {
+        "dismissed": (words("fl.dismissed"), words("fl.dismissed.not")),
+        "accepted": (words("fl.accepted"), words("fl.accepted.not")),
+        "pseudonymised": (words("fl.hidden"), words("fl.hidden.not")),
+    }
+    return forms_in_words(pattern.get("forms", ()), said)
+
+
+def _where(finding: Mapping[str, Any], robots: tuple[str, ...], index: Index) -> Iterator[tuple[str, tuple[str, ...]]]:
+    pattern = index.patterns.get(finding["id"])
+    if not pattern:
+        if robots:
+            yield index.words("c.robots"), robots
+        return
+    for some, form in _forms(pattern, index) or [(pattern["robots"], "")]:
+        said = index.words.count(len(some), "robot")
+        if some:
+            yield f"{said}, {form}" if form else said, tuple(_standing(some, index))
+
+
+def _standing(robots: Sequence[str], index: Index) -> Iterator[str]:
+    """Robots, each with how many are like it: their names are in the table of the fleet."""
+    left = dict.fromkeys(robots)
+    for shown, alike in index.alike.items():
+        if shown in left and left.keys() >= set(alike):
+            more = f" ({index.words.count(len(alike), 'robot')})" if len(alike) > 1 else ""
+            yield f"{fit(shown)}{more}"
+            for robot in alike:
+                del left[robot]
+    yield from map(fit, left)
 
 
 def _sentence(finding: Mapping[str, Any], index: Index) -> str:

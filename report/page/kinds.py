@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.text import fit, printable
+from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import text
 
 if TYPE_CHECKING:
@@ -109,7 +110,7 @@ def _kind(category: Mapping[str, Any], index: Index, entries: tuple[Entry, ...])
         origins=tuple(_origins(of, index)),
         entries=entries,
         places=index.names(reached),
-        open=sum(of in question["categories"] for question in index.document["open"]),
+        open=count_rows(q for q in index.document["open"] if of in q["categories"]).elements,
     )
 
 

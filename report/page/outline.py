@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.text import fit
 from rosprivacy.report.compare.changes import ASKED, Changes, changes
 from rosprivacy.report.document.analysis import files_not_read
+from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import name
 from rosprivacy.report.page import assumed, elements, sanitizers, tables
 from rosprivacy.report.page.closed import Closed, closed
@@ -217,14 +218,18 @@ def _verdict(index: Index) -> str:
 
 def _means(index: Index, sections: list[str]) -> Iterator[str]:
     words = index.words
-    open_elements = words.count(len(index.document["open"]), "element")
+    open_elements = words.count(count_rows(index.document["open"]).elements, "element")
     yield words(f"verdict.{_verdict(index)}.means", open=open_elements)
     accepted = sum(bool(finding.get("accepted")) for finding in index.findings)
     if accepted:
         yield words("verdict.accepted", ways=words.count(accepted, "way"), section=sections.index("findings") + 1)
     ends = index.document["unknown_ends"]
     if ends:
-        yield words("verdict.ends", ends=words.count(len(ends), "element"), section=sections.index("questions") + 1)
+        yield words(
+            "verdict.ends",
+            ends=words.count(count_rows(ends).elements, "element"),
+            section=sections.index("questions") + 1,
+        )
     yield words("not.legal")
 
 
@@ -235,7 +240,7 @@ def _numbers(index: Index) -> Iterator[tuple[int, str]]:
     yield len(to_assess), words("n.ways")
     yield sum(finding["article9"] in CAN_BE_SPECIAL for finding in to_assess), words("n.special")
     yield len({tuple(finding["leak"].items()) for finding in to_assess}), words("n.recipients")
-    yield len(index.document["open"]), words("n.open")
+    yield count_rows(index.document["open"]).elements, words("n.open")
     for what in ("accepted", "dismissed"):
         number = sum(bool(finding.get(what)) for finding in index.findings)
         if number:

@@ -68,8 +68,9 @@ def width(data: bytes) -> float:
 
 
 def _tips(root: etree._Element, picture: Picture) -> None:
-    """A tip on each box: its names, longer than on it. None on lines: the page says of them what there is to say."""
-    names = {picture.keys[box.key]: shortened(", ".join(box.names), LONGEST_TIP) for box in picture.boxes}
+    """A tip on each box: its names, longer than on it, and what is said of it. None on lines: there the page does."""
+    tips = {box.key: "; ".join((shortened(", ".join(box.names), LONGEST_TIP), *box.words)) for box in picture.boxes}
+    names = {picture.keys[key]: tip for key, tip in tips.items()}
     for group in list(root.iter(f"{{{NAMESPACE}}}g")):
         unlink(group)
         title = group.find(TITLE)

@@ -25,6 +25,10 @@ WORDS = {
     "element.many": "{n} elements",
     "flow.one": "{n} flow",
     "flow.many": "{n} flows",
+    "openelement.one": "{n} other open element",
+    "openelement.many": "{n} other open elements",
+    "leak.one": "{n} recipient",
+    "leak.many": "{n} recipients",
     "robot.one": "{n} robot",
     "robot.many": "{n} robots",
     "enclave.one": "{n} enclave",
@@ -176,8 +180,9 @@ WORDS = {
         "reviewed for it."
     ),
     "a.glob.half": (
-        "Warning: that is more than half of the nodes, or of the channels, that data gets to; check that it is meant."
+        "Warning: that is more than half of the nodes, channels or flows that data gets to; check that it is meant."
     ),
+    "a.glob.flows": "The glob at {place} ({says}) decides {flows}; data ends for it along {closed} of them.",
     "a.glob.last-path": "Warning: without it the answer would not be that no leak was found; check that it is meant.",
     "a.overruled.source": "{elements}: no source of {data}, since the label at {by} takes away that at {lost}.",
     "a.overruled.leak": "{elements}: no leak of {data}, since the label at {by} takes away that at {lost}.",
@@ -398,18 +403,18 @@ WORDS = {
     "fl.begins": "data begins there",
     "fl.ends": "data ends there, from another robot",
     "fl.dismissed": "only through another recipient",
+    "fl.dismissed.not": "by a path of its own",
     "fl.hidden": "pseudonymised",
+    "fl.hidden.not": "unfiltered",
     "fl.accepted": "accepted by a decision",
+    "fl.accepted.not": "not accepted",
     "fl.plain": "not pseudonymised",
     "fl.more_open": "not reviewed: {names}",
     "fl.fewer_open": "not reviewed: {names}",
     "f.fleet": "On {n} of {all}.",
     "f.fleet.none": "It begins and ends outside the robots.",
     "f.fleet.across": "From one robot to another; {n} such paths in the fleet.",
-    "f.fleet.dismissed": "{n} of {all} like it lead only through another recipient.",
-    "f.fleet.accepted": "{n} of {all} like it are accepted by a decision.",
     "f.pattern": "pattern",
-    "f.fleet.pseudonymised": "In {n} of {all} like it the data are pseudonymised.",
     "n.robots": "robots in the fleet",
     "robotkind.one": "{n} kind of robot",
     "robotkind.many": "{n} kinds of robots",
@@ -491,15 +496,25 @@ WORDS = {
     "q.none": "Every element that data gets to is covered by a label.",
     "q.intro": (
         "Data can get to these elements, and no label speaks of them. Each may be a recipient. They are in the order in "
-        "which to review them: nodes that data reaches first, then channels, then what lies behind."
+        "which to review them: nodes that data reaches first, then channels, then what lies behind; within each "
+        "group, what most depends on stands first. What data gets to past one element only, a label there can close."
     ),
     "q.first": "Review next: nodes that data reaches before any other open node",
     "q.channels": "Channels",
     "q.behind": "Nodes that lie behind those",
+    "q.legs": "{elements}; {legs} with the legs of services and actions",
+    "q.waits": "{elements} can wait: from there data gets to no recipient and to no node that is not reviewed",
+    "q.proposed": (
+        "{elements}: lifecycle or other infrastructure channels, which the label file rosprivacy:infrastructure proposes "
+        "to take as free of personal data"
+    ),
+    "q.brings": "is a source itself ({data}); does it pass on what comes in?",
     "q.reader": "Channels with data that nobody known reads: a reader may stand in a policy that was not given",
     "q.flow": "Elements outside ROS that no flow reaches: what flows into them may have been forgotten",
     "c.data": "Kinds of data",
     "c.distance": "From a source",
+    "c.through": "Comes through",
+    "c.closes": "Only past it",
     "missing.country": "country",
     # --- criteria
     "w.intro": (

@@ -29,6 +29,7 @@ STRAIGHT = 8  # how much a step of a shortest path wants to be short and straigh
 WIDEST_WORDS = 34  # letters of a line on a box
 LONGEST_WORD = 60  # on a line
 ON_A_LINE = "shape=plaintext, margin=0, height=0, width=0"
+LONGEST_WORDS = 300  # of all lines of a phrase: what some kinds of data are called goes in whole (users.md, B6)
 
 
 def dot(picture: Picture, *, direction: str = "LR", legend: bool = True) -> str:
@@ -100,7 +101,7 @@ def label_lines(picture: Picture, box: Box) -> list[str]:
         lines += [shortened(name, 36) for name in box.names[:FOLDED_NAMES]]
         more = len(box.names) - FOLDED_NAMES
         lines += [f"and {more} more"] if more > 0 else []
-    return [*lines, *(line for word in box.words for line in wrap(shortened(word, 60), WIDEST_WORDS))]
+    return [*lines, *(line for word in box.words for line in wrap(shortened(word, LONGEST_WORDS), WIDEST_WORDS))]
 
 
 def hover(picture: Picture, box: Box) -> str:

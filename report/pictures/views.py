@@ -18,6 +18,7 @@ from rosprivacy.analysis.findings.flows_to_leaks import FlowsToLeaks, flows_to_l
 from rosprivacy.analysis.kernel.states import Net
 from rosprivacy.analysis.model import DISCLOSURE
 from rosprivacy.analysis.text import counted, shortened
+from rosprivacy.report.element_counts import count_elements
 from rosprivacy.report.pictures.looks import ALLOWED, DATA, DENIED, MATCHES, SHORTEST, WAY
 from rosprivacy.report.pictures.picture import PRIVACY, ROS, Box, Line, Picture, order, sorted_boxes, sorted_lines
 from rosprivacy.report.pictures.privacy import Reached
@@ -199,7 +200,8 @@ def privacy_view(analysis: Analysis, beside: Collection[str] = ()) -> Picture:
     lines = _data_lines(reached, boxes, range(len(analysis.graph.flows)), lengths, _pairs(open_findings))
     what = listed(analysis.emitted, most=6)
     findings = counted(len(open_findings), "finding")
-    open_count = counted(len({q.element.identity for q in analysis.open if q.element.robot not in beside}), "element")
+    unreviewed = count_elements(q.element for q in analysis.open if q.element.robot not in beside).elements
+    open_count = counted(unreviewed, "element")
     title = f"Where {what} can go ({analysis.graph.view}): {VERDICTS[analysis.verdict]}"
     notes = (f"{findings}, {open_count} not reviewed", *reached.left_out(beside))
     shown = tuple(in_words(finding) for finding in open_findings)

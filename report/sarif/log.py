@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.legal import strongest_first
 from rosprivacy.analysis.model import Place, Severity, unread
-from rosprivacy.analysis.text import utf8
+from rosprivacy.analysis.text import counted, utf8
+from rosprivacy.report.element_counts import ElementCount, count_elements
 from rosprivacy.report.places import Places, in_a_file, to_review
 from rosprivacy.report.sarif.flows import flows_between, further_paths, prose, text
 from rosprivacy.report.sarif.results import LAW, ROOT, Files, Results
@@ -96,7 +97,7 @@ def _log(answer: Answer, root: Path) -> dict[str, Any]:
         "properties": {
             "verdict": str(analysis.verdict),
             "view": analysis.graph.view,
-            "unreviewedElements": len(analysis.open),
+            "unreviewedElements": _unreviewed(analysis).elements,
             "standardChannels": analysis.standard_channels,
             "assumptions": _whole(assumptions),
         },
@@ -154,9 +155,15 @@ def _artifacts(assumptions: Mapping[str, Any], files: Files) -> Iterator[dict[st
             yield {"location": location, "roles": [role], "hashes": {"sha-256": entry["sha256"]}}
 
 
+def _unreviewed(analysis: Analysis) -> ElementCount:
+    return count_elements(question.element for question in analysis.open)
+
+
 def _about(analysis: Analysis, results: Sequence[Mapping[str, Any]]) -> Iterator[dict[str, Any]]:
     """The verdict with what is open, and what was left out of the file."""
-    unreviewed = f"{len(analysis.open)} elements that data reaches are not reviewed"
+    count = _unreviewed(analysis)
+    are = "is" if count.elements == 1 else "are"
+    unreviewed = f"{counted(count.elements, 'element')} that data reaches {are} not reviewed{count.more}"
     yield _notice(
         "note" if not analysis.open else "warning", "verdict", f"{analysis.verdict}; {unreviewed}. {NO_VERDICT}"
     )

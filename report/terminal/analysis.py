@@ -14,7 +14,9 @@ from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import MERGED
 from rosprivacy.analysis.text import counted
 from rosprivacy.report.document.analysis import files_not_read
-from rosprivacy.report.naming import shown_name, whole
+from rosprivacy.report.element_counts import count_rows
+from rosprivacy.report.naming import shown_name
+from rosprivacy.report.review_groups import SHOWN
 from rosprivacy.report.terminal.denied import denied_lines
 from rosprivacy.report.terminal.finding_lines import MANY, details, law_lines, overview
 from rosprivacy.report.terminal.fleet import fleet_lines
@@ -23,7 +25,7 @@ from rosprivacy.report.terminal.labels import absent_lines, overruled_lines, sta
 from rosprivacy.report.terminal.ledger import ledger_lines, taken_away_lines
 from rosprivacy.report.terminal.next_step import next_lines
 from rosprivacy.report.terminal.restriction import asked_at_verdict, asked_lines
-from rosprivacy.report.terminal.review import SHOWN, review_lines
+from rosprivacy.report.terminal.review import review_lines
 from rosprivacy.report.terminal.unknown_ends import end_lines, ends_at_verdict
 from rosprivacy.report.terminal.wrapped import wrapped
 
@@ -113,9 +115,8 @@ def _summary(report: Mapping[str, Any]) -> str:
 
 def _to_review(report: Mapping[str, Any]) -> str:
     """How many elements are open, and how many where the legs of services and actions are counted by themselves."""
-    legs, elements = len(report["open"]), len({whole(question["element"]) for question in report["open"]})
-    more = f" ({legs:,} counting the legs of services and actions)" if legs != elements else ""
-    return f"{counted(elements, 'element')} to review{more}"
+    count = count_rows(report["open"])
+    return f"{counted(count.elements, 'element')} to review{count.more}"
 
 
 def _findings(report: Mapping[str, Any], *, verbose: bool) -> Iterator[Line]:

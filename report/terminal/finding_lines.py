@@ -1,7 +1,6 @@
 """Findings in the report for the terminal: a list, the details hop by hop, and what the law says of each kind once.
 
-In: a JSON document of the contract. Out: lines. What a person decides first stands first: what stands before what is
-accepted or dismissed, data as it is before pseudonymised data, what can fall under Article 9 before other data.
+In: a JSON document of the contract. Out: lines. What a person decides first stands first.
 """
 
 from __future__ import annotations
@@ -10,9 +9,9 @@ import os
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.model import ARTICLE_9_VERDICTS
 from rosprivacy.analysis.text import blanked, counted
 from rosprivacy.report.document.decisions import decision_lines
+from rosprivacy.report.finding_order import in_order
 from rosprivacy.report.naming import key, kind_of, shown_name
 from rosprivacy.report.terminal.fleet import on_robots, robots_of
 from rosprivacy.report.terminal.restriction import may_be_asked
@@ -41,14 +40,6 @@ KINDS = {
     "storage-limitation": "kept without a stated end, or too long: ",
     "third-country-transfer": "leaves the EEA without a stated basis: ",
 }
-
-
-def in_order(findings: Iterable[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-    """Return findings in the order in which a person decides; else as they are."""
-    urgent = ARTICLE_9_VERDICTS
-    return sorted(
-        findings, key=lambda f: (f["dismissed"], f["accepted"], f["pseudonymised"], urgent.index(f["article9"]))
-    )
 
 
 def overview(report: Mapping[str, Any]) -> Iterator[Line]:

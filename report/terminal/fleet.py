@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.text import counted
+from rosprivacy.report.robots import forms_in_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -43,23 +44,24 @@ def on_robots(report: Mapping[str, Any], finding: Mapping[str, Any]) -> Iterator
     """Return in a few words on how many robots a finding is; nothing of what is on none."""
     for pattern in report.get("fleet", {}).get("patterns", ()):
         if pattern["finding"] == finding["id"] and pattern["robots"]:
-            yield f"on {counted(len(pattern['robots']), 'robot')}{_parts(pattern)}"
+            forms = forms_in_words(pattern.get("forms", ()))
+            parts = [f"{counted(len(robots), 'robot')} {words}" for robots, words in forms]
+            yield " and ".join(parts) if parts else f"on {counted(len(pattern['robots']), 'robot')}"
 
 
 def robots_of(report: Mapping[str, Any], finding: Mapping[str, Any]) -> Iterator[Line]:
-    """Return on how many robots a finding is."""
+    """Return on how many robots a finding is; a line for each way in which it stands there."""
     fleet = report.get("fleet")
     pattern = next((p for p in fleet["patterns"] if p["finding"] == finding["id"]), None) if fleet else None
     if not fleet or not pattern or not pattern["robots"]:
         return
     how_many = f"{len(pattern['robots'])} of {counted(fleet['robots'], 'robot')}"
     across = f", from one to another, {pattern['findings']:,} times" if pattern["across"] else ""
-    yield f"   on {how_many}{across}{_parts(pattern)}: {named(pattern['robots'])}   [pattern {pattern['id']}]", ""
-
-
-def _parts(pattern: Mapping[str, Any]) -> str:
-    parts = [f"{pattern[key]:,} {what}" for key, what in FORMS if 0 < pattern[key] < pattern["findings"]]
-    return f" ({', '.join(parts)})" if parts else ""
+    forms = forms_in_words(pattern.get("forms", ()))
+    names = "" if forms else f": {named(pattern['robots'])}"
+    yield f"   on {how_many}{across}{names}   [pattern {pattern['id']}]", ""
+    for robots, words in forms:
+        yield f"   {counted(len(robots), 'robot')}: {words}: {named(robots)}", ""
 
 
 def named(names: Iterable[str]) -> str:

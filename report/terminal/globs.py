@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 Line = tuple[str, str]  # text, style
 WARNINGS = {
-    "half": "that is more than half of the nodes, or of the channels, that data gets to: check that it is meant",
+    "half": "that is more than half of the nodes, channels or flows that data gets to: check that it is meant",
     "last-path": "without it the verdict would not be no-leak-found: check that it is meant",
 }
 
@@ -39,8 +39,12 @@ def glob_lines(report: Mapping[str, Any]) -> Iterator[Line]:
 
 
 def _row(row: Mapping[str, Any]) -> str:
-    parts = [f"decides {counted(row['elements'], 'element')}"]
+    flows = row.get("flows", 0)
+    decided = [counted(row["elements"], "element")] if row["elements"] or not flows else []
+    decided += [counted(flows, "flow")] if flows else []
+    parts = [f"decides {' and '.join(decided)}"]
     parts += [f"ends data at {row['closed']:,}"] if row["closed"] else []
+    parts += [f"ends data along {counted(row['flows_closed'], 'flow')}"] if row.get("flows_closed") else []
     parts += [f"answers for {row['reviewed']:,}"] if row["reviewed"] else []
     behind = [f"the leak {shown_name(row['leak'])}"] if row["leak"] else []
     behind += [f"{shown_name(row['open'])}, which is not reviewed"] if row["open"] else []

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import UNREAD_FILE
-from rosprivacy.report.naming import shown_name, whole
+from rosprivacy.report.element_counts import count_rows
+from rosprivacy.report.naming import shown_name
+from rosprivacy.report.review_groups import next_round
 from rosprivacy.report.terminal.restriction import asked_at_verdict
-from rosprivacy.report.terminal.review import next_round
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -53,7 +54,7 @@ def _step(report: Mapping[str, Any]) -> str:
         return f"{SOURCE}{more} (rosprivacy labels --init lists all nodes)"
     if report["open"]:
         first = next_round(report)[0]["element"]
-        others = len({whole(question["element"]) for question in report["open"]}) - 1
+        others = count_rows(report["open"]).elements - 1
         more = f" and {others:,} more" if others else ""
         return f"review {shown_name(first)}{more}, say it in a label file (rosprivacy labels --next), repeat"
     unread = sorted({shown(said["file"]) for said in report["diagnostics"] if said.get("code") == UNREAD_FILE})

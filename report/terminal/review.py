@@ -1,22 +1,28 @@
 """What a person reviews next, in the report for the terminal (rule S11).
 
-In: a JSON document of the contract. Out: lines. In each group what closes most comes first; what can wait, and what a
-file of the program proposes to take as mundane, is one line.
+In: a JSON document of the contract. Out: lines. What can wait, and what a file of the program proposes to take as
+mundane, is one line.
 """
 
 from __future__ import annotations
 
-from collections import defaultdict
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.model import CHANNELS
 from rosprivacy.analysis.text import counted
+from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import key, kind_of, label_name, shown_name
+from rosprivacy.report.review_groups import AT_CHANNELS, BEHIND, FIRST, SHOWN, review_groups, sources_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-SHOWN = 12  # open elements of a kind without --verbose
+    from rosprivacy.report.review_groups import ReviewGroup
+
+TITLES = {
+    FIRST: "Review next (nodes that data reaches first)",
+    AT_CHANNELS: "Channels not reviewed",
+    BEHIND: "Nodes behind those",
+}
 INFRASTRUCTURE = "read `rosprivacy labels --infrastructure`; -l rosprivacy:infrastructure takes them as mundane"
 Line = tuple[str, str]  # text, style
 
@@ -24,27 +30,18 @@ Line = tuple[str, str]  # text, style
 def review_lines(report: Mapping[str, Any], *, verbose: bool) -> Iterator[Line]:
     """Return open elements: nodes on the frontier, then channels, then what lies behind."""
     brings = sources_of(report)
-    for title, questions in _groups(report):
-        if not questions:
+    for group in review_groups(report):
+        if not group.questions:
             continue
         yield "", ""
-        yield f"{title}: {len(questions)}", "bold"
-        listed = questions if verbose else [q for q in questions if not _folded(q)]
-        for question in listed if verbose else listed[:SHOWN]:
+        count = count_rows(group.questions)
+        yield f"{TITLES[group.key]}: {count.elements}{count.more}", "bold"
+        for question in group.questions if verbose else group.now[:SHOWN]:
             steps = f"{counted(question['distance'], 'step')} from a source"
             what = "; ".join((kind_of(question["element"]), steps, review_text(question, brings)))
             yield f"   {label_name(question)}  ({what})", ""
         if not verbose:
-            yield from _more(questions, len(listed) - SHOWN)
-
-
-def sources_of(report: Mapping[str, Any]) -> Mapping[Any, list[str]]:
-    """Return which kinds of data each source brings in."""
-    brings: dict[Any, list[str]] = defaultdict(list)
-    for said in report["roles"]:
-        if "source" in said["roles"]:
-            brings[key(said["element"])].append(said["category"])
-    return brings
+            yield from _more(group)
 
 
 def review_text(question: Mapping[str, Any], brings: Mapping[Any, Sequence[str]]) -> str:
@@ -59,34 +56,11 @@ def review_text(question: Mapping[str, Any], brings: Mapping[Any, Sequence[str]]
     return "; ".join([*parts, *([f"only past it: {' and '.join(behind)}"] if behind else [])])
 
 
-def next_round(report: Mapping[str, Any], most: int = SHOWN) -> list[Mapping[str, Any]]:
-    """Return what to review next: nodes that data reaches first, and channels; at last what could wait."""
-    (_, first), (_, channels), (_, behind) = _groups(report)
-    now = [*first[:most], *[q for q in channels if not _folded(q)][:most]]
-    return now or [*behind, *channels][:most]
-
-
-def _groups(report: Mapping[str, Any]) -> Sequence[tuple[str, list[Mapping[str, Any]]]]:
-    rows = sorted(report["open"], key=lambda q: (-q.get("leaks", 0), -q.get("closes", 0), q["distance"]))
-    channels = [q for q in rows if q["element"]["kind"] in CHANNELS]
-    nodes = [q for q in rows if q["element"]["kind"] not in CHANNELS]
-    return (
-        ("Review next (nodes that data reaches first)", [q for q in nodes if q["frontier"]]),
-        ("Channels not reviewed", channels),
-        ("Nodes behind those", [q for q in nodes if not q["frontier"]]),
-    )
-
-
-def _folded(question: Mapping[str, Any]) -> bool:
-    return bool(question.get("infrastructure") or question.get("waits"))
-
-
-def _more(questions: Sequence[Mapping[str, Any]], left: int) -> Iterator[Line]:
-    proposed = sum(bool(q.get("infrastructure")) for q in questions)
-    waiting = sum(_folded(q) for q in questions) - proposed
+def _more(group: ReviewGroup) -> Iterator[Line]:
+    left = len(group.now) - SHOWN
     if left > 0:
         yield f"   … and {left} more (-v shows all)", "dim"
-    if waiting:
+    if waiting := count_rows(group.waiting).elements:
         yield f"   {waiting} can wait: from there data gets to no leak and no node that is not reviewed (-v)", "dim"
-    if proposed:
+    if proposed := count_rows(group.proposed).elements:
         yield f"   {proposed} are lifecycle or other infrastructure channels: {INFRASTRUCTURE}", "dim"

@@ -8,7 +8,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.text import counted
-from rosprivacy.report.naming import shown_name
+from rosprivacy.report.element_counts import count_rows
+from rosprivacy.report.naming import shown_name, whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -33,8 +34,8 @@ def ends_at_verdict(report: Mapping[str, Any]) -> Iterator[str]:
     alike = {row["robot"]: len(row["robots"]) for row in report.get("fleet", {}).get("alike", ())}
     if report["verdict"] == "no-leak-found":
         for what, (one, several, _) in SAYS.items():
-            ends = [end["element"] for end in report["unknown_ends"] if end["unknown"] == what]
-            count = sum(alike.get(element["robot"], 1) for element in ends)
+            ends = {whole(end["element"]) for end in report["unknown_ends"] if end["unknown"] == what}
+            count = sum(alike.get(robot, 1) for robot, *_ in ends)
             if count:
                 yield counted(count, one, several)
 
@@ -46,7 +47,8 @@ def end_lines(report: Mapping[str, Any], most: int | None) -> Iterator[Line]:
         if not ends:
             continue
         yield "", ""
-        yield f"{title}: {len(ends)}", "bold"
+        count = count_rows(ends)
+        yield f"{title}: {count.elements}{count.more}", "bold"
         for end in ends[:most]:
             element = end["element"]
             kind = " ".join(part for part in (element["kind"], element.get("leg", "")) if part)

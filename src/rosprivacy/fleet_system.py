@@ -24,6 +24,7 @@ from rosprivacy.ingest.labels.binding import bind, remarks
 from rosprivacy.ingest.labels.label_file import Labels, read_labels
 from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.ingest.policies.joint_policies import joint_warnings
+from rosprivacy.ingest.policies.merged_policies import OF_ONE_ROBOT, merging_notices
 from rosprivacy.ingest.policies.namespaces import as_written, pushed, told
 from rosprivacy.ingest.policies.policy_files import read_policies
 from rosprivacy.question import question_of
@@ -151,20 +152,22 @@ class Reader:
     def _read_policies(self, robot: Robot) -> tuple[tuple[Policy, ...], tuple[Diagnostic, ...]]:
         settings = self._settings
         if robot.policies not in self._policies:
-            self._policies[robot.policies] = read_policies(
+            policies, said = read_policies(
                 robot.policies,
                 include_root=settings.include_root,
                 within=self._root,
                 max_bytes=settings.max_bytes,
                 progress=settings.progress,
             )
+            said += (*joint_warnings(policies), *merging_notices(policies, OF_ONE_ROBOT))
+            self._policies[robot.policies] = policies, said
         return self._policies[robot.policies]
 
     def _made(self, robot: Robot) -> Member:
         settings = self._settings
         files = self._read_labels(robot)
         policies, said = self._read_policies(robot)
-        diagnostics = [*(d for policy in policies for d in policy.diagnostics), *said, *joint_warnings(policies)]
+        diagnostics = [*(d for policy in policies for d in policy.diagnostics), *said]
         diagnostics += [d for labels in files for d in labels.diagnostics]
         run = [pushed(policy, robot.add) for policy in policies]
         graph, full = stripped(build(run, settings.view), robot.strip or robot.add)

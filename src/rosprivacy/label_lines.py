@@ -26,8 +26,9 @@ from rosprivacy.ingest.policies.names import covered
 from rosprivacy.ingest.reading.bounded_file import read_regular
 from rosprivacy.ingest.reading.yaml_values import MAX_BYTES
 from rosprivacy.ontology.vocabulary import load
+from rosprivacy.report.review_groups import next_round, sources_of
 from rosprivacy.report.terminal.next_step import candidates
-from rosprivacy.report.terminal.review import next_round, review_text, sources_of
+from rosprivacy.report.terminal.review import review_text
 from rosprivacy.robot_system import answer_robot, read_label_files, read_system, standard_channels
 
 if TYPE_CHECKING:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import ast
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.text import blanked, fit, one_line, printable, shortened
+from tests.helpers.house import parsed
 from tests.helpers.paths import ROOT
 
 HERE = ROOT / "analysis" / "text.py"
@@ -30,12 +32,13 @@ def test_nothing_endless_is_shown(text: str) -> None:
     assert len(shortened(text, 20)) <= 20
 
 
+@pytest.mark.xdist_group("house")
 def test_what_is_unprintable_is_replaced_in_one_module() -> None:
     """Others may refuse such text; to make it printable is here."""
     replacing = set()
     for room in ("analysis", "ingest", "ontology", "queries", "report", "src/rosprivacy"):
         for file in (ROOT / room).rglob("*.py"):
-            chosen = [node.test for node in ast.walk(ast.parse(file.read_text("utf-8"))) if isinstance(node, ast.IfExp)]
+            chosen = [node.test for node in ast.walk(parsed(file.resolve())) if isinstance(node, ast.IfExp)]
             if any("isprintable" in ast.unparse(test) for test in chosen):
                 replacing.add(file.resolve())
     assert replacing == {HERE, *FORMATS}

@@ -54,8 +54,8 @@ OPTIONS = {
 
 
 @pytest.mark.parametrize("flag", ["--help", "-h"])
-def test_help_lists_the_commands(flag: str) -> None:
-    done = run(flag)
+def test_help_lists_the_commands(cli: Cli, flag: str) -> None:
+    done = cli(flag)
     assert (done.returncode, done.stderr) == (0, "")
     assert {"analyze", "labels", "--version"} <= set(done.stdout.split())
 
@@ -72,11 +72,16 @@ def test_help_lists_each_option(cli: Cli, command: str) -> None:
     ("words", "wanted"),
     [
         (["rosprivacy", "l"], {"labels", "load"}),
-        (["rosprivacy", "analyze", "--fail"], {"--fail-on"}),
-        (["rosprivacy", "analyze", "--view", ""], {"declared", "enforced"}),
-        (["rosprivacy", "analyze", "--format", "j"], {"json", "json-ld"}),
-        (["rosprivacy", "analyze", "--categories", "Vo"], {"Voice", "VoiceCommand", "VoicePrint"}),
         (["rosprivacy", "analyze", "--category", "Vid"], {"Video"}),
+        *(
+            pytest.param(["rosprivacy", "analyze", *words], wanted, marks=pytest.mark.slow)
+            for words, wanted in (
+                (["--fail"], {"--fail-on"}),
+                (["--view", ""], {"declared", "enforced"}),
+                (["--format", "j"], {"json", "json-ld"}),
+                (["--categories", "Vo"], {"Voice", "VoiceCommand", "VoicePrint"}),
+            )
+        ),
     ],
 )
 def test_the_shell_completes(words: Sequence[str], wanted: set[str]) -> None:
@@ -240,9 +245,9 @@ def test_verbose_prints_what_the_report_leaves_out(cli: Cli, tmp_path: Path) -> 
     assert "notice: p.xml:1: policy format 0.1.0" in cli("analyze", "p.xml", "-v", cwd=tmp_path).stdout
 
 
-def test_no_colour_goes_into_a_pipe_or_a_file(before: Path, runs: list[Path], tmp_path: Path) -> None:
-    assert ESCAPE not in run("analyze", before, "-l", runs[1], TERM="xterm-256color").stdout
-    run("analyze", before, "-l", runs[1], "-o", tmp_path / "r.txt", TERM="xterm-256color", FORCE_COLOR="1")
+def test_no_colour_goes_into_a_pipe_or_a_file(cli: Cli, before: Path, runs: list[Path], tmp_path: Path) -> None:
+    assert ESCAPE not in cli("analyze", before, "-l", runs[1], TERM="xterm-256color").stdout
+    cli("analyze", before, "-l", runs[1], "-o", tmp_path / "r.txt", TERM="xterm-256color", FORCE_COLOR="1")
     assert ESCAPE not in (tmp_path / "r.txt").read_text()
 
 
@@ -252,7 +257,8 @@ def test_json_is_the_document_of_the_library(cli: Cli, before: Path, runs: list[
     assert done.returncode == 1
 
 
-@pytest.mark.parametrize("form", ["text", pytest.param("json", marks=pytest.mark.slow)])
+@pytest.mark.slow  # each day test_decisions looks at one form, and golden files are compared in any process
+@pytest.mark.parametrize("form", ["text", "json"])
 def test_the_same_input_gives_the_same_bytes(before: Path, runs: list[Path], form: str) -> None:  # S14
     outputs = {
         run("analyze", before, "-l", runs[1], "-f", form, PYTHONHASHSEED=seed, TZ=zone).stdout

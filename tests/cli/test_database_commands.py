@@ -14,11 +14,13 @@ import pytest
 from lxml import etree
 
 from rosprivacy.analysis.errors import DatabaseError
+from rosprivacy.ingest.database.loading import load
 from rosprivacy.ingest.database.schema_names import schema_names
 from rosprivacy.private_neo4j import connection
 from rosprivacy.queries.library import pack
 from rosprivacy.report.pictures import looks
 from tests.helpers.command import LINE, run
+from tests.helpers.graphs import care_home, rows_of
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
@@ -35,6 +37,12 @@ POLICY, LABELS = HOME / "care-home.policy.xml", HOME / "care-home.labels.yaml"
 LOAD = ("load", POLICY, "--labels", LABELS, "--robot", "h1")
 NAIVE = "MATCH p = (:VoiceSource)-[:CARRIES_VOICE*1..]->(:VoiceLeak) RETURN p"
 LOOKS = {name: look.words for name, look in {**looks.ROLE_LOOKS, **looks.LINE_LOOKS}.items()}
+EMPTY = """<policy version="0.2.0"><enclaves><enclave path="/one">
+<profiles><profile ns="/" node="n"/></profiles></enclave></enclaves></policy>"""
+COUNTED = (
+    "robot h1 is written: 98 elements and 219 flows (172 nodes with the legs of services and actions, "
+    "221 FLOWS_TO with denied flows), 3 findings; verdict leak\n"
+)
 GUESS = "bad guess"
 LOCKED = 6  # seconds; after three wrong passwords the server lets nobody in for 5
 ADD_STORAGE = """
@@ -63,7 +71,8 @@ def driver(opened: Driver) -> Driver:
 def loaded(opened: Driver) -> Driver:
     """Of a database with the care home as h1; for tests that only read."""
     opened.execute_query("MATCH (n) DETACH DELETE n")
-    assert run(*LOAD).returncode == 0
+    result = care_home()
+    load(opened, [rows_of("h1", result)], result.vocabulary)
     return opened
 
 
@@ -80,7 +89,7 @@ class TestLoad:
     def test_it_says_what_it_wrote_and_the_same_again_changes_nothing(self, cli: Cli, driver: Driver) -> None:
         first = cli(*LOAD)
         assert (first.returncode, first.stderr) == (0, "")
-        assert first.stdout == "robot h1 is written: 172 elements, 221 flows, 3 findings; verdict leak\n"
+        assert first.stdout == COUNTED
         assert "is there already, nothing to change" in cli(*LOAD).stdout
         assert count(driver, "(:Finding {robot: 'h1'})") == 3
 
@@ -104,6 +113,56 @@ class TestLoad:
         assert done.returncode == 2
         assert all(LINE.match(line) for line in lines(done))
         assert count(driver, "(n)") == 0
+
+    def test_without_a_name_a_robot_is_called_as_its_policy_file_and_replaces_no_other(
+        self, cli: Cli, driver: Driver, tmp_path: Path
+    ) -> None:
+        """review/users.md, B8: it was called 'robot', and the next one took its place."""
+        mine, other = tmp_path / "care.policy.xml", tmp_path / "other" / "care.policy.xml"
+        other.parent.mkdir()
+        mine.write_text(EMPTY, "utf-8")
+        other.write_text(EMPTY.replace("/one", "/f"), "utf-8")
+        assert cli("load", mine).returncode == 0
+        mine.write_text(EMPTY.replace("/one", "/g"), "utf-8")
+        done = cli("load", mine)  # the same file, with other contents: a new state of the robot
+        assert done.stdout.startswith("robot care is written: ")
+        assert lines(done) == ["robot care has the name of its policy file; --robot NAME says another"]
+        done = cli("load", other)
+        assert (done.returncode, done.stdout) == (2, "")
+        what = f"{other}: the database has a robot care of other policies ({mine})"
+        assert lines(done) == [f"{what}; name this one: --robot NAME; --robot care replaces it"]
+        assert count(driver, "(:Enclave {path: '/g'})") == 1
+        done = cli("load", other, "--robot", "care")
+        assert done.returncode == 0
+        assert lines(done) == [f"warning: in place of 1 robot of the same name and other policies: care ({mine})"]
+        assert count(driver, "(:Robot)") == count(driver, "(:Enclave {path: '/f'})") == 1
+
+    def test_what_names_no_robot_is_refused(self, cli: Cli, driver: Driver, tmp_path: Path) -> None:
+        (tmp_path / "policy.xml").write_text(EMPTY, "utf-8")
+        for named in ([tmp_path], [tmp_path / "*.xml"], [tmp_path / "policy.xml"], [POLICY, tmp_path / "policy.xml"]):
+            done = cli("load", *named)
+            assert (done.returncode, done.stdout) == (2, "")
+            assert done.stderr.startswith(f"{named[0]}: nothing says what the robot is called in the database, where ")
+            assert done.stderr.endswith("; add --robot NAME\n")
+        assert "not found" in cli("load", tmp_path / "nope.xml").stderr
+        assert count(driver, "(:Robot)") == 0
+
+    def test_a_fleet_that_takes_the_place_of_other_robots_says_so(
+        self, cli: Cli, driver: Driver, tmp_path: Path
+    ) -> None:
+        for name in "pq":
+            (tmp_path / f"{name}.xml").write_text(EMPTY, "utf-8")
+            (tmp_path / f"{name}.yaml").write_text(f"fleet: 1\nrobots: {{h1: {{policies: {name}.xml}}}}\n", "utf-8")
+        assert lines(cli("load", "--fleet", tmp_path / "p.yaml")) == []
+        assert lines(cli("load", "--fleet", tmp_path / "q.yaml")) == []  # the same contents
+        (tmp_path / "p.xml").write_text(EMPTY.replace("/one", "/f"), "utf-8")
+        done = cli("load", "--fleet", tmp_path / "p.yaml")
+        was = tmp_path / "q.xml"
+        assert lines(done) == [f"warning: in place of 1 robot of the same name and other policies: h1 ({was})"]
+        done = cli("load", "--fleet", tmp_path / "p.yaml", "--robot", "h2")
+        assert (done.returncode, done.stdout) == (2, "")
+        assert "--fleet takes the names of the fleet file: no --robot" in done.stderr
+        assert count(driver, "(:Robot {name: 'h1'})") == 1
 
     def test_unload(self, cli: Cli, driver: Driver) -> None:
         cli(*LOAD)
@@ -169,12 +228,12 @@ class TestQuery:
         ]
 
     @pytest.mark.parametrize("on_terminal", ["", "1"])
-    def test_no_path_is_cut(self, loaded: Driver, on_terminal: str) -> None:
+    @pytest.mark.usefixtures("loaded")
+    def test_no_path_is_cut(self, cli: Cli, on_terminal: str) -> None:
         """B5 of the users' review: what is too wide for a table is records, wrapped between names."""
         names = [f"/{'namespace/' * 9}node{number}" for number in range(5)]
         text = f"RETURN {names} AS path, 1 AS steps UNION RETURN ['/a'] AS path, 0 AS steps"
-        done = run("query", "--cypher", text, FORCE_COLOR=on_terminal, COLUMNS="60")
-        assert loaded
+        done = cli("query", "--cypher", text, FORCE_COLOR=on_terminal, COLUMNS="60")
         assert done.returncode == 0
         assert " -> ".join(names) in " ".join(done.stdout.split())
         assert "path   /a\n" in done.stdout

@@ -104,7 +104,7 @@ RUNS: dict[str, tuple[tuple[str, ...], tuple[str, ...], set[str]]] = {  # comman
         {"p.xml", "sub/part.xml", "s.yaml"},
     ),
 }
-EVERYDAY = ("analyze", "report on a fleet", "labels")
+EVERYDAY = ("analyze", "report on a fleet")
 OPENED = """
 import os, sys
 seen, folder = set(), os.getcwd() + os.sep
@@ -234,7 +234,9 @@ def test_an_input_that_is_replaced_meanwhile_is_one_still(tmp_path: Path) -> Non
     assert file.read_text() == "saved meanwhile"
 
 
-@pytest.mark.parametrize("option", [[], ["-o", "/dev/stdout"], ["-o", "/proc/self/fd/1"]])
+@pytest.mark.parametrize(
+    "option", [[], *(pytest.param(["-o", f], marks=pytest.mark.slow) for f in ("/dev/stdout", "/proc/self/fd/1"))]
+)
 def test_standard_output_is_an_output_too(folder: Path, option: list[str]) -> None:  # analyze p.xml >> p.xml
     before = everything(folder)
     command = [sys.executable, "-m", "rosprivacy", "analyze", "p.xml", "-l", "l.yaml", *option]

@@ -54,7 +54,13 @@ def test_a_warning_without_a_place_has_none(cli: Cli) -> None:
     assert "\nwarning: labels: no label names a source" in cli("analyze", BEFORE).stdout
 
 
-@pytest.mark.parametrize("words", [("report", BEFORE), ("graph", BEFORE), ("graph", BEFORE, "-f", "mermaid")])
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("report", BEFORE),
+        *(pytest.param(("graph", BEFORE, *form), marks=pytest.mark.slow) for form in ((), ("-f", "mermaid"))),
+    ],
+)
 def test_a_page_or_a_drawing_is_not_poured_into_a_terminal(words: tuple[str, ...]) -> None:
     here, there = pty.openpty()
     command = [sys.executable, "-m", "rosprivacy", *map(str, words)]

@@ -18,7 +18,6 @@ from tests.helpers.command import cli, run
 from tests.helpers.docs import CATEGORIES, blocks
 
 if TYPE_CHECKING:
-    from rosprivacy.private_neo4j.connection import Connection
     from tests.helpers.command import Cli
 
 __all__ = ["cli"]
@@ -30,6 +29,7 @@ POLICY = """<policy version="0.2.0"><enclaves>
 <topics subscribe="ALLOW"><topic>/video</topic></topics></profile></profiles></enclave>
 </enclaves></policy>
 """
+STORED = "--from-database takes what is in the database"
 LABELS = """labels: 1
 nodes:
   /camera: {source: [PulseCurve]}
@@ -108,9 +108,10 @@ def test_a_first_label_file_and_the_schemas_name_an_own_category(cli: Cli, clini
 
 
 @pytest.mark.database
-def test_a_fleet_with_an_own_category_is_loaded_and_unloaded(clinic: Path, neo4j_server: Connection) -> None:  # noqa: ARG001 - the server
+@pytest.mark.usefixtures("neo4j_server")
+def test_a_fleet_with_an_own_category_is_loaded_and_unloaded(cli: Cli, clinic: Path) -> None:
     for command in ("load", "unload"):
-        done = run(command, "--fleet", "f.yaml", "--ontology", "o.ttl", cwd=clinic)
+        done = cli(command, "--fleet", "f.yaml", "--ontology", "o.ttl", cwd=clinic)
         assert (done.returncode, done.stderr) == (0, ""), command
 
 
@@ -159,8 +160,16 @@ def test_what_makes_no_sense_for_a_command_is_refused_in_one_wording(cli: Cli, c
         (["--fleet", "f.yaml"], ["p.xml"], "--fleet takes what the fleet file names: no POLICY"),
         (["--fleet", "f.yaml"], [*SYSTEM], "--fleet takes what the fleet file names: no POLICY, --labels"),
         (["--fleet", "f.yaml"], ["--add", "g.json"], "--fleet takes what the fleet file names: no --add"),
-        (["--from-database"], ["--add", "g.json"], "--from-database takes what is in the database: no --add"),
-        (["--from-database"], ["--fleet", "f.yaml"], "--from-database takes what is in the database: no --fleet"),
+        (["--from-database"], ["--add", "g.json"], f"{STORED}: no --add"),
+        (["--from-database"], ["--fleet", "f.yaml"], f"{STORED}: no --fleet"),
+        (
+            ["--from-database"],
+            ["--view", "enforced", "--no-standard-channels"],
+            f"{STORED}: no --no-standard-channels, --view",
+        ),
+        (["--from-database"], ["--standard-channels", "s.yaml"], f"{STORED}: no --standard-channels"),
+        (["--from-database"], ["--category", "Video"], f"{STORED}: no --category"),
+        (["--from-database"], ["--max-bytes", "5"], f"{STORED}: no --max-bytes"),
         ([], [], "Invalid value for POLICY: name at least one policy: a file, a folder or a glob"),
         ([], ["-l", "l.yaml"], "Invalid value for POLICY: name at least one policy: a file, a folder or a glob"),
     ],

@@ -218,12 +218,12 @@ def test_a_patch_applies_and_removes_the_finding(cli: Cli, tmp_path: Path, view:
     for file in FACTORY.iterdir():
         shutil.copy(file, tmp_path / file.name)
     arguments = ("before.policy.xml", "-l", "run3.labels.yaml", "--view", view)
-    assert run("analyze", *arguments, cwd=tmp_path).returncode == 1
+    assert cli("analyze", *arguments, cwd=tmp_path).returncode == 1
     done = cli("mitigate", *arguments, "--by", "deny", "--patch", "fix.diff", cwd=tmp_path)
     assert done.returncode == 0
     patched(tmp_path, tmp_path / "fix.diff")
     left = {"declared": 0, "enforced": 4}  # there more is open
-    assert run("analyze", *arguments, cwd=tmp_path).returncode == left[view]
+    assert cli("analyze", *arguments, cwd=tmp_path).returncode == left[view]
 
 
 def test_who_can_no_longer_read_in_the_enclave_is_named(cli: Cli, tmp_path: Path) -> None:

@@ -95,7 +95,12 @@ def test_a_reader_that_stops_reading_is_no_leak(before: Path) -> None:  # rospri
 
 
 @pytest.mark.parametrize(
-    "arguments", [["analyze", "p.xml", "-f", "json"], ["analyze", "p.xml"], ["labels", "--init", "p.xml"]]
+    "arguments",
+    [
+        ["analyze", "p.xml"],
+        pytest.param(["analyze", "p.xml", "-f", "json"], marks=pytest.mark.slow),
+        pytest.param(["labels", "--init", "p.xml"], marks=pytest.mark.slow),
+    ],
 )
 def test_a_terminal_that_knows_ascii_only_does_not_end_the_program(tmp_path: Path, arguments: list[str]) -> None:
     (tmp_path / "p.xml").write_text(policy('<topics publish="ALLOW"><topic>é\U0001f600</topic></topics>'), "utf-8")

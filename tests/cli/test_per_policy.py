@@ -71,6 +71,23 @@ def test_files_without_a_common_name_are_named(cli: Cli, folder: Path) -> None:
     assert notices(cli, folder) == []  # a wildcard joins them
 
 
+def test_several_policies_of_one_robot_of_a_fleet_are_told_alike(cli: Cli, folder: Path) -> None:
+    """What a robot runs makes one graph (S4); of what two robots run, each has its own."""
+    (folder / "p" / "c.xml").write_text(policy(("camera", "publish", "other"), ("uplink", "subscribe", "rosout")))
+    fleet = "fleet: 1\nname: f\nrobots: {r: {policies: [%s], labels: l.yaml}, s: {policies: [%s], labels: l.yaml}}\n"
+    (folder / "f.yaml").write_text(fleet % ("p/a.xml, p/b.xml, p/c.xml", "p/b.xml, p/a.xml"))
+    done = cli("analyze", "--fleet", "f.yaml", cwd=folder)
+    said = "notice: p/%s.xml:1: 3 policies make one graph, with what each of them allows: node %s is stated "
+    said += "differently in p/%s.xml and p/c.xml; name for a robot of the fleet only what runs on it"
+    assert [line for line in done.stdout.splitlines() if MERGED in line] == [
+        said % ("a", "/camera", "a"),
+        said % ("b", "/uplink", "b"),
+    ]
+    (folder / "f.yaml").write_text(fleet % ("p/a.xml, p/b.xml", "p/b.xml, p/a.xml"))
+    done = cli("analyze", "--fleet", "f.yaml", cwd=folder)
+    assert (done.returncode, MERGED in done.stdout) == (1, False)
+
+
 def answers(cli: Cli, folder: Path, *options: str) -> Any:
     return json.loads(cli("analyze", "p", "-l", "l.yaml", "--per-policy", "-f", "json", *options, cwd=folder).stdout)
 

@@ -1,9 +1,10 @@
-"""What tests of the database share: an example as rows, and the whole graph as a value that can be compared."""
+"""What tests share: examples analysed, once each; as rows; and a whole database as a value that can be compared."""
 
 from __future__ import annotations
 
 import json
 from contextlib import chdir
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import rosprivacy
@@ -31,12 +32,14 @@ def care_home() -> Result:
     return analysed(f"{CARE}/care-home.policy.xml", f"{CARE}/care-home.labels.yaml")
 
 
+@cache
 def hospital() -> Result:
     """The fleet of the examples."""
     with chdir(ROOT):
         return answer_fleet("examples/fleet/fleet.yaml", Settings())
 
 
+@cache
 def analysed(policy: str, labels: str) -> Result:
     """Files are named as from the repository's folder, so that what is made of them is the same on every machine."""
     with chdir(ROOT):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ast
+from functools import cache
 from typing import TYPE_CHECKING
 
 from tests.helpers.paths import ROOT
@@ -68,6 +70,12 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "__main__": {"cli"},
     },
 }
+
+
+@cache
+def parsed(file: Path) -> ast.Module:
+    """The code of a module; nobody changes it."""
+    return ast.parse(file.read_text("utf-8"))
 
 
 def modules() -> dict[str, Path]:

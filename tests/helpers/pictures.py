@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.findings.findings import analyse
@@ -49,6 +50,7 @@ def ros(result: Result) -> Picture:
     return views.ros_view(result.analysis, every_grant(result))
 
 
+@cache
 def pictures() -> dict[str, Picture]:
     """What the golden files hold."""
     two, four, care = factory(2), factory(4), care_home()

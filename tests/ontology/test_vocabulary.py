@@ -195,6 +195,7 @@ class TestOwnOntology:
     @pytest.mark.parametrize(
         ("data", "problem"),
         [(b"\xff\xfe", "not UTF-8"), (b"# " + b"x" * 50 * 2**20, "50 MB are too large"), (None, "is not a file")],
+        ids=["bytes", "large", "nothing"],  # not 50 MB of a name
     )
     def test_what_cannot_be_read(self, tmp_path: Path, data: bytes | None, problem: str) -> None:
         path = tmp_path / "bad.ttl"

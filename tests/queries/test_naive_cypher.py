@@ -21,6 +21,7 @@ from rosprivacy.ingest.database.rows import robot_rows
 from rosprivacy.private_neo4j import connection
 from rosprivacy.queries.run import run
 from tests.helpers.cases import CASES
+from tests.helpers.daily import one_in
 from tests.helpers.graphs import care_home, rows_of
 from tests.helpers.more_systems import ranked, wildcards
 from tests.helpers.paths import ROOT
@@ -87,7 +88,7 @@ def test_on_200_random_graphs(empty: Driver) -> None:
     assert asked(empty, VOCABULARY) == expected
 
 
-@pytest.mark.parametrize("case", CASES, ids=lambda path: str(path.name))
+@pytest.mark.parametrize("case", one_in(7, CASES), ids=lambda path: str(path.name))
 def test_on_the_examples(empty: Driver, case: Path, examples: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Against the findings of the JSON."""
     monkeypatch.chdir(examples)

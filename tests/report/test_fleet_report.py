@@ -83,7 +83,11 @@ def test_each_way_says_on_how_many_robots_it_is_and_lists_them() -> None:
         assert entry.spread.startswith(f"On {len(entry.robots)} of 40 robots.")
         assert ("From one robot to another; 468 such paths" in entry.spread) == patterns[entry.id]["across"]
     (video,) = (entry for entry in told().entries if entry.leak == "base:reviewer")
-    assert video.spread == "On 24 of 40 robots. In 23 of 24 like it the data are pseudonymised."
+    assert video.spread == "On 24 of 40 robots. 1 robot: unfiltered. 23 robots: pseudonymised."
+    assert video.where == (
+        ("1 robot, unfiltered", ("carrier_lent",)),
+        ("23 robots, pseudonymised", ("carrier_01 (23 robots)",)),  # they are named once, in the table of the fleet
+    )
     assert len(told().entries) == len(document()["findings"]) == 6  # patterns, not put together a second time
 
 
@@ -215,7 +219,7 @@ def test_a_decision_about_one_robot_says_so(cli: Cli, tmp_path: Path) -> None:
         "utf-8",
     )
     text = cli("report", "--fleet", FLEET, "--decisions", str(file), "--format", "markdown").stdout
-    assert "1 of 40 like it are accepted by a decision." in text
+    assert "39 robots: not accepted. 1 robot: accepted by a decision." in text
     assert "data begins there, accepted by a decision, not pseudonymised" in text
 
 

@@ -91,9 +91,9 @@ class Inputs:
         return [WRITTEN[name] for name in names if getattr(self, name) != DEFAULTS[name]]
 
     def check(self) -> None:
-        """Refuse options that name a second system beside a first."""
+        """Refuse options that name a second system beside a first, and how to read files where none is read."""
         if self.from_database:
-            refuse("--from-database", "what is in the database", self.given("policies", "labels", "add", "fleet"))
+            refuse("--from-database", "what is in the database", self.given(*OF_FILES))
         if self.fleet:
             refuse("--fleet", "what the fleet file names", self.given("policies", "labels", "add"))
 
@@ -113,6 +113,10 @@ class Inputs:
         return answer_robot(self.named, tuple(self.labels or ()), settings)
 
 
+OF_FILES = (
+    "policies", "labels", "add", "fleet", "standard_channels", "no_standard_channels", "include_root", "max_bytes",
+    "category", "view",
+)  # fmt: skip
 OPTIONS = get_type_hints(Inputs, include_extras=True)
 DEFAULTS = {field.name: field.default for field in fields(Inputs)}
 WRITTEN = {name: f"--{name.replace('_', '-')}" for name in DEFAULTS} | {"policies": "POLICY"}

@@ -2,27 +2,54 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.errors import InputError, shown
+from rosprivacy.analysis.text import counted
 from rosprivacy.cli.driver import driver_of
 from rosprivacy.cli.inputs import Inputs, reads_system, refuse
 from rosprivacy.cli.output import emit
+from rosprivacy.report.element_counts import count_elements
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
+    from rosprivacy.ingest.database.loading import Loaded
+    from rosprivacy.ingest.database.rows import RobotRows
+    from rosprivacy.result import Result
     from rosprivacy.settings import Settings
+
+NAMED = 3  # robots in a message
+GLOB = re.compile(r"[*?\[]")
+NO_NAMES = (
+    "",
+    "policy",
+    "policies",
+    "robot",
+    "ros",
+    "sros",
+    "sros2",
+    "permissions",
+)  # a file's name that tells nothing
 
 
 @reads_system("all that is read, as nobody has decided about it", without=("from_database", "categories", "decisions"))
 def load(
     inputs: Inputs,
-    robot: Annotated[str, typer.Option(metavar="NAME", help="What the robot is called in the database.")] = "robot",
+    robot: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="What the robot is called in the database; by default as its policy file, if there is only one.",
+            show_default=False,
+        ),
+    ] = None,
     results: Annotated[
         str | None,
         typer.Option(metavar="DIR", help="Write what analyze --results has written there.", show_default=False),
@@ -33,22 +60,62 @@ def load(
 
     settings = inputs.settings
     if results:
-        refuse("--results", "what is in the folder", inputs.given("policies", "labels", "fleet", "add"))
+        other = inputs.given("policies", "labels", "fleet", "add")
+        refuse("--results", "what is in the folder", [*other, *(["--robot"] if robot is not None else [])])
         _load_results(results, settings.ontologies, inputs.neo4j)
         return
     if inputs.fleet:
+        refuse("--fleet", "the names of the fleet file", ["--robot"] if robot is not None else [])
         _load_fleet(inputs.fleet, settings, inputs.neo4j)
         return
     from rosprivacy.robot_system import robot_of
 
-    name = database.check_robot_name(robot)
+    name = database.check_robot_name(name_of(inputs) if robot is None else robot)
     result = inputs.result(settings)
     rows = robot_of(name, result)
-    with driver_of(inputs.neo4j) as driver, _bar(rows.size) as advance:
-        done = database.load(driver, [rows], result.vocabulary, advance)
+    with driver_of(inputs.neo4j) as driver:
+        if robot is None and (others := database.others_there(driver, rows)):
+            what = f"the database has a robot {shown(name)} of other policies ({', '.join(map(shown, others))})"
+            raise InputError(
+                inputs.named[0], 0, what, f"name this one: --robot NAME; --robot {shown(name)} replaces it"
+            )
+        with _bar(rows.size) as advance:
+            done = database.load(driver, [rows], result.vocabulary, advance)
     how = "is there already, nothing to change" if done.unchanged else "is written"
-    count = f"{len(rows.elements):,} elements, {len(rows.flows):,} flows, {len(rows.findings):,} findings"
-    emit(f"robot {shown(name)} {how}: {count}; verdict {result.analysis.verdict}\n", None)
+    emit(f"robot {shown(name)} {how}: {_counts(result, rows)}; verdict {result.analysis.verdict}\n", None)
+    if robot is None:
+        print(f"robot {shown(name)} has the name of its policy file; --robot NAME says another", file=sys.stderr)
+    _tell_replaced(done)
+
+
+def _counts(result: Result, rows: RobotRows) -> str:
+    """What there is, as ``analyze`` counts it, and what that is in the database."""
+    graph = result.analysis.graph
+    elements, flows = counted(count_elements(graph.elements).elements, "element"), counted(len(graph.flows), "flow")
+    stored = f"{len(rows.elements):,} nodes with the legs of services and actions, {len(rows.flows):,} FLOWS_TO with"
+    stands = sum(not finding.dismissed for finding in result.analysis.findings)
+    dismissed = len(result.analysis.findings) - stands
+    more = f", {dismissed:,} more only through another leak" if dismissed else ""
+    return f"{elements} and {flows} ({stored} denied flows), {counted(stands, 'finding')}{more}"
+
+
+def name_of(inputs: Inputs) -> str:
+    """Return what a robot is called of which nobody says it: as its policy file, where that says which one it is."""
+    file = Path(inputs.named[0])
+    name = re.sub(r"(\.policy)?\.xml$", "", file.name, flags=re.IGNORECASE)
+    if len(inputs.named) > 1 or inputs.add or file.is_dir() or GLOB.search(str(file)) or name.casefold() in NO_NAMES:
+        what = "nothing says what the robot is called in the database, where it would replace one of that name"
+        raise InputError(inputs.named[0], 0, what, "add --robot NAME")
+    return name
+
+
+def _tell_replaced(done: Loaded) -> None:
+    """Say which robots took the place of others of the same name (users.md, B8)."""
+    names = [f"{shown(name)} ({', '.join(map(shown, files))})" for name, files in sorted(done.replaced.items())]
+    if names:
+        more = f" and {len(names) - NAMED:,} more" if len(names) > NAMED else ""
+        what = f"in place of {counted(len(names), 'robot')} of the same name and other policies"
+        print(f"warning: {what}: {', '.join(names[:NAMED])}{more}", file=sys.stderr)
 
 
 def _load_fleet(file: str, settings: Settings, neo4j: str | None) -> None:
@@ -66,6 +133,7 @@ def _load_fleet(file: str, settings: Settings, neo4j: str | None) -> None:
     rows = rows_of_fleet(system, question, result)
     with driver_of(neo4j) as driver, _bar(None) as advance:
         done = database.load(driver, rows, system.vocabulary, advance)
+    _tell_replaced(done)
     robots = len(system.fleet.robots)
     what = f"fleet {shown(file)}: {robots:,} robots and what they share"
     emit(
@@ -85,6 +153,7 @@ def _load_results(folder: str, ontologies: tuple[str, ...], neo4j: str | None) -
     document, rows = read(folder)
     with driver_of(neo4j) as driver, _bar(None) as advance:
         done = database.load(driver, rows, vocabulary, advance)
+    _tell_replaced(done)
     what = f"results {shown(folder)}: {document['fleet']['robots']:,} robots and what they share"
     emit(f"{what}: {done.written:,} written, {done.unchanged:,} as they were; verdict {document['verdict']}\n", None)
     if any(pattern["across"] for pattern in document["fleet"]["patterns"]):

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.text import counted
 from rosprivacy.formats import Style, written
+from rosprivacy.report.element_counts import count_elements
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -50,4 +51,5 @@ def worst_of(values: Iterable[Any], worst_first: Sequence[Any]) -> Any:
 def _row(file: str, result: Result) -> str:
     analysis = result.analysis
     findings = counted(sum(finding.stands for finding in analysis.findings), "finding")
-    return f"{analysis.verdict}: {shown(file)}: {findings}, {counted(len(analysis.open), 'element')} to review"
+    open_elements = count_elements(question.element for question in analysis.open).elements
+    return f"{analysis.verdict}: {shown(file)}: {findings}, {counted(open_elements, 'element')} to review"

@@ -85,7 +85,7 @@ def test_a_search_gets_as_far_in_as_many_flows(system: System, data: st.DataObje
     assert arrived == levels
 
 
-@settings(max_examples=100)
+@settings(max_examples=settings().max_examples // 2)
 @given(systems(), st.data())
 def test_backward_and_nearest_tell_what_is_walked_to(system: System, data: st.DataObject) -> None:
     analysis = analysed(system)

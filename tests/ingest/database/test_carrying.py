@@ -84,7 +84,7 @@ def shown(system: System) -> tuple[set[Pair], RobotRows]:
 
 
 @given(st.one_of(systems(), wildcards(), ranked()))
-@settings(max_examples=300)
+@settings(max_examples=settings().max_examples * 3 // 2)
 def test_the_naive_query_finds_what_memory_finds(system: System) -> None:
     try:
         expected, rows = shown(system)

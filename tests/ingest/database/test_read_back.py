@@ -27,6 +27,7 @@ from rosprivacy.settings import Settings
 from rosprivacy.stored_system import answer_stored
 from tests.helpers.additions import ADD_STORAGE
 from tests.helpers.cases import CASES
+from tests.helpers.daily import one_in
 from tests.helpers.graphs import care_home, dump, factory, rows_of
 from tests.helpers.random_rows import VOCABULARY as SMALL
 from tests.helpers.random_rows import random_systems
@@ -54,7 +55,7 @@ def ways(result: Any) -> set[tuple[str, ...]]:
     return {(f.category, *(element.name for element in f.witness)) for f in result.analysis.findings}
 
 
-@pytest.mark.parametrize("case", CASES, ids=lambda path: str(path.name))
+@pytest.mark.parametrize("case", one_in(4, CASES), ids=lambda path: str(path.name))
 def test_the_document_is_that_of_the_files(
     driver: Driver, case: Path, examples: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -106,9 +107,9 @@ TWO_RANKS = {  # what labels of a higher and of a lower rank say of one flow
 class TestWhatIsSaidOfAFlow:
     """A statement keeps its rank in the database, so that it decides as in the file (rule S7)."""
 
-    @pytest.fixture(params=TWO_RANKS.values(), ids=list(TWO_RANKS))
+    @pytest.fixture(params=one_in(4, TWO_RANKS))
     def result(self, request: pytest.FixtureRequest, examples: Path, tmp_path: Path) -> Any:
-        kind, high, low = request.param
+        kind, high, low = TWO_RANKS[request.param]
         file = tmp_path / "flow.labels.yaml"
         low = f"{TO.replace('/camera,', '/cam*,')}, {low} }}"
         nodes = f"{{ /camera: {{ source: [{kind}] }}, /blur: {{ leak: [{kind}] }} }}"
@@ -196,14 +197,17 @@ class TestWhatPeopleAdd:
 
     @pytest.mark.parametrize(
         ("change", "gone"),
-        [
-            ("MATCH (:Element {name: '/recorder'})-[l:LEAKS]->() DELETE l", "/recorder"),
-            ("MATCH (:Element {name: '/camera/image'})-[f:FLOWS_TO]->({name: '/blur'}) DELETE f", "/recorder"),
-            ("MATCH ()-[f:FLOWS_TO]->({name: '/blur'}) SET f.never = ['Video']", "/recorder"),
-            ("MATCH ()-[s:SANITIZES]->() SET s.method = 'drop', s.stated = true", "/recorder"),
-            ("MATCH (n {name: '/audio'}), (c:DataCategory {name: 'Voice'}) CREATE (n)-[:HAS_NOT]->(c)", "/uplink"),
-            ("MATCH (n {name: '/audio'}), (c:DataCategory {name: 'Video'}) CREATE (n)-[:HAS_ONLY]->(c)", "/uplink"),
-        ],
+        one_in(
+            3,
+            [
+                ("MATCH (:Element {name: '/recorder'})-[l:LEAKS]->() DELETE l", "/recorder"),
+                ("MATCH (:Element {name: '/camera/image'})-[f:FLOWS_TO]->({name: '/blur'}) DELETE f", "/recorder"),
+                ("MATCH ()-[f:FLOWS_TO]->({name: '/blur'}) SET f.never = ['Video']", "/recorder"),
+                ("MATCH ()-[s:SANITIZES]->() SET s.method = 'drop', s.stated = true", "/recorder"),
+                ("MATCH (n {name: '/audio'}), (c:DataCategory {name: 'Voice'}) CREATE (n)-[:HAS_NOT]->(c)", "/uplink"),
+                ("MATCH (n {name: '/audio'}), (c:DataCategory {name: 'Video'}) CREATE (n)-[:HAS_ONLY]->(c)", "/uplink"),
+            ],
+        ),
     )
     def test_a_changed_label_or_flow_counts(self, driver: Driver, change: str, gone: str) -> None:
         load(driver, [rows_of("care", care_home())], VOCABULARY)
@@ -247,7 +251,7 @@ class TestWhatPeopleAdd:
 class TestProblems:
     @pytest.mark.parametrize(
         ("damage", "message"),
-        [
+        one_in(6, [
             ("CREATE (:Storage:Element)", "has no name; SET n.name"),
             ("CREATE (:Element {name: 'x'})", "what is 'x'\\? its labels do not say its kind; give it one of"),
             ("CREATE (:Element:Storage:Device {name: 'x'})", "what is 'x'\\?"),
@@ -281,7 +285,7 @@ class TestProblems:
                 "MATCH (n {name: '/camera'}), (c:DataCategory {name: 'Video'}) CREATE (n)-[:SANITIZES {tier: 1}]->(c)",
                 "/camera is source for Video here and sanitizer|/camera is sanitizer .* for Video here and source",
             ),
-        ],
+        ]),
     )  # fmt: skip
     def test_each_is_a_line_and_nothing_is_written(self, driver: Driver, damage: str, message: str) -> None:
         load(driver, [rows_of("care", care_home())], VOCABULARY)

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -14,6 +12,8 @@ from rosprivacy.ingest.labels.entries import specificity
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+    from tests.helpers.command import Cli
 
 from tests.helpers.label_files import SYSTEM, VIDEO, analyse, wrong
 
@@ -92,15 +92,14 @@ def test_a_shipped_file_may_name_what_is_not_there(tmp_path: Path) -> None:
     assert "matches no topic" in wrong(tmp_path, (tmp_path / "s.yaml").read_text())[0]
 
 
-def test_a_label_file_of_another_system_is_refused_soon(tmp_path: Path) -> None:
+def test_a_label_file_of_another_system_is_refused_soon(cli: Cli, tmp_path: Path) -> None:
     names = range(1500)
     profiles = "".join(f'<profile ns="/robot_{i:04}" node="camera_driver"/>' for i in names)
     enclave = f'<enclave path="/e"><profiles>{profiles}</profiles></enclave>'
     (tmp_path / "p.xml").write_text(f'<policy version="0.2.0"><enclaves>{enclave}</enclaves></policy>')
     lines = "".join(f"  /robt_{i:04}/camera_drver: conduit\n" for i in names)
     (tmp_path / "l.yaml").write_text(f"labels: 1\nnodes:\n{lines}")
-    command = [sys.executable, "-m", "rosprivacy", "analyze", "p.xml", "--labels", "l.yaml"]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=30, check=False)
+    done = cli("analyze", "p.xml", "--labels", "l.yaml", cwd=tmp_path, seconds=30)
     assert done.returncode == 2
     assert len(done.stderr.splitlines()) == len(names)
 

@@ -226,6 +226,30 @@ def test_a_glob_that_decides_most_or_the_last_path_is_a_warning(labels: str, war
     assert ("Warning: " in result.to("markdown")) == bool(warning)
 
 
+def test_a_line_about_flows_with_a_glob_says_what_it_decides_and_closes(robot: Path) -> None:
+    three = {name: PROFILES[name] for name in ("camera", "relay", "uplink")}
+    (robot / "p.xml").write_text(policy(three))
+    labels = f'{ENDS}  /relay: conduit\nflows:\n  - {{from: "/im*", to: "*", never: [Video]}}\n'
+    (row,) = globs(labels)
+    assert (row["line"], row["says"], row["elements"], row["closed"]) == (7, ["never"], 0, 0)
+    assert (row["flows"], row["flows_closed"], row["leak"]["name"], row["warning"]) == (1, 1, "/uplink", "")
+    result = analyze(labels)
+    line = "the glob at l.yaml:7 (never) decides 1 flow, ends data along 1 flow (behind it: the leak /uplink"
+    assert f"\nGlobs of label files: 1\n   {line}" in result.to("text", verbose=True)
+    reviewed = labels.replace("/relay: conduit", "/relay: conduit\nchannels: {/image: sensitive}")
+    (row,) = globs(reviewed)
+    assert row["warning"] == "last-path"  # nothing else is open
+    result = analyze(reviewed)
+    assert "   warning: the glob at l.yaml:8 (never) decides 1 flow, ends data along 1 flow " in result.to("text")
+    assert "decides 1 flow; data ends for it along 1 of them. Warning: without it" in result.to("markdown")
+    assert globs(labels.replace("/im*", "/image").replace('"*"', "/relay")) == []  # no glob
+    (row,) = globs(f"{labels}  - {{from: /image, to: /relay, only: [Video]}}\n")
+    assert (row["flows"], row["flows_closed"], row["leak"], row["warning"]) == (0, 0, None, "")  # a name outranks it
+    (robot / "p.xml").write_text(policy({**three, "logger": ("", "image")}))
+    (row,) = globs(labels)
+    assert (row["flows"], row["flows_closed"], row["warning"]) == (2, 2, "half")  # of three
+
+
 @pytest.mark.usefixtures("robot")
 def test_verbose_lists_every_glob() -> None:
     text = analyze(f'{ENDS}topics: {{"/im*": mundane}}\n').to("text", verbose=True)

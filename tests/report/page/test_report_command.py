@@ -20,6 +20,8 @@ from tests.helpers.reports import care, run
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from tests.helpers.command import Cli
+
 
 def command(*arguments: str, cwd: Path = ROOT, **environment: str) -> subprocess.CompletedProcess[bytes]:
     inherited = {**os.environ, "SOURCE_DATE_EPOCH": "1790000000", **environment}
@@ -94,11 +96,12 @@ def test_a_fleet_has_the_same_ways_whichever_robot_is_shown() -> None:
     assert set(differ.changed.values()) == {("robots",)}
 
 
-def test_it_is_written_to_a_file_and_compares_with_an_earlier_document(tmp_path: Path) -> None:
+def test_it_is_written_to_a_file_and_compares_with_an_earlier_document(cli: Cli, tmp_path: Path) -> None:
     old = tmp_path / "old.json"
     old.write_text(json.dumps(run(3)))
-    done = command(*SYSTEM, "--since", str(old), "--title", "Care <robot>", "-o", str(tmp_path / "r.html"))
-    assert (done.returncode, done.stdout, done.stderr) == (0, b"", b"")
+    options = ("--since", old, "--title", "Care <robot>", "-o", tmp_path / "r.html")
+    done = cli("report", *SYSTEM, *options, cwd=ROOT)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
     text = (tmp_path / "r.html").read_text("utf-8")
     assert "Care &lt;robot&gt;" in text
     assert "What changed since the earlier report" in text
@@ -127,7 +130,7 @@ def test_what_cannot_be_done_is_said(arguments: list[str], message: bytes) -> No
     assert b"Traceback" not in done.stderr
 
 
-def test_a_redacted_copy_is_one_option() -> None:
-    done = command(*SYSTEM, "--redact", "-f", "markdown")
-    assert b"care" not in done.stdout.replace(b"health or social care", b"")
-    assert b"Names of elements, files, enclaves, robots and persons were replaced" in done.stdout
+def test_a_redacted_copy_is_one_option(cli: Cli) -> None:
+    done = cli("report", *SYSTEM, "--redact", "-f", "markdown", cwd=ROOT)
+    assert "care" not in done.stdout.replace("health or social care", "")
+    assert "Names of elements, files, enclaves, robots and persons were replaced" in done.stdout

@@ -84,7 +84,7 @@ def test_storages_are_told_with_their_retention_and_what_is_missing() -> None:
 def test_decisions_stand_beside_their_way_with_what_they_lack() -> None:
     document = with_decisions(care())
     report = told(document)
-    assert [entry.state for entry in report.entries] == ["accepted", "decided", "open"]
+    assert [entry.state for entry in report.entries] == ["open", "decided", "accepted"]  # what waits for somebody first
     for text in texts(document):
         assert "staff has to know" in text
         assert "6(1)(c)" in text
@@ -111,4 +111,4 @@ def test_findings_that_differ_only_in_the_robot_are_one_with_its_robots_listed()
 def test_a_way_from_robot_to_robot_is_another_pattern_than_one_inside_a_robot() -> None:
     document = fleet(care(), ["a", "b"])
     document["findings"][0]["leak"]["robot"] = "b"
-    assert [len(entry.robots) for entry in told(document).entries] == [0, 2, 2, 0]
+    assert sorted(len(entry.robots) for entry in told(document).entries) == [0, 0, 2, 2]

@@ -31,6 +31,8 @@ from tests.helpers.systems import HIERARCHY, PARENTS, System, analysed, systems
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from tests.helpers.command import Cli
+
 
 FINDING_KINDS = ("disclosure", "storage-limitation", "third-country-transfer")
 CARE_HOME = (["care-home/care-home.policy.xml"], ["care-home/care-home.labels.yaml"])
@@ -439,11 +441,10 @@ def test_an_independent_reader_opens_it(tmp_path: Path) -> None:
     ]
 
 
-def test_the_command_writes_it_and_keeps_its_exit_code(tmp_path: Path) -> None:
+def test_the_command_writes_it_and_keeps_its_exit_code(cli: Cli, tmp_path: Path) -> None:
     file = tmp_path / "found.sarif"
     arguments = ["analyze", "before.policy.xml", "-l", "run2.labels.yaml", "-f", "sarif", "-o", str(file)]
-    command = [sys.executable, "-m", "rosprivacy", *arguments]
-    done = subprocess.run(command, cwd=EXAMPLES / "factory", capture_output=True, check=False)
-    assert (done.returncode, done.stdout, done.stderr) == (1, b"", b"")
+    done = cli(*arguments, cwd=EXAMPLES / "factory")
+    assert (done.returncode, done.stdout, done.stderr) == (1, "", "")
     run = checked(json.loads(file.read_text("utf-8")))
     assert physical(run["results"][0]["locations"][0]) == ("examples/factory/before.policy.xml", 13)

@@ -15,8 +15,9 @@ import pytest
 from rich.console import Console
 
 import rosprivacy
+from rosprivacy.report.finding_order import in_order
 from rosprivacy.report.terminal.analysis import print_report, verdict_line
-from rosprivacy.report.terminal.finding_lines import details, in_order, law_lines
+from rosprivacy.report.terminal.finding_lines import details, law_lines
 from rosprivacy.report.terminal.wrapped import wrapped
 from tests.helpers.paths import ROOT
 from tests.helpers.turtlebot import COSTMAP, MEMORY, TURTLEBOT3
@@ -94,7 +95,7 @@ def test_of_more_than_five_findings_there_is_a_line_each() -> None:
     text = printed(report, None)
     assert "\nFindings: 6\n" in text
     assert "   | publishes" not in text
-    assert "on 24 robots (23 pseudonymised)" in text
+    assert "1 robot unfiltered and 23 robots pseudonymised" in text
     assert "rosprivacy show ID" in text
     assert "     | publishes" in printed(report, None, verbose=True)
     assert "\nFindings:" not in printed(document("care-home"), None)
