@@ -246,8 +246,8 @@ class TestQuery:
         ends = "({robot: 'h1', name: '/camera'})-[r:FLOWS_TO]->(n:Topic {name: '/camera/image'})"
         text = f"MATCH p = {ends} MATCH back = (n)<-[r]-() RETURN p, back, n, r LIMIT 1"
         done = run("query", "--cypher", text, FORCE_COLOR=on_terminal, COLUMNS="80")
-        said = f"/camera (node) | publishes {POLICY}:10 -> /camera/image (topic)"
-        back = f"/camera/image (topic) <- publishes {POLICY}:10 | /camera (node)"
+        said = f"/camera (node) | publishes {POLICY.relative_to(ROOT)}:10 -> /camera/image (topic)"
+        back = f"/camera/image (topic) <- publishes {POLICY.relative_to(ROOT)}:10 | /camera (node)"
         assert done.returncode == 0, done.stderr
         words = " ".join(done.stdout.split())
         assert all(cell in words for cell in (said, back, "/camera/image (topic)"))
