@@ -22,21 +22,23 @@ from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import QueryError, shown
+from rosprivacy.queries.graph_values import Path
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
 KINDS = ("path", "table", "count")
 KEYS = ("name", "kind", "description", "order")
-COLUMN_TYPES = {"string": str, "integer": int, "boolean": bool, "list of string": list}
+VALUE_TYPES = {"string": str, "integer": int, "boolean": bool, "list of string": list}
+COLUMN_TYPES = {**VALUE_TYPES, "graph path": Path}
 # Of parameters: a name that must be in the database, with where it stands there (rule S11: never silence).
 NAMES = {"category": ("DataCategory", "name"), "robot": ("Robot", "name"), "element": ("Element", "name")}
-TYPES = {**COLUMN_TYPES, **dict.fromkeys(NAMES, str)}
+TYPES = {**VALUE_TYPES, **dict.fromkeys(NAMES, str)}
 LARGEST = 2**63 - 1  # integers of Cypher have 64 bits
 _LINE = re.compile(r"// (?:(name|kind|description|order)|(param|returns) ([a-z][a-z_0-9]*)): (.+)")
-_PARAMETER = re.compile(r"\$([A-Za-z_][A-Za-z_0-9]*)")
+PARAMETER = re.compile(r"\$([A-Za-z_][A-Za-z_0-9]*)")
 _WRITES = re.compile(r"\b(CREATE|MERGE|DELETE|SET|REMOVE|DROP|FOREACH|LOAD)\b", re.IGNORECASE)
-_TEXT = re.compile(r"'(?:[^'\\]|\\.)*'|\"(?:[^\"\\]|\\.)*\"|//[^\n]*|/\*.*?\*/", re.DOTALL)
+TEXT = re.compile(r"'(?:[^'\\]|\\.)*'|\"(?:[^\"\\]|\\.)*\"|//[^\n]*|/\*.*?\*/", re.DOTALL)
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +78,11 @@ class Query:
     columns: tuple[Field, ...]
     order: tuple[str, ...]
     text: str
+
+    @property
+    def drawable(self) -> bool:
+        """Whether its rows hold paths of the graph, not only names."""
+        return any(COLUMN_TYPES[column.type] is Path for column in self.columns)
 
     def values(self, given: Mapping[str, str]) -> dict[str, Any]:
         """Return the values of all parameters from text such as the command line gives.
@@ -213,7 +220,7 @@ def _field(name: str, rest: str, types: Mapping[str, type]) -> Field:
 
 
 def _faults(query: Query, stem: str) -> Iterator[str]:
-    body = _TEXT.sub("", query.text)
+    body = TEXT.sub("", query.text)
     if query.name != stem:
         yield f"name is {query.name!r}; write the file's own"
     if query.kind not in KINDS:
@@ -222,7 +229,7 @@ def _faults(query: Query, stem: str) -> Iterator[str]:
         names = [field.name for field in fields]
         yield from (f"{name} stands twice; keep one" for name in sorted({n for n in names if names.count(n) > 1}))
     declared = [field.name for field in query.parameters]
-    for name in sorted({*declared} ^ {*_PARAMETER.findall(body)}):
+    for name in sorted({*declared} ^ {*PARAMETER.findall(body)}):
         yield f"${name} is {'not used' if name in declared else 'not declared'}; header and query must agree"
     columns = [field.name for field in query.columns]
     if _returned(body) != columns:

@@ -13,14 +13,15 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import DatabaseError as OurDatabaseError
 from rosprivacy.analysis.errors import QueryError, shown
+from rosprivacy.queries.graph_values import GraphValue, graph_values, nodes_in, plain, value_of, with_known
 from rosprivacy.queries.library import NAMES
 from rosprivacy.queries.reading import refuse_unless_reading
 from rosprivacy.queries.unknown_names import refuse_unknown_names
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
-    from neo4j import Driver
+    from neo4j import Driver, Transaction
 
     from rosprivacy.queries.library import Query
     from rosprivacy.queries.unknown_names import Known
@@ -42,8 +43,7 @@ class Rows:
     columns
         Their names.
     rows
-        Values as JSON has them; a node is an object with ``labels`` and its properties, a relationship one with
-        ``type``, a path a list of these in turn.
+        Values as JSON has them, and nodes, relationships and paths as ``graph_values`` has them.
     more
         Whether there were more than the bound.
     """
@@ -102,13 +102,23 @@ def run(
         held = 0
         for record in result:
             if limit is not None and len(rows) == limit:
-                return Rows(columns, tuple(rows), more=True)
-            row = tuple(plain(value) for value in record.values())
-            held += _size(row)
+                return Rows(columns, _with_ends(transaction, rows), more=True)
+            row = tuple(value_of(value) for value in record.values())
+            held += _size([plain(value) for value in row])
             if held > LARGEST:
                 raise QueryError(f"the rows take more than {LARGEST // 2**20} MB; ask for less, or use a lower --limit")
             rows.append(row)
-        return Rows(columns, tuple(rows))
+        return Rows(columns, _with_ends(transaction, rows))
+
+
+def _with_ends(transaction: Transaction, rows: list[tuple[Any, ...]]) -> tuple[tuple[Any, ...], ...]:
+    """Look up the ends of relationships that stand without them: the server names these by their ids only."""
+    bare = {node.id for value in graph_values(rows) for node in nodes_in(value) if node.bare}
+    if not bare:
+        return tuple(rows)
+    found = transaction.run("MATCH (n) WHERE elementId(n) IN $ids RETURN n", ids=sorted(bare))
+    known = {node.id: node for node in (value_of(record["n"]) for record in found)}
+    return tuple(with_known(row, known) for row in rows)
 
 
 def check_names(driver: Driver, query: Query, values: Mapping[str, Any]) -> None:
@@ -136,33 +146,15 @@ def check_names(driver: Driver, query: Query, values: Mapping[str, Any]) -> None
         raise QueryError("\n".join(problems))
 
 
-def plain(value: Any) -> Any:
-    """Return a value of the driver as JSON has it."""
-    from neo4j.graph import Node, Path, Relationship  # noqa: PLC0415 - light start
-
-    if isinstance(value, Node):
-        return {"labels": sorted(value.labels), **{key: plain(value[key]) for key in sorted(value)}}
-    if isinstance(value, Relationship):
-        return {"type": value.type, **{key: plain(value[key]) for key in sorted(value)}}
-    if isinstance(value, Path):
-        steps = [plain(value.start_node)]
-        for relationship, node in zip(value.relationships, value.nodes[1:], strict=True):
-            steps += [plain(relationship), plain(node)]
-        return steps
-    if isinstance(value, list):
-        return [plain(item) for item in value]
-    if isinstance(value, dict):
-        return {key: plain(item) for key, item in value.items()}
-    return value if isinstance(value, str | int | float | bool | None) else str(value)
-
-
-def as_cell(value: Any, column: str = WAY) -> str:
+def as_cell(value: Any, column: str = WAY, words: Callable[[GraphValue], str] = str) -> str:
     """Return a value as a reader of a table sees it.
 
     Parameters
     ----------
     column
         Its name: the names on a way stand in the order of the flow, other lists have no direction.
+    words
+        How a node, a relationship or a path is told.
 
     >>> as_cell(["/camera", "/video"], "path"), as_cell(["r1", "r2"], "robots"), as_cell(None), as_cell(True)
     ('/camera -> /video', 'r1, r2', '', 'true')
@@ -171,9 +163,13 @@ def as_cell(value: Any, column: str = WAY) -> str:
         return ""
     if isinstance(value, str):
         return value
+    if isinstance(value, GraphValue):
+        return words(value)
+    if isinstance(value, list) and value and all(isinstance(item, GraphValue) for item in value):
+        return ", ".join(map(words, value))
     if isinstance(value, list) and all(isinstance(item, str) for item in value):
         return (" -> " if column == WAY else ", ").join(value)
-    return json.dumps(value, ensure_ascii=False, sort_keys=True)
+    return json.dumps(plain(value), ensure_ascii=False, sort_keys=True)
 
 
 def _size(value: Any) -> int:

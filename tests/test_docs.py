@@ -128,7 +128,8 @@ def query_table() -> str:
     rows = []
     for query in pack().values():
         parameters = ", ".join(f"`{p.name}`" if p.default is None else f"[`{p.name}`]" for p in query.parameters)
-        rows.append(f"| `{query.name}` | {parameters} | {query.description} |")
+        drawn = " Can be drawn." if query.drawable else ""
+        rows.append(f"| `{query.name}` | {parameters} | {query.description}{drawn} |")
     return "\n".join(["| query | parameters | question |", "| --- | --- | --- |", *rows, ""])
 
 

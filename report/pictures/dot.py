@@ -27,6 +27,8 @@ LONGEST_NOTE = 110
 FOLDED_NAMES = 3
 STRAIGHT = 8  # how much a step of a shortest path wants to be short and straight; others 1
 WIDEST_WORDS = 34  # letters of a line on a box
+LONGEST_WORD = 60  # on a line
+ON_A_LINE = "shape=plaintext, margin=0, height=0, width=0"
 LONGEST_WORDS = 300  # of all lines of a phrase: what some kinds of data are called goes in whole (users.md, B6)
 
 
@@ -117,7 +119,7 @@ def hover(picture: Picture, box: Box) -> str:
 def line_hover(line: Line) -> str:
     """Return what is said of a line: its ends, the grants behind it, what goes along it."""
     arrow = f"{shortened(line.source[2], 100)} to {shortened(line.target[2], 100)}"
-    said = [LINE_LOOKS[line.look].words, ", ".join(line.roles)]
+    said = [line.words or LINE_LOOKS[line.look].words, ", ".join(line.roles)]
     if line.carries:
         said.append(("pseudonymised " if line.pseudonymised else "") + ", ".join(line.carries))
     said += [shortened(str(place), 100) for place in line.places[:3]]
@@ -128,11 +130,11 @@ def line_hover(line: Line) -> str:
 
 def paired(picture: Picture) -> Iterator[tuple[Line, bool]]:
     """Each line to be drawn, and whether it also stands for the one that goes back and looks the same."""
-    looks = {(line.source, line.target, line.look): line for line in picture.lines}
+    looks = {(line.source, line.target, line.look, line.words): line for line in picture.lines}
     drawn = set()
     for line in picture.lines:
-        here = (line.source, line.target, line.look)
-        there = (line.target, line.source, line.look)
+        here = (line.source, line.target, line.look, line.words)
+        there = (line.target, line.source, line.look, line.words)
         if here in drawn:
             continue
         back = looks.get(there)
@@ -163,7 +165,13 @@ def _line(picture: Picture, line: Line, number: int, *, both: bool) -> str:
         f"id=e{number}",
         f"tooltip={quoted(line_hover(line))}",
     ]
-    return f"{picture.keys[line.source]} -> {picture.keys[line.target]} [{', '.join(attributes)}];"
+    source, target, style = picture.keys[line.source], picture.keys[line.target], ", ".join(attributes)
+    if not line.words:
+        return f"{source} -> {target} [{style}];"
+    # In parts that Graphviz packs, labels of lines are lost; so the words are a box without an outline.
+    words = f"w{number} [label={quoted(shortened(line.words, LONGEST_WORD))}, {ON_A_LINE}, id=w{number}];"
+    before = style.replace("dir=both", "dir=back") if both else f"{style}, dir=none"
+    return f"{words} {source} -> w{number} [{before}]; w{number} -> {target} [{style.replace(', dir=both', '')}];"
 
 
 def _caption(picture: Picture) -> str:

@@ -29,6 +29,7 @@ DIRECTIONS = ("LR", "TB")
 ORDERED = "dot"  # the engine that knows a direction
 PAGE = (1100, 1400)  # points: what can be read without moving it to the side
 LESS = "--finding, --around, --most and --fold draw less"
+INSTEAD = "draw less (--around, --finding, --fold, --most), give it more with --seconds, or take --format dot"
 DOTS_PER_INCH = 144
 LARGEST_INCHES = 50  # of a PNG: 7,200 dots a side, 200 MB while it is drawn
 
@@ -82,7 +83,14 @@ class Drawn:
 
 
 def drawn(
-    picture: Picture, form: str, *, direction: str = "LR", seconds: float = SECONDS, ways: tuple[Way, ...] = WAYS
+    picture: Picture,
+    form: str,
+    *,
+    direction: str = "LR",
+    seconds: float = SECONDS,
+    ways: tuple[Way, ...] = WAYS,
+    less: str = LESS,
+    instead: str = INSTEAD,
 ) -> Drawn:
     """Draw a picture.
 
@@ -94,6 +102,8 @@ def drawn(
         See ``dot``; empty for the one that can be drawn larger on a page.
     seconds
         For all of it. The picture does not depend on it: when time runs out there is none.
+    less, instead
+        What a reader can do who wants less of it, and where none is done in time.
 
     Raises
     ------
@@ -102,7 +112,7 @@ def drawn(
     """
     end = time.monotonic() + seconds
     way = way_of(picture, ways)
-    note = (f"Laid out by Graphviz's {way.engine}, since it is large: {way.words}; {LESS}",) if way.words else ()
+    note = (f"Laid out by Graphviz's {way.engine}, since it is large: {way.words}; {less}",) if way.words else ()
     noted = picture.noted(*note)
     with Graphviz() as graphviz:
 
@@ -116,8 +126,7 @@ def drawn(
             data = draw(form, direction)
         except TooLongError:
             what = f"the layout of {counted(len(picture.boxes), 'box', 'boxes')} takes more than {seconds:g} seconds"
-            hint = "draw less (--around, --finding, --fold, --most), give it more with --seconds, or take --format dot"
-            raise DrawingError(f"graph: {what}; {hint}") from None
+            raise DrawingError(f"graph: {what}; {instead}") from None
     if form == SVG:
         return Drawn(finished(data, noted), note)
     return Drawn(data, (*note, *_smaller(data)))

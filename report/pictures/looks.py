@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from rosprivacy.analysis.model import KINDS
-from rosprivacy.report.pictures.picture import PRIVACY, Picture
+from rosprivacy.report.pictures.picture import DRAWN, PRIVACY, RECORD, Picture
 
 INK = "#000000"  # lines, outlines, and text on the paper
 TEXT = "#111111"  # text on a filled box
@@ -76,6 +75,7 @@ SHAPES = {
     "device": Shape(("box3d", ""), ("[/", "\\]")),
     "display": Shape(("tab", ""), ("[\\", "/]")),
     "person": Shape(("octagon", ""), ("((", "))")),
+    RECORD: Shape(("note", ""), ("[", "]")),
 }
 
 KIND_LOOKS = {
@@ -90,9 +90,10 @@ KIND_LOOKS = {
     "device": Look("device", YELLOW),
     "display": Look("display", YELLOW),
     "person": Look("person", YELLOW),
+    RECORD: Look("other node, with its labels", PALE),
 }
 
-SOURCE, LEAK, DERIVATION, SANITIZER = "source", "leak", "derivation", "sanitizer"
+SOURCE, LEAK, DERIVATION, SANITIZER, END = "source", "leak", "derivation", "sanitizer", "end"
 REVIEWED, OPEN = "reviewed", "open"
 ROLE_LOOKS = {
     SOURCE: Look("source: brings data in", SKY, width=3.0),
@@ -102,9 +103,11 @@ ROLE_LOOKS = {
     REVIEWED: Look("reviewed: passes on what it gets", GRAY),
     OPEN: Look("not reviewed yet", PALE, style="dashed"),
 }
+# The privacy view leaves out what ends all data; a query can give it.
+DRAWN_ROLES = {**ROLE_LOOKS, END: Look("ends what comes to it", GREEN, width=1.5, double=True)}
 
 ALLOWED, MATCHES, DENIED = "allowed", "matches", "denied"
-DATA, WAY, SHORTEST = "data", "way", "shortest"
+DATA, WAY, SHORTEST, OTHER = "data", "way", "shortest", "other"
 LINE_LOOKS = {
     ALLOWED: Look("allowed, in the direction of the data", INK),
     MATCHES: Look("the wildcard covers it", INK, style="dotted"),
@@ -112,6 +115,7 @@ LINE_LOOKS = {
     DATA: Look("data can go here", INK),
     WAY: Look("on a path to a leak", RED, width=2.2),
     SHORTEST: Look("on the shortest path to a leak", RED, width=4.5),
+    OTHER: Look("relationship of this type, no flow", QUIET, head="vee"),
 }
 PSEUDONYMISED = "dashed: only pseudonymised"
 
@@ -127,16 +131,16 @@ class Entry:
 
 def box_look(view: str, look: str) -> Look:
     """Return how a box of a view looks."""
-    return (ROLE_LOOKS if view == PRIVACY else KIND_LOOKS)[look]
+    return (DRAWN_ROLES if view == PRIVACY else KIND_LOOKS)[look]
 
 
 def legend(picture: Picture) -> list[Entry]:
     """Return what of a picture needs to be explained: no more than what is in it."""
-    kinds = [kind for kind in KINDS if any(box.kind == kind for box in picture.boxes)]
+    kinds = [kind for kind in DRAWN if any(box.kind == kind for box in picture.boxes)]
     entries = []
     if picture.view == PRIVACY:
         used = {box.look for box in picture.boxes} | ({OPEN} if any(box.open for box in picture.boxes) else set())
-        entries += [Entry(look, look.words, SHAPES["node"]) for name, look in ROLE_LOOKS.items() if name in used]
+        entries += [Entry(look, look.words, SHAPES["node"]) for name, look in DRAWN_ROLES.items() if name in used]
         blank = Look("", PALE)
         entries += [Entry(blank, KIND_LOOKS[kind].words, SHAPES[kind]) for kind in kinds]
     else:

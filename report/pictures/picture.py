@@ -1,6 +1,7 @@
 """A picture before it is drawn: boxes and lines, what they mean, nothing of colours, formats or places.
 
-Made by ``views.py``, narrowed by ``narrow.py``, written by ``dot.py``, ``mermaid.py`` and ``graphml.py``.
+Made by ``views.py`` and ``query_view.py``, narrowed by ``narrow.py``, written by ``dot.py``, ``mermaid.py`` and
+``graphml.py``.
 """
 
 from __future__ import annotations
@@ -18,12 +19,14 @@ if TYPE_CHECKING:
 
 Key = tuple[str, str, str]  # robot, kind, name: the identity of an element, rule S1
 ROS, PRIVACY = "ros", "privacy"
+RECORD = "record"  # what a query gives from the database that is no element
+DRAWN = (*KINDS, RECORD)
 LEGIBLE = 40  # boxes of a picture that people read without being asked
 
 
 def order(key: Key) -> tuple[int, str, str]:
     """Nodes first, then by robot and name: the order of all output (rule S14)."""
-    return (KINDS.index(key[1]), key[0], key[2])
+    return (DRAWN.index(key[1]), key[0], key[2])
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +71,7 @@ class Box:
 
     @property
     def kind(self) -> str:
-        """One of ``KINDS``."""
+        """One of ``DRAWN``."""
         return self.key[1]
 
     @property
@@ -84,7 +87,8 @@ class Line:
     Attributes
     ----------
     look
-        ``allowed``, ``matches`` or ``denied``; in the privacy view ``data``, ``way`` (to a leak) or ``shortest``.
+        ``allowed``, ``matches`` or ``denied``; in the privacy view ``data``, ``way`` (to a leak) or ``shortest``;
+        ``other`` for what a query gives that is no flow.
     roles
         Of the flows, sorted.
     carries
@@ -95,6 +99,8 @@ class Line:
         The policy lines behind it, sorted.
     length
         Of the shortest way to a leak through it, in flows; 0 where it is on none.
+    words
+        What stands on it; empty where the legend says enough.
     """
 
     source: Key
@@ -105,10 +111,11 @@ class Line:
     pseudonymised: bool = False
     places: tuple[Place, ...] = ()
     length: int = 0
+    words: str = ""
 
     def sort_key(self) -> tuple[object, ...]:
         """By its ends."""
-        return (order(self.source), order(self.target), self.look)
+        return (order(self.source), order(self.target), self.look, self.words)
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,13 +11,15 @@ import time
 from typing import TYPE_CHECKING
 
 import pytest
+from lxml import etree
 
 from rosprivacy.analysis.errors import DatabaseError
 from rosprivacy.ingest.database.loading import load
 from rosprivacy.ingest.database.schema_names import schema_names
 from rosprivacy.private_neo4j import connection
 from rosprivacy.queries.library import pack
-from tests.helpers.command import LINE
+from rosprivacy.report.pictures import looks
+from tests.helpers.command import LINE, run
 from tests.helpers.graphs import care_home, rows_of
 from tests.helpers.paths import ROOT
 
@@ -33,6 +35,8 @@ if TYPE_CHECKING:
 HOME = ROOT / "examples" / "care-home"
 POLICY, LABELS = HOME / "care-home.policy.xml", HOME / "care-home.labels.yaml"
 LOAD = ("load", POLICY, "--labels", LABELS, "--robot", "h1")
+NAIVE = "MATCH p = (:VoiceSource)-[:CARRIES_VOICE*1..]->(:VoiceLeak) RETURN p"
+LOOKS = {name: look.words for name, look in {**looks.ROLE_LOOKS, **looks.LINE_LOOKS}.items()}
 EMPTY = """<policy version="0.2.0"><enclaves><enclave path="/one">
 <profiles><profile ns="/" node="n"/></profiles></enclave></enclaves></policy>"""
 COUNTED = (
@@ -234,6 +238,82 @@ class TestQuery:
         assert " -> ".join(names) in " ".join(done.stdout.split())
         assert "path   /a\n" in done.stdout
         assert "…" not in done.stdout
+
+    @pytest.mark.parametrize("on_terminal", ["", "1"])
+    @pytest.mark.usefixtures("loaded")
+    def test_paths_nodes_and_relationships_are_told_in_words(self, on_terminal: str) -> None:
+        """As `analyze` says paths: kinds, verbs, the policy line; an arrow points where the data goes."""
+        ends = "({robot: 'h1', name: '/camera'})-[r:FLOWS_TO]->(n:Topic {name: '/camera/image'})"
+        text = f"MATCH p = {ends} MATCH back = (n)<-[r]-() RETURN p, back, n, r LIMIT 1"
+        done = run("query", "--cypher", text, FORCE_COLOR=on_terminal, COLUMNS="80")
+        said = f"/camera (node) | publishes {POLICY.relative_to(ROOT)}:10 -> /camera/image (topic)"
+        back = f"/camera/image (topic) <- publishes {POLICY.relative_to(ROOT)}:10 | /camera (node)"
+        assert done.returncode == 0, done.stderr
+        words = " ".join(done.stdout.split())
+        assert all(cell in words for cell in (said, back, "/camera/image (topic)"))
+        row = next(csv.DictReader(io.StringIO(run("query", "--cypher", text, "-f", "csv").stdout)))
+        assert row == {"p": said, "back": back, "n": "/camera/image (topic)", "r": said}
+        ((path, node),) = [
+            (row["p"], row["n"]) for row in json.loads(run("query", "--cypher", text, "-f", "json").stdout)
+        ]
+        assert [path[0]["name"], path[1]["type"], path[1]["role"], path[2]] == ["/camera", "FLOWS_TO", "publish", node]
+        assert (node["name"], "Topic" in node["labels"]) == ("/camera/image", True)
+
+    @pytest.mark.parametrize(
+        ("asked", "title"),
+        [
+            (("leak-path-graph", "category=Voice"), "leak-path-graph category=Voice"),
+            (("--cypher", NAIVE), NAIVE),
+            (("--cypher", NAIVE.replace("RETURN p", "RETURN\n nodes(p), [{r: relationships(p)}]")), None),
+        ],
+        ids=["pack", "cypher", "lists"],
+    )
+    @pytest.mark.usefixtures("loaded")
+    def test_what_a_query_gives_of_the_graph_is_drawn(
+        self, cli: Cli, tmp_path: Path, asked: tuple[str, ...], title: str | None
+    ) -> None:
+        """As `rosprivacy graph` draws: the same looks and legend, the same bytes for the same rows (rule S14)."""
+        texts = []
+        for file in (tmp_path / "one.svg", tmp_path / "two.svg"):
+            done = cli("query", *asked, "-f", "svg", "-o", file)
+            assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+            texts.append(file.read_bytes())
+        assert texts[0] == texts[1]
+        root = etree.fromstring(texts[0])
+        drawn = [text for text in root.itertext() if text.strip()]
+        assert {
+            "/microphone",
+            "source of Voice",
+            "/audio",
+            "/uplink",
+            "leak of Voice",
+            LOOKS["leak"],
+            LOOKS["way"],
+        } <= set(drawn)
+        assert not title or title in drawn
+        assert f'fill="{looks.RED}"'.encode() in texts[0]
+
+    @pytest.mark.parametrize(
+        ("asked", "message"),
+        [
+            (("leak-paths",), "leak-paths: gives no node, relationship or path to draw, only robot, category, source"),
+            (("--cypher", "RETURN 1 AS x, ['a'] AS y"), "RETURN path"),
+            (("--cypher", "MATCH (n:Element {name: '/nowhere'}) RETURN n"), "no rows, so nothing can be drawn"),
+        ],
+    )
+    @pytest.mark.usefixtures("loaded")
+    def test_what_cannot_be_drawn_is_2_and_says_what_to_do(
+        self, cli: Cli, tmp_path: Path, asked: tuple[str, ...], message: str
+    ) -> None:
+        done = cli("query", *asked, "-f", "svg", "-o", tmp_path / "x.svg")
+        assert (done.returncode, done.stdout, len(lines(done))) == (2, "", 1)
+        assert message in done.stderr
+        assert not (tmp_path / "x.svg").exists()
+
+    def test_the_list_says_what_can_be_drawn(self, cli: Cli) -> None:
+        listed = cli("query", NEO4J_URI="bolt://127.0.0.1:1").stdout.splitlines()
+        drawn = {name.split(" ")[0] for name, said in zip(listed[::2], listed[1::2], strict=True) if "-f svg" in said}
+        assert drawn == {query.name for query in pack().values() if query.drawable} == {"data-graph", "leak-path-graph"}
 
     def test_the_schema_is_told_without_a_database(self, cli: Cli) -> None:
         done = cli("query", "--schema")

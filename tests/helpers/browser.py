@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 DESKTOP, PHONE = 1280, 390
 PAPER = 672  # CSS pixels between the margins of an upright A4 page
 PROGRAMS = ("chromium", "chromedriver")
+HERE_ONLY = "host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1"  # no other host is there
 A4 = (8.27, 11.69)  # inches
 WIDER = """
 return [...document.querySelectorAll(arguments[0])]
@@ -31,8 +32,11 @@ def missing() -> list[str]:
 
 
 @contextmanager
-def chromium(folder: Path) -> Iterator[WebDriver]:
-    """A browser with logs of the console and of all requests, and a profile of its own in a folder."""
+def chromium(folder: Path, *more: str) -> Iterator[WebDriver]:
+    """A browser with logs of the console and of all requests, and a profile of its own in a folder.
+
+    ``more`` are further arguments, such as ``HERE_ONLY``.
+    """
     from selenium import webdriver
     from selenium.webdriver.chrome.service import Service
 
@@ -41,7 +45,7 @@ def chromium(folder: Path) -> Iterator[WebDriver]:
     options.binary_location = str(program)
     arguments = ("headless=new", "no-sandbox", "disable-gpu", "disable-dev-shm-usage", "hide-scrollbars")
     quiet = ("disable-background-networking", "disable-component-update", "disable-sync", "no-first-run")
-    for argument in (*arguments, *quiet, f"user-data-dir={folder}"):
+    for argument in (*arguments, *quiet, f"user-data-dir={folder}", *more):
         options.add_argument(f"--{argument}")
     options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
     browser = webdriver.Chrome(options=options, service=Service(str(driver)))
@@ -96,3 +100,10 @@ def pdf(browser: WebDriver) -> bytes:
 def wider(browser: WebDriver, selector: str) -> list[str]:
     """Return the elements that are wider than their box or the page."""
     return list(browser.execute_script(WIDER, selector))
+
+
+def drop(browser: WebDriver, file: Path, at: tuple[int, int]) -> None:
+    """Drag a file onto the page and let it go, as the system tells the browser of it."""
+    data = {"items": [], "files": [str(file)], "dragOperationsMask": 1}
+    for what in ("dragEnter", "dragOver", "drop"):
+        browser.execute_cdp_cmd("Input.dispatchDragEvent", {"type": what, "x": at[0], "y": at[1], "data": data})

@@ -111,7 +111,7 @@ def test_the_cypher_of_the_documentation(empty: Driver) -> None:
     paths = [run(empty, block).rows for block in reading if "CARRIES_VIDEO" in block]
     assert len(paths) == 3
     for rows in paths:
-        ends = {(path[0]["name"], path[-1]["name"]) for (path,) in rows}
+        ends = {(path.nodes[0].properties["name"], path.nodes[-1].properties["name"]) for (path,) in rows}
         assert ends == {(row["source"]["name"], row["leak"]["name"]) for row in found}
     for block in reading:
         run(empty, block)

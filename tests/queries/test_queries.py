@@ -1,7 +1,8 @@
 """The query pack: for every question a case with rows and one without, on systems that are loaded from files.
 
 ``cases/queries/<name>.json``: ``hits`` and ``clean``, each with ``load`` (robot -> system of
-``cases/queries/systems/systems.json``), ``parameters`` and all ``rows``. Rows were judged by hand from the rules.
+``cases/queries/systems/systems.json``), ``parameters`` and all ``rows``; a path of the graph is told in words. Rows
+were judged by hand from the rules.
 """
 
 from __future__ import annotations
@@ -16,13 +17,17 @@ from rosprivacy.analysis.findings.findings import analyse
 from rosprivacy.analysis.model import Category, Element, Flow, FlowGraph, Legal
 from rosprivacy.ingest.database.loading import load
 from rosprivacy.ingest.database.rows import robot_rows
+from rosprivacy.ingest.database.schema import CARRIES, FLOWS_TO, KIND_LABELS
 from rosprivacy.ingest.labels.binding import bind
 from rosprivacy.ingest.labels.label_file import STANDARD, read_labels
 from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.ontology.vocabulary import Vocabulary
 from rosprivacy.private_neo4j import connection
+from rosprivacy.queries.graph_values import Path
 from rosprivacy.queries.library import COLUMN_TYPES, find, pack
 from rosprivacy.queries.run import run
+from rosprivacy.report.stored import StoredNames
+from rosprivacy.report.terminal.graph_words import GraphWords
 from rosprivacy.robot_system import read_system
 from rosprivacy.settings import Settings
 from tests.helpers.daily import one_in
@@ -117,7 +122,8 @@ def fill(driver: Driver, robots: Mapping[str, str]) -> None:
 def ask(driver: Driver, name: str, parameters: Mapping[str, str]) -> tuple[tuple[str, ...], list[list[Any]]]:
     query = find(name)
     rows = run(driver, query.text, query.values(parameters), limit=None)
-    return rows.columns, [list(row) for row in rows.rows]
+    words = GraphWords(StoredNames({label: kind for kind, label in KIND_LABELS.items()}, FLOWS_TO.type, CARRIES), False)
+    return rows.columns, [[words.of(v) if isinstance(v, Path) else v for v in row] for row in rows.rows]
 
 
 def by_load() -> list[tuple[str, list[tuple[str, str]]]]:
@@ -157,7 +163,8 @@ def test_rows(robots: str, driver: Driver, monkeypatch: pytest.MonkeyPatch) -> N
         case = CASES[name][which]
         columns, rows = ask(driver, name, case["parameters"])
         assert list(columns) == [field.name for field in QUERIES[name].columns]
-        types = [COLUMN_TYPES[field.type] for field in QUERIES[name].columns]
+        in_words = {**COLUMN_TYPES, "graph path": str}
+        types = [in_words[field.type] for field in QUERIES[name].columns]
         assert all(type(v) is t for row in rows for v, t in zip(row, types, strict=True) if v is not None), name
         if rows != case["rows"]:
             wrong[name, which] = rows

@@ -8,6 +8,7 @@ import pytest
 
 from rosprivacy.analysis.errors import QueryError
 from rosprivacy.private_neo4j import connection
+from rosprivacy.queries.graph_values import Relationship, plain, value_of
 from rosprivacy.queries.run import run
 
 if TYPE_CHECKING:
@@ -80,11 +81,21 @@ def test_nodes_relationships_and_paths(driver: Driver) -> None:
     with driver.session() as session, session.begin_transaction() as transaction:  # never committed
         transaction.run("CREATE (:Shown:Here {name: 'a'})-[:TO {n: 1}]->(:Shown {name: 'b'})")
         found = transaction.run("MATCH p = (:Here)-[r:TO]->(n:Shown) RETURN p, r, n").single(strict=True)
-        from rosprivacy.queries.run import plain
-
         start, flow, end = (
             {"labels": ["Here", "Shown"], "name": "a"},
             {"type": "TO", "n": 1},
             {"labels": ["Shown"], "name": "b"},
         )
-        assert [plain(value) for value in found] == [[start, flow, end], flow, end]
+        assert [plain(value_of(value)) for value in found] == [[start, flow, end], flow, end]
+
+
+def test_a_relationship_alone_has_its_ends(driver: Driver) -> None:
+    """The server names them by their ids only; they are looked up."""
+    driver.execute_query("MERGE (:ShownEnd {name: 'a'})-[:TO]->(:ShownEnd {name: 'b'})")
+    try:
+        ((one, several),) = run(driver, "MATCH (:ShownEnd)-[r:TO]->() RETURN r, [{r: r}]").rows
+        assert isinstance(one, Relationship)
+        assert (one.start.properties, one.end.labels) == ({"name": "a"}, ("ShownEnd",))
+        assert several == [{"r": one}]
+    finally:
+        driver.execute_query("MATCH (n:ShownEnd) DETACH DELETE n")

@@ -2,26 +2,22 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 import sys
-from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from rosprivacy.analysis.errors import QueryError, reason, shown
-from rosprivacy.analysis.text import printable
 from rosprivacy.cli.driver import driver_of
 from rosprivacy.cli.inputs import refuse
 from rosprivacy.cli.options import (
     Output,
     Server,
 )
-from rosprivacy.cli.output import emit
-from rosprivacy.cli.row_records import natural_width, records
+from rosprivacy.cli.output import emit, not_for_a_terminal
+from rosprivacy.cli.query_answer import RowFormat, answer, not_drawn
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -29,18 +25,6 @@ if TYPE_CHECKING:
     from neo4j import Driver
 
     from rosprivacy.queries.library import Query
-    from rosprivacy.queries.run import Rows
-
-
-WIDEST_TABLE = 400  # in a file or a pipe
-
-
-class RowFormat(StrEnum):
-    """Of the rows of a query."""
-
-    table = "table"
-    json = "json"
-    csv = "csv"
 
 
 def complete_query(incomplete: str) -> list[str]:
@@ -73,7 +57,12 @@ def query(
         bool, typer.Option("--schema", help="Print the labels, relationship types and properties of the graph instead.")
     ] = False,
     format: Annotated[  # noqa: A002 - the option's name
-        RowFormat, typer.Option("--format", "-f", help="Of the rows; a table that is too wide becomes records.")
+        RowFormat,
+        typer.Option(
+            "--format",
+            "-f",
+            help="Of the rows; a table that is too wide becomes records. SVG draws nodes, relationships and paths.",
+        ),
     ] = RowFormat.table,
     output: Output = None,
     limit: Annotated[int, typer.Option(min=1, help="Most rows to print.")] = 1000,
@@ -108,12 +97,14 @@ def query(
     else:
         text = cypher if cypher is not None else _read(file)
         parameters = dict(_pairs([*([name] if name else []), *given]))
+    if format is RowFormat.svg:
+        _check_drawing(asked, output)
     with driver_of(neo4j) as driver:
         if asked:
             check_names(driver, asked, parameters)
         rows = run(driver, text, parameters, limit=limit, timeout=timeout, known=_known_names(driver))
         robots = run(driver, ROBOTS, limit=None, timeout=timeout)
-    emit(_text(rows, format, wide=output is not None), output)
+    emit(answer(rows, format, _title(asked, given, file, text), wide=output is not None), output)
     if rows.more:
         print(f"only the first {limit:,} rows are shown; --limit shows more", file=sys.stderr)
     if others := of_other_schemas(dict(zip(robots.columns, row, strict=True)) for row in robots.rows):
@@ -136,8 +127,22 @@ def _listed(queries: Iterable[Query]) -> str:
         parameters = " ".join(
             f"{p.name}=…" if p.default is None else f"[{p.name}={json.dumps(p.default)}]" for p in query.parameters
         )
-        lines += [f"{query.name} {parameters}".rstrip(), f"    {query.description}"]
+        drawn = " Can be drawn: -f svg." if query.drawable else ""
+        lines += [f"{query.name} {parameters}".rstrip(), f"    {query.description}{drawn}"]
     return "\n".join([*lines, ""])
+
+
+def _check_drawing(asked: Query | None, output: Path | None) -> None:
+    """Refuse, before anything is asked, what nobody could see or what cannot be drawn."""
+    not_for_a_terminal("SVG", output)
+    if asked and not asked.drawable:
+        raise QueryError(not_drawn(asked.name, (column.name for column in asked.columns)))
+
+
+def _title(asked: Query | None, given: list[str], file: Path | None, text: str) -> str:
+    """What a picture is of: the question with its parameters, the file's name, or the Cypher."""
+    said = " ".join([asked.name, *given]) if asked else file.name if file else " ".join(text.split())
+    return shown(said)
 
 
 def _pairs(given: list[str]) -> dict[str, str]:
@@ -160,45 +165,3 @@ def _read(file: Path | None) -> str:
         return contents(file).decode("utf-8")
     except (OSError, ValueError) as error:
         raise QueryError(f"{shown(str(file))}: cannot be read: {reason(error)}; name a file of Cypher") from None
-
-
-def _text(rows: Rows, form: RowFormat, *, wide: bool) -> str:
-    from rosprivacy.queries.run import as_cell
-    from rosprivacy.report.spreadsheet import guarded
-
-    if form is RowFormat.json:
-        objects = [dict(zip(rows.columns, row, strict=True)) for row in rows.rows]
-        return json.dumps(objects, indent=2, ensure_ascii=False) + "\n"
-    cells = [[as_cell(*cell) for cell in zip(row, rows.columns, strict=True)] for row in rows.rows]
-    if form is RowFormat.csv:
-        text = io.StringIO()
-        writer = csv.writer(text, lineterminator="\n")
-        writer.writerow(map(guarded, rows.columns))
-        for values, row in zip(rows.rows, cells, strict=True):
-            numbers = [isinstance(value, int | float) for value in values]  # -1 is no formula
-            writer.writerow(c if number else guarded(c) for c, number in zip(row, numbers, strict=True))
-        return text.getvalue()
-    return _table(rows.columns, cells, wide=wide)
-
-
-def _table(columns: tuple[str, ...], cells: list[list[str]], *, wide: bool) -> str:
-    from rich import box
-    from rich.console import Console
-    from rich.table import Table
-    from rich.text import Text
-
-    if not cells:
-        return "no rows\n"
-    cells = [[printable(cell) for cell in row] for row in cells]
-    terminal = Console()
-    on_screen = terminal.is_terminal and not wide
-    if natural_width(columns, cells) > (width := terminal.width if on_screen else WIDEST_TABLE):
-        return records(columns, cells, width if on_screen else sys.maxsize)
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for column in columns:
-        table.add_column(Text(column), overflow="fold")
-    for row in cells:
-        table.add_row(*map(Text, row))
-    text = io.StringIO()
-    Console(file=text, width=width, highlight=False).print(table)
-    return "".join(f"{line.rstrip()}\n" for line in text.getvalue().splitlines()).lstrip("\n")

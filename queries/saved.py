@@ -1,0 +1,65 @@
+"""The pack as the Neo4j Browser saves queries: a ZIP file with a folder of ``.cypher`` files, titled by the first line.
+
+In: queries. Out: bytes, the same for the same queries. Source: the Browser's own reading of what is dropped on its page
+(``FileDrop`` and ``readZipFiles`` of neo4j-browser).
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import re
+import zipfile
+from typing import TYPE_CHECKING
+
+from rosprivacy.queries.library import PARAMETER, TEXT
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rosprivacy.queries.library import Query
+
+FOLDER = "rosprivacy"
+EARLIEST = (1980, 1, 1, 0, 0, 0)  # that a ZIP file can say
+_TOKEN = re.compile(f"{TEXT.pattern}|{PARAMETER.pattern}", re.DOTALL)
+
+
+def zipped(queries: Iterable[Query]) -> bytes:
+    """Return the file that is dropped on the Browser's page."""
+    data = io.BytesIO()
+    with zipfile.ZipFile(data, "w", zipfile.ZIP_STORED) as archive:
+        for query in queries:
+            archive.writestr(zipfile.ZipInfo(f"{FOLDER}/{query.name}.cypher", EARLIEST), saved(query))
+    return data.getvalue()
+
+
+def saved(query: Query) -> str:
+    r"""Return a query with a title, and with its defaults in the place of parameters, so that it runs as it is.
+
+    What has no default stays a parameter; a line says how to set it.
+
+    >>> from rosprivacy.queries.library import find
+    >>> print(*saved(find("path-between")).splitlines()[:3], sep="\n")
+    // path-between: Is there a path from one element to another along what the policies allow, whatever goes along it?
+    // first: :param from => '…'  (name of the element where it starts)
+    // first: :param to => '…'  (name of the element where it ends)
+    """
+    defaults = {field.name: field.default for field in query.parameters if field.default is not None}
+    lines = [f"// {query.name}: {query.description}"]
+    lines += [
+        f"// first: :param {field.name} => '…'  ({field.meaning})"
+        for field in query.parameters
+        if field.name not in defaults
+    ]
+    lines += [
+        f"// {json.dumps(field.default, ensure_ascii=False)} stands for {field.name}: {field.meaning}"
+        for field in query.parameters
+        if field.name in defaults
+    ]
+    body = [line for line in query.text.splitlines() if not line.startswith("//")]
+
+    def with_default(token: re.Match[str]) -> str:
+        name = token.group(token.lastindex) if token.lastindex else None
+        return json.dumps(defaults[name], ensure_ascii=False) if name in defaults else token.group()
+
+    return "\n".join([*lines, _TOKEN.sub(with_default, "\n".join(body)), ""])

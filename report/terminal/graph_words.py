@@ -1,0 +1,74 @@
+"""Nodes, relationships and paths of a query in words, as the program says paths elsewhere; never cut.
+
+In: values of a query's rows. Out: text, not yet escaped for where it goes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.model import CHANNELS
+from rosprivacy.queries.graph_values import Node, Relationship, graph_values, nodes_in
+from rosprivacy.report.naming import kind_of
+from rosprivacy.report.stored import record_kind, record_name
+from rosprivacy.report.terminal.finding_lines import OTHER_VERBS, VERBS
+
+if TYPE_CHECKING:
+    from rosprivacy.queries.graph_values import GraphValue
+    from rosprivacy.report.stored import StoredNames
+
+
+@dataclass(frozen=True, slots=True)
+class GraphWords:
+    """How values of the graph are told.
+
+    Attributes
+    ----------
+    robots
+        Whether there are several, so that each element is named with its own.
+    """
+
+    names: StoredNames
+    robots: bool
+
+    @classmethod
+    def for_rows(cls, names: StoredNames, rows: object) -> GraphWords:
+        """Return how the values of some rows are told."""
+        elements = (names.element(node) for value in graph_values(rows) for node in nodes_in(value))
+        return cls(names, len({element["robot"] for element in elements if element} - {""}) > 1)
+
+    def of(self, value: GraphValue) -> str:
+        """Return a value in words: a path hop by hop, a relationship with its ends."""
+        if isinstance(value, Node):
+            return self._node(value)
+        if isinstance(value, Relationship):
+            return f"{self._node(value.start)}{self._step(value, value.start)}{self._node(value.end)}"
+        said = self._node(value.nodes[0])
+        for before, relationship, node in zip(value.nodes, value.relationships, value.nodes[1:], strict=False):
+            said += f"{self._step(relationship, before)}{self._node(node)}"
+        return said
+
+    def _node(self, node: Node) -> str:
+        element = self.names.element(node)
+        if element is None:
+            return f"{record_name(node)} ({record_kind(node)})"
+        robot = f"{element['robot']}:" if self.robots and element["robot"] else ""
+        return f"{robot}{element['name']} ({kind_of(element)})"
+
+    def _step(self, relationship: Relationship, before: Node) -> str:
+        """What is between two nodes, with the place where it stands; an arrow that points where the data goes."""
+        said = self._verb(relationship)
+        file, line = (relationship.properties.get(key) for key in ("file", "line"))
+        if file:
+            said += f" {file}:{line}" if line else f" {file}"
+        return f" | {said} -> " if relationship.start.id == before.id else f" <- {said} | "
+
+    def _verb(self, relationship: Relationship) -> str:
+        if relationship.type != self.names.flow:
+            return relationship.type
+        end = self.names.element(relationship.end)
+        role = str(relationship.properties.get("role", "flow"))
+        into_channel = end is not None and end["kind"] in CHANNELS
+        verb = VERBS.get((role, into_channel)) or OTHER_VERBS.get(role, role)
+        return f"{verb} (denied)" if relationship.properties.get("decision") == "deny" else verb

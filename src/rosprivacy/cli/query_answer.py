@@ -1,0 +1,124 @@
+"""The rows of a query as its formats have them: a table or records, JSON, CSV, or one drawing."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import sys
+from enum import StrEnum
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.errors import QueryError, shown
+from rosprivacy.analysis.text import counted, printable
+from rosprivacy.cli.row_records import natural_width, records
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rosprivacy.queries.run import Rows
+    from rosprivacy.report.stored import StoredNames
+
+WIDEST_TABLE = 400  # in a file or a pipe
+LESS = "ask for less, or use a lower --limit"
+
+
+class RowFormat(StrEnum):
+    """Of the rows of a query."""
+
+    table = "table"
+    json = "json"
+    csv = "csv"
+    svg = "svg"
+
+
+def not_drawn(what: str, columns: Iterable[str]) -> str:
+    """Return why there is no drawing, and what to do."""
+    names = ", ".join(map(shown, columns))
+    hint = "return some with --cypher (RETURN path), or take a query that rosprivacy query lists as one to be drawn"
+    return f"{what}: gives no node, relationship or path to draw, only {names}; {hint}"
+
+
+def answer(rows: Rows, form: RowFormat, title: str, *, wide: bool) -> str | bytes:
+    """Return rows in a format.
+
+    Parameters
+    ----------
+    title
+        Of a drawing.
+    wide
+        Whether the text goes to a file, where a line has no end.
+    """
+    return _drawing(rows, title) if form is RowFormat.svg else _text(rows, form, wide=wide)
+
+
+def _drawing(rows: Rows, title: str) -> bytes:
+    """All nodes, relationships and paths of some rows as one SVG; an error if there are none."""
+    from rosprivacy.queries.graph_values import graph_values
+    from rosprivacy.report.pictures.layout import drawn
+    from rosprivacy.report.pictures.query_view import query_view
+
+    if not rows.rows:
+        raise QueryError(f"{title}: no rows, so nothing can be drawn; take --format table to have that as an answer")
+    values = list(graph_values(rows.rows))
+    if not values:
+        raise QueryError(not_drawn(title, rows.columns))
+    number = counted(len(rows.rows), "row")
+    said = f"Only the first {number}: there are more, --limit draws more" if rows.more else number
+    picture = query_view(values, _stored_names(), title, (said,))
+    done = drawn(picture, "svg", direction="", less=LESS, instead=f"{LESS}, or take --format json")
+    for note in done.said:
+        print(note, file=sys.stderr)
+    return done.data
+
+
+def _stored_names() -> StoredNames:
+    from rosprivacy.ingest.database.schema import CARRIES, FLOWS_TO, KIND_LABELS
+    from rosprivacy.report.stored import StoredNames
+
+    return StoredNames({label: kind for kind, label in KIND_LABELS.items()}, FLOWS_TO.type, CARRIES)
+
+
+def _text(rows: Rows, form: RowFormat, *, wide: bool) -> str:
+    from rosprivacy.queries.graph_values import plain
+    from rosprivacy.queries.run import as_cell
+    from rosprivacy.report.spreadsheet import guarded
+    from rosprivacy.report.terminal.graph_words import GraphWords
+
+    if form is RowFormat.json:
+        objects = [dict(zip(rows.columns, map(plain, row), strict=True)) for row in rows.rows]
+        return json.dumps(objects, indent=2, ensure_ascii=False) + "\n"
+    words = GraphWords.for_rows(_stored_names(), rows.rows).of
+    cells = [[as_cell(*cell, words) for cell in zip(row, rows.columns, strict=True)] for row in rows.rows]
+    if form is RowFormat.csv:
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(map(guarded, rows.columns))
+        for values, row in zip(rows.rows, cells, strict=True):
+            numbers = [isinstance(value, int | float) for value in values]  # -1 is no formula
+            writer.writerow(c if number else guarded(c) for c, number in zip(row, numbers, strict=True))
+        return text.getvalue()
+    return _table(rows.columns, cells, wide=wide)
+
+
+def _table(columns: tuple[str, ...], cells: list[list[str]], *, wide: bool) -> str:
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    if not cells:
+        return "no rows\n"
+    cells = [[printable(cell) for cell in row] for row in cells]
+    terminal = Console()
+    on_screen = terminal.is_terminal and not wide
+    if natural_width(columns, cells) > (width := terminal.width if on_screen else WIDEST_TABLE):
+        return records(columns, cells, width if on_screen else sys.maxsize)
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for column in columns:
+        table.add_column(Text(column), overflow="fold")
+    for row in cells:
+        table.add_row(*map(Text, row))
+    text = io.StringIO()
+    Console(file=text, width=width, highlight=False).print(table)
+    return "".join(f"{line.rstrip()}\n" for line in text.getvalue().splitlines()).lstrip("\n")
