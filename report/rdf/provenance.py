@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from rdflib import RDF, RDFS, Literal
 from rdflib.namespace import PROV
 
+from rosprivacy.report.element_counts import count_elements
 from rosprivacy.report.rdf.terms import RP, Triple, about, below, file_iri, finding_iri, named, text
 
 if TYPE_CHECKING:
@@ -70,7 +71,7 @@ def provenance(
         (RP.view, [text(document["view"])]),
         (RP.followed, things.categories(analysis.emitted)),
         (RP.found, [finding_iri(finding) for finding in analysis.findings]),
-        (RP.openElements, [Literal(len(analysis.open))]),
+        (RP.openElements, [Literal(count_elements(q.element for q in analysis.open).elements)]),
         (PROV.wasGeneratedBy, [run]),
         (PROV.generatedAtTime, moment),
     )

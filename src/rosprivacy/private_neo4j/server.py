@@ -47,7 +47,8 @@ server.http.listen_address=127.0.0.1:{http}
 server.http.advertised_address=127.0.0.1:{http}
 server.https.enabled=false
 dbms.security.auth_enabled=true
-# Nothing about the use of the server, of the driver or of the browser page goes anywhere.
+# Nothing about the use of the server or of the driver goes anywhere. The page of the Browser asks other hosts for
+# fonts and scripts all the same, where it can (docs/database.md).
 dbms.usage_report.enabled=false
 server.bolt.telemetry.enabled=false
 client.allow_telemetry=false
