@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import LabelError, shown
 from rosprivacy.analysis.kernel.ranks import NONE_OF, in_words
-from rosprivacy.analysis.model import STANDARD, Diagnostic, Severity
+from rosprivacy.analysis.model import STANDARD, Diagnostic, Method, Severity
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -61,7 +61,8 @@ class Overruled:
     def error(self) -> LabelError | None:
         """Return the error, where one file takes away what another says without a word of it."""
         files = self.lost.place.file != self.by.place.file and self.lost.rank[0] == self.by.rank[0] == USERS
-        if not files or self.by.rank == self.lost.rank or self.by.role in (self.role, NONE_OF[self.role]):
+        says_so = self.by.role in (self.role, NONE_OF[self.role]) or (self.by.method is Method.ABSENT and self.by.by_name)
+        if not files or self.by.rank == self.lost.rank or says_so:
             return None
         hint = f"if this is meant, write '{self.role}: none' beside it, else correct one of them"
         return LabelError(self.by.place.file, self.by.place.line, self.message, hint)

@@ -37,6 +37,8 @@ OPPOSED = frozenset(
         ("leak", "no-leak"),
     )
 )
+# What is not on the robot does nothing: a label of higher rank that says it does makes it be there (rule S7).
+OPPOSED_TO_ABSENT = frozenset(frozenset(("sanitizer", role)) for role in ("leak", "derivation"))
 NONE_OF = {"source": "no-source", "leak": "no-leak"}  # role -> what takes it back by name
 
 Rank = tuple[int, int, int]
@@ -164,7 +166,8 @@ def _opposed(a: Statement, b: Statement, category: str, hierarchy: Hierarchy) ->
         differ = a.role != b.role or set(a.categories) != set(b.categories)
         return closes(a, category, hierarchy) != closes(b, category, hierarchy) or (whole and differ)
     if a.role != b.role:
-        return frozenset((a.role, b.role)) in OPPOSED
+        absent = Method.ABSENT in (a.method, b.method)
+        return frozenset((a.role, b.role)) in (OPPOSED | OPPOSED_TO_ABSENT if absent else OPPOSED)
     if a.role == "sanitizer":
         return a.method != b.method
     return a.role == "source" and a.through != b.through

@@ -45,6 +45,8 @@ class Spread:
         Channels taken as mundane on a shipped file's word alone (rule S13).
     absent
         Nodes that a label says are not on the robot; what is sent to them gets to nobody.
+    gone
+        Vertex -> bits for which that holds; of some that are there for others, since a label of higher rank says so.
     overruled
         Sources and leaks that a statement says and another takes away.
     made
@@ -72,6 +74,7 @@ class Spread:
     named: dict[int, int] = field(default_factory=dict)
     standard: set[int] = field(default_factory=set)
     absent: set[int] = field(default_factory=set)
+    gone: dict[int, int] = field(default_factory=dict)
     overruled: tuple[Overruled, ...] = ()
     made: set[int] = field(default_factory=set)
     arrives: dict[int, int] = field(default_factory=dict)
@@ -93,10 +96,9 @@ class Spread:
 
     def present(self, vertex: int) -> int:
         """What arrives at or starts from an element, or is carried by a channel; nothing at what is not there."""
-        if vertex in self.absent:
-            return 0
         arrives, leaves = self.arrives.get(vertex, 0), self.leaves.get(vertex, 0)
-        return leaves if self.graph.elements[vertex].is_channel else arrives | leaves
+        here = leaves if self.graph.elements[vertex].is_channel else arrives | leaves
+        return here & ~self.gone.get(vertex, 0)
 
     def sends(self, index: int) -> int:
         """What is sent along a flow, whether its end takes it up or not."""

@@ -34,6 +34,7 @@ PAIRS = [
 OF_CHANNELS = {"mundane", "sensitive", "only", "never"}  # S7: statements of one kind
 OF_EVERY_KIND = {"mundane", "sensitive", "only"}
 ENDS = {"anonymise", "aggregate", "drop"}
+ABSENT = "absent"  # the word of a node that is not there: it does nothing, so it is opposed to all that it might do
 CONDUIT = Statement("conduit", (), (-1, 0), Place("", 0))
 LEAK = Statement("leak", (), (-1, 0), Place("", 0))
 BY_KIND = {
@@ -141,6 +142,8 @@ class Brute:
             return self.closes(s, category) != self.closes(t, category) or (whole and differ)
         if s.role == t.role:
             return (s.role == "sanitizer" and s.method != t.method) or (s.role == "source" and s.through != t.through)
+        if ABSENT in (str(s.method), str(t.method)):
+            return not {s.role, t.role} & {"no-source", "no-leak"}
         return {s.role, t.role} in PAIRS
 
     def beats(self, t: Statement, s: Statement, category: str) -> bool:
@@ -209,7 +212,8 @@ class Brute:
         """S7: whether labels contradict each other, or one file takes away what another says without a word of it."""
         for _, _, s, t in self.outdone():
             files = s.place.file != t.place.file and s.rank != t.rank and s.rank[0] == t.rank[0] == 1
-            if files and t.role not in (s.role, f"no-{s.role}"):
+            by_name = str(t.method) == ABSENT and by_a_users_name(t)
+            if files and t.role not in (s.role, f"no-{s.role}") and not by_name:
                 return True
         emitted = self.kinds_emitted()
         for vertex, category in self.judged():
@@ -247,7 +251,11 @@ class Brute:
     def only_hides(self, vertex: int, category: str) -> bool:
         """Whether all that cleans it pseudonymises: what is pseudonymised already goes on so."""
         sanitizers = [s for s in self.holding(vertex, category) if s.role == "sanitizer"]
-        return bool(sanitizers) and all(str(s.method) not in ENDS for s in sanitizers)
+        return bool(sanitizers) and all(str(s.method) not in {*ENDS, ABSENT} for s in sanitizers)
+
+    def gone(self, vertex: int, category: str) -> bool:
+        """Whether a label says that a node is not on the robot, and no higher one says that it does something."""
+        return any(str(s.method) == ABSENT for s in self.holding(vertex, category))
 
     def made(self, vertex: int, data: Data) -> set[Data]:
         """S8: derive, and what is made of that in turn; and pseudonymise."""
@@ -258,7 +266,7 @@ class Brute:
             names |= {s.to for c in before for s in self.holding(vertex, c) if s.role == "derivation"}
         result = {(name, hidden) for name in names if name != category}
         sanitizers = [s for s in self.holding(vertex, category) if s.role == "sanitizer"]
-        if not hidden and any(str(s.method) not in ENDS for s in sanitizers):
+        if not hidden and any(str(s.method) not in {*ENDS, ABSENT} for s in sanitizers):
             result.add((category, True))
         return result
 
@@ -289,6 +297,8 @@ class Brute:
         self.along = set()
 
         def there(vertex: int, data: Data, level: int) -> None:
+            if self.gone(vertex, data[0]):
+                return  # what is sent there gets to nobody
             present[vertex, data] = min(level, present.get((vertex, data), level))
 
         for source in sorted(sources):

@@ -7,7 +7,7 @@ from dataclasses import replace
 from hypothesis import strategies as st
 
 from rosprivacy.analysis.model import GLOB, NAME, SEGMENT, Place, Statement
-from tests.helpers.systems import PARENTS, System, statement, systems
+from tests.helpers.systems import ABSENT, PARENTS, System, statement, systems
 
 EXACT = 1_000_000
 NAMINGS = [(EXACT, NAME), (EXACT, NAME), (4, SEGMENT), (4, GLOB), (7, GLOB), (7, SEGMENT)]
@@ -32,7 +32,7 @@ def ranked(draw: st.DrawFn) -> System:
         lambda r, c: statement(r, *sorted(c)), st.sampled_from(["only", "never"]), st.sets(category, min_size=1)
     )
     plain = st.sampled_from([statement("mundane"), statement("sensitive")])
-    words = st.sampled_from([statement("no-leak"), statement("no-source"), statement("conduit")])
+    words = st.sampled_from([statement("no-leak"), statement("no-source"), statement("conduit"), ABSENT])
     for vertex, said in system.said.items():
         extra = st.one_of(more, plain) if vertex in channels else words
         some = [*said, *draw(st.lists(extra, max_size=2))]

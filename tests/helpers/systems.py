@@ -43,6 +43,7 @@ HIERARCHY = Hierarchy.of(Category(n, f"urn:{n}", n, n, n, up) for n, up in PAREN
 WIDE = [f"K{i:02}" for i in range(70)]
 WIDE_HIERARCHY = Hierarchy.of(Category(n, f"urn:{n}", n, n, n) for n in WIDE)
 METHODS = CLEANS  # what a label of a sanitizer can say; `absent` is a word of its own
+ABSENT = Statement("sanitizer", (), (1, 0), Place("labels", 1), Method.ABSENT, why="sold")
 
 
 def statement(role: str, *categories: str, method: Method | None = None, to: str = "") -> Statement:
@@ -152,6 +153,8 @@ def systems(
     always = [*others[:2], others[1], derives, cleans]  # a source, two leaks, a derivation, a sanitizer
     for label in always:
         said[draw(st.integers(0, nodes - 1))].append(draw(label))
+    if draw(st.integers(0, 3)) == 0:
+        said[draw(st.integers(0, nodes - 1))] = [ABSENT]  # it stands alone
     plain = st.sampled_from([[], [], [statement("mundane")], [statement("sensitive")]])
     some = st.sets(category, min_size=1, max_size=2)
     part = st.builds(lambda r, c: [statement(r, *sorted(c))], st.sampled_from(["only", "never"]), some)
