@@ -61,7 +61,8 @@ class Overruled:
     def error(self) -> LabelError | None:
         """Return the error, where one file takes away what another says without a word of it."""
         files = self.lost.place.file != self.by.place.file and self.lost.rank[0] == self.by.rank[0] == USERS
-        says_so = self.by.role in (self.role, NONE_OF[self.role]) or (self.by.method is Method.ABSENT and self.by.by_name)
+        absent_by_name = self.by.method is Method.ABSENT and self.by.by_name
+        says_so = absent_by_name or self.by.role in (self.role, NONE_OF[self.role])
         if not files or self.by.rank == self.lost.rank or says_so:
             return None
         hint = f"if this is meant, write '{self.role}: none' beside it, else correct one of them"

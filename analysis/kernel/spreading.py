@@ -144,8 +144,9 @@ def _set_vertex(spread: Spread, vertex: int, bound: Bound, stated: Mapping[int, 
     decided = spread.facts[vertex]
     if any(fact.standard for fact in decided.values()):
         spread.standard.add(vertex)
-    spread.gone[vertex] = _bits(spread, decided, lambda fact: fact.method == Method.ABSENT)
-    if spread.gone[vertex] == spread.all_bits != 0:
+    if gone := _bits(spread, decided, lambda fact: fact.method == Method.ABSENT):
+        spread.gone[vertex] = gone
+    if gone == spread.all_bits != 0:
         spread.absent.add(vertex)
     number = {category: i for i, category in enumerate(spread.categories)}
     spread.keeps[vertex] = _bits(spread, decided, lambda fact: fact.passes)

@@ -57,6 +57,21 @@ def test_nothing_goes_through_what_is_absent_and_every_report_says_so(tmp_path: 
     assert "/shell has a profile and is not on the robot: a debug tool" in result.to("markdown")
 
 
+def test_a_glob_takes_no_leak_away_that_a_name_states(tmp_path: Path) -> None:
+    """S7: the name outranks the glob, so the node is there and lets data out."""
+    result = analyze(tmp_path, f'{ENDS}  "/u*": {{absent: old tools}}\n')
+    assert [finding.leak.name for finding in result.analysis.findings] == ["/uplink"]
+    assert result.document()["verdict"] == "leak"
+
+
+def test_a_leak_that_a_name_takes_away_is_told(tmp_path: Path) -> None:
+    labels = 'nodes:\n  /camera: {source: [Video]}\n  "/u*": {leak: [Video]}\n  /uplink: {absent: sold}\n'
+    result = analyze(tmp_path, labels)
+    assert result.document()["findings"] == []
+    (row,) = result.document()["assumptions"]["overruled"]
+    assert (row["elements"], row["role"], row["by"]["says"]) == (["/uplink"], "leak", "absent")
+
+
 def test_nobody_is_told_that_data_gets_to_what_is_absent(tmp_path: Path) -> None:
     """docs/labels.md: nothing gets to it, so it is in no inventory, and no proposal takes anything from it."""
     labels = (
