@@ -118,9 +118,11 @@ GLOBS = [statement("mundane"), statement("never", "Any"), statement("only", "Loc
 
 
 def answer(brute: Brute) -> tuple[dict[tuple[str, str, int, int], tuple[bool, bool]], set[tuple[int, str]]]:
-    """Finding -> (not dismissed, plain); (vertex, category) that is open."""
-    told = {key[:4]: forms for key, forms in brute.findings().items() if not key[4]}  # none beside another
-    findings = {key: (not dismissed, not hidden) for key, (hidden, dismissed, _) in told.items()}
+    """Finding -> (not dismissed, plain), each also if only what stands beside it is so; (vertex, category) open."""
+    findings: dict[tuple[str, str, int, int], tuple[bool, bool]] = {}
+    for key, (hidden, dismissed, _) in brute.findings().items():
+        counts, plain = findings.get(key[:4], (False, False))
+        findings[key[:4]] = (counts or not dismissed, plain or not hidden)
     return findings, {(v, c) for v, (categories, *_) in brute.open().items() for c in categories}
 
 
