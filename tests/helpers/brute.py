@@ -242,6 +242,14 @@ class Brute:
                     return True
         return False
 
+    def has_grounds(self) -> bool:
+        """S11, S12: whether data of some source goes anywhere, and whether anybody says what is a leak, or none."""
+        storages = any(kind == "storage" for kind, _ in self.outside.values())
+        kinds, vertices = self.kinds_emitted(), {*self.said, *self.outside}
+        said = (s for vertex in vertices for category in kinds for s in self.said_of(vertex, category))
+        onward = {source for source, _ in self.edges} & self.sources()
+        return bool(onward) and (storages or any(s.role in ("leak", "no-leak") for s in said))
+
     def has(self, vertex: int, role: str, category: str) -> bool:
         return any(s.role == role for s in self.holding(vertex, category))
 

@@ -150,7 +150,7 @@ def test_the_verdict_says_no_more_than_is_known(system: System) -> None:
         return
     if any(not finding.dismissed for finding in found.findings):
         assert found.verdict is Verdict.LEAK
-    elif found.open or not system.brute().sources():
+    elif found.open or not system.brute().has_grounds():
         assert found.verdict is Verdict.UNDETERMINED
     else:
         assert found.verdict is Verdict.NO_LEAK_FOUND
