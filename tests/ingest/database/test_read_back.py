@@ -72,14 +72,20 @@ def test_the_document_is_that_of_the_files(
 
 @pytest.mark.slow
 def test_on_random_graphs_nothing_changes(driver: Driver) -> None:
-    """60 robots in one analysis find what each finds alone, and nothing differs from what was loaded."""
+    """Robots in one analysis find what each finds alone, and nothing differs from what was loaded.
+
+    Whether anybody speaks of leaks at all is asked of all together: robots that lack this by themselves are left out.
+    """
     rows, expected = [], set()
-    for number, system in enumerate(random_systems(60)):
+    for number, system in enumerate(random_systems(90)):
         analysis, robot = system.analyse(), f"g{number:02}"
+        if analysis.lacking:
+            continue
         rows.append(robot_rows(robot, analysis, system.bound(), SMALL))
         expected |= {
             (robot, f.category, f.pseudonymised, f.dismissed, *(e.name for e in f.witness)) for f in analysis.findings
         }
+    assert len(rows) > 40
     load(driver, rows, SMALL)
     different = ("digest", "version", "stops")  # all kinds of data that robots bring in together stand in "stops"
     before = dump(driver, without=different)
