@@ -94,7 +94,7 @@ def _own_folders(tmp_path_factory: pytest.TempPathFactory, pytestconfig: pytest.
     """Tests do not touch the user's cache, nor the user's private Neo4j; for minutes Java need not compile its best."""
     with pytest.MonkeyPatch.context() as patch:
         if not pytestconfig.getoption("--slow"):
-            patch.setenv("JDK_JAVA_OPTIONS", "-XX:TieredStopAtLevel=1")
+            patch.setenv("JDK_JAVA_OPTIONS", "-XX:TieredStopAtLevel=1 -XX:+UseSerialGC")
         patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
         patch.setenv("ROSPRIVACY_DATA", str(tmp_path_factory.mktemp("private data")))
         yield

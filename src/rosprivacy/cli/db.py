@@ -78,11 +78,14 @@ def browser(
     """Open the Neo4j Browser on the private Neo4j, with the program's colours and its questions as files to drop."""
     from rosprivacy.browser_files import QUERIES, STYLE, address
     from rosprivacy.private_neo4j import connection
+    from rosprivacy.private_neo4j.state import keep_private
 
     made = _browser_files(connection.start())
     found = connection.status()
     folder = files or connection.state_folder() / "browser"
     _write(folder, made)
+    if files is None:
+        keep_private(folder)  # as all that is kept beside the server's data
     page = address(str(found.browser), str(found.uri), connection.USER)
     lines = [
         f"Browser:   {page}",
