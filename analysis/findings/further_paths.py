@@ -102,7 +102,12 @@ class Between:
         """
         edges = self._leading_to(leak)
         # one kind of data is like another where nothing is made into it
-        key = tuple(edges) if any(a[1] not in (SOURCE, self.category) for a, _ in edges) else _vertices(edges)
+        differs = any(a[1] not in (SOURCE, self.category) for a, _ in edges)
+        key = (
+            self.source,
+            leak,
+            tuple(edges) if differs else _vertices(edges),
+        )  # on a ring two sources have equal graphs
         if key not in memory:
             memory[key] = _disjoint(edges, (self.source, SOURCE), (leak, LEAK))
         return memory[key], edges

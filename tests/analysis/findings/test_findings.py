@@ -17,7 +17,9 @@ from rosprivacy.analysis.findings.findings import Options
 from rosprivacy.analysis.model import (
     DISCLOSURE,
     Method,
+    NonRosFacts,
 )
+from rosprivacy.analysis.modes import Paths
 from tests.helpers.more_systems import wildcards
 from tests.helpers.systems import HIERARCHY, PARENTS, WIDE, WIDE_HIERARCHY, System, analysed, index, statement, systems
 
@@ -86,6 +88,18 @@ def test_a_witness_is_a_way_along_flows_and_names_the_leaks_that_dismiss_it(syst
         assert [number[s.source] for s in finding.steps] == way[:-1]
         assert bool(finding.through) == finding.dismissed
         assert all(brute.has(number[element], "leak", finding.category) for element in finding.through)
+
+
+def test_two_sources_on_a_ring_have_paths_of_their_own() -> None:
+    """What leads to the storage n3 is the same set of flows for both; the paths are not."""
+    source, leak = statement("source", "Any"), statement("leak", "Any")
+    edges = [(0, 3), (0, 6), (2, 3), (2, 6), (3, 0), (3, 2), (3, 4), (4, 0), (6, 0)]
+    said = {0: [leak], 2: [source], 4: [source], **{v: [] for v in (1, 3, 5, 6)}}
+    system = System(6, 1, edges, said, {}, HIERARCHY, [("storage", NonRosFacts())] * 3, wildcard=False)
+    analysis = system.analyse(Options(paths=Paths.disjoint))
+    assert {f.source.name for f in analysis.findings if f.leak.name == "n3"} == {"/n2", "n4"}
+    for finding in analysis.findings:
+        assert {(path[0], path[-1]) for path in finding.paths} <= {(finding.source, finding.leak)}
 
 
 @given(systems(), st.data())
