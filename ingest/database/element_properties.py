@@ -100,7 +100,8 @@ class Roles:
         try:
             return role in facts("", said, category, self._hierarchy).roles
         except LabelError:  # two labels contradict each other about a kind that nobody brings in: the worse one counts
-            return role == "leak"
+            leaks = tuple(statement for statement in said if statement.role == "leak")
+            return role == "leak" and role in facts("", leaks, category, self._hierarchy).roles
 
     def _as_labels(self, names: list[str], suffix: str) -> list[str]:
         return sorted({self._labels[up] + suffix for name in names for up in self._hierarchy.ancestors[name]})

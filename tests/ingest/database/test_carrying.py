@@ -93,6 +93,16 @@ def test_the_naive_query_finds_what_memory_finds(system: System) -> None:
     assert {pair for name in VOCABULARY.categories for pair in expanded(rows, name)} == expected
 
 
+def test_labels_that_contradict_each_other_make_no_leak_of_another_kind() -> None:
+    """Of Track, that nobody brings in, a conduit and a sanitizer say different things; the leak is of Face."""
+    said = [statement("leak", "Face"), statement("conduit", "Loc"), statement("sanitizer", "Bio", method=Method.DROP)]
+    system = System(2, 0, [(0, 1)], {0: [statement("source", "Face")], 1: said}, {})
+    _, rows = shown(system)
+    assert [label for label in rows.elements[1]["labels"] if label.endswith("Leak")] == [
+        "TestAnyLeak", "TestBioLeak", "TestFaceLeak",
+    ]  # fmt: skip
+
+
 SOURCE, LEAK = statement("source", "Face"), statement("leak", "Face")
 ONE_CHANNEL = replace(SOURCE, through=("/t1",))
 DROPS, MAKES = statement("sanitizer", "Face", method=Method.DROP), statement("derivation", "Loc", to="Face")
