@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.helpers.console import check, commands
+from tests.helpers.daily import one_in
 from tests.helpers.paths import ROOT
 from tests.helpers.turtlebot import TURTLEBOT3
 
@@ -67,7 +68,7 @@ class Typist:
 
 
 @pytest.mark.corpus
-@pytest.mark.parametrize("name", STUDIES)
+@pytest.mark.parametrize("name", one_in(len(STUDIES), STUDIES))
 def test_a_reader_gets_from_nothing_to_the_report(name: str, cli: Cli, corpus: Path, tmp_path: Path) -> None:
     typist = Typist(tmp_path / FILE)
     runs, rounds = 0, 0

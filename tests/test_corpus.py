@@ -144,6 +144,7 @@ class TestTurtleBot3:
         scan = [g for g in policy.grants if g.name == "/scan" and g.role == "publish"]
         assert {(g.place.file.rpartition("/")[2], g.place.line) for g in scan} == {("turtlebot3.xml", 45)}
 
+    @pytest.mark.slow
     def test_the_enforced_view_reaches_what_the_declared_one_does_and_more(self, corpus: Path) -> None:
         declared = analyze(corpus, TURTLEBOT3, "turtlebot3_step_5")
         enforced = analyze(corpus, TURTLEBOT3, "turtlebot3_step_5", view="enforced")

@@ -20,6 +20,7 @@ from rosprivacy.private_neo4j import connection
 from rosprivacy.queries.library import pack
 from rosprivacy.report.pictures import looks
 from tests.helpers.command import LINE, run
+from tests.helpers.daily import one_in
 from tests.helpers.graphs import care_home, rows_of
 from tests.helpers.paths import ROOT
 
@@ -239,7 +240,7 @@ class TestQuery:
         assert "path   /a\n" in done.stdout
         assert "…" not in done.stdout
 
-    @pytest.mark.parametrize("on_terminal", ["", "1"])
+    @pytest.mark.parametrize("on_terminal", one_in(2, ["", "1"]))
     @pytest.mark.usefixtures("loaded")
     def test_paths_nodes_and_relationships_are_told_in_words(self, on_terminal: str) -> None:
         """As `analyze` says paths: kinds, verbs, the policy line; an arrow points where the data goes."""

@@ -18,6 +18,7 @@ from rosprivacy.queries.saved import saved
 from rosprivacy.report.pictures.looks import GRAY, LINE_LOOKS, RED, ROLE_LOOKS, SKY
 from tests.helpers import browser as chrome
 from tests.helpers.command import run
+from tests.helpers.daily import one_in
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
@@ -62,7 +63,7 @@ def page(tmp_path: Path) -> Iterator[WebDriver]:
 
 
 @pytest.mark.database
-@pytest.mark.parametrize("folder", ["", "of my own"])
+@pytest.mark.parametrize("folder", one_in(2, ["", "of my own"]))
 def test_it_writes_the_files_and_says_where_everything_is(
     cli: Cli, loaded: Connection, tmp_path: Path, folder: str
 ) -> None:

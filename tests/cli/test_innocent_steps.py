@@ -17,6 +17,7 @@ from rosprivacy.ingest.labels.label_template import HEADER
 from rosprivacy.label_lines import next_lines, updated
 from rosprivacy.report.terminal.next_step import EXAMPLE, LACKING
 from rosprivacy.settings import Settings
+from tests.helpers.daily import one_in
 from tests.helpers.innocent_steps import CHANNEL_WORDS, INFRASTRUCTURE, NODE_WORDS, Line, Planted, plant
 
 if TYPE_CHECKING:
@@ -83,7 +84,7 @@ def test_what_is_planted_is_a_leak(corpus: Path) -> None:
         assert Line("", INFRASTRUCTURE, "") in one.offered
 
 
-@pytest.mark.parametrize("name", SMALL)
+@pytest.mark.parametrize("name", one_in(len(SMALL), SMALL))
 def test_no_two_innocent_steps_end_in_nothing_found(corpus: Path, name: str) -> None:
     (planted,) = planted_in(corpus, (name,))
     assert list(wrong(planted, Random(1), singles=30, pairs=20)) == []  # noqa: S311 - no secret

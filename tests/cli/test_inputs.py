@@ -107,6 +107,7 @@ def test_a_first_label_file_and_the_schemas_name_an_own_category(cli: Cli, clini
         assert "PulseCurve" in done.stdout
 
 
+@pytest.mark.slow
 @pytest.mark.database
 @pytest.mark.usefixtures("neo4j_server")
 def test_a_fleet_with_an_own_category_is_loaded_and_unloaded(cli: Cli, clinic: Path) -> None:

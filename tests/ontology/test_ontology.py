@@ -230,6 +230,7 @@ class TestLaw:
             assert {RP["GDPR-9-1"], RP["GDPR-9"], RP.GDPR} <= above
 
 
+@pytest.mark.slow
 class TestDpv:
     def test_every_term_that_is_named_is_in_the_list(self) -> None:
         listed = set(ontology().subjects(RP.inVersion, Literal("2.3")))

@@ -92,6 +92,7 @@ def test_a_shipped_file_may_name_what_is_not_there(tmp_path: Path) -> None:
     assert "matches no topic" in wrong(tmp_path, (tmp_path / "s.yaml").read_text())[0]
 
 
+@pytest.mark.slow
 def test_a_label_file_of_another_system_is_refused_soon(cli: Cli, tmp_path: Path) -> None:
     names = range(1500)
     profiles = "".join(f'<profile ns="/robot_{i:04}" node="camera_driver"/>' for i in names)

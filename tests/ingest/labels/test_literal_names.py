@@ -300,6 +300,7 @@ def test_a_line_of_the_template_or_the_review_list_changes_its_element_and_no_ot
     assert check(graph, offered_by_the_review_list(str(robot / "p.xml"), graph)) >= 3
 
 
+@pytest.mark.slow
 @pytest.mark.corpus
 def test_a_line_that_is_offered_changes_its_element_and_no_other_in_real_policies(corpus: Path) -> None:
     wildcards = 0

@@ -93,6 +93,7 @@ def dpv(corpus: Path) -> Graph:
     return graph
 
 
+@pytest.mark.slow
 class TestTerms:
     """Every word of DPV is one of DPV 2.3; its files stay where they are."""
 
