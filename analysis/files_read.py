@@ -83,8 +83,8 @@ def read_as(name: str, status: os.stat_result | None) -> str | None:
     ...     read_as("link.xml", os.stat(os.curdir)), read_as("./policy.xml", None), read_as("labels.yaml", None)
     ('policy.xml', 'policy.xml', None)
     """
-    notes = _NOTES.get() or {}
-    return next((notes[key][0] for key in _keys(name, status) if key in notes), None)
+    before = _noted(name, status)
+    return before[0] if before else None
 
 
 def changed_since(name: str, status: os.stat_result | None) -> bool:
@@ -106,13 +106,19 @@ def changed_since(name: str, status: os.stat_result | None) -> bool:
     ...     changed_since("made.yaml", now), changed_since("made.yaml", None)
     (True, False)
     """
-    notes = _NOTES.get()
-    if notes is None:
+    if _NOTES.get() is None:
         return False
-    before = next((notes[key][1] for key in _keys(name, status) if key in notes), None)
-    if before is None or status is None:
-        return before is not status
+    noted_as = _noted(name, status)
+    if noted_as is None or status is None:
+        return noted_as is not status
+    before = noted_as[1]
     return (before.st_ino, before.st_mtime_ns, before.st_size) != (status.st_ino, status.st_mtime_ns, status.st_size)
+
+
+def _noted(name: str, status: os.stat_result | None) -> tuple[str, os.stat_result] | None:
+    """The name under which a file was read, and what the system said of it then."""
+    notes = _NOTES.get() or {}
+    return next((notes[key] for key in _keys(name, status) if key in notes), None)
 
 
 def _keys(name: str, status: os.stat_result | None) -> tuple[Key, ...]:

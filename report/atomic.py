@@ -73,15 +73,15 @@ def write_texts(texts: Iterable[tuple[Path, str | bytes | None]], *, edited: Pat
     try:
         for at, text in pairs:
             if not at.stream:
-                with told(at.named):
+                with writing(at.named):
                     staged.append((_stage(at, _bytes(text)), at))
         for at, text in pairs:
             if at.stream:
-                with told(at.named):
+                with writing(at.named):
                     at.named.write_bytes(_bytes(text))
         _check_edited(outputs, edited)
         for temporary, at in staged:
-            with told(at.named):
+            with writing(at.named):
                 temporary.replace(at.file)
                 _keep_name(at.file.parent)
     finally:
@@ -101,7 +101,7 @@ def check_outputs(files: Iterable[Path], *, edited: Path | None = None) -> list[
     """
     outputs = []
     for file in files:
-        with told(file):
+        with writing(file):
             outputs.append(_Output(file, file.resolve(), _status(file)))
     problems = [*_over_inputs(outputs, edited), *_on_one_file(outputs)]
     if problems:
@@ -161,7 +161,7 @@ def _status(file: Path) -> os.stat_result | None:
 
 
 @contextmanager
-def told(file: Path) -> Iterator[None]:
+def writing(file: Path) -> Iterator[None]:
     """Say of what the system refuses that a file cannot be written."""
     try:
         yield

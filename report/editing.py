@@ -10,7 +10,7 @@ from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError
-from rosprivacy.report.atomic import told
+from rosprivacy.report.atomic import writing
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -33,7 +33,7 @@ def editing(file: Path) -> Iterator[None]:
     """
     import filelock  # noqa: PLC0415 - light start
 
-    with told(file):
+    with writing(file):
         target = file.resolve()
         target.parent.stat()  # filelock would make the folder
         neighbour = target.with_name(f".{target.name[:50]}.lock")

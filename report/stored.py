@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from rosprivacy.queries.graph_values import Node
+    from rosprivacy.queries.graph_values import Node, Relationship
 
 CALLED_BY = ("name", "path", "category", "title", "id")  # of what is no element; the first that is there
 
@@ -46,6 +46,11 @@ class StoredNames:
             return None
         texts = {key: str(node.properties.get(key, "")) for key in ("robot", "name", "leg")}
         return {**texts, "kind": kind, "pattern": "side" in node.properties}
+
+
+def flow_said(flow: Relationship) -> tuple[str, bool]:
+    """Return the role of a flow, and whether a DENY takes it back."""
+    return str(flow.properties.get("role", "flow")), flow.properties.get("decision") == "deny"
 
 
 def record_name(node: Node) -> str:

@@ -35,7 +35,7 @@ def concerns(spread: Spread, bound: Bound, hierarchy: Hierarchy) -> Iterator[Con
     >>> [(concern.kind, concern.reasons.get((DISK, "Video"), "")) for concern in kinds]
     [('disclosure', ''), ('storage-limitation', 'no retention is stated'), ('third-country-transfer', '')]
     """
-    yield Concern(DISCLOSURE, _there(spread, spread.leaks), {})
+    yield Concern(DISCLOSURE, spread.leaks, {})
     elements = spread.graph.elements
     storages = {v: facts for v, facts in bound.outside.items() if elements[v].kind == "storage"}
     too_long = {(v, c): kept_too_long(facts, c, hierarchy) for v, facts in storages.items() for c in spread.categories}
@@ -44,10 +44,6 @@ def concerns(spread: Spread, bound: Bound, hierarchy: Hierarchy) -> Iterator[Con
         bits: dict[int, int] = {}
         for (vertex, category), why in reasons.items():
             if why:
-                bits[vertex] = bits.get(vertex, 0) | spread.both(category)
-        yield Concern(kind, _there(spread, bits), {key: why for key, why in reasons.items() if why})
-
-
-def _there(spread: Spread, bits: Mapping[int, int]) -> dict[int, int]:
-    """Nothing gets to what is said not to be on the robot."""
-    return {vertex: here & ~spread.gone.get(vertex, 0) for vertex, here in bits.items()}
+                here = spread.both(category) & ~spread.gone.get(vertex, 0)  # nothing gets to what is not on the robot
+                bits[vertex] = bits.get(vertex, 0) | here
+        yield Concern(kind, bits, {key: why for key, why in reasons.items() if why})

@@ -91,6 +91,8 @@ def globs(
     [('labels.yaml:5', ('only',), 1, 1, '/archive')]
     """
     decided = _decided(analysis, bound, beside)
+    if not decided:
+        return ()
     rows: dict[Place, list[TakenAway]] = defaultdict(list)
     for row in taken:
         if row.glob and (row.by in CLOSERS or row.by == REVIEW):

@@ -3,7 +3,15 @@
 Nothing here reads or writes anything; validation is done where a fact is made.
 """
 
-from rosprivacy.analysis.model.category import ARTICLE_9, ARTICLE_9_VERDICTS, Category, Legal
+from rosprivacy.analysis.model.category import (
+    ARTICLE_9,
+    ARTICLE_9_VERDICTS,
+    DISCLOSURE,
+    STORAGE_LIMITATION,
+    THIRD_COUNTRY,
+    Category,
+    Legal,
+)
 from rosprivacy.analysis.model.diagnostic import (
     DEAD_DENY,
     EMPTY_GROUP,
@@ -24,11 +32,8 @@ from rosprivacy.analysis.model.diagnostic import (
 )
 from rosprivacy.analysis.model.element import (
     CHANNELS,
-    DISCLOSURE,
     KINDS,
     NON_ROS,
-    STORAGE_LIMITATION,
-    THIRD_COUNTRY,
     Element,
 )
 from rosprivacy.analysis.model.flow import Flow, FlowGraph

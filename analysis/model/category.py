@@ -1,4 +1,4 @@
-"""A category of personal data, and the law that can apply to it."""
+"""A category of personal data, the law that can apply to it, and what a finding about it can be of (rule S10)."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+DISCLOSURE, STORAGE_LIMITATION, THIRD_COUNTRY = "disclosure", "storage-limitation", "third-country-transfer"
 ARTICLE_9 = "GDPR Art. 9(1)"
 ARTICLE_9_VERDICTS = ("always", "conditional", "may-reveal", "no", "unknown")
 

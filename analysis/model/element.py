@@ -7,7 +7,6 @@ from dataclasses import dataclass
 CHANNELS = ("action", "service", "topic")
 NON_ROS = ("device", "display", "external-system", "person", "shared-memory", "side-channel", "storage")  # rule S9
 KINDS = ("node", *NON_ROS, *CHANNELS)  # channels last: kernel/fixpoint.py sweeps them and the others in turn
-DISCLOSURE, STORAGE_LIMITATION, THIRD_COUNTRY = "disclosure", "storage-limitation", "third-country-transfer"  # S10
 
 
 @dataclass(frozen=True, slots=True)

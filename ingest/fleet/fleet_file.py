@@ -93,7 +93,7 @@ class Fleet:
     root: str
 
 
-def read_fleet(file: str, vocabulary: Vocabulary, *, include_root: str | None = None) -> Fleet:
+def read_fleet(file: str, vocabulary: Vocabulary, *, include_root: str | Path | None = None) -> Fleet:
     """Read a fleet file.
 
     Parameters

@@ -50,7 +50,7 @@ def read_policies(
     arguments
         Files, folders (read with all below them) and glob patterns.
     within
-        A folder that no file may lie outside of, links followed; for arguments that a file names.
+        A folder that no file may lie outside of, its own links followed; for arguments that a file names.
     progress
         Wraps the list of files, to show how far it is.
 

@@ -17,12 +17,20 @@ WIDEN = "move the file inside it, or widen with --include-root"
 def leaves(file: str | Path, root: str | Path) -> bool:
     """Return whether a file, or what a link leads to, lies outside a folder; one that is not there by its name.
 
-    >>> leaves("policies/robot.xml", "."), leaves("policies/../../robot.xml", "."), leaves("/etc/passwd", ".")
+    Parameters
+    ----------
+    root
+        Links followed.
+
+    Examples
+    --------
+    >>> here = os.path.realpath(os.curdir)
+    >>> leaves("policies/robot.xml", here), leaves("policies/../../robot.xml", here), leaves("/etc/passwd", here)
     (False, True, True)
     """
-    return not Path(os.path.realpath(file)).is_relative_to(os.path.realpath(root))
+    return not Path(os.path.realpath(file)).is_relative_to(root)
 
 
 def what_leaves(name: str, root: str | Path) -> str:
     """Return what to say of a name that leaves a folder."""
-    return f"{shown(repr(name))} leaves the folder {shown(os.path.realpath(root))}"
+    return f"{shown(repr(name))} leaves the folder {shown(str(root))}"

@@ -30,7 +30,8 @@ from rosprivacy.report.pictures.looks import (
 )
 from rosprivacy.report.pictures.phrases import Phrases
 from rosprivacy.report.pictures.picture import PRIVACY, RECORD, ROS, Box, Line, Picture, sorted_boxes, sorted_lines
-from rosprivacy.report.stored import record_kind, record_name
+from rosprivacy.report.pictures.privacy import MOST
+from rosprivacy.report.stored import flow_said, record_kind, record_name
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -38,8 +39,6 @@ if TYPE_CHECKING:
     from rosprivacy.queries.graph_values import GraphValue
     from rosprivacy.report.pictures.picture import Key
     from rosprivacy.report.stored import StoredNames
-
-MOST = 4  # kinds of data that are named on a box
 
 
 def query_view(values: Iterable[GraphValue], names: StoredNames, title: str, notes: tuple[str, ...] = ()) -> Picture:
@@ -123,8 +122,7 @@ class _Graph:
             return Line(source, target, look, carries=(relationship.type,))
         if relationship.type != self._names.flow:
             return Line(source, target, OTHER, places=places, words=relationship.type)
-        role = str(relationship.properties.get("role", "flow"))
-        denied = relationship.properties.get("decision") == "deny"
+        role, denied = flow_said(relationship)
         look = DENIED if denied else MATCHES if role == "matches" else ALLOWED
         return Line(source, target, look, (role,), places=places)
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.model import CHANNELS
 from rosprivacy.queries.graph_values import Node, Relationship, graph_values, nodes_in
 from rosprivacy.report.naming import kind_of
-from rosprivacy.report.stored import record_kind, record_name
+from rosprivacy.report.stored import flow_said, record_kind, record_name
 from rosprivacy.report.terminal.finding_lines import OTHER_VERBS, VERBS
 
 if TYPE_CHECKING:
@@ -68,7 +68,7 @@ class GraphWords:
         if relationship.type != self.names.flow:
             return relationship.type
         end = self.names.element(relationship.end)
-        role = str(relationship.properties.get("role", "flow"))
+        role, denied = flow_said(relationship)
         into_channel = end is not None and end["kind"] in CHANNELS
         verb = VERBS.get((role, into_channel)) or OTHER_VERBS.get(role, role)
-        return f"{verb} (denied)" if relationship.properties.get("decision") == "deny" else verb
+        return f"{verb} (denied)" if denied else verb

@@ -41,7 +41,7 @@ def fleet(
     from rosprivacy.ingest.fleet.alike_robots import alike
     from rosprivacy.ingest.fleet.fleet_file import read_fleet
 
-    read = read_fleet(file, vocabulary, include_root=str(include_root) if include_root else None)
+    read = read_fleet(file, vocabulary, include_root=include_root)
     decided = decisions_of(Inputs(decisions=decisions).settings, vocabulary)
     groups = alike(read, decided.told_apart) if decided else alike(read)
     emit("".join(f"{line}\n" for line in _lines(read, groups)), output)

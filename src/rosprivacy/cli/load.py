@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import sys
 from contextlib import contextmanager
+from glob import has_magic
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -26,17 +27,8 @@ if TYPE_CHECKING:
     from rosprivacy.settings import Settings
 
 NAMED = 3  # robots in a message
-GLOB = re.compile(r"[*?\[]")
-NO_NAMES = (
-    "",
-    "policy",
-    "policies",
-    "robot",
-    "ros",
-    "sros",
-    "sros2",
-    "permissions",
-)  # a file's name that tells nothing
+# Of a file, these tell nothing.
+NO_NAMES = ("", "policy", "policies", "robot", "ros", "sros", "sros2", "permissions")
 
 
 @reads_system("all that is read, as nobody has decided about it", without=("from_database", "categories", "decisions"))
@@ -103,7 +95,7 @@ def name_of(inputs: Inputs) -> str:
     """Return what a robot is called of which nobody says it: as its policy file, where that says which one it is."""
     file = Path(inputs.named[0])
     name = re.sub(r"(\.policy)?\.xml$", "", file.name, flags=re.IGNORECASE)
-    if len(inputs.named) > 1 or inputs.add or file.is_dir() or GLOB.search(str(file)) or name.casefold() in NO_NAMES:
+    if len(inputs.named) > 1 or inputs.add or file.is_dir() or has_magic(str(file)) or name.casefold() in NO_NAMES:
         what = "nothing says what the robot is called in the database, where it would replace one of that name"
         raise InputError(inputs.named[0], 0, what, "add --robot NAME")
     return name

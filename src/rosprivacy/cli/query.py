@@ -12,10 +12,7 @@ import typer
 from rosprivacy.analysis.errors import QueryError, reason, shown
 from rosprivacy.cli.driver import driver_of
 from rosprivacy.cli.inputs import refuse
-from rosprivacy.cli.options import (
-    Output,
-    Server,
-)
+from rosprivacy.cli.options import Output, Server
 from rosprivacy.cli.output import emit, not_for_a_terminal
 from rosprivacy.cli.query_answer import RowFormat, answer, not_drawn
 

@@ -42,5 +42,5 @@ def _names_in(fleet: str, ontologies: tuple[str, ...], include_root: Path | None
     from rosprivacy.ingest.fleet.fleet_file import read_fleet
     from rosprivacy.ontology.vocabulary import load
 
-    read = read_fleet(fleet, load(ontologies=ontologies), include_root=str(include_root) if include_root else None)
+    read = read_fleet(fleet, load(ontologies=ontologies), include_root=include_root)
     return [*known_to_flows(read), *([read.name] if read.elements else [])]
