@@ -110,7 +110,7 @@ def changed_since(name: str, status: os.stat_result | None) -> bool:
         return False
     noted_as = _noted(name, status)
     if noted_as is None or status is None:
-        return noted_as is not status
+        return (noted_as is None) != (status is None)
     before = noted_as[1]
     return (before.st_ino, before.st_mtime_ns, before.st_size) != (status.st_ino, status.st_mtime_ns, status.st_size)
 
