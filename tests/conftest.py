@@ -48,6 +48,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--slow", action="store_true", help="also run what builds, installs or fuzzes")
+    parser.addoption("--all-kills", action="store_true", help="kill at every moment, not at some (CONTRIBUTING.md)")
 
 
 @pytest.hookimpl(wrapper=True)
@@ -98,6 +99,12 @@ def _own_folders(tmp_path_factory: pytest.TempPathFactory, pytestconfig: pytest.
         patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
         patch.setenv("ROSPRIVACY_DATA", str(tmp_path_factory.mktemp("private data")))
         yield
+
+
+@pytest.fixture(scope="session")
+def every(pytestconfig: pytest.Config) -> int:
+    """Of the moments at which a run can be killed, every so many-th is taken."""
+    return 1 if pytestconfig.getoption("--all-kills") else 10
 
 
 @pytest.fixture(scope="session")

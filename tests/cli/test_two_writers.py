@@ -128,7 +128,10 @@ def test_a_first_label_file_replaces_none_that_appears_meanwhile(tmp_path: Path)
 
 def test_of_two_first_label_files_one_is_refused(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "rosprivacy", "labels", "--init", str(BEFORE), "-o", "l.yaml"]
-    both = [subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) for _ in range(2)]
+    both = [
+        subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        for _ in range(2)
+    ]
     said = sorted((process.communicate(timeout=60)[1], process.returncode) for process in both)
     assert [code for _, code in said] == [0, 2]
     assert "is there already" in said[1][0]

@@ -249,7 +249,9 @@ class TestCache:
         assert list(tmp_path.iterdir()) == []
 
     def test_two_that_write_it_at_once(self, tmp_path: Path) -> None:
-        code = f"from pathlib import Path; from rosprivacy.ontology.vocabulary import load; load(Path({str(tmp_path)!r}))"
+        code = (
+            f"from pathlib import Path; from rosprivacy.ontology.vocabulary import load; load(Path({str(tmp_path)!r}))"
+        )
         both = [subprocess.Popen([sys.executable, "-c", code]) for _ in range(2)]
         assert [process.wait(60) for process in both] == [0, 0]
         (file,) = tmp_path.iterdir()
