@@ -16,7 +16,7 @@ from hypothesis import settings
 from rosprivacy.private_neo4j import connection as database
 from tests.helpers.command import cli
 from tests.helpers.paths import ROOT
-from tests.helpers.plain import plain_server
+from tests.helpers.plain import STOP_AT_THE_END, plain_server
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterator
@@ -32,11 +32,6 @@ GROUPS = {
     "chromium": {"browser"},
     "build": {"built"},  # builds in the folder of the sources
 }
-# Waits until the test run ends, however it does (also by SIGKILL: its standard input is closed then).
-STOP_AT_THE_END = (
-    "import sys; sys.stdin.read(); from rosprivacy.private_neo4j import connection as database; database.stop()"
-)
-
 
 settings.register_profile("everyday", max_examples=5, deadline=None)
 settings.register_profile("thorough", max_examples=200, deadline=None, print_blob=True)

@@ -16,7 +16,7 @@ from tests.helpers.forked_runs import Forked, Run
 from tests.helpers.policies import everything
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping
     from pathlib import Path
 
     from tests.helpers.forked_runs import Ended
@@ -25,8 +25,8 @@ INPUTS = {file.name for file in FACTORY.iterdir()}
 LABELS = {"run3.labels.yaml": FACTORY.joinpath("run3.labels.yaml").read_bytes()}
 ANALYSES = ("text", "json", "sarif", "cnil-pia", "turtle", "json-ld")
 READS = ("before.policy.xml", "-l", "run3.labels.yaml")
-DECISION = ("decide", "accept", "7ac677bf059b5beb", "--reason", "r", "--owner", "o", "--legal-basis", "6(1)(f)")
-DECISION = (*DECISION, "--decisions", "d.yaml")
+WHY = ("--reason", "r", "--owner", "o", "--legal-basis", "6(1)(f)")
+DECISION = ("decide", "accept", "7ac677bf059b5beb", *WHY, "--decisions", "d.yaml")
 STRAY = re.compile(r"\.(?P<name>.+)\.(?:[a-z0-9_]{8}|lock)")  # what report/atomic.py and report/editing.py may leave
 TIMED = 2  # kills of each writer by the clock, beside those at its calls
 OLD = b"old\n"
@@ -148,7 +148,7 @@ class Killing:
     "name", [name if name == "decide" else pytest.param(name, marks=pytest.mark.slow) for name in WRITERS]
 )
 def test_a_killed_writer_leaves_the_old_or_the_new(
-    program: Forked, tmp_path: Path, name: str, every: int, record_property: pytest.RecordProperty
+    program: Forked, tmp_path: Path, name: str, every: int, record_property: Callable[[str, object], None]
 ) -> None:
     """Before and after each call that opens, writes, flushes, renames, removes or locks; and by the clock."""
     killing = Killing(program, WRITERS[name], tmp_path / "home")
