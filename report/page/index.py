@@ -91,6 +91,10 @@ class Index:
         title = (known and text(known, "title", self.words.language)) or fit(category)
         return self.words("f.data", data=title) if pseudonymised else title
 
+    def upwards(self, category: str) -> list[str]:
+        """Return a kind of data and all broader ones, the nearest first."""
+        return [category, *self.categories[category]["broader"]] if category in self.categories else [category]
+
     def all_data(self, categories: Iterable[str]) -> str:
         """Return several kinds of data in a row."""
         return self.words.row(self.data(category) for category in categories)
