@@ -13,15 +13,16 @@ from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import DecisionError
+from rosprivacy.analysis.legal_bases import missing_bases
 from rosprivacy.analysis.model import Diagnostic, Place, Severity
 from rosprivacy.analysis.written_names import is_glob, meant
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.answer import Finding
     from rosprivacy.analysis.hierarchy import Hierarchy
-    from rosprivacy.analysis.model import Element
+    from rosprivacy.analysis.model import Element, Legal
 
 FARTHEST = 1_000_000
 
@@ -244,7 +245,7 @@ class Decided:
 def decided(
     decisions: Decisions,
     findings: Iterable[Finding],
-    special: Mapping[str, str],
+    law: Mapping[str, Sequence[Legal]],
     *,
     everything: bool,
     case_of: Callable[[Finding], Case] = Case.of,
@@ -253,8 +254,8 @@ def decided(
 
     Parameters
     ----------
-    special
-        Category -> the provision for special categories that it can fall under; for those that do.
+    law
+        Category -> what can apply to data of it.
     everything
         Whether the findings are all there are: else no decision is called orphaned.
     case_of
@@ -296,7 +297,7 @@ def decided(
     )
     result = Decided(decisions, on, about, states, ())
     said = tuple(
-        _diagnostics(result, {finding.id: finding for finding, _ in cases}, special, list(_former(result, cases)))
+        _diagnostics(result, {finding.id: finding for finding, _ in cases}, law, list(_former(result, cases)))
     )
     return Decided(decisions, on, about, states, said)
 
@@ -309,7 +310,7 @@ def _former(joined: Decided, cases: Iterable[tuple[Finding, Case]]) -> Iterator[
 
 
 def _diagnostics(
-    joined: Decided, findings: Mapping[str, Finding], special: Mapping[str, str], former: Iterable[int]
+    joined: Decided, findings: Mapping[str, Finding], law: Mapping[str, Sequence[Legal]], former: Iterable[int]
 ) -> Iterator[Diagnostic]:
     """What a reader has to know: expired and orphaned decisions, what one no longer decides, missing legal bases."""
     asked, today = joined.decisions.instead_of, joined.decisions.today
@@ -331,21 +332,5 @@ def _diagnostics(
         if entry.choice is Choice.ACCEPT and state is State.VALID:
             held = [findings[one] for one in ids if joined.on.get(one) is entry]
             yield from (
-                Diagnostic(entry.place, Severity.WARNING, f"{what} {gap}") for gap in missing(entry, held, special)
+                Diagnostic(entry.place, Severity.WARNING, f"{what} {gap}") for gap in missing_bases(entry.legal_basis, held, law)
             )
-
-
-def missing(entry: Decision, findings: Iterable[Finding], special: Mapping[str, str]) -> Iterator[str]:
-    """Yield the legal bases that an acceptance lacks: Article 6, and 9(2) where a category is special.
-
-    >>> from rosprivacy.analysis.example import factory
-    >>> from rosprivacy.analysis.findings.findings import analyse
-    >>> entry = Decision(Choice.ACCEPT, Place("decisions.yaml", 2), legal_basis=("6(1)(f)",))
-    >>> list(missing(entry, analyse(*factory()).findings, {"FaceTemplate": "GDPR Art. 9(1)"}))
-    ['states no ground under Article 9(2), and FaceTemplate can fall under GDPR Art. 9(1)']
-    """
-    if not any(basis.startswith("6(1)") for basis in entry.legal_basis):
-        yield "states no legal basis under Article 6(1)"
-    if not any(basis.startswith("9(2)") for basis in entry.legal_basis):
-        for category in sorted({finding.category for finding in findings} & special.keys()):
-            yield f"states no ground under Article 9(2), and {category} can fall under {special[category]}"
