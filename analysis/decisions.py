@@ -13,16 +13,17 @@ from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import DecisionError
-from rosprivacy.analysis.legal_bases import missing_bases
+from rosprivacy.analysis.legal_bases import gaps
 from rosprivacy.analysis.model import Diagnostic, Place, Severity
 from rosprivacy.analysis.written_names import is_glob, meant
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.answer import Finding
     from rosprivacy.analysis.hierarchy import Hierarchy
-    from rosprivacy.analysis.model import Element, Legal
+    from rosprivacy.analysis.legal_bases import Verdicts
+    from rosprivacy.analysis.model import Element
 
 FARTHEST = 1_000_000
 
@@ -245,7 +246,7 @@ class Decided:
 def decided(
     decisions: Decisions,
     findings: Iterable[Finding],
-    law: Mapping[str, Sequence[Legal]],
+    law: Mapping[str, Verdicts],
     *,
     everything: bool,
     case_of: Callable[[Finding], Case] = Case.of,
@@ -296,9 +297,7 @@ def decided(
         for entry, ids in zip(decisions.entries, about, strict=True)
     )
     result = Decided(decisions, on, about, states, ())
-    said = tuple(
-        _diagnostics(result, {finding.id: finding for finding, _ in cases}, law, list(_former(result, cases)))
-    )
+    said = tuple(_diagnostics(result, {finding.id: finding for finding, _ in cases}, law, list(_former(result, cases))))
     return Decided(decisions, on, about, states, said)
 
 
@@ -310,7 +309,7 @@ def _former(joined: Decided, cases: Iterable[tuple[Finding, Case]]) -> Iterator[
 
 
 def _diagnostics(
-    joined: Decided, findings: Mapping[str, Finding], law: Mapping[str, Sequence[Legal]], former: Iterable[int]
+    joined: Decided, findings: Mapping[str, Finding], law: Mapping[str, Verdicts], former: Iterable[int]
 ) -> Iterator[Diagnostic]:
     """What a reader has to know: expired and orphaned decisions, what one no longer decides, missing legal bases."""
     asked, today = joined.decisions.instead_of, joined.decisions.today
@@ -330,7 +329,7 @@ def _diagnostics(
             message = f"{what} expired on {entry.expires} and no longer counts; decide anew"
             yield Diagnostic(entry.place, Severity.WARNING, message)
         if entry.choice is Choice.ACCEPT and state is State.VALID:
-            held = [findings[one] for one in ids if joined.on.get(one) is entry]
+            held = [(f.kind, f.category) for f in (findings[one] for one in ids if joined.on.get(one) is entry)]
             yield from (
-                Diagnostic(entry.place, Severity.WARNING, f"{what} {gap}") for gap in missing_bases(entry.legal_basis, held, law)
+                Diagnostic(entry.place, Severity.WARNING, f"{what} {gap}") for gap in gaps(entry.legal_basis, held, law)
             )

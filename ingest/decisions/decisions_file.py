@@ -207,7 +207,9 @@ class _Reader(FileReader):
                 yield found
             else:
                 what = f"legal basis {shown(item.text or item.kind)!r}"
-                self.problem(item.line, what, "write such as 6(1)(f), 9(2)(h) for special categories, 46(2)(c) for a transfer")
+                self.problem(
+                    item.line, what, "write such as 6(1)(f), 9(2)(h) for special categories, 46(2)(c) for a transfer"
+                )
 
 
 def _a(value: Value) -> str:

@@ -207,9 +207,7 @@ def transfers(known: Known) -> Html:
     outside = [c.element for c in known.analysis.carried if c.element.kind in ("external-system", "storage")]
     recipients = {element.identity: element for element in (*leaks, *outside)}
     rows = [
-        _line(
-            escaped(_name(element)), joined(_stated("country", known.of(element, "country")), _basis(element, known))
-        )
+        _line(escaped(_name(element)), joined(_stated("country", known.of(element, "country")), _basis(element, known)))
         for element in list(recipients.values())[:SHOWN]
     ]
     return bullets(_bounded(rows, len(recipients))) if rows else paragraph(NO_RECIPIENT)

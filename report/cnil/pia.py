@@ -1,7 +1,7 @@
 """Analysis -> the file that the CNIL's PIA tool imports ('Importer un PIA'), for the person who assesses the impact.
 
-In: an ``Answer``. Out: plain dicts and lists. The questions that the graph can answer are
-filled: 121 to 123, 213, 215, 226 where processors are named, 227, 322, 324, and the measures. The others have no answer: the tool counts an empty one
+In: an ``Answer``. Out: plain dicts and lists. The questions that the graph can answer are filled: 121 to 123, 213, 215,
+226 where processors are named, 227, 322, 324, and the measures. The others have no answer: the tool counts an empty one
 as work begun. All is for a person to check: no evaluation is filled, no gauge is set, the status is 'in progress'.
 
 Source: the tool's ``importData``. It needs the four lists, goes through them unguarded, and takes texts as HTML; list
@@ -166,8 +166,8 @@ def _access(graph: FlowGraph) -> Html:
     if graph.view == View.enforced:
         return Html(f"In the enforced view {profiles} in {enclaves} allow {flows}. ")
     return Html(
-        f"In the declared view {profiles} in {enclaves} allow {flows}. DDS enforces per enclave: a node can do whatever "
-        "its enclave may (enforced view). "
+        f"In the declared view {profiles} in {enclaves} allow {flows}. DDS enforces per enclave: a node can do "
+        "whatever its enclave may (enforced view). "
     )
 
 

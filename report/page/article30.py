@@ -199,7 +199,8 @@ def _kept(category: str, facts: _Facts) -> str:
         for row in facts.index.outside.values()
         if row["element"]["kind"] == STORAGE and category in row["holds"] and row.get("retention")
     ]
-    said = (facts.index.words("r.kept", element=name(r["element"]), duration=kept(r, category, facts.index)) for r in rows)
+    words = facts.index.words
+    said = (words("r.kept", element=name(r["element"]), duration=kept(r, category, facts.index)) for r in rows)
     return "; ".join(dict.fromkeys(said))
 
 

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from rosprivacy.report.naming import Key
     from rosprivacy.report.page.words import Words
 
-SPECIAL = ("always", "conditional")  # what Article 9(1) says of a kind of data by itself
-CAN_BE_SPECIAL = (*SPECIAL, "may-reveal", "unknown")
+SPECIAL = ("always", "conditional")  # what Article 9(1) or 10 says of a kind of data by itself
+REVEALS = ("may-reveal", "unknown")
 
 
 @dataclass(frozen=True)

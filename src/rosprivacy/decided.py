@@ -52,7 +52,10 @@ def joined_to(
     """Join decisions to findings; where only some categories were asked for, none is called orphaned."""
     if decisions is None:
         return None
-    law = {name: vocabulary.categories[name].law for name in analysis.emitted}
+    law = {
+        name: tuple((legal.name, legal.verdict) for legal in vocabulary.categories[name].law)
+        for name in analysis.emitted
+    }
 
     def case_of(finding: Finding) -> Case:
         return in_fleet(Case.of(finding), likeness)

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-
 import pytest
 
-from rosprivacy.analysis.legal_bases import missing_bases
+from rosprivacy.analysis.legal_bases import gaps
 from rosprivacy.analysis.model import DISCLOSURE, THIRD_COUNTRY
 from rosprivacy.ontology.vocabulary import load
 
@@ -14,9 +12,8 @@ SIX, NINE = "Article 6(1)", "Article 9(2)"
 
 
 def lacks(bases: list[str], category: str, kind: str = DISCLOSURE) -> list[str]:
-    finding = SimpleNamespace(category=category, kind=kind)
-    law = {category: load().categories[category].law}
-    return list(missing_bases(bases, [finding], law))  # type: ignore[list-item]  # category and kind are all it needs
+    law = {category: tuple((legal.name, legal.verdict) for legal in load().categories[category].law)}
+    return [str(gap) for gap in gaps(bases, [(kind, category)], law)]
 
 
 @pytest.mark.parametrize(

@@ -60,7 +60,7 @@ def broader(node: Node) -> set[Node]:
 
 
 def verdicts(category: Node, *, specific: bool = False) -> dict[str, str]:
-    """Provision -> verdict, as the file states them; all, or without those for which a narrower kind has to be named."""
+    """Provision -> verdict, as the file states them; all, or those that hold whichever narrower kind it is."""
     graph = ontology()
     links = list(graph.objects(category, RP.fallsUnder))
     if specific:

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import jsonschema
 import pytest
 
-from rosprivacy.analysis.decisions import Case, Choice, Decision, Decisions, State
+from rosprivacy.analysis.decisions import Case, Choice, Decisions, State
 from rosprivacy.analysis.errors import InputErrors
-from rosprivacy.analysis.model import Element, Place
+from rosprivacy.analysis.model import Element
 from rosprivacy.clock import today
 from rosprivacy.ingest.decisions.decisions_file import parse_decisions
 from rosprivacy.ontology.vocabulary import load
