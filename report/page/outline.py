@@ -37,7 +37,10 @@ SECTIONS = (
     "criteria", "inventory", "method", "sign",
 )  # fmt: skip
 PARAGRAPHS = 10  # of the method note
-SIGNED = ("purpose", "controller", "basis", "necessity", "measures", "residual", "name", "date", "signature")
+SIGNED = (  # what Article 35(7) asks for, 35(2), 35(9), 36, and who answers for it
+    "purpose", "controller", "basis", "necessity", "risks", "measures", "residual", "advice", "views", "consultation",
+    "name", "date", "signature",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +91,7 @@ class Outline:
     title: str
     made: str
     version: str
-    law_as_of: str
+    law: str
     redacted: bool
     sections: tuple[tuple[str, str], ...]
     code: str
@@ -161,7 +164,7 @@ def outline(
         title=fit(title) if title else _title(index),
         made=words.date(made),
         version=document["assumptions"]["rosprivacy"],
-        law_as_of=words.date(document["assumptions"]["law_as_of"]),
+        law=_law(document["assumptions"], words),
         redacted=redacted,
         sections=tuple((anchor, words(f"h.{anchor}")) for anchor in names),
         code=document["verdict"],
@@ -207,6 +210,14 @@ def _title(index: Index) -> str:
     few = 3
     more = [index.words("more", n=len(names) - few)] if len(names) > few else []
     return index.words.row([*map(fit, names[:few]), *more])
+
+
+def _law(assumptions: Mapping[str, Any], words: Words) -> str:
+    """As of when the law is told, the adequacy decisions of chapter V too where a country is stated."""
+    said = [words("law.date", date=words.date(assumptions["law_as_of"]))]
+    if "countries_as_of" in assumptions:
+        said.append(words("law.countries", date=words.date(assumptions["countries_as_of"])))
+    return "; ".join(said)
 
 
 def _verdict(index: Index) -> str:
