@@ -10,8 +10,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.legal import MAY_REVEAL, SPECIAL
-from rosprivacy.analysis.model import ARTICLE_9, THIRD_COUNTRY
+from rosprivacy.analysis.model import ARTICLE_9, MAY_REVEAL, SPECIAL, THIRD_COUNTRY
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence

@@ -9,8 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.legal import MAY_REVEAL
-from rosprivacy.analysis.model import KINDS
+from rosprivacy.analysis.model import KINDS, MAY_REVEAL
 from rosprivacy.analysis.non_ros import ADEQUATE, INSIDE
 from rosprivacy.report.cnil.markup import (
     Html,

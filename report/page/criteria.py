@@ -8,8 +8,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.model import SPECIAL
 from rosprivacy.report.page.entries_of_robots import weight
-from rosprivacy.report.page.index import REVEALS, SPECIAL
+from rosprivacy.report.page.index import REVEALS
 
 if TYPE_CHECKING:
     from rosprivacy.report.page.index import Index

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.model import MAY_REVEAL
 from rosprivacy.analysis.text import fit
 from rosprivacy.report.naming import key, text
 from rosprivacy.report.page.entries_of_robots import names_of
@@ -20,8 +21,7 @@ if TYPE_CHECKING:
     from rosprivacy.report.naming import Key
     from rosprivacy.report.page.words import Words
 
-SPECIAL = ("always", "conditional")  # what Article 9(1) or 10 says of a kind of data by itself
-REVEALS = ("may-reveal", "unknown")
+REVEALS = (MAY_REVEAL, "unknown")
 
 
 @dataclass(frozen=True)

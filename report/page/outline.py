@@ -10,6 +10,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.model import SPECIAL
 from rosprivacy.analysis.text import fit
 from rosprivacy.report.compare.changes import ASKED, Changes, changes
 from rosprivacy.report.document.analysis import files_not_read, lacking
@@ -21,7 +22,7 @@ from rosprivacy.report.page.criteria import Criterion, criteria
 from rosprivacy.report.page.decision_texts import Decision, orphans
 from rosprivacy.report.page.finding_entries import Entry, finding_entries
 from rosprivacy.report.page.fleet_section import Fleet, fleet_told
-from rosprivacy.report.page.index import REVEALS, SPECIAL, Index
+from rosprivacy.report.page.index import REVEALS, Index
 from rosprivacy.report.page.kinds import Kind, kinds
 from rosprivacy.report.page.non_ros import Outside, outside
 from rosprivacy.report.page.review import Group, review, unknown_ends
