@@ -44,6 +44,21 @@ def test_every_foreign_iri_is_one_of_dpv(corpus: Path) -> None:
     assert all((iri, RDF.type, None) in dpv for iri in foreign)
 
 
+def test_a_full_disk_leaves_nothing_behind(tmp_path: Path) -> None:
+    """At b86d901 a half ``tmp*`` stays in the cache folder (defect 13). A bound on files stands for the full disk."""
+    code = """
+import resource, signal, sys
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
+from pathlib import Path
+from rosprivacy.ontology.vocabulary import load
+print(len(load(Path(sys.argv[1])).categories))
+"""
+    done = subprocess.run([sys.executable, "-B", "-c", code, str(tmp_path)], capture_output=True, text=True, check=True)
+    assert int(done.stdout) > 0
+    assert list(tmp_path.iterdir()) == []
+
+
 @pytest.mark.parametrize(
     "text",
     ["FaceTemplate", "facetemplate", "face template", "Face Embedding", "urn:x-rosprivacy:FaceTemplate"],
