@@ -45,13 +45,14 @@ def keep(folder: Path, key: str, categories: tuple[Category, ...], respelt: dict
     text = json.dumps({"key": key, "digest": _digest(facts, respelt), "categories": facts, "respelt": respelt})
     with suppress(OSError):
         folder.mkdir(parents=True, exist_ok=True)
-        file = tempfile.NamedTemporaryFile("w", dir=folder, delete=False, encoding="utf-8")  # noqa: SIM115 - closed below
+        handle, name = tempfile.mkstemp(dir=folder)
         try:
-            with file:
+            with os.fdopen(handle, "w", encoding="utf-8") as file:
                 file.write(text)
-            os.replace(file.name, _path(folder, key))  # noqa: PTH105 - atomic on every platform
-        finally:
-            Path(file.name).unlink(missing_ok=True)  # there only where it could not be written whole
+            Path(name).replace(_path(folder, key))
+        except BaseException:
+            Path(name).unlink(missing_ok=True)
+            raise
 
 
 def _path(folder: Path, key: str) -> Path:
