@@ -62,7 +62,7 @@ class Bounds:
     comparisons: int = _bound(100_000_000, "steps of comparing wildcards")
     findings: int = _bound(200_000, "findings")
     search_steps: int = _bound(100_000_000, "elements reached, counted for each source")
-    path_steps: int = _bound(50_000_000, "steps of counting paths")
+    path_steps: int = _bound(300_000_000, "steps of counting paths")
 
     @classmethod
     def raised(cls, written: Iterable[str]) -> Bounds:
