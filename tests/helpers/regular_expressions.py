@@ -52,7 +52,7 @@ class Expression:
     def in_javascript(self) -> tuple[str, str]:
         r"""What means the same there; one that matches from the start only says so with ``^``.
 
-        >>> Expression("", r"(?P<a>b)\\Z", re.IGNORECASE, frozenset({"match"})).in_javascript
+        >>> Expression("", r"(?P<a>b)\Z", re.IGNORECASE, frozenset({"match"})).in_javascript
         ('^(?:(?<a>b)$)', 'i')
         """
         source = re.sub(r"\\.", lambda escape: "$" if escape[0] == r"\Z" else escape[0], self.source, flags=re.DOTALL)

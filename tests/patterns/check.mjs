@@ -5,7 +5,7 @@ import { readFileSync } from "node:fs";
 import { checkSync } from "recheck";
 
 const answers = JSON.parse(readFileSync(0, "utf8")).map(([source, flags]) => {
-  const said = checkSync(source, flags, { timeout: 30000 });
+  const said = checkSync(source, flags, { timeout: 60000 });
   return {
     status: said.status,
     complexity: said.complexity?.type ?? said.error?.kind,
