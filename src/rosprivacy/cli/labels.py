@@ -98,7 +98,7 @@ def _first(inputs: Inputs, output: Path | None) -> tuple[str, Path | None, dict[
 def _schema(inputs: Inputs) -> str:
     from rosprivacy.ingest.labels.label_schema import label_schema
     from rosprivacy.ontology.vocabulary import load
-    from rosprivacy.report.document.analysis import as_text
+    from rosprivacy.report.json_text import as_text
 
     return as_text(label_schema(load(ontologies=inputs.settings.ontologies).categories.values()))
 
