@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 
 ACTION_SERVICES = ("cancel_goal", "get_result", "send_goal")
 ACTION_TOPICS = ("feedback", "status")
-LONGEST_NAME = 16_384  # characters; DDS takes 255, and a wildcard's cost grows with the square
 LARGEST_TABLE = 1_000_000  # cells of a comparison of two expressions; larger ones take the careful answer
 LAST_CHARACTER = 0x10FFFF
 

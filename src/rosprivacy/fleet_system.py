@@ -83,7 +83,7 @@ def fleet_system(file: str, question: Question) -> FleetSystem:
         With every problem of the input, one line each.
     """
     settings, vocabulary, decisions = question.settings, question.vocabulary, question.decisions
-    fleet = read_fleet(file, vocabulary, include_root=settings.include_root)
+    fleet = read_fleet(file, vocabulary, include_root=settings.include_root, bounds=settings.bounds)
     groups = alike(fleet, decisions.told_apart) if decisions else alike(fleet)
     reader = Reader(vocabulary, settings, fleet.root)
     members = {}
@@ -157,6 +157,7 @@ class Reader:
                 include_root=settings.include_root,
                 within=self._root,
                 max_bytes=settings.max_bytes,
+                bounds=settings.bounds,
                 progress=settings.progress,
             )
             said += (*joint_warnings(policies), *merging_notices(policies, OF_ONE_ROBOT))
@@ -186,7 +187,7 @@ class Reader:
             shipped = file == standard and file not in (*robot.labels, *robot.own)
             try:
                 self.labels[file, own] = read_labels(
-                    file, self._vocabulary, category=settings.category, shipped=shipped, own=own
+                    file, self._vocabulary, category=settings.category, shipped=shipped, own=own, bounds=settings.bounds
                 )
             except InputErrors as error:
                 problems += error.errors

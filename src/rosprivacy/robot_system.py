@@ -123,6 +123,7 @@ def read_system(policies: tuple[str, ...], settings: Settings) -> Read:
             policies,
             include_root=settings.include_root,
             max_bytes=settings.max_bytes,
+            bounds=settings.bounds,
             progress=settings.progress,
         )
     known = {policy.file for policy in read}  # read again is read anew
@@ -152,7 +153,9 @@ def read_label_files(labels: tuple[str | Labels, ...], vocabulary: Vocabulary, s
             continue
         try:
             shipped = file in standard and file not in labels  # named by the user, it is the user's own
-            files.append(read_labels(file, vocabulary, category=settings.category, shipped=shipped))
+            files.append(
+                read_labels(file, vocabulary, category=settings.category, shipped=shipped, bounds=settings.bounds)
+            )
         except InputErrors as error:
             problems += error.errors
     if problems:
