@@ -18,7 +18,6 @@ import time
 from contextlib import ExitStack
 from dataclasses import asdict
 from pathlib import Path
-from types import FrameType
 from typing import TYPE_CHECKING, Never
 
 import atheris
@@ -26,11 +25,13 @@ import atheris
 from tests.fuzzing.record import Counts, save
 
 READERS = [
-    "rosprivacy.ingest", "rosprivacy.analysis.durations", "rosprivacy.analysis.text", "rosprivacy.analysis.written_names",
-    "rosprivacy.ontology.own", "rosprivacy.ontology.lines", "rosprivacy.ontology.turtle", "rosprivacy.queries.library",
-    "rosprivacy.report.compare", "rosprivacy.spark.parquet",
+    "rosprivacy.ingest", "rosprivacy.ontology.own", "rosprivacy.ontology.lines", "rosprivacy.ontology.turtle",
+    "rosprivacy.analysis.durations", "rosprivacy.analysis.text", "rosprivacy.analysis.written_names",
+    "rosprivacy.queries.library", "rosprivacy.report.compare", "rosprivacy.spark.parquet",
 ]  # fmt: skip
 if TYPE_CHECKING:
+    from types import FrameType
+
     from tests.fuzzing import judge
     from tests.fuzzing.kept_graphviz import kept_graphviz
     from tests.fuzzing.targets import TARGETS, Target

@@ -104,7 +104,7 @@ def limits(choices: Choices) -> dict[str, str]:
 
 def fleet(choices: Choices) -> dict[str, str]:
     spec = {"policies": choices.pick(("base.xml", ["base.xml"], ["b?se.xml"])), "labels": "base.yaml"}
-    models = dict.fromkeys(("eye", "wall")[:1 + choices.below(2)], spec)
+    models = dict.fromkeys(("eye", "wall")[: 1 + choices.below(2)], spec)
     top: dict[str, Any] = {"fleet": 1, "models": models}
     robots = {f"r{number}": _robot(choices, list(models)) for number in range(choices.below(3))}
     groups = [{"robots": 1 + choices.below(20), **_robot(choices, list(models))} for _ in range(choices.below(2))]
@@ -144,7 +144,7 @@ def _node(choices: Choices) -> Any:
         return choices.pick((None, "conduit", {"absent": "sold"}, {"leak": "none"}, {"source": "none", "note": "x"}))
     said: dict[str, Any] = {}
     if how < 3:
-        said["source"] = choices.pick((kinds, dict.fromkeys(kinds, ["/a"])))
+        said["source"] = choices.pick((kinds, {kind: ["/a"] for kind in kinds}))
         if choices.once_in(3):
             said["subjects"] = ["residents", "staff"]
     if how in (2, 3, 4, 5):

@@ -26,12 +26,15 @@ PARENTS = ("rp:Health", "rp:Video", "rp:PersonalData", "rp:Location , rp:Househo
 SAID = (
     'skos:altLabel "badge no."@en', 'skos:prefLabel "Ausweis"@de', 'rp:dataType "text"', 'skos:note "x"@en',
     'rp:article9 "no" ; rp:reason "none"@en ; rp:source rp:GDPR-9-1', "skos:exactMatch pd:Name",
-    'rp:fallsUnder [ rp:provision rp:GDPR-9-1 ; rp:verdict "always" ; rp:source rp:GDPR-9-1 ]', "rp:gdprCategory rp:GDPR-4-1",
+    'rp:fallsUnder [ rp:provision rp:GDPR-9-1 ; rp:verdict "always" ; rp:source rp:GDPR-9-1 ]',
+    "rp:gdprCategory rp:GDPR-4-1",
     "skos:narrower rp:Video", "<urn:e:q> 1.5", "skos:broader pd:Identifying", 'skos:altLabel "voice"@en',
 )  # fmt: skip
 QUERY_WORDS = (
-    "string", "integer", "boolean", "list of string", "robot", "category", ", default ", '""', "1", "true", "//", "order",
-    "RETURN", "ORDER BY", "$category", "{", "}", "(", "'", "/*", "*/", " AS ", ",", "\n", "SET", "// param x: string, y\n",
+    "string", "integer", "boolean", "list of string", "robot", "category", ", default ", '""', "1", "true", "//",
+    "order",
+    "RETURN", "ORDER BY", "$category", "{", "}", "(", "'", "/*", "*/", " AS ", ",", "\n", "SET",
+    "// param x: string, y\n",
 )  # fmt: skip
 UNITS = ("Y", "M", "D", "W", "T", "H", "S", "P", "-", "+", ".", ",", " ", "٣")
 PIECES = ("/", "*", "?", "[a-c]", "[!a]", "[", "]", "a", "b", "ab", "~", "-", "{", "=", "\\", "é")

@@ -20,8 +20,7 @@ GROUPS = {
 INCLUDES = (
     '<xi:include href="node.xml" xpointer="xpointer(/profile/*)"/>',
     '<xi:include href="node.xml" xpointer="xpointer(/*/topics)"/>',
-    '<xi:include href="nowhere.xml"><xi:fallback><topics publish="ALLOW"><topic>/a</topic></topics></xi:fallback>'
-    "</xi:include>",
+    '<xi:include href="nowhere.xml"><xi:fallback><services request="ALLOW"/></xi:fallback></xi:include>',
     '<xi:include href="" xpointer="xpointer(/policy/enclaves/enclave/profiles/profile/services)"/>',
     '<xi:include href="link.xml" xpointer="xpointer(/profile/*)"/>',
     '<xi:include href="../outside/secret.xml" xpointer="xpointer(/profile/*)"/>',
@@ -113,9 +112,14 @@ def _saved_policy(choices: Choices, number: int) -> dict[str, Any]:
     for line in range(choices.below(6)):
         enclave, node = choices.pick(owners)
         role, allow = choices.pick(SAVED_ROLES), not choices.once_in(4)
-        kind = {"publish": "topics", "subscribe": "topics", "request": "services", "reply": "services"}.get(role)
-        name = choices.pick([name for name in GROUPS[kind or "actions"][2] if name.startswith("/")])
-        grant = {"rule": "ALLOW" if allow else "DENY", "role": role, "name": name, "absolute": choices.once_in(2)}
+        fitting = next(names for _, roles, names in GROUPS.values() if role in roles)
+        name = choices.pick([name for name in fitting if name.startswith("/")])
+        grant: dict[str, Any] = {
+            "rule": "ALLOW" if allow else "DENY",
+            "role": role,
+            "name": name,
+            "absolute": choices.once_in(2),
+        }
         grant |= {"enclave": enclave, "node": node, "file": file, "line": line}
         grants.append(grant | ({} if allow or choices.once_in(3) else {"dead": choices.once_in(2)}))
     return {

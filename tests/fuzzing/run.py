@@ -16,7 +16,6 @@ import time
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from importlib.metadata import version
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tests.fuzzing import record, seeds
@@ -24,6 +23,7 @@ from tests.fuzzing.record import Counts
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
+    from pathlib import Path
     from types import FrameType
 
 MINUTE = 60

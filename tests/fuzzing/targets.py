@@ -28,6 +28,7 @@ from rosprivacy.report.compare.earlier import read_earlier
 from rosprivacy.report.document.analysis import as_text
 from rosprivacy.spark import parquet
 from tests.fuzzing import label_texts, other_texts, policy_texts
+from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -75,11 +76,9 @@ def _base() -> Result:
 
 @cache
 def _known() -> Known:
-    from rosprivacy.ontology import vocabulary
+    from rosprivacy.ontology.vocabulary import SHIPPED, _shipped
 
-    return vocabulary._shipped(tuple(
-        vocabulary.files("rosprivacy.ontology").joinpath(name).read_bytes() for name in vocabulary.SHIPPED
-    ))[0]  # fmt: skip
+    return _shipped(tuple((ROOT / "ontology" / name).read_bytes() for name in SHIPPED))[0]
 
 
 def _limits() -> Result:
@@ -96,8 +95,8 @@ def _since() -> Result:
     for one, other in ((old, new), (new, old), (old, old)):
         for form in DiffFormat:
             _text(difference(one, other), form)
-    for form in ("html", "markdown"):
-        _base().to(form, since="old.json")
+    for name in ("html", "markdown"):
+        _base().to(name, since="old.json")
     _base().to("html", since="old.json", redact=True, language="de")
     return _base()
 
