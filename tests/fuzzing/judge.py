@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import InputError, InputErrors, QueryError, RosPrivacyError
 from tests.fuzz_corpus import SECRET, hide, mutate, plant, words
 from tests.fuzzing.choices import Choices
-from tests.fuzzing.label_texts import BASE, BASE_LABELS, STAR_LABELS
+from tests.fuzzing.label_texts import BASE, BASE_LABELS, EXAMPLE_FLEET, STAR_LABELS
 from tests.fuzzing.watch import Hang, Watch
 from tests.fuzzing.whole import report_whole, run_command
 
@@ -56,7 +56,8 @@ def prepare(folder: Path) -> Path:
     folder.mkdir(parents=True)
     hide(outside)
     plant(folder, outside)
-    for name, text in (("base.xml", BASE), ("base.yaml", BASE_LABELS), ("star.yaml", STAR_LABELS)):
+    base = {"base.xml": BASE, "base.yaml": BASE_LABELS, "star.yaml": STAR_LABELS, "example.yaml": EXAMPLE_FLEET}
+    for name, text in base.items():
         (folder / name).write_text(text, "utf-8")
     return outside
 

@@ -28,6 +28,9 @@ channels: {/a: sensitive}
 elements: {disk: {kind: storage, country: DE}}
 flows: [{from: /robot/arm, to: disk}]
 """
+EXAMPLE_FLEET = (
+    "fleet: 1\nmodels: {m: {policies: base.xml, labels: base.yaml}}\nrobots: {r1: {model: m}, r2: {model: m}}\n"
+)
 STAR_LABELS = "labels: 1\nnodes: {'*': {source: [Video], leak: [Voice], derives: [{from: Video, to: Voice}]}}\n"
 NON_ROS_NAMES = ("disk", "fleet cloud", "screen")
 FAULTY = 4  # one file in so many has an odd place

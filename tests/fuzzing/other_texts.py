@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import json
+from contextlib import suppress
 from functools import cache
 from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
 import rosprivacy
-from rosprivacy.ingest.database.rows import robot_rows
+from rosprivacy.ingest.database.rows import robot_rows, rows_of
 from rosprivacy.queries.library import pack
 from rosprivacy.spark.parquet import FORMAT, PARTS
 from tests.fuzzing.words import DURATIONS, ODD_TEXT, with_fault
 
 if TYPE_CHECKING:
+    from random import Random
+
     from tests.fuzzing.choices import Choices
 
+DAY = "2026-01-01"
 PREFIXES = """\
 @prefix : <urn:e:> .
 @prefix rp: <urn:x-rosprivacy:> .
@@ -52,51 +56,80 @@ def ontology(choices: Choices) -> dict[str, str]:
 
 
 @cache
-def _example() -> tuple[Any, Any]:
-    """A document and the rows of a small system, to damage."""
-    result = rosprivacy.analyze("base.xml", "base.yaml", today="2026-01-01")
-    rows = robot_rows("r1", result.analysis, result.bound, result.vocabulary, {})
-    return json.loads(result.to("json")), {part: getattr(rows, part) for part in PARTS}
+def _documents() -> tuple[Any, Any]:
+    """Documents of the example, of a robot and of a fleet, to damage."""
+    results = (
+        rosprivacy.analyze("base.xml", "base.yaml", today=DAY),
+        rosprivacy.analyze_fleet("example.yaml", today=DAY),
+    )
+    robot, fleet = (json.loads(result.to("json")) for result in results)
+    return robot, fleet
+
+
+@cache
+def _rows(robot: str) -> dict[str, Any]:
+    """The rows of a robot of the example."""
+    result = rosprivacy.analyze("base.xml", "base.yaml", today=DAY)
+    rows = robot_rows(robot, result.analysis, result.bound, result.vocabulary, {"model": "m"})
+    return _with_digest(robot, {part: getattr(rows, part) for part in PARTS})
+
+
+def _with_digest(robot: str, said: dict[str, Any]) -> dict[str, Any]:
+    """Rows with the digest that goes with them, so that it is not the first thing that is wrong."""
+    parts = {part: said[part] for part in PARTS if part != "properties"}
+    own = {key: said["properties"][key] for key in ("verdict", "view", "model")}
+    return {**parts, "properties": rows_of(robot, own, parts).properties}
 
 
 def analysis(choices: Choices) -> dict[str, str]:
-    document = _example()[0]
-    for _ in range(choices.below(3)):
+    document = _documents()[0]
+    if choices.once_in(2):
         document = with_fault(choices, document)
     return {"old.json": json.dumps(document)}
 
 
 def parquet(choices: Choices) -> dict[str, bytes]:
-    """A folder as ``analyze --results`` writes it: an answer, and the rows of a robot or two."""
-    document, rows = _example()
-    document = {**document, "fleet": {"robots": 2, "alike": [], "patterns": []}}
-    if choices.once_in(3):
+    """A folder as ``analyze --results`` writes it: an answer, and the rows of its robots; half of them with a fault."""
+    fault = choices.pick(("", "", "", "document", "rows", "column", "robot", "bytes"))
+    document = _documents()[1]
+    if fault == "document":
         document = with_fault(choices, document)
-    answers = [{"format": FORMAT, "document": json.dumps(document)}] * (0 if choices.once_in(20) else 1)
     robots = []
-    for name in ("r1", "r2")[: choices.below(3)]:
-        said: Any = with_fault(choices, rows) if choices.once_in(3) else rows
+    for name in document["fleet"]["alike"][0]["robots"] if fault != "document" else ("r1", "r2"):
+        said: Any = _rows(name)
+        if fault == "rows":
+            said = with_fault(choices, said)
+            with suppress(AttributeError, KeyError, TypeError):
+                said = _with_digest(name, said)
         texts = {part: json.dumps(said.get(part) if isinstance(said, dict) else said) for part in PARTS}
-        robots.append(
-            {"robot": name, "verdict": "leak", "model": None, "shared": choices.once_in(3), "part": 0, **texts}
-        )
-    if choices.once_in(4) and robots:
-        del robots[0][choices.pick(list(robots[0]))]
-    return {"results/answer/a.parquet": _table(choices, answers), "results/robots/r.parquet": _table(choices, robots)}
+        robots.append({"robot": name, "verdict": "leak", "model": "m", "shared": False, "part": 0, **texts})
+    if fault == "column":
+        for row in robots:
+            del row[choices.pick(list(row))]
+    if fault == "robot":
+        robots[0][choices.pick(("robot", "shared", "part", "model"))] = choices.pick((None, "r9", True, 7))
+    answer = [{"format": FORMAT, "document": json.dumps(document)}]
+    damaged = choices.random() if fault == "bytes" else None
+    folders = {"results/answer/a.parquet": answer, "results/robots/r.parquet": robots}
+    return {file: _table(rows, damaged) for file, rows in folders.items()}
 
 
-def _table(choices: Choices, rows: list[dict[str, Any]]) -> bytes:
-    from pyarrow import Table, parquet
+def _table(rows: list[dict[str, Any]], damaged: Random | None) -> bytes:
+    from pyarrow import ArrowException, Table, bool_, int32, parquet, schema, string
 
+    kinds = {"shared": bool_(), "part": int32()}
     names = dict.fromkeys(name for row in rows for name in row)
+    columns = {name: [row.get(name) for row in rows] for name in names}
     file = BytesIO()
-    table = Table.from_pydict({name: [row.get(name) for row in rows] for name in names})
+    try:
+        table = Table.from_pydict(columns, schema([(name, kinds.get(name, string())) for name in names]))
+    except (ArrowException, TypeError):  # a value of another type: the column is what it says
+        table = Table.from_pylist([{name: str(value) for name, value in row.items()} for row in rows])
     parquet.write_table(table, file, compression="none")
     data = bytearray(file.getvalue())
-    if choices.once_in(6):
-        random = choices.random()
-        for _ in range(1 + choices.below(3)):
-            data[random.randrange(len(data))] ^= 1 << random.randrange(8)
+    if damaged:
+        for _ in range(damaged.randint(1, 3)):
+            data[damaged.randrange(len(data))] ^= 1 << damaged.randrange(8)
     return bytes(data)
 
 
