@@ -41,11 +41,18 @@ class Bounds:
         What our formats mean is not ten levels deep; each level is held while a file is read.
     robots
         All robots of a fleet with those of its infrastructure; a group states a million of them in eight bytes.
+    flows
+        Half as many wildcards as grants match as many names: flows grow with the square of a policy, and so they do in
+        the enforced view, where each node of an enclave may do what all of them may.
+    comparisons
+        Pairs of wildcards times their length, and what DENYs leave of them: the cube of a policy.
     """
 
     name: int = _bound(16_384, "characters in a name")
     nesting: int = _bound(64, "levels of lists and maps")
     robots: int = _bound(200_000, "robots in the fleet")
+    flows: int = _bound(1_000_000, "flows between the elements of a robot or a domain")
+    comparisons: int = _bound(100_000_000, "steps of comparing wildcards")
 
     @classmethod
     def raised(cls, written: Iterable[str]) -> Bounds:

@@ -81,6 +81,8 @@ class Fleet:
         As in ``Labels``; the ends of flows name robots too (``ROBOTS:/name``).
     root
         The folder that the files which it names do not leave.
+    bounds
+        With which it was read, for what its robots make together.
     """
 
     name: str
@@ -92,6 +94,7 @@ class Fleet:
     limits: tuple[Limit, ...]
     flows: tuple[FlowEntry, ...]
     root: str
+    bounds: Bounds = BOUNDS
 
 
 def read_fleet(
@@ -235,6 +238,7 @@ class _Fleet:
             tuple(limit for part in self._parts for limit in part.limits),
             tuple(flow for part in self._parts for flow in part.flows),
             self._root,
+            self._bounds,
         )
 
     def _add(self, name: str, spec: Spec, *, shared: bool) -> None:

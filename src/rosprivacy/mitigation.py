@@ -86,13 +86,15 @@ def run_mitigation(
     graph, view = result.analysis.graph, result.analysis.graph.view
     limits = read_limits(limits_file, graph, bounds) if limits_file else Limits()
     notes: tuple[str, ...] = ()
-    if DENY in kinds and build(result.policies, view) != graph:  # what else is in it would be lost when built anew
+    if (
+        DENY in kinds and build(result.policies, view, bounds) != graph
+    ):  # what else is in it would be lost when built anew
         kinds = set(kinds) - {DENY}
         notes = ("no line is proposed for DENY: the graph holds more than the policies say",)
     limits = replace(limits, kinds=limits.kinds & set(kinds))
 
     def deny(grants: Collection[Grant]) -> tuple[FlowGraph, Bound]:
-        changed = build(with_denied(result.policies, grants), view)
+        changed = build(with_denied(result.policies, grants), view, bounds)
         return changed, join(changed, result.labels)[0]
 
     system = System(
@@ -103,7 +105,7 @@ def run_mitigation(
     grants = list(_denied(proposals[-1:]))
     if not grants:
         return Mitigation(result, limits, proposals, Patch(), notes=notes)
-    changed = build(with_denied(result.policies, grants), view)
+    changed = build(with_denied(result.policies, grants), view, bounds)
     unmatched = tuple(str(problem) for problem in join(changed, result.labels)[1])
     return Mitigation(result, limits, proposals, patch(result.policies, grants), unmatched, notes)
 

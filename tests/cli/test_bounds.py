@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+import rosprivacy
 from rosprivacy.analysis.bounds import BOUNDS, WHAT
 from tests.helpers.command import Cli, refused, run
 from tests.helpers.policies import policy
@@ -69,6 +70,20 @@ def named_robots(number: int) -> Input:
     return fleet(f"robots:\n{robots}groups: [{{robots: {number - number // 2}, model: m, id: g_*}}]\n")
 
 
+def two_wildcards(number: int) -> Input:
+    """A pair has 4 steps, and one for each character of what is written (``rt/*ww…`` in DDS)."""
+    written = topics("/*" + "w" * (number - len("rt/*") - 4))
+    return Input({"p.xml": policy(f"\n{written}{topics('/*', role='subscribe')}")}, ("analyze", "p.xml"), "p.xml:2: ")
+
+
+def matched_names(number: int) -> Input:
+    """A flow for each name that is read, for the wildcard, and for each name that it matches."""
+    read = [f"t{i}" for i in range((number - 1) // 2)]
+    written = ["*", *read[: 1 - number % 2]]  # one more if there have to be
+    body = f"{topics(*read, role='subscribe')}\n{topics(*written)}"
+    return Input({"p.xml": policy(body)}, ("analyze", "p.xml"), "p.xml:2: ")
+
+
 ROWS: list[tuple[str, int, Callable[[int], Input], int]] = [  # bound, set to, what has so many, or the default
     ("name", 300, long_name, 0),
     ("name", 300, long_label, 1),  # its name is not there: so much is read
@@ -76,6 +91,9 @@ ROWS: list[tuple[str, int, Callable[[int], Input], int]] = [  # bound, set to, w
     ("robots", 10, one_group, 0),
     ("robots", 10, many_groups, 0),
     ("robots", 10, named_robots, 0),
+    ("comparisons", 60, two_wildcards, 0),
+    ("flows", 20, matched_names, 0),
+    ("flows", 21, matched_names, 0),
 ]
 
 
@@ -136,3 +154,38 @@ def test_a_fleet_file_of_a_kilobyte_states_no_millions(tmp_path: Path) -> None:
     lines = refused(run("analyze", "--fleet", "f.yaml", cwd=tmp_path, seconds=60))
     assert lines[0].startswith("f.yaml:4: 1,000,000 robots in the fleet, more than the bound of 200,000")
     assert lines[-1].startswith("f.yaml:23: 20,000,000 robots in the fleet")
+
+
+def written_and_read(written: list[str], read: list[str]) -> str:
+    return policy(topics(*written) + topics(*read, role="subscribe"))
+
+
+@pytest.mark.parametrize("number", [5, 20])
+def test_long_wildcards_that_overlap_are_compared(tmp_path: Path, number: int) -> None:
+    """Defect 10 of the review of b86d901: 20 + 20 names of 900 characters (37 kB) were not compared in 120 s."""
+    names = [f"/*{'a*b' * 300}{i}*" for i in range(2 * number)]
+    (tmp_path / "p.xml").write_text(written_and_read(names[:number], names[number:]))
+    assert run("analyze", "p.xml", cwd=tmp_path, seconds=60).returncode == 4
+    graph = rosprivacy.analyze(tmp_path / "p.xml").analysis.graph
+    joined = [flow for flow in graph.flows if flow.role == "matches"]
+    assert len(joined) == number**2  # exact: each pair has names in common
+
+
+@pytest.mark.slow
+def test_flows_that_grow_with_the_square_of_a_policy_are_refused(tmp_path: Path) -> None:
+    """2,000 nodes of one enclave with a name each are 4 million flows in the enforced view, in 200 kB."""
+    profile = '<profile ns="/" node="n{0}"><topics publish="ALLOW"><topic>t{0}</topic></topics></profile>'
+    profiles = "".join(profile.format(i) for i in range(2_000))
+    enclaves = f'<enclaves><enclave path="/e"><profiles>{profiles}</profiles></enclave></enclaves>'
+    (tmp_path / "p.xml").write_text(f'<policy version="0.2.0">{enclaves}</policy>')
+    (line,) = refused(run("analyze", "p.xml", "--view", "enforced", cwd=tmp_path, seconds=180))
+    assert "more than the bound of 1,000,000 flows" in line
+    assert run("analyze", "p.xml", cwd=tmp_path).returncode == 4
+
+
+def test_a_deny_that_is_too_much_to_follow_is_told(cli: Cli, tmp_path: Path) -> None:
+    """The careful answer is that a name is left, and a reader of the report knows it (rule S11)."""
+    denied = topics("/", "/?*", *(f"/*{letter}{'?' * 12}" for letter in "abcdefgh")).replace("ALLOW", "DENY")
+    (tmp_path / "p.xml").write_text(policy(f"{topics('/*')}\n{denied}"))
+    done = cli("analyze", "p.xml", "-v", cwd=tmp_path)
+    assert "p.xml:2: this DENY takes names out of wildcards" in " ".join(done.stdout.split())
