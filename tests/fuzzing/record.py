@@ -32,8 +32,8 @@ class Counts:
         Seconds of processor time for one input.
     peak
         The most memory of a process, in bytes.
-    coverage, counters
-        Places in the code of the readers that were reached, and all that are watched.
+    coverage
+        Places in the code of the readers that were reached, as libFuzzer counts them.
     corpus
         Inputs that are kept since they reach something new.
     """
@@ -48,7 +48,6 @@ class Counts:
     peak: int = 0
     cpu: float = 0
     coverage: int = 0
-    counters: int = 0
     corpus: int = 0
     faults: dict[str, dict[str, Any]] = field(default_factory=dict)
 
@@ -62,7 +61,7 @@ class Counts:
         """Add a slice."""
         for name in ("inputs", "accepted", "whole", "unfit", "commands", "cpu"):
             setattr(self, name, getattr(self, name) + getattr(other, name))
-        for name in ("slowest", "slowest_whole", "peak", "coverage", "counters", "corpus"):
+        for name in ("slowest", "slowest_whole", "peak", "coverage", "corpus"):
             setattr(self, name, max(getattr(self, name), getattr(other, name)))
         for name, fault in other.faults.items():
             self.fault(name, fault["fault"])
@@ -86,7 +85,7 @@ def document(about: dict[str, Any], targets: dict[str, Counts]) -> dict[str, Any
     whole = Counts()
     for counts in targets.values():
         whole.add(counts)
-    left_out = ("coverage", "counters", "corpus", "faults")  # of a target only
+    left_out = ("coverage", "corpus", "faults")  # of a target only
     totals = {name: value for name, value in asdict(whole).items() if name not in left_out}
     return {**about, "totals": totals, "targets": {name: asdict(counts) for name, counts in targets.items()}}
 
@@ -101,10 +100,9 @@ def table(record: dict[str, Any]) -> str:
         if not counts["inputs"]:
             continue
         share = f"{100 * counts['accepted'] / counts['inputs']:.0f} %"
-        reached = f"{counts['coverage']:,} of {counts['counters']:,}"
         seconds = f"{counts['slowest']:.2f} s | {counts['slowest_whole']:.2f} s"
         numbers = f"{counts['inputs']:,} | {share} | {counts['whole']:,}"
-        lines.append(f"| {name} | {numbers} | {seconds} | {reached} | {len(counts['faults'])} |")
+        lines.append(f"| {name} | {numbers} | {seconds} | {counts['coverage']:,} | {len(counts['faults'])} |")
     totals = record["totals"]
     said = f"{totals['inputs']:,} inputs, {totals['accepted']:,} accepted, {totals['whole']:,} analysed and reported"
     spent = f"{totals['commands']:,} commands; {totals['cpu'] / 3600:.2f} hours of processor time, at most"

@@ -29,7 +29,6 @@ if TYPE_CHECKING:
 MINUTE = 60
 PATIENCE = 30  # seconds for a slice to end when it is asked to
 COVERED = re.compile(r"cov: (\d+) .*corp: (\d+)/")
-COUNTERS = re.compile(r"Loaded \d+ modules? +\((\d+) inline")
 
 
 @dataclass
@@ -103,8 +102,6 @@ class Run:
         text = log.read_text("utf-8", "replace")
         if found := COVERED.findall(text):
             counts.coverage, counts.corpus = map(int, found[-1])
-        if loaded := COUNTERS.findall(text):
-            counts.counters = int(loaded[-1])
         if process.returncode:
             (self.folder / "faults" / f"{target}-process.log").write_text(text[-20_000:], "utf-8")
             counts.fault(f"{target}-process", f"the process ended with {process.returncode}")

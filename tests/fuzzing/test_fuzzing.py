@@ -186,7 +186,7 @@ def test_a_wrong_exit_code_is_seen(watched: Watch) -> None:
 
 
 def test_a_record_adds_up() -> None:
-    counts = Counts(inputs=2, accepted=1, slowest=0.5, cpu=1, coverage=7, counters=9)
+    counts = Counts(inputs=2, accepted=1, slowest=0.5, cpu=1, coverage=7)
     counts.fault("x", "boom")
     whole = Counts()
     for _ in range(2):
