@@ -110,7 +110,7 @@ def parquet(choices: Choices) -> dict[str, bytes]:
         robots[0][choices.pick(("robot", "shared", "part", "model"))] = choices.pick((None, "r9", True, 7))
     answer = [{"format": FORMAT, "document": json.dumps(document)}]
     damaged = choices.random() if fault == "bytes" else None
-    folders = {"results/answer/a.parquet": answer, "results/robots/r.parquet": robots}
+    folders: dict[str, list[dict[str, Any]]] = {"results/answer/a.parquet": answer, "results/robots/r.parquet": robots}
     return {file: _table(rows, damaged) for file, rows in folders.items()}
 
 
