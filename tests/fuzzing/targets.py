@@ -25,7 +25,7 @@ from rosprivacy.ontology.own import with_own
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.queries.library import parse
 from rosprivacy.report.compare.earlier import read_earlier
-from rosprivacy.report.document.analysis import as_text
+from rosprivacy.report.json_text import as_text
 from tests.fuzzing import label_texts, other_texts, policy_texts
 from tests.helpers.paths import ROOT
 
