@@ -189,7 +189,7 @@ def test_the_server_is_killed(every: int) -> None:
             assert found
             code, error, _ = database.run(SECOND, at, victim=found.pid)
             assert code in (0, 3), error
-            assert [bool(LINE.match(line)) for line in error.splitlines()] == [True] * (code == 3), error
+            assert code == 0 or [bool(LINE.match(line)) for line in error.splitlines()] == [True], error
             with connection.open_driver(connection.start()) as driver:
                 database = Database(program, driver)
                 left = database.now()
