@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 RP = Namespace("urn:x-rosprivacy:")
 ENGLISH = "en"
 _LOCAL = re.compile(r"[#/:]")
+_QUOTED = re.compile(r" at \^ in: .*")  # rdflib quotes the text, which may be anybody's
 
 
 def read(turtle: str, file: str) -> Graph:
@@ -37,7 +38,7 @@ def read(turtle: str, file: str) -> Graph:
         graph.parse(data=turtle, format="turtle")
     except Exception as error:  # noqa: BLE001 - rdflib raises its own and plain exceptions alike
         line = getattr(error, "lines", 0)
-        said = shown(" ".join(str(getattr(error, "message", error)).split()))
+        said = shown(_QUOTED.sub("", " ".join(str(getattr(error, "message", error)).split())))
         raise InputErrors(
             [OntologyError(file, line + 1 if line else 0, f"not Turtle: {said}", "correct the syntax")]
         ) from None
@@ -80,8 +81,8 @@ def local_name(iri: str) -> str:
 
 
 def _by_match(graph: Graph, ours: set[Node]) -> dict[Node, str]:
-    """IRIs of other vocabularies -> names of the categories that are the same."""
-    matches = graph.subject_objects(SKOS.exactMatch)
+    """IRIs of other vocabularies -> names of the categories that are the same, or near enough to stand below."""
+    matches = (pair for match in (SKOS.closeMatch, SKOS.exactMatch) for pair in graph.subject_objects(match))
     return {other: local_name(str(subject)) for subject, other in matches if subject in ours and other not in ours}
 
 

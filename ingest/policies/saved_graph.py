@@ -161,7 +161,7 @@ def _read_policy(saved: dict[str, Any]) -> Policy:
     if any(g["rule"] == "DENY" and "dead" not in g for g in saved["grants"]):
         grants, more = _of_earlier_version(grants, said)
         said += more
-    return Policy(_text(saved["file"]), sources, tuple(profiles), tuple(grants), tuple(said))
+    return Policy(_text(saved["file"]), sources, tuple(profiles), tuple(grants), tuple(said), saved=True)
 
 
 def _of_earlier_version(grants: list[Grant], said: Iterable[Diagnostic]) -> tuple[list[Grant], list[Diagnostic]]:
