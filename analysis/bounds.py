@@ -60,7 +60,7 @@ class Bounds:
     nesting: int = _bound(64, "levels of lists and maps")
     robots: int = _bound(200_000, "robots in the fleet")
     flows: int = _bound(1_000_000, "flows between the elements of a robot or a domain")
-    comparisons: int = _bound(100_000_000, "steps of comparing wildcards and globs")
+    comparisons: int = _bound(60_000_000, "steps of comparing wildcards and globs")
     findings: int = _bound(200_000, "findings")
     search_steps: int = _bound(100_000_000, "elements reached, counted for each source")
     path_steps: int = _bound(300_000_000, "steps of counting paths")
