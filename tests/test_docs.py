@@ -17,6 +17,7 @@ import pytest
 import typer
 
 import rosprivacy
+from rosprivacy.analysis.bounds import BOUNDS, WHAT
 from rosprivacy.cli.app import app
 from rosprivacy.cli.exit_code import CODES
 from rosprivacy.cli.inputs import WRITTEN
@@ -64,10 +65,21 @@ The same options mean the same in every command. Where one makes no sense, the c
 """
 
 
+BOUNDED = """
+## Bounds
+
+What an input may press on. Above a bound the message says how much there is, and `--bound NAME=N` sets another one; no
+system known to us meets one. The input itself is bounded by `--max-bytes`, the list of ways by `--max-paths`.
+
+| name | default | of what |
+| --- | --- | --- |
+"""
+
+
 def command_line() -> str:
     """The options of every command, as the program knows them."""
     group: Any = typer.main.get_command(app)
-    text = HEAD + EXIT_CODES + matrix(group.commands)
+    text = HEAD + EXIT_CODES + matrix(group.commands) + bounds()
     for name, command in group.commands.items():
         if hasattr(command, "commands"):
             rows = [f"| `rosprivacy {name} {n}` | {c.help} |" for n, c in sorted(command.commands.items())]
@@ -85,6 +97,11 @@ def command_line() -> str:
             meaning = (getattr(parameter, "help", "") or "").replace("\\[", "[")  # rich's way to write a bracket
             text += f"| {shown} | {default} | {meaning}{values} |\n"
     return text
+
+
+def bounds() -> str:
+    """What is bounded, by default."""
+    return BOUNDED + "".join(f"| `{name}` | {getattr(BOUNDS, name):,} | {what} |\n" for name, what in WHAT.items())
 
 
 def matrix(commands: dict[str, Any]) -> str:

@@ -13,6 +13,7 @@ from rosprivacy.analysis.model.category import (
     Legal,
 )
 from rosprivacy.analysis.model.diagnostic import (
+    CAREFUL_DENY,
     DEAD_DENY,
     EMPTY_GROUP,
     FALLBACK_TAKEN,
@@ -57,6 +58,7 @@ from rosprivacy.analysis.model.statement import (
 __all__ = [
     "ARTICLE_9",
     "ARTICLE_9_VERDICTS",
+    "CAREFUL_DENY",
     "CHANGED",
     "CHANNELS",
     "CLEANS",

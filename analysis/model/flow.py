@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from rosprivacy.analysis.model.diagnostic import Place
     from rosprivacy.analysis.model.element import Element
     from rosprivacy.analysis.model.policy import Grant, Profile
 
@@ -50,6 +51,8 @@ class FlowGraph:
     denied_matches
         Flows of role ``matches`` that a DENY took out (rules S4, S5): between a pattern and what it would cover or
         meet. Sorted alike; ``grants`` is empty, ``denials`` are the DENY lines.
+    careful
+        DENY lines with wildcards that were too much to follow: a name is taken to be left, and flows with it.
     """
 
     elements: tuple[Element, ...]
@@ -58,6 +61,7 @@ class FlowGraph:
     profiles: tuple[Profile, ...]
     view: str = "declared"
     denied_matches: tuple[Flow, ...] = ()
+    careful: tuple[Place, ...] = ()
 
     @property
     def taken_back(self) -> tuple[Flow, ...]:

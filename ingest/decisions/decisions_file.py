@@ -13,6 +13,7 @@ from datetime import date
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.decisions import Choice, Decision, Decisions
 from rosprivacy.analysis.errors import DecisionError, InputError, InputErrors, shown
 from rosprivacy.analysis.model import Place
@@ -22,6 +23,7 @@ from rosprivacy.ingest.reading.format_reader import FileReader
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from rosprivacy.analysis.bounds import Bounds
     from rosprivacy.ingest.reading.yaml_values import Value
     from rosprivacy.ontology.vocabulary import Vocabulary
 
@@ -36,7 +38,7 @@ _BASIS = re.compile(r"(?:art(?:icle|\.)?\s*)?(6\(1\)\([a-f]\)|9\(2\)\([a-j]\)|10
 _DPV = re.compile(r"(?:eu-gdpr:)?A(\d+)-(\d)-([a-j])")
 
 
-def read_decisions(file: str, vocabulary: Vocabulary, day: str) -> Decisions:
+def read_decisions(file: str, vocabulary: Vocabulary, day: str, bounds: Bounds = BOUNDS) -> Decisions:
     """Read one decisions file.
 
     Parameters
@@ -54,7 +56,7 @@ def read_decisions(file: str, vocabulary: Vocabulary, day: str) -> Decisions:
         return DecisionError(file, line, problem, hint.replace("labels: 1", "decisions: 1"))
 
     try:
-        top, data = yaml_values.read(file, fail)
+        top, data = yaml_values.read(file, fail, bounds)
     except InputError as error:
         raise InputErrors([error]) from None
     return _decisions(file, top, data, vocabulary, day)

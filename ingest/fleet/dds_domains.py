@@ -11,6 +11,7 @@ from collections import Counter
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.model import Bound, Element, FlowGraph
 from rosprivacy.ingest.fleet.mergeable_graph import Part, together
 from rosprivacy.ingest.policies.flow_graph import build
@@ -19,6 +20,7 @@ from rosprivacy.ingest.policies.namespaces import as_written, pushed
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
+    from rosprivacy.analysis.bounds import Bounds
     from rosprivacy.analysis.model import Diagnostic, Flow, Grant, Policy, Profile
     from rosprivacy.ingest.fleet.fleet_file import Robot
     from rosprivacy.ingest.labels.label_file import Labels
@@ -82,7 +84,7 @@ def stripped(graph: FlowGraph, namespace: str) -> tuple[FlowGraph, dict[Element,
     profiles = tuple(replace(profile, node=nodes[profile.node]) for profile in graph.profiles)
     changed = FlowGraph(
         elements, renumbered(graph.flows), renumbered(graph.denied), profiles, graph.view,
-        renumbered(graph.denied_matches),
+        renumbered(graph.denied_matches), graph.careful,
     )  # fmt: skip
     return changed, {new: element for element, new in shown.items()}
 
@@ -108,10 +110,10 @@ def pseudo_robot(domain: str) -> str:
     return f"domain {domain}"
 
 
-def shared(domain: str, members: Sequence[Member], view: str) -> Part:
+def shared(domain: str, members: Sequence[Member], view: str, bounds: Bounds = BOUNDS) -> Part:
     """The part of robots that share a domain."""
     names = _Names(domain, members)
-    graph = build([_marked(policy, member.robot) for member in members for policy in member.policies], view)
+    graph = build([_marked(policy, member.robot) for member in members for policy in member.policies], view, bounds)
     added = {member.robot.id: member.robot.add for member in members}
 
     def unmarked(grant: Grant) -> Grant:

@@ -14,6 +14,7 @@ from glob import glob, has_magic
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import FleetError, InputError, InputErrors, shown
 from rosprivacy.ingest.fleet.fleet_reader import GROUP_KEYS, ID, ID_HINT, ROBOT_KEYS, SECTIONS, SPEC, FleetReader, Spec
 from rosprivacy.ingest.labels.entries import OWN
@@ -24,13 +25,13 @@ from rosprivacy.ingest.reading.confined import WIDEN, leaves, what_leaves
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
+    from rosprivacy.analysis.bounds import Bounds
     from rosprivacy.analysis.model import Place
     from rosprivacy.ingest.labels.entries import Entry, FlowEntry
     from rosprivacy.ingest.labels.non_ros_reader import Limit, Stated
     from rosprivacy.ingest.reading.yaml_values import Value
     from rosprivacy.ontology.vocabulary import Vocabulary
 
-MOST = 1_000_000  # robots of a group
 STAR = "*"  # in a group: the robot's id
 SHARED = "shared"
 
@@ -80,6 +81,8 @@ class Fleet:
         As in ``Labels``; the ends of flows name robots too (``ROBOTS:/name``).
     root
         The folder that the files which it names do not leave.
+    bounds
+        With which it was read, for what its robots make together.
     """
 
     name: str
@@ -91,9 +94,12 @@ class Fleet:
     limits: tuple[Limit, ...]
     flows: tuple[FlowEntry, ...]
     root: str
+    bounds: Bounds = BOUNDS
 
 
-def read_fleet(file: str, vocabulary: Vocabulary, *, include_root: str | Path | None = None) -> Fleet:
+def read_fleet(
+    file: str, vocabulary: Vocabulary, *, include_root: str | Path | None = None, bounds: Bounds = BOUNDS
+) -> Fleet:
     """Read a fleet file.
 
     Parameters
@@ -110,7 +116,8 @@ def read_fleet(file: str, vocabulary: Vocabulary, *, include_root: str | Path | 
     -----
     Linear in the number of robots.
     """
-    reader = _Fleet(vocabulary, os.path.realpath(include_root or os.path.dirname(file) or os.curdir))  # noqa: PTH120
+    root = os.path.realpath(include_root or os.path.dirname(file) or os.curdir)  # noqa: PTH120
+    reader = _Fleet(vocabulary, root, bounds)
     reader.read(file, ())
     fleet = reader.fleet(file)
     if reader.problems:
@@ -121,8 +128,10 @@ def read_fleet(file: str, vocabulary: Vocabulary, *, include_root: str | Path | 
 class _Fleet:
     """Gathers what fleet files say, and puts robots together at the end."""
 
-    def __init__(self, vocabulary: Vocabulary, root: str) -> None:
+    def __init__(self, vocabulary: Vocabulary, root: str, bounds: Bounds) -> None:
         self.problems: list[InputError] = []
+        self._bounds = bounds
+        self._count = 0  # of robots
         self._root = root
         self._vocabulary = vocabulary
         self._name = ""
@@ -146,12 +155,14 @@ class _Fleet:
             return FleetError(file, line, problem, "write at least 'fleet: 1'" if "empty" in problem else hint)
 
         try:
-            top, data = yaml_values.read(file, fail)
+            top, data = yaml_values.read(file, fail, self._bounds)
         except InputError as error:
             self.problems.append(error)
             return
         self._sources[file] = hashlib.sha256(data).hexdigest()
-        part = FleetReader(file, self._vocabulary, "", OWN, error=FleetError, problems=self.problems)
+        part = FleetReader(
+            file, self._vocabulary, "", OWN, error=FleetError, problems=self.problems, bounds=self._bounds
+        )
         self._parts.append(part)
         part.version(top, "fleet", "fleet")
         for key, line, value in part.entries_of(top, ("fleet", *SECTIONS)) if top.kind == "map" else ():
@@ -204,7 +215,8 @@ class _Fleet:
 
     def fleet(self, file: str) -> Fleet:
         """Put everything together."""
-        for name, spec, shared in self._drafts:
+        drafts = self._drafts
+        for name, spec, shared in drafts if drafts and self._bounded(len(drafts), drafts[-1][1].place) else ():
             self._add(name, spec, shared=shared)
         for part, spec, item in self._groups:
             for name, one in self._members(part, spec, item):
@@ -227,6 +239,7 @@ class _Fleet:
             tuple(limit for part in self._parts for limit in part.limits),
             tuple(flow for part in self._parts for flow in part.flows),
             self._root,
+            self._bounds,
         )
 
     def _add(self, name: str, spec: Spec, *, shared: bool) -> None:
@@ -264,10 +277,17 @@ class _Fleet:
             part.problem(item.line, what, "write {robots: 10, model: …} or {policies: robots/*.policy.xml}")
         elif count is None:
             yield from self._matched(part, spec, pattern[0])
-        elif count.kind != "number" or not re.fullmatch(r"[0-9]{1,7}", count.text) or not 0 < int(count.text) <= MOST:
-            part.problem(count.line, f"robots: {shown(count.text or count.kind)!r}", f"write a number up to {MOST:,}")
-        else:
+        elif count.kind != "number" or not re.fullmatch(r"[0-9]{1,18}", count.text) or not int(count.text):
+            part.problem(count.line, f"robots: {shown(count.text or count.kind)!r}", "write a whole number above 0")
+        elif self._bounded(int(count.text), replace(spec.place, line=count.line)):
             yield from self._counted(part, spec, item, int(count.text))
+
+    def _bounded(self, more: int, place: Place) -> bool:
+        """Whether there may be so many more robots; counted before one of them is made."""
+        self._count += more
+        if self._count > self._bounds.robots:
+            self._problem(place, *self._bounds.refusal("robots", self._count))
+        return self._count <= self._bounds.robots
 
     def _counted(self, part: FleetReader, spec: Spec, item: Value, count: int) -> Iterator[tuple[str, Spec]]:
         said = item.get("id")
@@ -293,7 +313,7 @@ class _Fleet:
         files = sorted(glob(pattern))  # noqa: PTH207 - absolute patterns too
         if not files:
             part.problem(line.line, f"{shown(pattern)!r} matches no file", "correct the pattern")
-        for file in files:
+        for file in files if self._bounded(len(files), line) else ():
             name = file[len(before) : len(file) - len(after)]
             if ID.fullmatch(name):
                 yield name, _of_robot(spec, name)

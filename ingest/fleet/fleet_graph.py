@@ -208,7 +208,7 @@ class _Placing:
                 parts.append(alone(member))
                 self._ends[member.robot.id] = Ends(parts[-1].elements)
         for domain, members in sorted(domains.items()):
-            parts.append(shared(domain, members, view))
+            parts.append(shared(domain, members, view, self._fleet.bounds))
             for member in members:
                 self._ends[member.robot.id] = Ends(_seen_by(parts[-1], member.robot.id))
             self._ends[pseudo_robot(domain)] = Ends(_of(parts[-1], pseudo_robot(domain)))

@@ -161,7 +161,8 @@ def with_flows(
         return tuple(sorted([*kept, *new], key=lambda f: (f.source, f.target, f.role)))
 
     allowed, denied = renumbered(graph.flows, added), renumbered(graph.denied)
-    return FlowGraph(tuple(known), allowed, denied, graph.profiles, graph.view, renumbered(graph.denied_matches))
+    matches = renumbered(graph.denied_matches)
+    return FlowGraph(tuple(known), allowed, denied, graph.profiles, graph.view, matches, graph.careful)
 
 
 def _sorted(places: Iterable[Place]) -> list[Place]:

@@ -17,6 +17,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, shown
 from rosprivacy.analysis.model import Place
 from rosprivacy.analysis.non_ros import EVERY
@@ -27,6 +28,7 @@ from rosprivacy.ingest.reading import yaml_values
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from rosprivacy.analysis.bounds import Bounds
     from rosprivacy.analysis.model import Diagnostic
     from rosprivacy.ingest.labels.entries import Entry, FlowEntry
     from rosprivacy.ingest.labels.non_ros_reader import Limit, Stated
@@ -65,7 +67,13 @@ class Labels:
 
 
 def read_labels(
-    file: str, vocabulary: Vocabulary, *, category: str = "PersonalData", shipped: bool = False, own: bool = False
+    file: str,
+    vocabulary: Vocabulary,
+    *,
+    category: str = "PersonalData",
+    shipped: bool = False,
+    own: bool = False,
+    bounds: Bounds = BOUNDS,
 ) -> Labels:
     """Read one label file.
 
@@ -89,16 +97,21 @@ def read_labels(
     shipped = shipped or (file.startswith(OURS) and name in SHIPPED_FILES)
     path = _shipped_path(name) if file.startswith(OURS) and shipped else file
     try:
-        top, data = yaml_values.read(path, partial(LabelError, file))
+        top, data = yaml_values.read(path, partial(LabelError, file), bounds)
     except InputError as error:
         raise InputErrors([error]) from None
     tier = OWN if not shipped else PROPOSED if file == INFRASTRUCTURE else SHIPPED
-    reader = LabelReader(file, vocabulary, category, tier, ROBOT if own else 0)
+    reader = LabelReader(file, vocabulary, category, tier, ROBOT if own else 0, bounds=bounds)
     return _labels(reader, top, data, shipped=shipped, own=own)
 
 
 def parse_labels(
-    text: str | Mapping[str, Any], vocabulary: Vocabulary, *, name: str, category: str = "PersonalData"
+    text: str | Mapping[str, Any],
+    vocabulary: Vocabulary,
+    *,
+    name: str,
+    category: str = "PersonalData",
+    bounds: Bounds = BOUNDS,
 ) -> Labels:
     """Read labels that stand in memory, as text or as what a YAML or JSON reader makes of it; see ``read_labels``.
 
@@ -109,13 +122,15 @@ def parse_labels(
     """
     try:
         text = text if isinstance(text, str) else json.dumps(text, ensure_ascii=False, indent=1)
-        top = yaml_values.parse(text, partial(LabelError, name))
+        top = yaml_values.parse(text, partial(LabelError, name), bounds)
     except InputError as error:
         raise InputErrors([error]) from None
     except (TypeError, ValueError) as error:
         hint = "write maps, lists, texts, numbers"
         raise InputErrors([LabelError(name, 0, f"not as in YAML or JSON: {shown(str(error))}", hint)]) from None
-    return _labels(LabelReader(name, vocabulary, category, OWN), top, text.encode("utf-8", "surrogatepass"))
+    return _labels(
+        LabelReader(name, vocabulary, category, OWN, bounds=bounds), top, text.encode("utf-8", "surrogatepass")
+    )
 
 
 def _labels(reader: LabelReader, top: Value, data: bytes, *, shipped: bool = False, own: bool = False) -> Labels:

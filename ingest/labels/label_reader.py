@@ -17,7 +17,6 @@ from rosprivacy.analysis.model import CLEANS, GLOB, NAME, Diagnostic, Method, Pl
 from rosprivacy.ingest.labels.entries import EXACT, SHIPPED, Entry, FlowEntry, naming, specificity
 from rosprivacy.ingest.labels.name_reader import NameReader
 from rosprivacy.ingest.labels.non_ros_reader import is_non_ros, read_element, read_limits
-from rosprivacy.ingest.policies.names import LONGEST_NAME
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -107,8 +106,8 @@ class LabelReader(NameReader):
             if is_non_ros(name):
                 self.problem(at, f"name {shown(name)!r} is not absolute", "begin it with /")
                 continue
-            if len(name) > LONGEST_NAME:
-                self.problem(at, f"a name of {len(name)} characters", f"no more than {LONGEST_NAME} are read")
+            if len(name) > self.bounds.name:
+                self.problem(at, *self.bounds.refusal("name", len(name)))
                 continue
             rank = self.rank(specificity(name))
             read = self._node if section == "nodes" else self._channel

@@ -12,7 +12,6 @@ from rosprivacy.analysis.errors import InputError, LabelError, shown
 from rosprivacy.analysis.model import Diagnostic, Place, Severity
 from rosprivacy.ingest.labels.entries import End
 from rosprivacy.ingest.labels.non_ros_reader import is_non_ros
-from rosprivacy.ingest.policies.names import LONGEST_NAME
 from rosprivacy.ingest.reading.format_reader import FileReader
 
 if TYPE_CHECKING:
@@ -96,8 +95,7 @@ class NameReader(FileReader):
         """Return a name or glob of ROS as it is written; one that does not begin with ``/`` is a problem."""
         if value.kind != "text" or is_non_ros(value.text):
             self.problem(value.line, f"{shown(value.text or value.kind)!r} is not an absolute name", "begin it with /")
-        elif len(value.text) > LONGEST_NAME:
-            what = f"a name of {len(value.text)} characters"
-            self.problem(value.line, what, f"no more than {LONGEST_NAME} are read")
+        elif len(value.text) > self.bounds.name:
+            self.problem(value.line, *self.bounds.refusal("name", len(value.text)))
             return ""
         return value.text

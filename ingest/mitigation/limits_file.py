@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, fields
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import InputError, InputErrors, LimitsError, shown
 from rosprivacy.analysis.mitigation.limits import CHANGES, LARGEST_COST, Limits, Rule, Weights
 from rosprivacy.analysis.written_names import literal, meant
@@ -21,6 +22,7 @@ from rosprivacy.ingest.reading.format_reader import FileReader
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from rosprivacy.analysis.bounds import Bounds
     from rosprivacy.analysis.model import FlowGraph
     from rosprivacy.ingest.reading.yaml_values import Value
 
@@ -29,7 +31,7 @@ PLACE = ("at", "from", "to", "never", "factor", "note")
 NEAREST = 3
 
 
-def read_limits(file: str, graph: FlowGraph) -> Limits:
+def read_limits(file: str, graph: FlowGraph, bounds: Bounds = BOUNDS) -> Limits:
     """Read one limits file and join it to a graph.
 
     Raises
@@ -42,7 +44,7 @@ def read_limits(file: str, graph: FlowGraph) -> Limits:
         return LimitsError(file, line, problem, hint)
 
     try:
-        top, _ = yaml_values.read(file, fail)
+        top, _ = yaml_values.read(file, fail, bounds)
     except InputError as error:
         raise InputErrors([error]) from None
     reader = _Reader(file, graph)

@@ -7,24 +7,26 @@ whole enclave of its policy and per direction, and the enforced view gives each 
 
 from __future__ import annotations
 
-from bisect import bisect_left
 from collections import defaultdict
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.bounds import BOUNDS, Tally
+from rosprivacy.analysis.errors import PolicyError
 from rosprivacy.analysis.model import KINDS, Element, Flow, FlowGraph, Grant, Profile
 from rosprivacy.analysis.modes import View
-from rosprivacy.ingest.policies.common_names import some_name
-from rosprivacy.ingest.policies.names import covers, dds_names, endpoints, is_pattern, literal_prefix, matcher, overlaps
+from rosprivacy.ingest.policies.comparisons import ByBeginning, Comparisons, apart
+from rosprivacy.ingest.policies.names import dds_names, endpoints, is_pattern
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from rosprivacy.analysis.model import Policy
+    from rosprivacy.analysis.bounds import Bounds
+    from rosprivacy.analysis.model import Place, Policy
     from rosprivacy.ingest.policies.names import Endpoint
 
 
-def build(policies: Iterable[Policy], view: str = View.declared) -> FlowGraph:
+def build(policies: Iterable[Policy], view: str = View.declared, bounds: Bounds = BOUNDS) -> FlowGraph:
     """Make the flow graph of some policies; the same whatever their order.
 
     Parameters
@@ -36,19 +38,20 @@ def build(policies: Iterable[Policy], view: str = View.declared) -> FlowGraph:
     Raises
     ------
     InputErrors
-        If the view is neither.
+        If the view is neither; above a bound.
 
     Notes
     -----
     Linear in the grants; with wildcards also in the channels that share their literal beginning, and quadratic in
-    the number of distinct wildcard names.
+    the number of distinct wildcard names that begin alike. Bounded by ``flows`` and ``comparisons``.
     """
     policies = tuple(policies)
     profiles = tuple(sorted({p for policy in policies for p in policy.profiles}, key=_profile_key))
     grants = sorted({grant for policy in policies for grant in policy.grants}, key=_grant_key)
     rights = list(_rights([grant for grant in grants if grant.allow], profiles, View(view)))
-    denials = _Denials([grant for grant in grants if not grant.allow and not grant.dead])
-    drafts = _Drafts()
+    work = Comparisons(bounds)
+    denials = _Denials([grant for grant in grants if not grant.allow and not grant.dead], work)
+    drafts = _Drafts(work, Tally(bounds, "flows", PolicyError))
     for profile in profiles:
         drafts.elements.add(Element("node", profile.node))
     for grant in grants:
@@ -79,40 +82,50 @@ Rule = tuple[str, Grant]  # DDS name or expression, and the line that denies it
 class _Denials:
     """DENY lines by policy, enclave and direction (rule S5)."""
 
-    def __init__(self, grants: Iterable[Grant]) -> None:
-        self._of: dict[tuple[str, str, bool], list[Rule]] = defaultdict(list)
+    def __init__(self, grants: Iterable[Grant], work: Comparisons) -> None:
+        self._work = work
+        rules: dict[tuple[str, str, bool], list[Rule]] = defaultdict(list)
         for grant in grants:
             for endpoint in endpoints(grant.role, grant.kind, grant.name):
-                self._of[grant.policy, grant.enclave, endpoint.writes].append((endpoint.dds, grant))
+                rules[grant.policy, grant.enclave, endpoint.writes].append((endpoint.dds, grant))
+        self._of = {key: (found, *apart(found)) for key, found in rules.items()}
 
     def of(self, grant: Grant, endpoint: Endpoint) -> tuple[list[Grant], list[Rule]]:
         """The lines that deny all of what a grant opens, and the rules that deny a part of its wildcard."""
-        rules = self._of.get((grant.policy, grant.enclave, endpoint.writes), ())
-        whole = [line for dds, line in rules if covers(dds, endpoint.dds)]
-        if whole or not is_pattern(endpoint.name):
+        rules, plain, patterns = self._of.get((grant.policy, grant.enclave, endpoint.writes), ((), {}, ()))
+        self._work.at = grant.place
+        if not is_pattern(endpoint.name):
+            return [*plain.get(endpoint.dds, ()), *(g for dds, g in patterns if self._work.hold(dds, endpoint.dds))], []
+        whole = [line for dds, line in rules if self._work.hold(dds, endpoint.dds)]
+        if whole:
             return whole, []
-        part = [rule for rule in rules if overlaps(rule[0], endpoint.dds)]
-        if part and not some_name((endpoint.dds,), tuple(sorted({dds for dds, _ in part}))):
+        part = [rule for rule in rules if self._work.meet(rule[0], endpoint.dds)]
+        if part and not self._work.name_left((endpoint.dds,), part):
             return [line for _, line in part], []
         return [], part
 
 
-@dataclass
+@dataclass(slots=True)
 class _Draft:
     """A flow in the making: one role of one node on one channel may span several DDS topics."""
 
-    allowed: set[Grant]
-    overridden: set[Grant]
-    denials: set[Grant]
+    allowed: set[Grant] = field(default_factory=set)
+    taken: tuple[set[Grant], set[Grant]] | None = None  # lines that are overridden, and those that deny
+
+
+_MATCH = _Draft()  # of all flows of role ``matches``: no line states them
 
 
 class _Drafts:
     """Elements and flows as they are found, not yet numbered."""
 
-    def __init__(self) -> None:
+    def __init__(self, work: Comparisons, count: Tally) -> None:
+        self.work, self.count = work, count
+        self.said: dict[Element, Place] = {}  # of a pattern: the first line of it
         self.elements: set[Element] = set()
         self.flows: dict[tuple[Element, Element, str], _Draft] = {}
         self.dds: dict[Element, set[str]] = defaultdict(set)
+        self.ordered: dict[Element, list[str]] = {}  # those of patterns, for the same steps in every run
         self.rules: dict[Element, set[Rule]] = defaultdict(set)  # of a pattern: what denies a part of it
         self.refused: dict[tuple[Element, Element], set[Grant]] = {}  # matches that DENYs take out
 
@@ -126,14 +139,19 @@ class _Drafts:
         """One DDS topic that a grant opens to a node, unless denied."""
         against, part = denials.of(grant, endpoint)
         channel = self._channel(endpoint, tuple(sorted({dds for dds, _ in part})))
+        self.said.setdefault(channel, grant.place)
         if part:
             self.rules[channel].update(part)
         ends = Element("node", node), channel
         key = (*(ends if endpoint.writes else ends[::-1]), grant.role)
-        draft = self.flows.setdefault(key, _Draft(set(), set(), set()))
+        draft = self.flows.get(key)
+        if draft is None:
+            self.count.add(1, grant.place)
+            draft = self.flows[key] = _Draft()
         if against:
-            draft.overridden.add(grant)
-            draft.denials.update(against)
+            draft.taken = draft.taken or (set(), set())
+            draft.taken[0].add(grant)
+            draft.taken[1].update(against)
         else:
             draft.allowed.add(grant)
 
@@ -153,14 +171,16 @@ class _Drafts:
         """Join each wildcard to the names that it matches and the wildcards that it can meet (rule S4)."""
         plain = sorted((dds, e) for e in self.elements if not e.is_node and not e.pattern for dds in self.dds[e])
         patterns = sorted((e for e in self.elements if e.pattern), key=Element.sort_key)
-        readers = [e for e in patterns if e.side == "read"]
+        self.ordered = {e: sorted(self.dds[e]) for e in patterns}
+        readers = ByBeginning((dds, e) for e in patterns if e.side == "read" for dds in self.ordered[e])
         gone = self._denied_whole()
         for pattern in patterns:
+            self.work.at = self.said[pattern]
             for channel, lines in self._covered(pattern, plain):
                 ends = (pattern, channel) if pattern.side == "write" else (channel, pattern)
                 self._match(*ends, lines | gone.get(pattern, set()))
             if pattern.side == "write":
-                for reader in readers:
+                for reader in {near: None for dds in self.ordered[pattern] for near in readers.near(dds)}:
                     if (met := self._met(pattern, reader)) is not None:
                         self._match(pattern, reader, met | gone.get(pattern, set()) | gone.get(reader, set()))
 
@@ -172,31 +192,27 @@ class _Drafts:
             for end in (source, target):
                 if end.pattern and draft.allowed:
                     opened.add(end)
-                elif end.pattern:
-                    found[end] |= draft.denials
+                elif end.pattern and draft.taken:
+                    found[end] |= draft.taken[1]
         return {pattern: lines for pattern, lines in found.items() if pattern not in opened}
 
     def _match(self, source: Element, target: Element, denials: set[Grant]) -> None:
         if denials:
             self.refused[source, target] = denials
         else:
-            self.flows[source, target, "matches"] = _Draft(set(), set(), set())
+            self.count.add(1, self.work.at)
+            self.flows[source, target, "matches"] = _MATCH
 
     def _covered(self, pattern: Element, plain: list[tuple[str, Element]]) -> Iterator[tuple[Element, set[Grant]]]:
         """The channels that a pattern covers; with each the lines that take it out, none if it is covered."""
         free: set[Element] = set()
         taken: dict[Element, set[Grant]] = defaultdict(set)
-        for expression in self.dds[pattern]:
-            prefix, matches = literal_prefix(expression), matcher(expression)
-            at = bisect_left(plain, prefix, key=lambda pair: pair[0])
-            while at < len(plain) and plain[at][0].startswith(prefix):
-                dds, channel = plain[at]
-                at += 1
-                if matches(dds):
-                    lines = {line for denied, line in self.rules.get(pattern, ()) if covers(denied, dds)}
-                    taken[channel] |= lines
-                    if not lines:
-                        free.add(channel)
+        for expression in self.ordered[pattern]:
+            for dds, channel in self.work.covered(expression, plain):
+                lines = {line for denied, line in self.rules.get(pattern, ()) if self.work.hold(denied, dds)}
+                taken[channel] |= lines
+                if not lines:
+                    free.add(channel)
         for channel, lines in taken.items():
             yield channel, set() if channel in free else lines
 
@@ -204,12 +220,12 @@ class _Drafts:
         """The lines that take out all names that two patterns share: none if one is left; None if they share none."""
         rules = {*self.rules.get(writer, ()), *self.rules.get(reader, ())}
         lines: set[Grant] | None = None
-        for ours in self.dds[writer]:
-            for theirs in self.dds[reader]:
-                if not overlaps(ours, theirs):
+        for ours in self.ordered[writer]:
+            for theirs in self.ordered[reader]:
+                if not self.work.meet(ours, theirs):
                     continue
-                near = [(dds, line) for dds, line in rules if overlaps(dds, ours) and overlaps(dds, theirs)]
-                if not near or some_name((ours, theirs), tuple(sorted({dds for dds, _ in near}))):
+                near = [(d, line) for d, line in rules if self.work.meet(d, ours) and self.work.meet(d, theirs)]
+                if not near or self.work.name_left((ours, theirs), near):
                     return set()
                 lines = (lines or set()) | {line for _, line in near}
         return lines
@@ -224,15 +240,14 @@ class _Drafts:
             if draft.allowed or role == "matches":
                 allowed.append(Flow(*ends, tuple(sorted(draft.allowed, key=_grant_key))))
             else:
-                overridden = tuple(sorted(draft.overridden, key=_grant_key))
-                denied.append(Flow(*ends, overridden, tuple(sorted(draft.denials, key=_grant_key))))
+                denied.append(Flow(*ends, *(tuple(sorted(lines, key=_grant_key)) for lines in draft.taken or ())))
         refused = [
             Flow(index[source], index[target], "matches", (), tuple(sorted(lines, key=_grant_key)))
             for (source, target), lines in self.refused.items()
         ]
         return FlowGraph(
             elements, tuple(sorted(allowed, key=_ends)), tuple(sorted(denied, key=_ends)), profiles, view,
-            tuple(sorted(refused, key=_ends)),
+            tuple(sorted(refused, key=_ends)), tuple(sorted(self.work.careful, key=lambda at: (at.file, at.line))),
         )  # fmt: skip
 
 

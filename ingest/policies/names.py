@@ -18,21 +18,16 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.written_names import GLOB_SIGNS, is_glob, meant
+from rosprivacy.ingest.policies.expressions import have_common_name, holds, posix, tokens
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection
 
 ACTION_SERVICES = ("cancel_goal", "get_result", "send_goal")
 ACTION_TOPICS = ("feedback", "status")
-LONGEST_NAME = 16_384  # characters; DDS takes 255, and a wildcard's cost grows with the square
-LARGEST_TABLE = 1_000_000  # cells of a comparison of two expressions; larger ones take the careful answer
-LAST_CHARACTER = 0x10FFFF
 
 _OUT = {"publish", "request", "call"}
 _PART = re.compile(rf"(.+)/_action/({'|'.join(ACTION_SERVICES + ACTION_TOPICS)})", re.DOTALL)
-
-CharSet = tuple[tuple[int, int], ...]  # sorted ranges of code points, both ends included
-Token = CharSet | None  # None is *
 
 
 def resolve(name: str, namespace: str, node: str) -> str:
@@ -136,9 +131,10 @@ def literals(pattern: str) -> int:
     >>> literals("/cam*"), literals("/[a-z]*")
     (4, 1)
     """
-    return sum(token is not None and len(token) == 1 and token[0][0] == token[0][1] for token in _tokens(pattern))
+    return sum(token is not None and len(token) == 1 and token[0][0] == token[0][1] for token in tokens(pattern))
 
 
+@lru_cache(maxsize=65536)
 def literal_prefix(pattern: str) -> str:
     """Return what every name that a pattern covers begins with.
 
@@ -159,13 +155,13 @@ def covers(pattern: str, name: str) -> bool:
     (True, False)
     """
     if not is_pattern(name):
-        return fnmatchcase(name, _posix(pattern)) if is_pattern(pattern) else pattern == name
-    return pattern == name or _table(_tokens(pattern), _tokens(name), _within)
+        return fnmatchcase(name, posix(pattern)) if is_pattern(pattern) else pattern == name
+    return pattern == name or (not _apart(pattern, name) and holds(pattern, name))
 
 
 def matcher(pattern: str) -> Callable[[str], bool]:
     """Return the test whether a plain name is covered, compiled once for many names."""
-    match = re.compile(translate(_posix(pattern))).match
+    match = re.compile(translate(posix(pattern))).match
     return lambda name: match(name) is not None
 
 
@@ -183,125 +179,15 @@ def covered(written: str, names: Collection[str]) -> list[str]:
 
 @lru_cache(maxsize=65536)
 def overlaps(a: str, b: str) -> bool:
-    """Return whether some name is covered by both expressions; True where it is too large to tell.
+    """Return whether some name is covered by both expressions.
 
     >>> overlaps("/a*", "/*b"), overlaps("/a*", "/b*"), overlaps("/[a-c]", "/[!a]")
     (True, False, True)
     """
+    return not _apart(a, b) and have_common_name(a, b)
+
+
+def _apart(a: str, b: str) -> bool:
+    """Whether two expressions begin with characters that differ."""
     ours, theirs = literal_prefix(a), literal_prefix(b)
-    if not (ours.startswith(theirs) or theirs.startswith(ours)):
-        return False
-    return _table(_tokens(a), _tokens(b), _meets)
-
-
-def tokens(pattern: str) -> tuple[Token, ...]:
-    """Return what an expression stands for, from left to right: sets of characters, and None for ``*``.
-
-    >>> tokens("a*")
-    (((97, 97),), None)
-    """
-    return _tokens(pattern)
-
-
-def _posix(pattern: str) -> str:
-    """``[^…]`` is ``[!…]`` to glibc, but not to Python's fnmatch."""
-    return pattern.replace("[^", "[!")
-
-
-@lru_cache(maxsize=4096)
-def _tokens(pattern: str) -> tuple[Token, ...]:
-    pattern = _posix(pattern)
-    tokens: list[Token] = []
-    at = 0
-    while at < len(pattern):
-        char = pattern[at]
-        at += 1
-        if char == "*":
-            if not tokens or tokens[-1] is not None:
-                tokens.append(None)
-        elif char == "?":
-            tokens.append(((0, LAST_CHARACTER),))
-        elif char == "[" and (end := _bracket_end(pattern, at)) >= 0:
-            tokens.append(_bracket(pattern[at:end]))
-            at = end + 1
-        else:
-            tokens.append(((ord(char), ord(char)),))
-    return tuple(tokens)
-
-
-def _bracket_end(pattern: str, start: int) -> int:
-    """Index of the ``]`` that closes a bracket opened before ``start``, or -1; one right at the start is literal."""
-    first = start + 1 if pattern.startswith("!", start) else start
-    return pattern.find("]", first + 1)
-
-
-def _bracket(inside: str) -> CharSet:
-    negated = inside.startswith("!")
-    chars = inside[1:] if negated else inside
-    ranges = []
-    at = 0
-    while at < len(chars):
-        if at + 2 < len(chars) and chars[at + 1] == "-":
-            ranges.append((ord(chars[at]), ord(chars[at + 2])))
-            at += 3
-        else:
-            ranges.append((ord(chars[at]), ord(chars[at])))
-            at += 1
-    merged = _merge(ranges)
-    return _complement(merged) if negated else merged
-
-
-def _merge(ranges: list[tuple[int, int]]) -> CharSet:
-    merged: list[tuple[int, int]] = []
-    for low, high in sorted(r for r in ranges if r[0] <= r[1]):
-        if merged and low <= merged[-1][1] + 1:
-            merged[-1] = (merged[-1][0], max(merged[-1][1], high))
-        else:
-            merged.append((low, high))
-    return tuple(merged)
-
-
-def _complement(ranges: CharSet) -> CharSet:
-    gaps = []
-    low = 0
-    for start, end in ranges:
-        if low < start:
-            gaps.append((low, start - 1))
-        low = end + 1
-    return (*gaps, (low, LAST_CHARACTER)) if low <= LAST_CHARACTER else tuple(gaps)
-
-
-def _meets(a: CharSet, b: CharSet) -> bool:
-    return any(low <= end and start <= high for low, high in a for start, end in b)
-
-
-def _within(a: CharSet, b: CharSet) -> bool:
-    """Whether b is a part of a."""
-    return all(any(low <= start and end <= high for low, high in a) for start, end in b)
-
-
-def _table(a: tuple[Token, ...], b: tuple[Token, ...], test: Callable[[CharSet, CharSet], bool]) -> bool:
-    """Match two token lists against each other, by dynamic programming over their suffixes.
-
-    With ``_meets`` it answers whether both cover some name, with ``_within`` whether ``a`` covers all of ``b``
-    (a ``*`` of ``b`` then needs a ``*`` of ``a``).
-    """
-    both = test is _meets
-    if len(a) * len(b) > LARGEST_TABLE:
-        return both
-    below = [False] * len(b) + [True]
-    for j in range(len(b) - 1, -1, -1):
-        below[j] = both and b[j] is None and below[j + 1]
-    for ours in reversed(a):
-        row = [False] * (len(b) + 1)
-        row[-1] = ours is None and below[-1]
-        for j in range(len(b) - 1, -1, -1):
-            theirs = b[j]
-            if ours is None:
-                row[j] = below[j] or row[j + 1]
-            elif theirs is None:
-                row[j] = both and (row[j + 1] or below[j])
-            else:
-                row[j] = below[j + 1] and test(ours, theirs)
-        below = row
-    return below[0]
+    return not (ours.startswith(theirs) or theirs.startswith(ours))

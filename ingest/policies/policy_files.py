@@ -14,6 +14,7 @@ from glob import has_magic
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import InputError, InputErrors, PolicyError, reason
 from rosprivacy.analysis.model import NOT_READ, UNREAD_FILE, Diagnostic, Place, Policy, Severity
 from rosprivacy.ingest.policies.folders import contents
@@ -23,6 +24,8 @@ from rosprivacy.ingest.reading.confined import WIDEN, leaves, what_leaves
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+
+    from rosprivacy.analysis.bounds import Bounds
 
 
 @dataclass(slots=True)
@@ -41,6 +44,7 @@ def read_policies(
     include_root: str | None = None,
     within: str | None = None,
     max_bytes: int = MAX_BYTES,
+    bounds: Bounds = BOUNDS,
     progress: Callable[[Sequence[str]], Iterable[str]] = lambda files: files,
 ) -> tuple[tuple[Policy, ...], tuple[Diagnostic, ...]]:
     """Read every policy that the arguments name, each file once.
@@ -77,7 +81,7 @@ def read_policies(
     skipped: list[NotAPolicyError] = []
     for file in progress([file for file in everything if file not in outside]):
         try:
-            policies.append(read_policy(file, include_root=include_root, max_bytes=max_bytes))
+            policies.append(read_policy(file, include_root=include_root, max_bytes=max_bytes, bounds=bounds))
         except InputErrors as error:
             first = error.errors[0]
             if isinstance(first, NotAPolicyError) and file not in named:

@@ -14,13 +14,16 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import InputError, InputErrors, PolicyError, shown
 from rosprivacy.analysis.model import DEAD_DENY, EMPTY_GROUP, Diagnostic, Grant, Place, Policy, Profile, Severity
-from rosprivacy.ingest.policies.names import LONGEST_NAME, resolve
+from rosprivacy.ingest.policies.names import resolve
 from rosprivacy.ingest.policies.xinclude import MAX_BYTES, Documents, Item, has_text
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
+
+    from rosprivacy.analysis.bounds import Bounds
 
 VERSIONS = ("0.1.0", "0.2.0")
 ROLES = {
@@ -51,7 +54,9 @@ class NotAPolicyError(PolicyError):
     includes: bool = False
 
 
-def read_policy(file: str, *, include_root: str | None = None, max_bytes: int = MAX_BYTES) -> Policy:
+def read_policy(
+    file: str, *, include_root: str | None = None, max_bytes: int = MAX_BYTES, bounds: Bounds = BOUNDS
+) -> Policy:
     """Read one policy file with all that it includes.
 
     Parameters
@@ -75,7 +80,7 @@ def read_policy(file: str, *, include_root: str | None = None, max_bytes: int = 
     """
     documents = Documents(Path(include_root) if include_root else Path(file).parent, max_bytes)
     root = documents.open(file)
-    reader = _Reader(documents, file)
+    reader = _Reader(documents, file, bounds)
     reader.policy(root)
     problems = [*documents.problems, *reader.problems]
     if problems:
@@ -95,6 +100,7 @@ class _Reader:
 
     documents: Documents
     file: str
+    bounds: Bounds
     problems: list[InputError] = field(default_factory=list)
     diagnostics: list[Diagnostic] = field(default_factory=list)
     profiles: list[Profile] = field(default_factory=list)
@@ -220,9 +226,8 @@ class _Reader:
             for child in self.documents.children(item):
                 self._problem(child.place, f"<{shown(child.tag)}> inside <{item.tag}>", "write the name as plain text")
         written = element.text or ""
-        if len(written) > LONGEST_NAME:
-            what = f"a name of {len(written)} characters"
-            self._problem(item.place, what, f"no more than {LONGEST_NAME} are read")
+        if len(written) > self.bounds.name:
+            self._problem(item.place, *self.bounds.refusal("name", len(written)))
             written = ""
         if "[" in written and ("[:" in written or "[." in written or "[=" in written):
             self._problem(item.place, f"character class in {shown(repr(written))}", "write a range such as [a-z]")

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.bounds import BOUNDS, Bounds
 from rosprivacy.analysis.errors import InputError, shown
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ class FileReader:
     file: str = field(kw_only=False)
     error: type[InputError]
     problems: list[InputError] = field(default_factory=list)
+    bounds: Bounds = BOUNDS
 
     def problem(self, line: int, problem: str, hint: str) -> None:
         """Note a problem; the file is read on."""

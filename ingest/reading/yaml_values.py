@@ -14,16 +14,17 @@ from typing import TYPE_CHECKING, Any
 
 import yaml
 
+from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import shown
 from rosprivacy.ingest.reading.bounded_file import read_regular
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from rosprivacy.analysis.bounds import Bounds
     from rosprivacy.analysis.errors import InputError
 
 MAX_BYTES = 64 * 2**20
-DEEPEST = 64
 _LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _RESOLVER: Any = yaml.resolver.Resolver()
 _JSON_TOKEN = re.compile(r'[{}\[\]]|"(?:[^"\\]|\\.)*"|[^\s{}\[\]",:]+')
@@ -60,7 +61,7 @@ class Value:
         return next((value for name, _, value in self.entries if name == key), None)
 
 
-def read(file: str, fail: Callable[[int, str, str], InputError]) -> tuple[Value, bytes]:
+def read(file: str, fail: Callable[[int, str, str], InputError], bounds: Bounds = BOUNDS) -> tuple[Value, bytes]:
     """Read a file.
 
     Parameters
@@ -84,16 +85,16 @@ def read(file: str, fail: Callable[[int, str, str], InputError]) -> tuple[Value,
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
         raise fail(line, "not UTF-8", "save the file as UTF-8") from None
-    return parse(text, fail), data
+    return parse(text, fail, bounds), data
 
 
-def parse(text: str, fail: Callable[[int, str, str], InputError]) -> Value:
+def parse(text: str, fail: Callable[[int, str, str], InputError], bounds: Bounds = BOUNDS) -> Value:
     """Read YAML or JSON text; see ``read``."""
     if not text.strip():
         raise fail(1, *_EMPTY)
     if _XML.match(text):
         raise fail(1, "this is XML, such as a policy, and not YAML or JSON", "name policies without an option")
-    builder = _Builder(fail)
+    builder = _Builder(fail, bounds)
     if text.lstrip().startswith("{") and _is_json(text, fail):
         _feed_json(text, builder)
     else:
@@ -117,8 +118,9 @@ class _Open:
 class _Builder:
     """Puts values together from what a parser finds, one after the other, without recursion."""
 
-    def __init__(self, fail: Callable[[int, str, str], InputError]) -> None:
+    def __init__(self, fail: Callable[[int, str, str], InputError], bounds: Bounds) -> None:
         self.fail = fail
+        self.bounds = bounds
         self.top: Value | None = None
         self.open: list[_Open] = []
 
@@ -138,8 +140,8 @@ class _Builder:
         """A list or map begins."""
         if self.open and self.open[-1].kind == "map" and self.open[-1].key is None:
             raise self.fail(line, "a key that is not a name", "write a plain name before the colon")
-        if len(self.open) >= DEEPEST:
-            raise self.fail(line, "nested too deeply", "write it flatter")
+        if len(self.open) >= self.bounds.nesting:
+            raise self.fail(line, *self.bounds.refusal("nesting"))
         self.open.append(_Open(line, kind))
 
     def end(self) -> None:
@@ -174,7 +176,7 @@ def _feed_yaml(text: str, builder: _Builder, fail: Callable[[int, str, str], Inp
     except (yaml.YAMLError, ValueError) as error:
         raise fail(1, f"not YAML: {shown(str(error))}", "correct the syntax") from None
     except RecursionError:
-        raise fail(1, "nested too deeply", "write it flatter") from None
+        raise fail(1, "nested more deeply than can be read", "write it flatter") from None
 
 
 def _feed_event(event: yaml.Event, builder: _Builder, fail: Callable[[int, str, str], InputError]) -> None:
@@ -206,7 +208,7 @@ def _is_json(text: str, fail: Callable[[int, str, str], InputError]) -> bool:
     try:
         json.loads(text)
     except RecursionError:
-        raise fail(1, "nested too deeply", "write it flatter") from None
+        raise fail(1, "nested more deeply than can be read", "write it flatter") from None
     except ValueError:
         return False
     return True

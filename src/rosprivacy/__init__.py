@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from rosprivacy.analysis.answer import Analysis, Finding, Verdict
+    from rosprivacy.analysis.bounds import Bounds
     from rosprivacy.analysis.errors import (
         ClusterError,
         DatabaseError,
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Analysis",
+    "Bounds",
     "ClusterError",
     "DatabaseError",
     "DecisionError",
@@ -71,6 +73,7 @@ __all__ = [
 _ERRORS = "analysis.errors"
 _MODULES = {  # where a name that is no error stands
     "Analysis": "analysis.answer",
+    "Bounds": "analysis.bounds",
     "Element": "analysis.model",
     "Finding": "analysis.answer",
     "Labels": "ingest.labels.label_file",

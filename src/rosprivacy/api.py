@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from os import PathLike, fspath
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
+from rosprivacy.analysis.bounds import BOUNDS, Bounds
 from rosprivacy.analysis.findings.findings import MAX_PATHS
 from rosprivacy.fleet_system import answer_fleet
 from rosprivacy.ingest.labels import label_file
@@ -45,6 +46,7 @@ def analyze(
     add: Paths = (),
     include_root: Path | None = None,
     max_bytes: int = MAX_BYTES,
+    bounds: Bounds = BOUNDS,
     progress: Callable[[Sequence[str]], Iterable[str]] = iter,
 ) -> Result:
     """Analyse SROS 2 policies under label files.
@@ -86,6 +88,8 @@ def analyze(
         Folder that includes may read from; by default the policy's own.
     max_bytes
         Bound on a policy with all that it includes.
+    bounds
+        On what else an input can press: ``Bounds(robots=500_000)``.
     progress
         Wraps the list of files that are read, to show how far it is.
 
@@ -118,6 +122,7 @@ def analyze(
         max_paths=max_paths,
         include_root=_path(include_root),
         max_bytes=max_bytes,
+        bounds=bounds,
         progress=progress,
         decisions=_path(decisions),
         today=today,
@@ -141,6 +146,7 @@ def analyze_fleet(
     today: str | None = None,
     include_root: Path | None = None,
     max_bytes: int = MAX_BYTES,
+    bounds: Bounds = BOUNDS,
     progress: Callable[[Sequence[str]], Iterable[str]] = iter,
 ) -> Result:
     """Analyse the robots of a fleet file together.
@@ -151,7 +157,7 @@ def analyze_fleet(
         Fleet file, YAML or JSON; it names policies and labels.
     view, categories, article9, data_types, ontologies, category, standard_channels, paths, max_paths, decisions, today
         As in ``analyze``.
-    include_root, max_bytes, progress
+    include_root, max_bytes, bounds, progress
         As in ``analyze``.
 
     Returns
@@ -183,6 +189,7 @@ def analyze_fleet(
         max_paths=max_paths,
         include_root=_path(include_root),
         max_bytes=max_bytes,
+        bounds=bounds,
         progress=progress,
         decisions=_path(decisions),
         today=today,

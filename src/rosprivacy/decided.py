@@ -30,7 +30,7 @@ def decisions_of(settings: Settings, vocabulary: Vocabulary) -> Decisions | None
         return None
     from rosprivacy.ingest.decisions.decisions_file import read_decisions  # noqa: PLC0415 - only where there are some
 
-    found = read_decisions(settings.decisions, vocabulary, settings.today or today(os.environ))
+    found = read_decisions(settings.decisions, vocabulary, settings.today or today(os.environ), settings.bounds)
     return found if settings.today else not_revived(found, judged_on(os.environ))
 
 

@@ -22,6 +22,7 @@ from rosprivacy.ingest.fleet.mergeable_graph import Part
 from rosprivacy.ingest.labels.add_non_ros import extend
 from rosprivacy.ingest.labels.binding import bind, remarks
 from rosprivacy.ingest.labels.label_file import Labels, read_labels
+from rosprivacy.ingest.policies.comparisons import careful_notices
 from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.ingest.policies.joint_policies import joint_warnings
 from rosprivacy.ingest.policies.merged_policies import OF_ONE_ROBOT, merging_notices
@@ -83,7 +84,7 @@ def fleet_system(file: str, question: Question) -> FleetSystem:
         With every problem of the input, one line each.
     """
     settings, vocabulary, decisions = question.settings, question.vocabulary, question.decisions
-    fleet = read_fleet(file, vocabulary, include_root=settings.include_root)
+    fleet = read_fleet(file, vocabulary, include_root=settings.include_root, bounds=settings.bounds)
     groups = alike(fleet, decisions.told_apart) if decisions else alike(fleet)
     reader = Reader(vocabulary, settings, fleet.root)
     members = {}
@@ -157,6 +158,7 @@ class Reader:
                 include_root=settings.include_root,
                 within=self._root,
                 max_bytes=settings.max_bytes,
+                bounds=settings.bounds,
                 progress=settings.progress,
             )
             said += (*joint_warnings(policies), *merging_notices(policies, OF_ONE_ROBOT))
@@ -170,9 +172,9 @@ class Reader:
         diagnostics = [*(d for policy in policies for d in policy.diagnostics), *said]
         diagnostics += [d for labels in files for d in labels.diagnostics]
         run = [pushed(policy, robot.add) for policy in policies]
-        graph, full = stripped(build(run, settings.view), robot.strip or robot.add)
+        graph, full = stripped(build(run, settings.view, settings.bounds), robot.strip or robot.add)
         extended = extend(graph, files)
-        diagnostics += remarks(extended, files)
+        diagnostics += (*remarks(extended, files), *careful_notices(extended.careful))
         part = with_grants(Part.of(extended, bind(extended, files)), lambda grant: as_written(grant, robot.add))
         return Member(robot, policies, part, full, graph.profiles, tuple(files), tuple(dict.fromkeys(diagnostics)))
 
@@ -186,7 +188,7 @@ class Reader:
             shipped = file == standard and file not in (*robot.labels, *robot.own)
             try:
                 self.labels[file, own] = read_labels(
-                    file, self._vocabulary, category=settings.category, shipped=shipped, own=own
+                    file, self._vocabulary, category=settings.category, shipped=shipped, own=own, bounds=settings.bounds
                 )
             except InputErrors as error:
                 problems += error.errors

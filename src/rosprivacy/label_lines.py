@@ -63,7 +63,7 @@ def updated(policies: tuple[str, ...], labels: tuple[str, ...], settings: Settin
     own, text = _own(labels, vocabulary, settings)
     read, _ = read_system(policies, settings)
     known = read_label_files(tuple(own if one == own.file else one for one in labels), vocabulary, settings)
-    graph = extend(build(read, settings.view), known)
+    graph = extend(build(read, settings.view, settings.bounds), known)
     _, problems = join(graph, known)
     standard = standard_channels(graph, vocabulary, settings)
     there = [element for element in graph.elements if element.is_node or element.is_channel]
@@ -131,7 +131,7 @@ def _own(labels: tuple[str, ...], vocabulary: Vocabulary, settings: Settings) ->
     if not Path(file).exists():
         return parse_labels(NEW, vocabulary, name=file), NEW
     data = read_regular(file, MAX_BYTES, partial(LabelError, file))
-    return read_labels(file, vocabulary, category=settings.category), data.decode("utf-8-sig")
+    return read_labels(file, vocabulary, category=settings.category, bounds=settings.bounds), data.decode("utf-8-sig")
 
 
 def _meant(elements: Iterable[Element], entry: Entry) -> Iterator[Channel]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.mitigation.limits import CHANGES, DENY, Limits
 from rosprivacy.analysis.mitigation.propose import System, mitigate
 from rosprivacy.ingest.labels.binding import join
@@ -22,6 +23,7 @@ from rosprivacy.report.document.whole import document
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable
 
+    from rosprivacy.analysis.bounds import Bounds
     from rosprivacy.analysis.mitigation.proposals import Proposal
     from rosprivacy.analysis.model import Bound, FlowGraph, Grant
     from rosprivacy.report.contract.mitigation import MitigationDocument
@@ -66,7 +68,9 @@ class Mitigation:
         )  # fmt: skip
 
 
-def run_mitigation(result: Result, limits_file: str | None = None, kinds: Collection[str] = CHANGES) -> Mitigation:
+def run_mitigation(
+    result: Result, limits_file: str | None = None, kinds: Collection[str] = CHANGES, bounds: Bounds = BOUNDS
+) -> Mitigation:
     """Propose changes that remove the open findings of an analysis.
 
     Parameters
@@ -80,15 +84,17 @@ def run_mitigation(result: Result, limits_file: str | None = None, kinds: Collec
         With every problem of the limits file.
     """
     graph, view = result.analysis.graph, result.analysis.graph.view
-    limits = read_limits(limits_file, graph) if limits_file else Limits()
+    limits = read_limits(limits_file, graph, bounds) if limits_file else Limits()
     notes: tuple[str, ...] = ()
-    if DENY in kinds and build(result.policies, view) != graph:  # what else is in it would be lost when built anew
+    if (
+        DENY in kinds and build(result.policies, view, bounds) != graph
+    ):  # what else is in it would be lost when built anew
         kinds = set(kinds) - {DENY}
         notes = ("no line is proposed for DENY: the graph holds more than the policies say",)
     limits = replace(limits, kinds=limits.kinds & set(kinds))
 
     def deny(grants: Collection[Grant]) -> tuple[FlowGraph, Bound]:
-        changed = build(with_denied(result.policies, grants), view)
+        changed = build(with_denied(result.policies, grants), view, bounds)
         return changed, join(changed, result.labels)[0]
 
     system = System(
@@ -99,7 +105,7 @@ def run_mitigation(result: Result, limits_file: str | None = None, kinds: Collec
     grants = list(_denied(proposals[-1:]))
     if not grants:
         return Mitigation(result, limits, proposals, Patch(), notes=notes)
-    changed = build(with_denied(result.policies, grants), view)
+    changed = build(with_denied(result.policies, grants), view, bounds)
     unmatched = tuple(str(problem) for problem in join(changed, result.labels)[1])
     return Mitigation(result, limits, proposals, patch(result.policies, grants), unmatched, notes)
 

@@ -16,6 +16,7 @@ from rosprivacy.assumptions import files_read, remembered
 from rosprivacy.ingest.labels.add_non_ros import extend, extended
 from rosprivacy.ingest.labels.binding import bind, join, remarks
 from rosprivacy.ingest.labels.label_file import Labels, read_labels, unknown_categories
+from rosprivacy.ingest.policies.comparisons import careful_notices
 from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.ingest.policies.joint_policies import joint_warnings
 from rosprivacy.ingest.policies.merged_policies import merging_notices
@@ -62,7 +63,7 @@ def robot_system(policies: tuple[str, ...], labels: tuple[str | Labels, ...], qu
 def _under(labels: tuple[str | Labels, ...], *, read: Read, settings: Settings, vocabulary: Vocabulary) -> System:
     """Put policies that were read under labels."""
     files = read_label_files(labels, vocabulary, settings)
-    graph = extend(build(read[0], settings.view), files)
+    graph = extend(build(read[0], settings.view, settings.bounds), files)
     system = _joined(graph, bind(graph, files), read, files, settings, vocabulary)
     return replace(system, under=partial(_under, read=read, settings=settings, vocabulary=vocabulary))
 
@@ -73,6 +74,7 @@ def _joined(
     policies, diagnostics = read
     said = tuple(d for policy in policies for d in policy.diagnostics) + diagnostics
     said += tuple(d for file in files for d in file.diagnostics) + tuple(remarks(graph, files))
+    said += careful_notices(graph.careful)
     return System(graph, bound, vocabulary, said, files_read(policies, files, settings), policies, tuple(files))
 
 
@@ -93,12 +95,12 @@ def answer_each(
     vocabulary = question.vocabulary
     read, said = read_system(policies, settings)
     files = read_label_files(labels, vocabulary, settings)
-    bind(extend(build(read, settings.view), files), files)  # raises what fits none of them
+    bind(extend(build(read, settings.view, settings.bounds), files), files)  # raises what fits none of them
     left = tuple(one for one in said if one.code not in (MERGED, SHARED_ENCLAVE, REFUSED_NAME))
     results = []
     for policy in read:
         alone = (policy,), (*left, *joint_warnings((policy,)))
-        graph, _ = extended(build((policy,), settings.view), files)
+        graph, _ = extended(build((policy,), settings.view, settings.bounds), files)
         system = _joined(graph, join(graph, files)[0], alone, files, settings, vocabulary)
         results.append((policy.file, answer(system, question)))
     return tuple(results)
@@ -123,6 +125,7 @@ def read_system(policies: tuple[str, ...], settings: Settings) -> Read:
             policies,
             include_root=settings.include_root,
             max_bytes=settings.max_bytes,
+            bounds=settings.bounds,
             progress=settings.progress,
         )
     known = {policy.file for policy in read}  # read again is read anew
@@ -152,7 +155,9 @@ def read_label_files(labels: tuple[str | Labels, ...], vocabulary: Vocabulary, s
             continue
         try:
             shipped = file in standard and file not in labels  # named by the user, it is the user's own
-            files.append(read_labels(file, vocabulary, category=settings.category, shipped=shipped))
+            files.append(
+                read_labels(file, vocabulary, category=settings.category, shipped=shipped, bounds=settings.bounds)
+            )
         except InputErrors as error:
             problems += error.errors
     if problems:

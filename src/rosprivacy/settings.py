@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.bounds import BOUNDS, Bounds
 from rosprivacy.analysis.findings.findings import MAX_PATHS
 from rosprivacy.analysis.modes import Paths, View
 from rosprivacy.ingest.labels.label_file import STANDARD
@@ -41,6 +42,8 @@ class Settings:
         See ``Options``.
     include_root, max_bytes
         See ``read_policy``.
+    bounds
+        How much of what is read or made at most.
     progress
         Wraps the list of files, to show how far it is.
     decisions
@@ -61,6 +64,7 @@ class Settings:
     max_paths: int = MAX_PATHS
     include_root: str | None = None
     max_bytes: int = MAX_BYTES
+    bounds: Bounds = BOUNDS
     progress: Callable[[Sequence[str]], Iterable[str]] = field(default=lambda files: files)
     decisions: str | None = None
     today: str | None = None

@@ -33,7 +33,7 @@ OPTIONS = {
     "analyze": (
         "--labels", "--add", "--save-graph", "--format", "--output", "--categories", "--category", "--view", "--paths",
         "--max-paths", "--standard-channels", "--no-standard-channels", "--fail-on", "--include-root", "--max-bytes",
-        "--decisions",
+        "--bound", "--decisions",
         "--quiet", "--verbose", "--help", "-l", "-f", "-o", "-c", "-q", "-v", "-h",
     ),
     "decide": (
@@ -43,11 +43,11 @@ OPTIONS = {
     "mitigate": (
         "--labels", "--add", "--ontology", "--limits", "--by", "--patch", "--format", "--output", "--categories",
         "--category", "--decisions",
-        "--view", "--standard-channels", "--no-standard-channels", "--include-root", "--max-bytes", "--help",
+        "--view", "--standard-channels", "--no-standard-channels", "--include-root", "--max-bytes", "--bound", "--help",
     ),
     "labels": (
         "--add", "--ontology", "--view", "--init", "--schema", "--standard", "--infrastructure", "--output",
-        "--standard-channels", "--no-standard-channels", "--include-root", "--max-bytes", "--help",
+        "--standard-channels", "--no-standard-channels", "--include-root", "--max-bytes", "--bound", "--help",
     ),
 }  # fmt: skip
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from rosprivacy.cli.inputs import Inputs
-from rosprivacy.cli.options import DecisionsFile, IncludeRoot, Ontologies, Output
+from rosprivacy.cli.options import BoundsRaised, DecisionsFile, IncludeRoot, Ontologies, Output
 from rosprivacy.cli.output import emit
 
 if TYPE_CHECKING:
@@ -23,6 +23,7 @@ def fleet(
     ontology: Ontologies = None,
     decisions: DecisionsFile = None,
     include_root: IncludeRoot = None,
+    bound: BoundsRaised = None,
     output: Output = None,
 ) -> None:
     """List the robots of a fleet file, those that are alike together; or print the schema of such files."""
@@ -41,8 +42,9 @@ def fleet(
     from rosprivacy.ingest.fleet.alike_robots import alike
     from rosprivacy.ingest.fleet.fleet_file import read_fleet
 
-    read = read_fleet(file, vocabulary, include_root=include_root)
-    decided = decisions_of(Inputs(decisions=decisions).settings, vocabulary)
+    settings = Inputs(decisions=decisions, bound=bound).settings
+    read = read_fleet(file, vocabulary, include_root=include_root, bounds=settings.bounds)
+    decided = decisions_of(settings, vocabulary)
     groups = alike(read, decided.told_apart) if decided else alike(read)
     emit("".join(f"{line}\n" for line in _lines(read, groups)), output)
 

@@ -13,9 +13,11 @@ from typing import TYPE_CHECKING, Annotated, Any, get_args, get_type_hints
 
 import typer
 
+from rosprivacy.analysis.bounds import Bounds
 from rosprivacy.analysis.modes import View
 from rosprivacy.cli.driver import driver_of
 from rosprivacy.cli.options import (
+    BoundsRaised,
     Categories,
     DecisionsFile,
     FleetFile,
@@ -56,6 +58,7 @@ class Inputs:
     no_standard_channels: NoStandard = False
     include_root: IncludeRoot = None
     max_bytes: MaxBytes = 64 * 2**20
+    bound: BoundsRaised = None
     categories: Categories = None
     category: SixLists = "PersonalData"
     view: ViewChosen = View.declared
@@ -75,6 +78,7 @@ class Inputs:
             standard_channels=None if self.no_standard_channels else self.standard_channels,
             include_root=str(self.include_root) if self.include_root else None,
             max_bytes=self.max_bytes,
+            bounds=Bounds.raised(self.bound or ()),
             progress=progress_of,
             decisions=str(self.decisions) if self.decisions else None,
         )

@@ -78,7 +78,7 @@ def _first(inputs: Inputs, output: Path | None) -> tuple[str, Path | None, dict[
     settings = inputs.settings
     vocabulary = load(ontologies=settings.ontologies)
     system, _ = read_system(inputs.named, settings)
-    graph = build(system, settings.view)
+    graph = build(system, settings.view, settings.bounds)
     known = standard_channels(graph, vocabulary, settings), infrastructure_of(graph.elements, vocabulary)
     own = sorted(set(vocabulary.categories) - set(load().categories))
     text = template(graph, *known, own, schema=output is not None)

@@ -50,9 +50,10 @@ def mitigate(
     from rosprivacy.report.document.analysis import as_text
     from rosprivacy.report.terminal.mitigation import print_mitigation
 
-    result = inputs.result(inputs.settings)
+    settings = inputs.settings
+    result = inputs.result(settings)
     kinds = tuple(kind.value for kind in by) if by else CHANGES
-    found = run_mitigation(result, str(limits) if limits else None, kinds)
+    found = run_mitigation(result, str(limits) if limits else None, kinds, settings.bounds)
     report = found.document()
     texts = {patch: found.patch.diff or None} if patch else {}
     if format is Format.json:

@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from rosprivacy.analysis.bounds import WHAT
 from rosprivacy.analysis.modes import View
 
 
@@ -129,6 +130,15 @@ IncludeRoot = Annotated[
 MaxBytes = Annotated[
     int,
     typer.Option(min=1, metavar="N", help="Bound on a policy with all that it includes.", rich_help_panel=READ),
+]
+BoundsRaised = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="NAME=N",
+        show_default=False,
+        help=f"Another bound on what is read or made; may be repeated. Names: {', '.join(WHAT)}.",
+        rich_help_panel=READ,
+    ),
 ]
 Categories = Annotated[
     list[str] | None,

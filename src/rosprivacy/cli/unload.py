@@ -7,9 +7,10 @@ from typing import Annotated
 
 import typer
 
+from rosprivacy.analysis.bounds import Bounds
 from rosprivacy.analysis.errors import QueryError, shown
 from rosprivacy.cli.driver import driver_of
-from rosprivacy.cli.options import FleetFile, IncludeRoot, Ontologies, Server
+from rosprivacy.cli.options import BoundsRaised, FleetFile, IncludeRoot, Ontologies, Server
 from rosprivacy.cli.output import emit
 
 
@@ -20,6 +21,7 @@ def unload(
     fleet: FleetFile = None,
     ontology: Ontologies = None,
     include_root: IncludeRoot = None,
+    bound: BoundsRaised = None,
     neo4j: Server = None,
 ) -> None:
     """Remove a robot from Neo4j, or a fleet; what people added by hand stays, but for what hangs on its elements."""
@@ -27,7 +29,7 @@ def unload(
 
     if bool(robot) == bool(fleet):
         raise typer.BadParameter("name robots with --robot, or a fleet file with --fleet")
-    robot = list(robot or ()) or _names_in(fleet or "", tuple(ontology or ()), include_root)
+    robot = list(robot or ()) or _names_in(fleet or "", tuple(ontology or ()), include_root, Bounds.raised(bound or ()))
     with driver_of(neo4j) as driver:
         gone = unload(driver, robot)
     missing = [name for name in robot if name not in gone]
@@ -36,11 +38,11 @@ def unload(
         raise QueryError(f"no robot {', '.join(map(shown, missing))} in the database; see rosprivacy query robots")
 
 
-def _names_in(fleet: str, ontologies: tuple[str, ...], include_root: Path | None) -> list[str]:
+def _names_in(fleet: str, ontologies: tuple[str, ...], include_root: Path | None, bounds: Bounds) -> list[str]:
     """The names under which a fleet is filed in the database."""
     from rosprivacy.ingest.fleet.alike_robots import known_to_flows
     from rosprivacy.ingest.fleet.fleet_file import read_fleet
     from rosprivacy.ontology.vocabulary import load
 
-    read = read_fleet(fleet, load(ontologies=ontologies), include_root=include_root)
+    read = read_fleet(fleet, load(ontologies=ontologies), include_root=include_root, bounds=bounds)
     return [*known_to_flows(read), *([read.name] if read.elements else [])]

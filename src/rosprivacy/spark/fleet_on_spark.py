@@ -72,7 +72,7 @@ def run_on_spark(file: str, settings: Settings, master: str | None = None, resul
     plain = replace(settings, progress=unchanged, today=settings.today or judged_on(os.environ))
     question = question_of(plain)
     vocabulary = question.vocabulary
-    fleet = read_fleet(file, vocabulary, include_root=settings.include_root)
+    fleet = read_fleet(file, vocabulary, include_root=settings.include_root, bounds=settings.bounds)
     task = Task(
         fleet, alike(fleet), settings.view, partial(file_reader, plain, str(Path.cwd()), fleet.root),
         vocabulary.hierarchy, question.asked, question.today,

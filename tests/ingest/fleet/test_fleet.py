@@ -361,8 +361,8 @@ class TestRefusals:
             ("infrastructure: {a: {model: eye}}\n", "4: robot 'a' again, first at f.yaml:3"),
             ("models_again: {}\n", "4: unknown key 'models_again'"),
             # groups
-            ("groups: [{robots: 0, model: eye}]\n", "4: robots: '0'; write a number up to 1,000,000"),
-            ("groups: [{robots: many, model: eye}]\n", "4: robots: 'many'; write a number"),
+            ("groups: [{robots: 0, model: eye}]\n", "4: robots: '0'; write a whole number above 0"),
+            ("groups: [{robots: many, model: eye}]\n", "4: robots: 'many'; write a whole number above 0"),
             ("groups: [{robots: 2, model: eye, id: x}]\n", "4: 'x' cannot be the ids of a group; write one with a *"),
             ("groups: [{model: eye}]\n", "4: a group takes either a number of robots or policies with a *"),
             ("groups: [{robots: 2, policies: '*.xml'}]\n", "4: a group takes either a number of robots or"),

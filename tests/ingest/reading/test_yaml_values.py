@@ -182,7 +182,7 @@ def test_anchors_and_aliases_are_refused(text: str) -> None:
 )
 def test_what_is_nested_too_deeply_is_refused(text: str) -> None:
     _, problem = refused(text)
-    assert problem == "nested too deeply"
+    assert problem in ("more than the bound of 64 levels of lists and maps", "nested more deeply than can be read")
 
 
 @pytest.mark.parametrize("text", ["'[' * 60_000 + ']' * 60_000", "'{a: ' * 60_000 + '}' * 60_000", "'- ' * 60_000"])

@@ -1,0 +1,136 @@
+"""Bounds on what a stranger's input can press on: an answer is whole, or refused with the bound and how to raise it.
+
+Time and memory grow with the bytes of an input, and some grow faster: with pairs of wildcards, with the number that a
+group of robots states, with sources times leaks. These are bounded where they are read or made. The bounds stand
+beside ``--max-bytes``, which bounds the input itself, and are so large that no system known to us meets one. Never is
+a bound met by leaving something out in silence (rule S11).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, fields, replace
+from difflib import get_close_matches
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.errors import InputError, InputErrors, shown
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rosprivacy.analysis.model.diagnostic import Place
+
+OPTION = "--bound"
+LARGEST = 10**18
+
+
+def _bound(default: int, what: str) -> int:
+    """Make a field of ``Bounds``; ``what`` is counted, for messages and the documentation."""
+    made: int = field(default=default, metadata={"what": what})
+    return made
+
+
+@dataclass(frozen=True, slots=True)
+class Bounds:
+    """How much of each is read or made.
+
+    Attributes
+    ----------
+    name
+        DDS takes 255; the cost of a wildcard grows with its length.
+    nesting
+        What our formats mean is not ten levels deep; each level is held while a file is read.
+    robots
+        All robots of a fleet with those of its infrastructure; a group states a million of them in eight bytes.
+    flows
+        Half as many wildcards as grants match as many names: flows grow with the square of a policy, and so they do in
+        the enforced view, where each node of an enclave may do what all of them may.
+    comparisons
+        Pairs of wildcards times their length, and what DENYs leave of them: the cube of a policy.
+    """
+
+    name: int = _bound(16_384, "characters in a name")
+    nesting: int = _bound(64, "levels of lists and maps")
+    robots: int = _bound(200_000, "robots in the fleet")
+    flows: int = _bound(1_000_000, "flows between the elements of a robot or a domain")
+    comparisons: int = _bound(100_000_000, "steps of comparing wildcards")
+
+    @classmethod
+    def raised(cls, written: Iterable[str]) -> Bounds:
+        """Return the bounds with some of them set as on the command line.
+
+        Raises
+        ------
+        InputErrors
+            For a name that is none, with the nearest, and for what is no number.
+
+        Examples
+        --------
+        >>> Bounds.raised(["robots=500000"]).robots
+        500000
+        """
+        problems = []
+        values: dict[str, int] = {}
+        for text in written:
+            name, _, number = text.partition("=")
+            if name not in WHAT:
+                near = get_close_matches(name.casefold(), WHAT, n=1, cutoff=0)[0]
+                what = f"{shown(name)!r} is none of {', '.join(WHAT)}"
+                problems.append(InputError(OPTION, 0, what, f"did you mean {near}?"))
+            elif not (number.isascii() and number.isdecimal() and len(number) < len(str(LARGEST)) and int(number)):
+                what = f"{shown(text)!r} sets no bound"
+                problems.append(InputError(OPTION, 0, what, f"write a whole number above 0, as in {name}=1000"))
+            else:
+                values[name] = int(number)
+        if problems:
+            raise InputErrors(problems)
+        return replace(cls(), **values)
+
+    def refusal(self, name: str, found: int | None = None) -> tuple[str, str]:
+        """Return what is wrong, and what to do, where there is more of something than a bound.
+
+        Parameters
+        ----------
+        found
+            How much there is; None where nobody counted on.
+
+        Examples
+        --------
+        >>> Bounds().refusal("nesting", 70)
+        ('70 levels of lists and maps, more than the bound of 64', 'raise it with --bound nesting=N')
+        """
+        bound = getattr(self, name)
+        more = f"more than the bound of {bound:,}"
+        told = f"{more} {WHAT[name]}" if found is None else f"{found:,} {WHAT[name]}, {more}"
+        return told, f"raise it with {OPTION} {name}=N"
+
+
+BOUNDS = Bounds()
+WHAT = {one.name: str(one.metadata["what"]) for one in fields(Bounds)}
+
+
+@dataclass(slots=True)
+class Tally:
+    """Counts one thing over a whole run, and ends the run at its bound.
+
+    Attributes
+    ----------
+    error
+        Of this kind is the error.
+    """
+
+    bounds: Bounds
+    name: str
+    error: type[InputError] = InputError
+    count: int = 0
+
+    def add(self, more: int, place: Place) -> None:
+        """Count on.
+
+        Raises
+        ------
+        InputErrors
+            Above the bound, with the place at which it was met.
+        """
+        self.count += more
+        if self.count > getattr(self.bounds, self.name):
+            raise InputErrors([self.error(place.file, place.line, *self.bounds.refusal(self.name))])
