@@ -31,7 +31,8 @@ def validator(schema: Mapping[str, Any]) -> Validator:
     from jsonschema import Draft202012Validator, validators  # noqa: PLC0415 - light start
 
     whole = Draft202012Validator.TYPE_CHECKER.redefine("integer", lambda _, value: type(value) is int)
-    made: Validator = validators.extend(Draft202012Validator, type_checker=whole)(schema)
+    extend: Any = validators.extend  # has no types
+    made: Validator = extend(Draft202012Validator, type_checker=whole)(schema)
     return made
 
 

@@ -58,7 +58,7 @@ def document_of(data: bytes, file: str, again: str) -> Mapping[str, Any]:
     InputError
         As ``read_earlier``.
     """
-    document = parsed(data, lambda *said: InputError(file, *said), again)
+    document: dict[str, Any] = parsed(data, lambda *said: InputError(file, *said), again)
     said = document.get("format") if isinstance(document, dict) else None
     if said != FORMAT:
         if isinstance(said, str) and said.startswith("rosprivacy.analysis/"):

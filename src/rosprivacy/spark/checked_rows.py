@@ -56,11 +56,7 @@ def robot_rows(row: dict[str, Any], fail: Callable[[str], RosPrivacyError], agai
     for column, kind in (("robot", str), ("shared", bool), ("part", int)):
         if not isinstance(row[column], kind) or row[column] == "":
             raise fail(f"a row without {column}")
-    values = {}
-    for column in (*SHAPES, "roles", "properties"):
-        if row[column] is None:
-            raise fail(f"{column}: nothing")
-        values[column] = parsed(row[column].encode(), lambda _, problem, __, at=column: fail(f"{at}: {problem}"), again)
+    values = {column: _value(column, row[column], fail, again) for column in (*SHAPES, "roles", "properties")}
     problem = next(_misfits(values), "")
     if problem:
         raise fail(problem)
@@ -89,6 +85,12 @@ def check_ends(rows: RobotRows, fail: Callable[[str], RosPrivacyError]) -> Robot
     if any(row["source"] not in known for some in rows.roles.values() for row in some):
         raise fail("roles: a source that is not there")
     return rows
+
+
+def _value(column: str, text: str | None, fail: Callable[[str], RosPrivacyError], again: str) -> Any:
+    if text is None:
+        raise fail(f"{column}: nothing")
+    return parsed(text.encode(), lambda _, problem, __: fail(f"{column}: {problem}"), again)
 
 
 def _misfits(values: dict[str, Any]) -> Iterator[str]:

@@ -166,7 +166,7 @@ def _our_own(said: str) -> bool:
     (True, False)
     """
     trace = said.partition("Traceback (most recent call last):\n")[2].partition("\n\tat ")[0]
-    kinds = re.findall(r"^(\w+)(?::|$)", trace, re.MULTILINE)
+    kinds = re.findall(r"^([\w.]+)(?::|$)", trace, re.MULTILINE)
     kind = getattr(builtins, kinds[-1], None) if kinds else None
     theirs = (ImportError, OSError, MemoryError, EOFError)
     return isinstance(kind, type) and not issubclass(kind, theirs) and "rosprivacy" in trace
