@@ -44,7 +44,7 @@ def misfits(check: Validator, value: Any) -> list[str]:
     Examples
     --------
     >>> misfits(validator({"required": ["id"], "properties": {"n": {"type": "integer"}}}), {"n": 1.0})
-    ['the document lacks id', 'n is a number, not a whole number']
+    ['n is a number, not a whole number', 'the document lacks id']
     """
     found = (f"{_place(error)} {_wrong(error)}" for error in islice(check.iter_errors(value), MOST))
     return sorted(set(found))
