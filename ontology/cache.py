@@ -12,12 +12,10 @@ import os
 import tempfile
 from contextlib import suppress
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 from rosprivacy.analysis.model import Category, Legal
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 FORMAT = 5  # one more when what is kept, or what is refused, changes
 _TUPLES = ("broader", "synonyms", "data_types", "same_as", "within", "stated_of")
@@ -47,9 +45,14 @@ def keep(folder: Path, key: str, categories: tuple[Category, ...], respelt: dict
     text = json.dumps({"key": key, "digest": _digest(facts, respelt), "categories": facts, "respelt": respelt})
     with suppress(OSError):
         folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile("w", dir=folder, delete=False, encoding="utf-8") as file:
-            file.write(text)
-        os.replace(file.name, _path(folder, key))  # noqa: PTH105 - atomic on every platform
+        handle, name = tempfile.mkstemp(dir=folder)
+        try:
+            with os.fdopen(handle, "w", encoding="utf-8") as file:
+                file.write(text)
+            Path(name).replace(_path(folder, key))
+        except BaseException:
+            Path(name).unlink(missing_ok=True)
+            raise
 
 
 def _path(folder: Path, key: str) -> Path:

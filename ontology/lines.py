@@ -37,14 +37,14 @@ class Lines:
         return self._line(blocks[0]) if blocks else 0
 
     def _at_start(self, subject: Node) -> re.Pattern[str]:
-        return re.compile(rf"^\s*(?:{self._written(subject)})(?=[\s;,.]|$)", re.MULTILINE)
+        return re.compile(rf"^[ \t]*(?:{self._written(subject)})(?=[\s;,.]|$)", re.MULTILINE)
 
     def _written(self, node: Node) -> str:
         """How an IRI may be written: whole, with a prefix, or relative to a base."""
         iri = str(node)
         prefixed = [f"{prefix}:{iri[len(ns) :]}" for prefix, ns in self.graph.namespaces() if iri.startswith(ns)]
         whole = [re.escape(name) for name in (f"<{iri}>", *prefixed)]
-        return "|".join([*whole, rf"<[^>\s:]*{re.escape(local_name(iri))}>"])
+        return "|".join([*whole, rf"<[^<>\s:]*{re.escape(local_name(iri))}>"])
 
     def _line(self, position: int) -> int:
         return self.text.count("\n", 0, position) + 1

@@ -14,6 +14,7 @@ from rdflib import RDF, SH, SKOS, Graph, URIRef
 from rosprivacy.analysis.errors import InputErrors, OntologyError, shown
 from rosprivacy.ontology.known import Known, Problem
 from rosprivacy.ontology.lines import Lines
+from rosprivacy.ontology.odd_terms import odd_terms, silence
 from rosprivacy.ontology.own_hierarchy import parent_problems, unfollowed
 from rosprivacy.ontology.own_names import taken_names
 from rosprivacy.ontology.turtle import RP, categories_of, read
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 SHAPES = "shapes.ttl"
 
 
+@silence()
 def with_own(known: Known, data: bytes, file: str) -> Known:
     """Return what is known once a user's ontology is read too.
 
@@ -39,8 +41,8 @@ def with_own(known: Known, data: bytes, file: str) -> Known:
     Raises
     ------
     InputErrors
-        With every problem: Turtle, a shape that is broken, a parent that is not there, a cycle, a name that is taken,
-        a statement of the hierarchy that is not followed.
+        With every problem: Turtle, IRIs and values that are none, a shape that is broken, a parent that is not there, a
+        cycle, a name that is taken, a statement of the hierarchy that is not followed.
     """
     text = _decoded(data, file)
     graph = read(text, file)
@@ -49,6 +51,8 @@ def with_own(known: Known, data: bytes, file: str) -> Known:
         hint = "write each as: :Name a skos:Concept ; rp:label …"
         raise InputErrors([OntologyError(file, 0, "has no category", hint)])
     lines = Lines(text, graph)
+    if odd := list(odd_terms(graph)):
+        raise InputErrors([_error(problem, file, lines) for problem in odd])
     both = known.graph + graph
     there = {URIRef(category.iri) for category in known.categories}
     fresh = [subject for subject in subjects if isinstance(subject, URIRef) and subject not in there]

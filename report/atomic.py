@@ -1,7 +1,8 @@
 """The one place that writes files of users: whole or not at all, and never what was read in the same run.
 
 Texts are written to a neighbour first, which is then renamed over the old file. What is no regular file (a pipe,
-``/dev/stdout``) cannot be replaced so and is written to.
+``/dev/stdout``) cannot be replaced so and is written to. A process that is killed leaves each file old or new, and may
+leave a neighbour, ``.NAME.`` and eight signs, which nobody reads.
 """
 
 from __future__ import annotations
@@ -83,7 +84,7 @@ def write_texts(texts: Iterable[tuple[Path, str | bytes | None]], *, edited: Pat
         for temporary, at in staged:
             with writing(at.named):
                 temporary.replace(at.file)
-                _keep_name(at.file.parent)
+                keep_name(at.file.parent)
     finally:
         for temporary, _ in staged:
             temporary.unlink(missing_ok=True)
@@ -122,7 +123,7 @@ def _over_inputs(outputs: list[_Output], edited: Path | None) -> Iterator[InputE
 def _check_edited(outputs: list[_Output], edited: Path | None) -> None:
     """What somebody else wrote into the file meanwhile is not written over."""
     for at in outputs:
-        if at.named == edited and not at.stream and changed_since(str(at.file), _status(at.file)):
+        if at.named == edited and not at.stream and changed_since(str(at.named), _status(at.file)):
             raise InputError(str(at.named), 0, "was changed meanwhile, so nothing is written", "run the command again")
 
 
@@ -182,19 +183,19 @@ def _stage(at: _Output, data: bytes) -> Path:
     handle, name = tempfile.mkstemp(dir=at.file.parent, prefix=f".{at.file.name[:50]}.")
     temporary = Path(name)
     try:
+        temporary.chmod(stat.S_IMODE(mode))
         with os.fdopen(handle, "wb") as file:
             file.write(data)
             file.flush()
             os.fsync(file.fileno())
-        temporary.chmod(stat.S_IMODE(mode))
     except BaseException:
         temporary.unlink(missing_ok=True)
         raise
     return temporary
 
 
-def _keep_name(folder: Path) -> None:
-    """Write a new name through to the disk, where the system can; the file itself is there already."""
+def keep_name(folder: Path) -> None:
+    """Write a new name in a folder through to the disk, where the system can; the file itself is there already."""
     with suppress(OSError):
         handle = os.open(folder, os.O_RDONLY)
         try:

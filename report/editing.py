@@ -9,7 +9,7 @@ from __future__ import annotations
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.errors import InputError
+from rosprivacy.analysis.errors import InputError, shown
 from rosprivacy.report.atomic import writing
 
 if TYPE_CHECKING:
@@ -37,12 +37,18 @@ def editing(file: Path) -> Iterator[None]:
         target = file.resolve()
         target.parent.stat()  # filelock would make the folder
         neighbour = target.with_name(f".{target.name[:50]}.lock")
+        replaced = target.is_file() or not file.exists()
+    if not replaced:  # a pipe
+        yield
+        return
+    with writing(neighbour if neighbour.exists() else file):  # one that another user left may be closed to us
         lock = filelock.FileLock(neighbour, timeout=LOCK_LIMIT)
         try:
             lock.acquire()
         except filelock.Timeout:
             what = f"another rosprivacy has been editing it for {LOCK_LIMIT:.0f} s"
-            raise InputError(str(file), 0, what, "wait until it has ended, or end it, and try again") from None
+            hint = f"wait until it has ended, or end it; if none runs on any machine, remove {shown(str(neighbour))}"
+            raise InputError(str(file), 0, what, hint) from None
     try:
         yield
     finally:

@@ -16,7 +16,7 @@ from hypothesis import settings
 from rosprivacy.private_neo4j import connection as database
 from tests.helpers.command import cli
 from tests.helpers.paths import ROOT
-from tests.helpers.plain import plain_server
+from tests.helpers.plain import STOP_AT_THE_END, plain_server
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterator
@@ -32,11 +32,6 @@ GROUPS = {
     "chromium": {"browser"},
     "build": {"built"},  # builds in the folder of the sources
 }
-# Waits until the test run ends, however it does (also by SIGKILL: its standard input is closed then).
-STOP_AT_THE_END = (
-    "import sys; sys.stdin.read(); from rosprivacy.private_neo4j import connection as database; database.stop()"
-)
-
 
 settings.register_profile("everyday", max_examples=5, deadline=None)
 settings.register_profile("thorough", max_examples=200, deadline=None, print_blob=True)
@@ -48,6 +43,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--slow", action="store_true", help="also run what builds, installs or fuzzes")
+    parser.addoption("--all-kills", action="store_true", help="kill at every moment, not at some (CONTRIBUTING.md)")
 
 
 @pytest.hookimpl(wrapper=True)
@@ -98,6 +94,12 @@ def _own_folders(tmp_path_factory: pytest.TempPathFactory, pytestconfig: pytest.
         patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
         patch.setenv("ROSPRIVACY_DATA", str(tmp_path_factory.mktemp("private data")))
         yield
+
+
+@pytest.fixture(scope="session")
+def every(pytestconfig: pytest.Config) -> int:
+    """Of the moments at which a run can be killed, every so many-th is taken."""
+    return 1 if pytestconfig.getoption("--all-kills") else 10
 
 
 @pytest.fixture(scope="session")

@@ -17,7 +17,7 @@ import rosprivacy
 from rosprivacy.ingest.database.loading import load
 from rosprivacy.ingest.policies.saved_graph import as_dict
 from rosprivacy.private_neo4j import connection
-from rosprivacy.report.document.analysis import as_text
+from rosprivacy.report.json_text import as_text
 from rosprivacy.robot_system import robot_of
 from rosprivacy.settings import Settings
 from rosprivacy.stored_system import answer_stored

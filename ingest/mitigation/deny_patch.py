@@ -154,8 +154,7 @@ def _move(texts: dict[str, bytes], _: Policy, grant: Grant) -> bool:
 def _turn(texts: dict[str, bytes], name: str, group: _Span, role: str) -> bool:
     data = texts[name]
     head, body = data[: group.start], data[group.start :]
-    pattern = rb"(<[^<>]*?\b" + role.encode() + rb"\s*=\s*([\"']))ALLOW(?=\2)"
-    turned, count = re.subn(pattern, rb"\1DENY", body, count=1)
+    turned, count = re.subn(rb"(<[^<>]*?\b" + role.encode() + rb"\s*=\s*([\"']))ALLOW(?=\2)", rb"\1DENY", body, count=1)
     texts[name] = head + turned
     return bool(count)
 

@@ -26,7 +26,7 @@ LONGEST = 247  # characters that the middlewares of ROS 2 take
 NAMED = 3  # of the enclaves that two files share
 COMPARED = 50  # refused names that are compared with all others
 
-_WILDCARD = re.compile(r"\[[!^]?\]?[^]]*\]|[*?]")
+_WILDCARD = re.compile(r"\[[!^]?\]?[^\]]*\]|[*?]")
 _REFUSED = (
     (re.compile(r"[^A-Za-z0-9_/]"), "it has characters other than letters, digits, _ and /"),
     (re.compile(r"/$"), "it ends with /"),

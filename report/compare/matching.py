@@ -17,9 +17,8 @@ if TYPE_CHECKING:
 
 Key = tuple[str, ...]
 Record = dict[str, Any]
-# At the end of a part of a name: an address (hexadecimal, with a digit), or a number of three digits or more. Eight
-# digits are both: a name is tried as one of them only (?>), or each such word would double the work.
-_MADE_UP = re.compile(r"(?:_(?>(?=[a-f]*[0-9])[0-9a-f]{8,}|[0-9]{3,}))+(?=/|$)")
+# A word at the end of a part of a name: an address (hexadecimal, with a digit), or a number of three digits or more.
+_MADE_UP = re.compile(r"(?=[a-f]*[0-9])[0-9a-f]{8,}|[0-9]{3,}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +58,16 @@ def normalised(name: str) -> str:
     >>> normalised("/camera_1"), normalised("/feedface")
     ('/camera_1', '/feedface')
     """
-    return _MADE_UP.sub("_*", name)
+    return "/".join(map(_without_made_up, name.split("/")))
+
+
+def _without_made_up(part: str) -> str:
+    """A part of a name, ``*`` for all made-up words at its end together; the first word is never made up."""
+    words = part.split("_")
+    kept = len(words)
+    while kept > 1 and _MADE_UP.fullmatch(words[kept - 1]):
+        kept -= 1
+    return part if kept == len(words) else "_".join([*words[:kept], "*"])
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,6 @@ In: an ``Analysis`` and what it rests on. Out: plain dicts and lists, sorted, wi
 
 from __future__ import annotations
 
-import json
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
@@ -14,7 +13,6 @@ from rosprivacy.analysis.findings.sanitizing import absent, cleanings, makings
 from rosprivacy.analysis.kernel.ranks import in_words
 from rosprivacy.analysis.legal import turned_special
 from rosprivacy.analysis.model import GOES_NOWHERE, NO_LEAK_NAMED, UNREAD_FILE
-from rosprivacy.analysis.text import utf8
 from rosprivacy.analysis.written_names import literal
 from rosprivacy.report.document import ledger
 from rosprivacy.report.document.non_ros import inventory, taken_by_kind, without_backups
@@ -136,14 +134,6 @@ def lacking(document: Mapping[str, Any]) -> str:
     """Return what 'no leak found' lacks where data has a source: ``GOES_NOWHERE``, ``NO_LEAK_NAMED``, else empty."""
     codes = {said.get("code") for said in document["diagnostics"]}
     return next((code for code in (GOES_NOWHERE, NO_LEAK_NAMED) if code in codes), "")
-
-
-def as_text(value: Any) -> str:
-    """Return JSON text that is the same for the same value, and ends with a newline.
-
-    What UTF-8 cannot say (a file name that is none) is escaped.
-    """
-    return utf8(json.dumps(value, indent=2, ensure_ascii=False) + "\n")
 
 
 def element_dict(element: Element) -> ElementEntry:

@@ -6,8 +6,6 @@ found. What only a person can know is left empty, and a column says which fields
 
 from __future__ import annotations
 
-import csv
-import io
 from collections import defaultdict
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
@@ -21,7 +19,7 @@ from rosprivacy.report.page.kinds import provision
 from rosprivacy.report.page.non_ros import STORAGE, retention
 from rosprivacy.report.page.tables import OUTSIDE, can_come_from
 from rosprivacy.report.page.words import Words
-from rosprivacy.report.spreadsheet import guarded
+from rosprivacy.report.spreadsheet import as_csv
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -57,13 +55,10 @@ class Entry:
 def record(document: Mapping[str, Any], language: str) -> str:
     """Return the record as CSV, lines ending as RFC 4180 says, with a byte order mark."""
     index = Index(document, Words(language))
-    text = io.StringIO()
-    writer = csv.writer(text, delimiter=SEPARATORS[language], quoting=csv.QUOTE_ALL, lineterminator="\r\n")
     columns = [field.name for field in fields(Entry)]
-    writer.writerow([index.words(f"r.{column}") for column in columns])
-    for entry in entries(index):
-        writer.writerow([guarded(getattr(entry, column)) for column in columns])
-    return BOM + text.getvalue()
+    head = [index.words(f"r.{column}") for column in columns]
+    rows = ([getattr(entry, column) for column in columns] for entry in entries(index))
+    return BOM + as_csv(head, rows, separator=SEPARATORS[language])
 
 
 def entries(index: Index) -> tuple[Entry, ...]:

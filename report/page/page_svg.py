@@ -30,7 +30,7 @@ PLACES = ("d", "points", "x", "y", "cx", "cy", "rx", "ry")
 INKS = frozenset({"black", INK})
 LONGEST_TIP = 300
 WIDE = 400  # points; on a small screen such a picture is moved, others are made smaller
-_DECIMALS = re.compile(r"-?\d+\.\d+")
+_DECIMALS = re.compile(r"-?(?<!\d)\d+\.\d+")
 _LOADS = re.compile(r"url|[\\<>]", re.IGNORECASE)
 
 

@@ -14,11 +14,10 @@ from typing import TYPE_CHECKING, Any
 from rdflib import RDF, XSD, Literal, URIRef
 from rdflib.plugins.serializers.turtle import TurtleSerializer
 
+from rosprivacy.report.json_text import as_text
 from rosprivacy.report.rdf.terms import RP
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from rdflib import Graph
     from rdflib.term import Node
 
@@ -52,7 +51,7 @@ def as_turtle(graph: Graph) -> str:
     """Return a graph as Turtle."""
     stream = BytesIO()
     _Turtle(graph).serialize(stream, encoding="utf-8")
-    return _printable(stream.getvalue().decode().strip("\n"), _turtle_escape) + "\n"
+    return _ODD.sub(_printable, stream.getvalue().decode().strip("\n")) + "\n"
 
 
 def as_json_ld(graph: Graph) -> str:
@@ -60,7 +59,7 @@ def as_json_ld(graph: Graph) -> str:
     context = {prefix: str(namespace) for prefix, namespace in sorted(graph.namespaces())}
     value = _sorted(json.loads(graph.serialize(format="json-ld", context=context)))
     value["@graph"].sort(key=lambda node: node["@id"])
-    return _printable(json.dumps(value, ensure_ascii=False, indent=2), _json_escape) + "\n"
+    return as_text(value)
 
 
 SERIALISERS = {"turtle": as_turtle, "json-ld": as_json_ld}
@@ -78,14 +77,8 @@ def _sorted(value: Any) -> Any:
     return value
 
 
-def _printable(text: str, escape: Callable[[str], str]) -> str:
-    return _ODD.sub(lambda match: match[0] if match[0].isprintable() else escape(match[0]), text)
-
-
-def _turtle_escape(character: str) -> str:
-    short = 0xFFFF
-    return f"\\u{ord(character):04X}" if ord(character) <= short else f"\\U{ord(character):08X}"
-
-
-def _json_escape(character: str) -> str:
-    return json.dumps(character)[1:-1]
+def _printable(match: re.Match[str]) -> str:
+    number, short = ord(match[0]), 0xFFFF
+    if match[0].isprintable():
+        return match[0]
+    return f"\\u{number:04X}" if number <= short else f"\\U{number:08X}"

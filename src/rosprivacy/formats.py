@@ -89,8 +89,8 @@ def _text(answer: Answer, style: Style) -> str:
 
 
 def _json(answer: Answer, _: Style) -> str:
-    from rosprivacy.report.document.analysis import as_text
     from rosprivacy.report.document.whole import document
+    from rosprivacy.report.json_text import as_text
 
     return as_text(document(answer))
 
@@ -106,7 +106,7 @@ def _linked_data(form: str) -> Callable[[Answer, Style], str]:
 
 
 def _sarif(answer: Answer, _: Style) -> str:
-    from rosprivacy.report.document.analysis import as_text
+    from rosprivacy.report.json_text import as_text
     from rosprivacy.report.sarif.artifacts import repository_root
     from rosprivacy.report.sarif.log import sarif
 
@@ -117,7 +117,7 @@ def _sarif(answer: Answer, _: Style) -> str:
 def _cnil_pia(answer: Answer, _: Style) -> str:
     """Without ``SOURCE_DATE_EPOCH`` the file is dated now, since the tool wants a date (rule S14)."""
     from rosprivacy.report.cnil.pia import cnil_pia
-    from rosprivacy.report.document.analysis import as_text
+    from rosprivacy.report.json_text import as_text
 
     created = (source_date(os.environ) or datetime.now(UTC)).isoformat(timespec="milliseconds")
     return as_text(cnil_pia(answer, created.replace("+00:00", "Z")))

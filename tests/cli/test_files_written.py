@@ -18,6 +18,7 @@ import rosprivacy
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.files_read import noted, one_run, read_as
 from rosprivacy.ingest.labels.label_file import shipped_text
+from rosprivacy.private_neo4j.state import write_private
 from rosprivacy.report.atomic import check_outputs, write_texts
 from tests.helpers.command import XI, Cli, refused, run
 from tests.helpers.docs import CATEGORIES, blocks
@@ -325,7 +326,10 @@ def test_decide_edits_nothing_else(cli: Cli, folder: Path) -> None:
     assert everything(folder) == before
 
 
-def test_a_file_is_on_the_disk_before_it_takes_the_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("write", [lambda file: write_texts([(file, "new")]), lambda file: write_private(file, "new")])
+def test_a_file_is_on_the_disk_before_it_takes_the_name(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, write: Callable[[Path], None]
+) -> None:
     file = tmp_path / "r.txt"
     file.write_text("old")
     seen, fsync = [], os.fsync
@@ -335,7 +339,7 @@ def test_a_file_is_on_the_disk_before_it_takes_the_name(tmp_path: Path, monkeypa
         fsync(handle)
 
     monkeypatch.setattr(os, "fsync", watched)
-    write_texts([(file, "new")])
+    write(file)
     assert seen == [(file.stat().st_ino, "old"), (tmp_path.stat().st_ino, "new")]
 
 

@@ -18,7 +18,7 @@ from rosprivacy.ingest.reading.bounded_file import contents
 from rosprivacy.report import editing as editing_module
 from rosprivacy.report.atomic import write_texts
 from rosprivacy.report.editing import editing
-from tests.helpers.command import Cli, refused
+from tests.helpers.command import Cli, refused, run
 from tests.helpers.factory import BEFORE
 
 if TYPE_CHECKING:
@@ -100,6 +100,68 @@ def test_who_waits_too_long_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     told = pytest.raises(InputError, match=r"another rosprivacy has been editing it for 0 s; wait")
     with editing(file), told, editing(file):
         pass
+
+
+def test_a_lock_that_is_closed_to_us_is_named(cli: Cli, tmp_path: Path) -> None:
+    """As one that another user left: it is in the way, not the file."""
+    (tmp_path / ".d.yaml.lock").mkdir()
+    (line,) = refused(cli("decide", "mitigate", "7ac677bf059b5beb", "--decisions", tmp_path / "d.yaml"))
+    assert line.startswith(f"{tmp_path / '.d.yaml.lock'}: cannot be written: ")
+
+
+def test_a_first_label_file_replaces_none_that_appears_meanwhile(tmp_path: Path) -> None:
+    """What a person saves while the policies are read, which takes a second or two."""
+    file = tmp_path / "l.yaml"
+    with subprocess.Popen(
+        [sys.executable, "-m", "rosprivacy", "labels", "--init", str(BEFORE), "-o", str(file)],
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as process:
+        while not (tmp_path / ".l.yaml.lock").exists():
+            assert process.poll() is None
+        file.write_text("labels: 1\n", "utf-8")
+        _, error = process.communicate(timeout=60)
+    assert process.returncode == 2
+    assert "is there already" in error or "was changed meanwhile" in error
+    assert file.read_text("utf-8") == "labels: 1\n"
+
+
+def test_of_two_first_label_files_one_is_refused(tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "rosprivacy", "labels", "--init", str(BEFORE), "-o", "l.yaml"]
+    both = [
+        subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        for _ in range(2)
+    ]
+    said = sorted((process.communicate(timeout=60)[1], process.returncode) for process in both)
+    assert [code for _, code in said] == [0, 2]
+    assert "is there already" in said[1][0]
+
+
+def test_an_answer_to_a_pipe_takes_no_lock(tmp_path: Path) -> None:
+    labels = tmp_path / "l.yaml"
+    labels.write_text("labels: 1\nnodes:\n  /safety_camera: {source: [Video]}\n", "utf-8")
+    for command in (["--next", "-l", str(labels)], ["--init"]):
+        done = run("labels", *command, BEFORE, "-o", "/dev/stdout")
+        assert (done.returncode, "/emergency_stop" in done.stdout) == (0, True), done.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["l.yaml"]
+
+
+@pytest.mark.parametrize("kind", ["removed", "replaced", "written"])
+def test_what_is_done_to_a_file_behind_a_link_is_seen(tmp_path: Path, kind: str) -> None:
+    file, link = tmp_path / "labels.yaml", tmp_path / "link.yaml"
+    file.write_text("labels: 1\n", "utf-8")
+    link.symlink_to(file)
+    with one_run():
+        contents(link)
+        if kind == "written":
+            file.write_text("labels: 1\nnodes: {}\n", "utf-8")
+        else:
+            file.unlink()
+        if kind == "replaced":
+            file.write_text("labels: 1\n", "utf-8")
+        with pytest.raises(InputError, match="was changed meanwhile"):
+            write_texts([(link, "labels: 1\n")], edited=link)
+    assert file.exists() == (kind != "removed")
 
 
 @pytest.mark.parametrize("before", ["labels: 1\n", None])

@@ -20,6 +20,10 @@ if TYPE_CHECKING:
     from rosprivacy.private_neo4j.connection import Connection
 
 SECONDS = 120
+# Stops a private server when the tests end, however they do (also by SIGKILL: its standard input is closed then).
+STOP_AT_THE_END = (
+    "import sys; sys.stdin.read(); from rosprivacy.private_neo4j import connection as database; database.stop()"
+)
 # Ends the server when the tests end, however they do: its standard input is closed then.
 WATCH = "import subprocess, sys; p = subprocess.Popen(sys.argv[1:]); sys.stdin.read(); p.terminate(); p.wait()"
 # Where it listens, that it lets everybody in, and that it is small; nothing of what a query may do.

@@ -234,3 +234,27 @@ class TestCache:
     def test_a_folder_that_cannot_be_written_is_no_error(self, tmp_path: Path) -> None:
         (tmp_path / "file").write_text("")
         assert anew(tmp_path / "file" / "below").categories
+
+    def test_a_full_disk_leaves_nothing_behind(self, tmp_path: Path) -> None:
+        """Defect 13 of the review: a temporary file stayed for each run."""
+        code = (
+            "import resource, signal, sys\n"
+            "from pathlib import Path\n"
+            "from rosprivacy.ontology.vocabulary import load\n"
+            "signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"
+            "resource.setrlimit(resource.RLIMIT_FSIZE, (10_000, 10_000))\n"
+            f"assert load(Path({str(tmp_path)!r})).categories\n"
+        )
+        subprocess.run([sys.executable, "-B", "-c", code], check=True, timeout=60)
+        assert list(tmp_path.iterdir()) == []
+
+    def test_two_that_write_it_at_once(self, tmp_path: Path) -> None:
+        code = (
+            f"from pathlib import Path; from rosprivacy.ontology.vocabulary import load; load(Path({str(tmp_path)!r}))"
+        )
+        both = [subprocess.Popen([sys.executable, "-c", code]) for _ in range(2)]
+        assert [process.wait(60) for process in both] == [0, 0]
+        (file,) = tmp_path.iterdir()
+        written = file.read_bytes()
+        anew(tmp_path)
+        assert file.read_bytes() == written

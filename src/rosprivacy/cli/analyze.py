@@ -133,7 +133,7 @@ def _check(inputs: Inputs, engine: Engine, *, save_graph: bool, per_policy: bool
 
 def _saved_graph(result: Result) -> str:
     from rosprivacy.ingest.policies.saved_graph import as_dict
-    from rosprivacy.report.document.analysis import as_text
+    from rosprivacy.report.json_text import as_text
 
     return as_text(as_dict(result.policies, result.diagnostics))
 
@@ -142,7 +142,7 @@ def _each_alone(
     inputs: Inputs, settings: Settings, form: Format, style: Style, output: Path | None, fail_on: FailOn
 ) -> int:
     from rosprivacy.cli import per_policy
-    from rosprivacy.report.document.analysis import as_text
+    from rosprivacy.report.json_text import as_text
     from rosprivacy.robot_system import answer_each
 
     if form not in (Format.text, Format.json):

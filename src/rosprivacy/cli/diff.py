@@ -74,7 +74,7 @@ def diff(
 def _text(document: dict[str, Any], form: DiffFormat) -> str:
     from rosprivacy.report.compare.difference import difference_lines
     from rosprivacy.report.compare.difference_markdown import difference_markdown
-    from rosprivacy.report.document.analysis import as_text
+    from rosprivacy.report.json_text import as_text
 
     if form is DiffFormat.json:
         return as_text(document)

@@ -34,7 +34,7 @@ def fleet(
         raise typer.BadParameter("name a fleet file, or give --schema")
     if schema or file is None:
         from rosprivacy.ingest.fleet.fleet_schema import fleet_schema
-        from rosprivacy.report.document.analysis import as_text
+        from rosprivacy.report.json_text import as_text
 
         emit(as_text(fleet_schema(vocabulary.categories.values())), output)
         return

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Annotated
 
@@ -41,10 +42,8 @@ def labels(
         _add(inputs, output, update=update)
         return
     refuse("labels", "label files with --update and --next only", inputs.given("labels"))
-    if init and output and output.is_file():
-        raise InputError(str(output), 0, "is there already", "a label file is work: name another, or remove it")
     if init:
-        emit(*_first(inputs, output))
+        _begin(inputs, output)
     elif schema:
         emit(_schema(inputs), output)
     else:
@@ -65,6 +64,16 @@ def _add(inputs: Inputs, output: Path | None, *, update: bool) -> None:
         if written.added or output:
             emit(written.text, file, edited=Path(written.file))
     typer.echo(f"{file}: {counted(written.added, 'line')} added", err=True)
+
+
+def _begin(inputs: Inputs, output: Path | None) -> None:
+    """A first label file where there is none, nor one that appears while the policies are read."""
+    from rosprivacy.report.editing import editing
+
+    with editing(output) if output else nullcontext():
+        if output and output.is_file():
+            raise InputError(str(output), 0, "is there already", "a label file is work: name another, or remove it")
+        emit(*_first(inputs, output), edited=output)
 
 
 def _first(inputs: Inputs, output: Path | None) -> tuple[str, Path | None, dict[Path, str | None]]:
@@ -89,7 +98,7 @@ def _first(inputs: Inputs, output: Path | None) -> tuple[str, Path | None, dict[
 def _schema(inputs: Inputs) -> str:
     from rosprivacy.ingest.labels.label_schema import label_schema
     from rosprivacy.ontology.vocabulary import load
-    from rosprivacy.report.document.analysis import as_text
+    from rosprivacy.report.json_text import as_text
 
     return as_text(label_schema(load(ontologies=inputs.settings.ontologies).categories.values()))
 

@@ -47,7 +47,7 @@ def mitigate(
     """
     from rosprivacy.analysis.mitigation.limits import CHANGES
     from rosprivacy.mitigation import run_mitigation
-    from rosprivacy.report.document.analysis import as_text
+    from rosprivacy.report.json_text import as_text
     from rosprivacy.report.terminal.mitigation import print_mitigation
 
     settings = inputs.settings

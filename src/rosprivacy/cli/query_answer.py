@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import csv
 import io
-import json
 import sys
 from enum import StrEnum
 from typing import TYPE_CHECKING
@@ -82,23 +80,24 @@ def _stored_names() -> StoredNames:
 def _text(rows: Rows, form: RowFormat, *, wide: bool) -> str:
     from rosprivacy.queries.graph_values import plain
     from rosprivacy.queries.run import as_cell
-    from rosprivacy.report.spreadsheet import guarded
+    from rosprivacy.report.json_text import as_text
+    from rosprivacy.report.spreadsheet import as_csv
     from rosprivacy.report.terminal.graph_words import GraphWords
 
     if form is RowFormat.json:
         objects = [dict(zip(rows.columns, map(plain, row), strict=True)) for row in rows.rows]
-        return json.dumps(objects, indent=2, ensure_ascii=False) + "\n"
+        return as_text(objects)
     words = GraphWords.for_rows(_stored_names(), rows.rows).of
     cells = [[as_cell(*cell, words) for cell in zip(row, rows.columns, strict=True)] for row in rows.rows]
     if form is RowFormat.csv:
-        text = io.StringIO()
-        writer = csv.writer(text, lineterminator="\n")
-        writer.writerow(map(guarded, rows.columns))
-        for values, row in zip(rows.rows, cells, strict=True):
-            numbers = [isinstance(value, int | float) for value in values]  # -1 is no formula
-            writer.writerow(c if number else guarded(c) for c, number in zip(row, numbers, strict=True))
-        return text.getvalue()
+        both = (zip(*pair, strict=True) for pair in zip(rows.rows, cells, strict=True))
+        return as_csv(rows.columns, ([_number_or(*pair) for pair in row] for row in both))
     return _table(rows.columns, cells, wide=wide)
+
+
+def _number_or(value: object, cell: str) -> str | float:
+    """A number as one, since -1 is no formula; else the cell."""
+    return value if isinstance(value, int | float) and str(value) == cell else cell
 
 
 def _table(columns: tuple[str, ...], cells: list[list[str]], *, wide: bool) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -29,13 +28,14 @@ def show(
     """Show one finding hop by hop: which policy line allows each step, and what the law says of such data."""
     from rich.text import Text
 
+    from rosprivacy.report.json_text import as_text
     from rosprivacy.report.terminal.finding_lines import details, law_lines
     from rosprivacy.report.terminal.wrapped import wrapped
 
     report = inputs.result(inputs.settings).document()
     chosen = _chosen(report, finding)
     if format is TextOrJson.json:
-        emit(json.dumps(chosen, indent=2, ensure_ascii=False) + "\n", output)
+        emit(as_text(chosen), output)
         return
     lines = [*details(report, chosen), *law_lines(report, chosen)]
     width = None if output else terminal_width()

@@ -36,8 +36,8 @@ def why_not(
     output: Output = None,
 ) -> None:
     """Tell why data of one element does not get to another: where its way ends, and on whose word."""
-    from rosprivacy.report.document.analysis import as_text
     from rosprivacy.report.document.why_not import document
+    from rosprivacy.report.json_text import as_text
     from rosprivacy.report.terminal.why_not import lines
 
     result = inputs.result(inputs.settings)

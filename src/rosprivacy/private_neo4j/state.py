@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import DatabaseError, reason, shown
+from rosprivacy.report.atomic import keep_name
 from rosprivacy.report.installing import command_for
 
 if TYPE_CHECKING:
@@ -86,12 +87,15 @@ def locked() -> Iterator[Path]:
 
 
 def write_private(path: Path, text: str) -> None:
-    """Write a file whole or not at all; from its first moment on only its owner can read it."""
+    """Write a file whole or not at all, through to the disk; from its first moment on only its owner can read it."""
     handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=".")  # mode 0600
     try:
         with os.fdopen(handle, "w", encoding="utf-8") as file:
             file.write(text)
+            file.flush()
+            os.fsync(file.fileno())
         Path(temporary).replace(path)
+        keep_name(path.parent)
     except BaseException:
         Path(temporary).unlink(missing_ok=True)
         raise
