@@ -46,6 +46,13 @@ class Bounds:
         the enforced view, where each node of an enclave may do what all of them may.
     comparisons
         Pairs of wildcards times their length, and what DENYs leave of them: the cube of a policy.
+    findings
+        Sources times leaks times kinds of data: the cube of a label file.
+    search_steps
+        Each source is followed by itself to all that it reaches.
+    path_steps
+        For each finding paths that share no flow are counted on all flows between its ends. Where this bound is met,
+        the other findings say that one path is there, and a warning says of how many that is so.
     """
 
     name: int = _bound(16_384, "characters in a name")
@@ -53,6 +60,9 @@ class Bounds:
     robots: int = _bound(200_000, "robots in the fleet")
     flows: int = _bound(1_000_000, "flows between the elements of a robot or a domain")
     comparisons: int = _bound(100_000_000, "steps of comparing wildcards")
+    findings: int = _bound(200_000, "findings")
+    search_steps: int = _bound(100_000_000, "elements reached, counted for each source")
+    path_steps: int = _bound(300_000_000, "steps of counting paths")
 
     @classmethod
     def raised(cls, written: Iterable[str]) -> Bounds:
@@ -122,6 +132,12 @@ class Tally:
     name: str
     error: type[InputError] = InputError
     count: int = 0
+
+    @property
+    def met(self) -> bool:
+        """Whether the bound is reached, for what can be left out and told."""
+        bound: int = getattr(self.bounds, self.name)
+        return self.count >= bound
 
     def add(self, more: int, place: Place) -> None:
         """Count on.

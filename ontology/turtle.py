@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 RP = Namespace("urn:x-rosprivacy:")
 ENGLISH = "en"
 _LOCAL = re.compile(r"[#/:]")
+_QUOTED = re.compile(r" at \^ in: .*")  # rdflib quotes the text, which may be anybody's
 
 
 def read(turtle: str, file: str) -> Graph:
@@ -37,7 +38,7 @@ def read(turtle: str, file: str) -> Graph:
         graph.parse(data=turtle, format="turtle")
     except Exception as error:  # noqa: BLE001 - rdflib raises its own and plain exceptions alike
         line = getattr(error, "lines", 0)
-        said = shown(" ".join(str(getattr(error, "message", error)).split()))
+        said = shown(_QUOTED.sub("", " ".join(str(getattr(error, "message", error)).split())))
         raise InputErrors(
             [OntologyError(file, line + 1 if line else 0, f"not Turtle: {said}", "correct the syntax")]
         ) from None

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rosprivacy.analysis.answer import Analysis, Carried, Finding, Step, Verdict
+from rosprivacy.analysis.bounds import BOUNDS, Tally
 from rosprivacy.analysis.decisions import Case
 from rosprivacy.analysis.findings.arrival import shown_arrivals
 from rosprivacy.analysis.findings.concerns import concerns
@@ -28,7 +29,7 @@ from rosprivacy.analysis.kernel import spreading, standard_channels
 from rosprivacy.analysis.kernel.bits import bits_of
 from rosprivacy.analysis.kernel.search import START, Search, path_to, present, search
 from rosprivacy.analysis.kernel.states import Net
-from rosprivacy.analysis.model import DISCLOSURE, Element, Place
+from rosprivacy.analysis.model import DISCLOSURE, PATHS_NOT_COUNTED, Diagnostic, Element, Place, Severity
 from rosprivacy.analysis.modes import Paths
 from rosprivacy.analysis.non_ros import country_unknown, on_day
 
@@ -37,12 +38,14 @@ if TYPE_CHECKING:
     from collections.abc import Set as AbstractSet
     from typing import Any
 
+    from rosprivacy.analysis.bounds import Bounds
     from rosprivacy.analysis.findings.concerns import Concern
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Bound, FlowGraph
 
 MAX_PATHS = 100
+NOWHERE = Place("the analysis", 0)
 Chosen = tuple[str, int, int, bool]  # kind, leak, number of the category, whether beside a pseudonymised one
 
 
@@ -68,6 +71,8 @@ class Options:
         make; None for all.
     unread
         Where grants stand that were not read: with any, nothing is said to have no leak (rule S11).
+    bounds
+        Above ``path_steps`` paths are not counted, which a warning says.
     """
 
     categories: Collection[str] | None = None
@@ -77,6 +82,7 @@ class Options:
     choose: Callable[[Spread, Sequence[Concern], int], Mapping[int, AbstractSet[Chosen]]] | None = None
     today: str = ""
     unread: tuple[Place, ...] = ()
+    bounds: Bounds = BOUNDS
 
 
 def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Options | None = None) -> Analysis:
@@ -85,7 +91,7 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
     Raises
     ------
     InputErrors
-        If labels contradict each other.
+        If labels contradict each other; above a bound.
 
     Notes
     -----
@@ -107,7 +113,8 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
     wanted = [c for c in spread.categories if options.categories is None or c in options.categories]
     mask = sum(spread.both(category) for category in wanted)
     net = Net.of(spread)
-    findings = tuple(_findings(net, mask, kinds, options))
+    work = _Work(options.bounds)
+    findings = tuple(_findings(net, mask, kinds, options, work))
     unknown = {v for v, facts in bound.outside.items() if country_unknown(graph.elements[v], facts)}
     questions = open_questions(net, mask, unknown)
     lacks = grounds(spread, mask).lacking
@@ -127,6 +134,7 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
         unstated=tuple(_unstated(spread)),
         diagnostics=(
             *(one.diagnostic() for one in spread.overruled),
+            *work.not_counted(),
             *(() if leak or questions else lacking(lacks, restricted=options.categories is not None)),
         ),
         outside={graph.elements[vertex]: facts for vertex, facts in sorted(bound.outside.items())},
@@ -135,7 +143,24 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
     )
 
 
-def _findings(net: Net, mask: int, kinds: Sequence[Concern], options: Options) -> Iterator[Finding]:
+class _Work:
+    """What was made and searched, and of how many findings the paths were not counted."""
+
+    def __init__(self, bounds: Bounds) -> None:
+        self.findings = Tally(bounds, "findings")
+        self.searches = Tally(bounds, "search_steps")
+        self.paths = Tally(bounds, "path_steps")
+        self.left_out = 0
+
+    def not_counted(self) -> Iterator[Diagnostic]:
+        """What is to be said of findings whose paths were not counted (rule S11)."""
+        if self.left_out:
+            more, hint = self.paths.bounds.refusal(self.paths.name)
+            what = f"how many paths share no flow is not counted for {self.left_out:,} findings, which say 1: {more}"
+            yield Diagnostic(NOWHERE, Severity.WARNING, f"{what}; {hint}", PATHS_NOT_COUNTED)
+
+
+def _findings(net: Net, mask: int, kinds: Sequence[Concern], options: Options, work: _Work) -> Iterator[Finding]:
     """All findings, sorted by category, source, leak and kind."""
     spread = net.spread
     ends = [(c, {v: b & mask for v, b in c.bits.items() if b & mask & spread.present(v)}) for c in kinds]
@@ -147,15 +172,19 @@ def _findings(net: Net, mask: int, kinds: Sequence[Concern], options: Options) -
     for source in sorted(sources) if reached else ():
         only = None if chosen is None else chosen[source]
         whole = search(net, [source], spread.all_bits, {})
+        work.searches.add(len(whole.seen), NOWHERE)
         for concern, leaks in reached:
-            for leak, category, finding in _findings_of(net, source, whole, concern, leaks, options, memory, only):
+            for leak, category, finding in _findings_of(
+                net, source, whole, concern, leaks, options, memory, only, work
+            ):
+                work.findings.add(1, NOWHERE)
                 results.append((category, source, leak, finding.kind, finding.beside, finding))
     yield from (finding for *_, finding in sorted(results, key=lambda row: row[:5]))
 
 
 def _findings_of(
     net: Net, source: int, whole: Search, concern: Concern, leaks: dict[int, int], options: Options,
-    memory: dict[Any, Any], only: AbstractSet[Chosen] | None,
+    memory: dict[Any, Any], only: AbstractSet[Chosen] | None, work: _Work,
 ) -> Iterator[tuple[int, int, Finding]]:  # fmt: skip
     """(leak, number of the category, finding) of one source and kind.
 
@@ -174,6 +203,7 @@ def _findings_of(
                 free[i] = whole
             elif i not in free:
                 _search_free(net, source, i, accepted, free)
+                work.searches.add(len(free[i].seen), NOWHERE)
             for beside, (chosen, bit) in enumerate(_shown_forms(free[i], whole, leak, spread.bits.forms(i))):
                 if only is not None and (concern.kind, leak, i, bool(beside)) not in only:
                     continue
@@ -181,11 +211,15 @@ def _findings_of(
                 dismissed = anyway and concern.kind == DISCLOSURE
                 finding = _finding(net, chosen, source, leak, bit, concern, accepted, dismissed=dismissed)
                 finding = _beside(finding, options) if beside else finding
-                if len(finding.witness) > 1:
+                if len(finding.witness) > 1 and work.paths.met:
+                    work.left_out += 1
+                    finding = replace(finding, bounded=options.paths != Paths.witness)
+                elif len(finding.witness) > 1:
                     if (i, anyway) not in between:
                         stop = {} if anyway else _leaks_of(spread, i, accepted)
                         between[i, anyway] = Between(net, chosen, source, i, _relevant(spread, i), stop)
-                    more = further(between[i, anyway], leak, memory, options.paths, options.max_paths)
+                        work.paths.count += between[i, anyway].size
+                    more = further(between[i, anyway], leak, memory, options.paths, options.max_paths, work.paths)
                     finding = replace(finding, disjoint_paths=more.disjoint, paths=more.paths, bounded=more.bounded)
                 yield leak, i, finding
 

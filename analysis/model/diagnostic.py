@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 NOT_READ = "not-read"  # a file that was passed over, or read only where a policy includes it
 UNREAD_FILE = "unread-file"  # grants that no policy brings in: what they allow is not known (rule S11)
 DEAD_DENY = "dead-deny"
+PATHS_NOT_COUNTED = "paths-not-counted"  # of some findings: a number of paths that share no flow is a lower bound
 CAREFUL_DENY = "careful-deny"  # with others too much to follow: a name is taken to be left
 SHARED_ENCLAVE = "shared-enclave"
 MERGED = "merged"  # policies that make one graph, and may not have been meant to

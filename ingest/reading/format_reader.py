@@ -10,7 +10,7 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.bounds import BOUNDS, Bounds
-from rosprivacy.analysis.errors import InputError, shown
+from rosprivacy.analysis.errors import InputError, InputErrors, shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -38,11 +38,18 @@ class FileReader:
         self.problems.append(self.error(self.file, line, problem, hint))
 
     def version(self, top: Value, key: str, what: str) -> None:
-        """Check that a file says which format it is of: ``key: 1``."""
+        """Check that a file says which format it is of: ``key: 1``.
+
+        Raises
+        ------
+        InputErrors
+            If it does not: then it may be anybody's, and no message repeats what stands in it.
+        """
         version = top.get(key)
         if version is None:
             self.problem(top.line, f"no '{key}: 1'", "say so on the first line: it is the format's version")
-        elif (version.kind, version.text) != ("number", "1"):
+            raise InputErrors(self.problems)
+        if (version.kind, version.text) != ("number", "1"):
             found = f"{what} format {shown(version.text or version.kind)!r}"
             self.problem(version.line, found, f"this reads '{key}: 1'")
 

@@ -44,6 +44,7 @@ def answer(system: System, question: Question) -> Result:
         choose=groups,
         today=question.today,
         unread=unread(system.diagnostics),
+        bounds=question.settings.bounds,
     )
     analysis = analyse(system.graph, system.bound, system.vocabulary.hierarchy, options)
     view = groups.view(analysis) if groups else FleetView.of(analysis, system.likeness) if system.is_fleet else None

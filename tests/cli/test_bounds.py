@@ -13,7 +13,7 @@ import pytest
 import rosprivacy
 from rosprivacy.analysis.bounds import BOUNDS, WHAT
 from tests.helpers.command import Cli, refused, run
-from tests.helpers.policies import policy
+from tests.helpers.policies import document, policy
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -84,6 +84,16 @@ def matched_names(number: int) -> Input:
     return Input({"p.xml": policy(body)}, ("analyze", "p.xml"), "p.xml:2: ")
 
 
+def leaks(number: int) -> Input:
+    """One finding for each leak of one source."""
+    node = '<profile ns="/" node="{}"><topics {}="ALLOW"><topic>/t</topic></topics></profile>'
+    nodes = node.format("a", "publish") + "".join(node.format(f"l{i}", "subscribe") for i in range(number))
+    enclaves = f'<enclaves><enclave path="/e"><profiles>{nodes}</profiles></enclave></enclaves>'
+    labels = "labels: 1\nnodes:\n  /a: {source: [Video]}\n  /l*: {leak: [Video]}\n"
+    files = {"p.xml": f'<policy version="0.2.0">{enclaves}</policy>', "l.yaml": labels}
+    return Input(files, ("analyze", "p.xml", "-l", "l.yaml"), "the analysis: ")
+
+
 ROWS: list[tuple[str, int, Callable[[int], Input], int]] = [  # bound, set to, what has so many, or the default
     ("name", 300, long_name, 0),
     ("name", 300, long_label, 1),  # its name is not there: so much is read
@@ -91,6 +101,7 @@ ROWS: list[tuple[str, int, Callable[[int], Input], int]] = [  # bound, set to, w
     ("robots", 10, one_group, 0),
     ("robots", 10, many_groups, 0),
     ("robots", 10, named_robots, 0),
+    ("findings", 7, leaks, 0),
     ("comparisons", 60, two_wildcards, 0),
     ("flows", 20, matched_names, 0),
     ("flows", 21, matched_names, 0),
@@ -134,7 +145,30 @@ def test_the_default_is_refused_above_as_well(
 
 
 def test_every_bound_has_its_rows() -> None:
-    assert {name for name, *_ in ROWS} == set(WHAT)
+    assert {*(name for name, *_ in ROWS), "search_steps", "path_steps"} == set(WHAT)
+
+
+def test_sources_are_followed_up_to_a_bound(cli: Cli, tmp_path: Path) -> None:
+    code, (line,) = ran(tmp_path, leaks(5), "--bound", "search_steps=5", by=cli)
+    assert code == 2
+    assert line.startswith("the analysis: more than the bound of 5 elements reached, counted for each source; raise it")
+    assert ran(tmp_path, leaks(5), by=cli) == (1, [])
+
+
+def test_paths_that_are_not_counted_are_told(cli: Cli, tmp_path: Path) -> None:
+    """No finding is left out, and the verdict stays (rule S11)."""
+    given = leaks(5)
+    ran(tmp_path, given, by=cli)
+    whole = document(cli, *given.arguments[1:], cwd=tmp_path)
+    some = document(cli, *given.arguments[1:], "--bound", "path_steps=12", cwd=tmp_path)
+    assert [one["id"] for one in some["findings"]] == [one["id"] for one in whole["findings"]]
+    assert (some["verdict"], len(some["findings"])) == ("leak", 5)
+    (told,) = [said for said in some["diagnostics"] if said.get("code") == "paths-not-counted"]
+    assert told["severity"] == "warning"
+    assert "raise it with --bound path_steps=N" in told["message"]
+    assert not [said for said in whole["diagnostics"] if said.get("code") == "paths-not-counted"]
+    text = cli(*given.arguments, "--bound", "path_steps=1", cwd=tmp_path).stdout
+    assert "how many paths share no flow is not counted" in " ".join(text.split())
 
 
 def test_a_wrong_bound_is_refused(cli: Cli, tmp_path: Path) -> None:

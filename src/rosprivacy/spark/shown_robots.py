@@ -73,7 +73,7 @@ def shown(task: Task, found: Found, paths: str, max_paths: int) -> Shown:
             wanted[vertex[source]].add((kind, vertex[leak], spread.categories.index(category), beside))
         return dict(wanted)
 
-    options = Options(task.asked, paths, max_paths, choose=choose, today=task.today)
+    options = Options(task.asked, paths, max_paths, choose=choose, today=task.today, bounds=task.fleet.bounds)
     analysis = analyse(placed.graph, placed.bound, task.hierarchy, options)
     view = FleetView(found.likeness, patterns_of(found.groups, analysis.findings), found.deviants)
     told = tuple(said for said in analysis.diagnostics if said.code != analysis.lacking or not said.code)

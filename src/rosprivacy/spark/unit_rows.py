@@ -165,7 +165,10 @@ def _fleet_rows(placed: Placed, members: Mapping[str, Member], plan: Plan, mine:
         return wanted
 
     analysis = analyse(
-        placed.graph, placed.bound, vocabulary.hierarchy, Options(choose=choose, today=plan.settings.today or "")
+        placed.graph,
+        placed.bound,
+        vocabulary.hierarchy,
+        Options(choose=choose, today=plan.settings.today or "", bounds=plan.settings.bounds),
     )
     said = {name: _more(member, analysis, plan, vocabulary) for name, member in members.items()}
     said[plan.fleet.name] = remembered({**plan.assumptions, "policies": [], "labels": []}, plan.joins)
