@@ -13,6 +13,7 @@ from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import DecisionError
+from rosprivacy.analysis.legal_bases import gaps
 from rosprivacy.analysis.model import Diagnostic, Place, Severity
 from rosprivacy.analysis.written_names import is_glob, meant
 
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import Finding
     from rosprivacy.analysis.hierarchy import Hierarchy
+    from rosprivacy.analysis.legal_bases import Verdicts
     from rosprivacy.analysis.model import Element
 
 FARTHEST = 1_000_000
@@ -244,7 +246,7 @@ class Decided:
 def decided(
     decisions: Decisions,
     findings: Iterable[Finding],
-    special: Mapping[str, str],
+    law: Mapping[str, Verdicts],
     *,
     everything: bool,
     case_of: Callable[[Finding], Case] = Case.of,
@@ -253,8 +255,8 @@ def decided(
 
     Parameters
     ----------
-    special
-        Category -> the provision for special categories that it can fall under; for those that do.
+    law
+        Category -> what can apply to data of it.
     everything
         Whether the findings are all there are: else no decision is called orphaned.
     case_of
@@ -295,9 +297,7 @@ def decided(
         for entry, ids in zip(decisions.entries, about, strict=True)
     )
     result = Decided(decisions, on, about, states, ())
-    said = tuple(
-        _diagnostics(result, {finding.id: finding for finding, _ in cases}, special, list(_former(result, cases)))
-    )
+    said = tuple(_diagnostics(result, {finding.id: finding for finding, _ in cases}, law, list(_former(result, cases))))
     return Decided(decisions, on, about, states, said)
 
 
@@ -309,7 +309,7 @@ def _former(joined: Decided, cases: Iterable[tuple[Finding, Case]]) -> Iterator[
 
 
 def _diagnostics(
-    joined: Decided, findings: Mapping[str, Finding], special: Mapping[str, str], former: Iterable[int]
+    joined: Decided, findings: Mapping[str, Finding], law: Mapping[str, Verdicts], former: Iterable[int]
 ) -> Iterator[Diagnostic]:
     """What a reader has to know: expired and orphaned decisions, what one no longer decides, missing legal bases."""
     asked, today = joined.decisions.instead_of, joined.decisions.today
@@ -329,23 +329,7 @@ def _diagnostics(
             message = f"{what} expired on {entry.expires} and no longer counts; decide anew"
             yield Diagnostic(entry.place, Severity.WARNING, message)
         if entry.choice is Choice.ACCEPT and state is State.VALID:
-            held = [findings[one] for one in ids if joined.on.get(one) is entry]
+            held = [(f.kind, f.category) for f in (findings[one] for one in ids if joined.on.get(one) is entry)]
             yield from (
-                Diagnostic(entry.place, Severity.WARNING, f"{what} {gap}") for gap in missing(entry, held, special)
+                Diagnostic(entry.place, Severity.WARNING, f"{what} {gap}") for gap in gaps(entry.legal_basis, held, law)
             )
-
-
-def missing(entry: Decision, findings: Iterable[Finding], special: Mapping[str, str]) -> Iterator[str]:
-    """Yield the legal bases that an acceptance lacks: Article 6, and 9(2) where a category is special.
-
-    >>> from rosprivacy.analysis.example import factory
-    >>> from rosprivacy.analysis.findings.findings import analyse
-    >>> entry = Decision(Choice.ACCEPT, Place("decisions.yaml", 2), legal_basis=("6(1)(f)",))
-    >>> list(missing(entry, analyse(*factory()).findings, {"FaceTemplate": "GDPR Art. 9(1)"}))
-    ['states no ground under Article 9(2), and FaceTemplate can fall under GDPR Art. 9(1)']
-    """
-    if not any(basis.startswith("6(1)") for basis in entry.legal_basis):
-        yield "states no legal basis under Article 6(1)"
-    if not any(basis.startswith("9(2)") for basis in entry.legal_basis):
-        for category in sorted({finding.category for finding in findings} & special.keys()):
-            yield f"states no ground under Article 9(2), and {category} can fall under {special[category]}"

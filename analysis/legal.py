@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.model import ARTICLE_9, ARTICLE_9_VERDICTS
+from rosprivacy.analysis.model import ARTICLE_9, ARTICLE_9_VERDICTS, MAY_REVEAL, SPECIAL
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.model import Category, Element, Legal
 
-SPECIAL = ("always", "conditional")
-MAY_REVEAL = "may-reveal"
 _STRENGTH = {verdict: number for number, verdict in enumerate(ARTICLE_9_VERDICTS)}
 
 

@@ -81,8 +81,8 @@ def local_name(iri: str) -> str:
 
 
 def _by_match(graph: Graph, ours: set[Node]) -> dict[Node, str]:
-    """IRIs of other vocabularies -> names of the categories that are the same."""
-    matches = graph.subject_objects(SKOS.exactMatch)
+    """IRIs of other vocabularies -> names of the categories that are the same, or near enough to stand below."""
+    matches = (pair for match in (SKOS.closeMatch, SKOS.exactMatch) for pair in graph.subject_objects(match))
     return {other: local_name(str(subject)) for subject, other in matches if subject in ours and other not in ours}
 
 

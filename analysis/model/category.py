@@ -10,7 +10,8 @@ if TYPE_CHECKING:
 
 DISCLOSURE, STORAGE_LIMITATION, THIRD_COUNTRY = "disclosure", "storage-limitation", "third-country-transfer"
 ARTICLE_9 = "GDPR Art. 9(1)"
-ARTICLE_9_VERDICTS = ("always", "conditional", "may-reveal", "no", "unknown")
+SPECIAL, MAY_REVEAL = ("always", "conditional"), "may-reveal"
+ARTICLE_9_VERDICTS = (*SPECIAL, MAY_REVEAL, "no", "unknown")
 
 
 @dataclass(frozen=True, slots=True)

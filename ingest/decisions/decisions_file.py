@@ -34,7 +34,10 @@ KEYS = (*TARGET, "decision", *TEXTS, "legal_basis", "date", "expires", "note", "
 LONGEST = 10_000  # characters of a text
 _ID = re.compile(r"[0-9a-f]{16}")
 _DATE = re.compile(r"\d{4}-\d\d-\d\d", re.ASCII)
-_BASIS = re.compile(r"(?:art(?:icle|\.)?\s*)?(6\(1\)\([a-f]\)|9\(2\)\([a-j]\)|10)(?:\s*gdpr)?", re.IGNORECASE)
+_ARTICLES = (  # legal bases: 6 and 9 of the processing, 10, chapter V of a transfer
+    r"6\(1\)\([a-f]\)|6\(4\)|9\(2\)\([a-j]\)|9\(3\)|10|45|46\(2\)\([a-f]\)|46\(3\)|47|49\(1\)\([a-g]\)"
+)
+_BASIS = re.compile(rf"(?:art(?:icle|\.)?\s*)?({_ARTICLES})(?:\s*gdpr)?", re.IGNORECASE)
 _DPV = re.compile(r"(?:eu-gdpr:)?A(\d+)-(\d)-([a-j])")
 
 
@@ -206,7 +209,9 @@ class _Reader(FileReader):
                 yield found
             else:
                 what = f"legal basis {shown(item.text or item.kind)!r}"
-                self.problem(item.line, what, "write such as 6(1)(f), and 9(2)(h) for special categories")
+                self.problem(
+                    item.line, what, "write such as 6(1)(f), 9(2)(h) for special categories, 46(2)(c) for a transfer"
+                )
 
 
 def _a(value: Value) -> str:

@@ -9,8 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.legal import MAY_REVEAL
-from rosprivacy.analysis.model import KINDS
+from rosprivacy.analysis.model import KINDS, MAY_REVEAL
+from rosprivacy.analysis.non_ros import ADEQUATE, INSIDE
 from rosprivacy.report.cnil.markup import (
     Html,
     bullets,
@@ -26,7 +26,7 @@ from rosprivacy.report.cnil.markup import (
 from rosprivacy.report.element_counts import count_elements
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Iterator, Mapping
+    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.answer import Analysis, Carried, Finding
     from rosprivacy.analysis.findings.sanitizing import Cleaning
@@ -38,11 +38,13 @@ if TYPE_CHECKING:
 NAMES = 30  # named in a row
 SHOWN = 50  # findings shown with their path, recipients
 THREATS = 100
+PROCESSOR = "processor"
 STORED = "storage-limitation"  # the kind of findings whose end is a storage, told under 'Kept in'
 NOTHING_FOLLOWED = Html(
     "<p>No label names a source of personal data, so nothing was followed and nothing can be said here.</p>"
 )
 NO_RECIPIENT = Html("The analysis knows of no recipient that personal data can reach under the labels given.")
+PERSONS_TO_COMPLETE = "Persons concerned, purpose, who has access: to be completed."
 NO_STORAGE = Html("No storage that personal data reaches is stated. What nodes and recipients keep: to be completed.")
 
 
@@ -52,21 +54,33 @@ class Known:
 
     Attributes
     ----------
+    analysis
+        Of one robot of those that are alike.
     stated
-        Identity of a storage or recipient -> what people stated of it: ``retention``, ``country``, ``encrypted``,
-        ``operator``, ``role``, ``basis``; whichever are known.
+        Identity of a storage or recipient -> what people stated of it (``Answer.stated``).
     accepted
-        Id of a finding -> why a person accepted it.
+        Id of a finding -> why a person accepted it (``Answer.accepted``).
+    subjects
+        Identity of a source -> groups of persons that its data are about.
+    retention
+        (element, category) -> how long it is kept there, empty where nobody states it (``Answer.retention``).
     """
 
     analysis: Analysis
     kinds: tuple[Kind, ...]
     stated: Stated
     accepted: Mapping[str, str]
+    subjects: Mapping[tuple[str, str, str], tuple[str, ...]]
+    retention: Callable[[Element, str], str]
 
     def of(self, element: Element, what: str) -> str:
         """Return what was stated of an element, empty if nothing."""
         return self.stated.get(element.identity, {}).get(what, "")
+
+    def storages_of(self, category: str) -> list[Element]:
+        """Return the storages that data of the category itself get to."""
+        here = (c for c in self.analysis.carried if category in (*c.categories, *c.pseudonymised))
+        return [carried.element for carried in here if carried.element.kind == "storage"]
 
     def findings(self) -> list[Finding]:
         """Return what is to be assessed, by kind of data."""
@@ -82,7 +96,11 @@ def _data_of(kind: Kind, known: Known) -> Iterator[Html]:
     category = kind.category
     name = joined(escaped(category.title), Html(" ("), escaped(category.name), Html(")"))
     yield paragraph(strong(name), Html(": "), prose(category.definition))
-    stored = [f"{_name(e)} ({known.of(e, 'retention') or 'retention not stated'})" for e in _storages(kind.reached)]
+    stored = [
+        f"{_name(element)} ({known.retention(element, category.name) or 'retention not stated'})"
+        for element in known.storages_of(category.name)
+    ]
+    persons = sorted({group for source in kind.sources for group in known.subjects.get(source.identity, ())})
     yield bullets(
         [
             *_lines("Brought in by", kind.sources),
@@ -90,7 +108,8 @@ def _data_of(kind: Kind, known: Known) -> Iterator[Html]:
             *_law(kind),
             _line("Recipients that it can reach", _recipients(kind)),
             _line("Kept in", some(stored, NAMES) or Html("no storage is stated")),
-            Html("Persons concerned, purpose, who has access: to be completed."),
+            *([_line("Persons concerned, as labels name them", some(persons, NAMES))] if persons else []),
+            Html("Purpose, who has access: to be completed." if persons else PERSONS_TO_COMPLETE),
         ]
     )
 
@@ -167,23 +186,40 @@ def retention(known: Known) -> Html:
     return joined(bullets(_bounded(rows, len(stored))), why) if rows else paragraph(NO_STORAGE)
 
 
+def processors(known: Known) -> Html:
+    """Return the answer to 226: who processes on behalf of the controller, as people stated it; empty if nobody did."""
+    reached = [carried.element for carried in known.analysis.carried]
+    named = [element for element in reached if known.of(element, "role") == PROCESSOR]
+    rows = [_line(escaped(_name(element)), _named_processor(element, known)) for element in named[:SHOWN]]
+    return bullets(_bounded(rows, len(named))) if rows else Html("")
+
+
+def _named_processor(element: Element, known: Known) -> Html:
+    who = known.of(element, "operator") or "to be named"
+    where = f" ({known.of(element, 'country')})" if known.of(element, "country") else ""
+    return joined(escaped(f"processor: {who}{where}"), Html("; contract under Article 28 GDPR: to be completed"))
+
+
 def transfers(known: Known) -> Html:
     """Return the answer to 227: where each recipient is, and on which basis data goes there."""
     leaks = [finding.leak for finding in known.findings()]
     outside = [c.element for c in known.analysis.carried if c.element.kind in ("external-system", "storage")]
     recipients = {element.identity: element for element in (*leaks, *outside)}
     rows = [
-        _line(
-            escaped(_name(element)),
-            joined(
-                _stated("country", known.of(element, "country")),
-                Html("; "),
-                _stated("basis of a transfer", known.of(element, "basis")),
-            ),
-        )
+        _line(escaped(_name(element)), joined(_stated("country", known.of(element, "country")), _basis(element, known)))
         for element in list(recipients.values())[:SHOWN]
     ]
     return bullets(_bounded(rows, len(recipients))) if rows else paragraph(NO_RECIPIENT)
+
+
+def _basis(element: Element, known: Known) -> Html:
+    """On what data leaves the EEA there; that it does not leave it is no transfer of chapter V."""
+    facts = known.analysis.outside.get(element)
+    if facts and facts.area == INSIDE:
+        return Html(", in the EEA: no transfer to a third country")
+    if facts and facts.area == ADEQUATE and not facts.transfer:
+        return Html(", adequacy decision (Article 45 GDPR)")
+    return joined(Html("; "), _stated("basis of a transfer", known.of(element, "basis")))
 
 
 def threats(known: Known) -> list[str]:
@@ -195,6 +231,9 @@ def threats(known: Known) -> list[str]:
     if known.analysis.open:
         unreviewed = count_elements(question.element for question in known.analysis.open).elements
         said.append(f"{counted(unreviewed, 'element')} reached by personal data and not reviewed")
+    stored = [carried.element for carried in known.analysis.carried if carried.element.kind == "storage"]
+    open_to_all = [element for element in stored if known.of(element, "encrypted") == "no"]
+    said += [harmless(f"data at rest not encrypted: {_name(element)}") for element in open_to_all[:THREATS]]
     return said
 
 

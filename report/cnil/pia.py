@@ -1,7 +1,7 @@
 """Analysis -> the file that the CNIL's PIA tool imports ('Importer un PIA'), for the person who assesses the impact.
 
-In: an ``Answer``. Out: plain dicts and lists. The questions that the graph can answer are
-filled: 121 to 123, 213, 215, 227, 322, 324, and the measures. The others have no answer: the tool counts an empty one
+In: an ``Answer``. Out: plain dicts and lists. The questions that the graph can answer are filled: 121 to 123, 213, 215,
+226 where processors are named, 227, 322, 324, and the measures. The others have no answer: the tool counts an empty one
 as work begun. All is for a person to check: no evaluation is filled, no gauge is set, the status is 'in progress'.
 
 Source: the tool's ``importData``. It needs the four lists, goes through them unguarded, and takes texts as HTML; list
@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import Method
+from rosprivacy.analysis.modes import View
 from rosprivacy.report import robots
 from rosprivacy.report.cnil import answers as cnil_answers
 from rosprivacy.report.cnil.answers import NAMES, Known
@@ -57,7 +58,9 @@ def cnil_pia(answer: Answer, created: str) -> dict[str, Any]:
     view, vocabulary, assumptions = answer.fleet, answer.vocabulary, answer.assumptions
     analysis = _of_shown_robots(answer.shown, view) if view else answer.shown
     kinds = kinds_of(analysis, vocabulary.categories, vocabulary.hierarchy)
-    known = Known(analysis, kinds, answer.stated, answer.accepted)
+    elements = answer.analysis.graph.elements
+    subjects = {elements[vertex].identity: groups for vertex, groups in answer.bound.subjects.items()}
+    known = Known(analysis, kinds, answer.stated, answer.accepted, subjects, answer.retention)
     measures = list(_measures(known))
     note = _note(analysis, assumptions, robots.note(view) if view else "")
     texts = {
@@ -69,7 +72,9 @@ def cnil_pia(answer: Answer, created: str) -> dict[str, Any]:
         227: cnil_answers.transfers(known),
     }
     lists = {322: cnil_answers.threats(known), 324: [title for title, _ in measures]}
-    answers = [(number, {"text": joined(text, note), "gauge": 0, "list": []}) for number, text in texts.items()]
+    if processors := cnil_answers.processors(known):
+        texts[226] = processors
+    answers = [(number, {"text": joined(text, note), "gauge": 0, "list": []}) for number, text in sorted(texts.items())]
     answers += [(number, {"text": None, "gauge": None, "list": said}) for number, said in lists.items() if said]
     return {
         "pia": _pia(assumptions, created),
@@ -124,8 +129,8 @@ def _pia(assumptions: Mapping[str, Any], created: str) -> dict[str, Any]:
         "concerned_people_searched_opinion": None,
         "concerned_people_searched_content": None,
         "people_names": None,
-        "rejected_reason": "",
-        "applied_adjustements": "",
+        "rejection_reason": "",
+        "applied_adjustments": "",
         "is_example": 0,
         "is_archive": 0,
         "structure_id": None,
@@ -149,16 +154,21 @@ def _measures(known: Known) -> Iterator[tuple[str, Html]]:
             still = [] if method.ends else [paragraph(Html("The data is still personal (GDPR, recital 26)."))]
             yield title, joined(_rows(done), *still)
     storages = [carried.element for carried in known.analysis.carried if carried.element.kind == "storage"]
-    said = [(element.name, known.of(element, "encrypted")) for element in storages if known.of(element, "encrypted")]
-    if said:
-        yield STORAGE, _rows([joined(escaped(name), Html(": "), escaped(how)) for name, how in said])
+    encrypted = [element.name for element in storages if known.of(element, "encrypted") == "yes"]
+    if encrypted:
+        yield STORAGE, _rows([joined(escaped(name), Html(": encrypted at rest, as stated")) for name in encrypted])
 
 
 def _access(graph: FlowGraph) -> Html:
     enclaves = counted(len({profile.enclave for profile in graph.profiles}), "enclave")
     profiles = counted(len({(profile.enclave, profile.node) for profile in graph.profiles}), "profile")
     flows = counted(len(graph.flows), "connection")
-    return Html(f"{profiles} in {enclaves} allow {flows}; no other is granted. ")
+    if graph.view == View.enforced:
+        return Html(f"In the enforced view {profiles} in {enclaves} allow {flows}. ")
+    return Html(
+        f"In the declared view {profiles} in {enclaves} allow {flows}. DDS enforces per enclave: a node can do "
+        "whatever its enclave may (enforced view). "
+    )
 
 
 def _done(cleaning: Cleaning) -> Html:

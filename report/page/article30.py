@@ -1,7 +1,9 @@
 """The record of processing activities (GDPR, Article 30(1)) as far as the analysis knows it, as CSV.
 
-In: a document and a language. Out: one row per kind of data and recipient; one without a recipient where none was
-found. What only a person can know is left empty, and a column says which fields these are.
+In: a document and a language. Out: one row per kind of data and place where it leaves; one without such a place where
+none was found. What only a person can know is left empty, and a column says which fields these are. No cell says more
+than what people stated and the analysis found: a node is no recipient (Article 4(9)), a lack no measure, and where no
+basis of a transfer is stated, there is none.
 """
 
 from __future__ import annotations
@@ -10,41 +12,46 @@ from collections import defaultdict
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.decisions import State
+from rosprivacy.analysis.non_ros import INSIDE, PARTLY, THIRD
 from rosprivacy.analysis.text import fit
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import key, name, whole
 from rosprivacy.report.page.entries_of_robots import grouped
 from rosprivacy.report.page.index import Index
 from rosprivacy.report.page.kinds import provision
-from rosprivacy.report.page.non_ros import STORAGE, retention
+from rosprivacy.report.page.non_ros import STORAGE, kept
 from rosprivacy.report.page.tables import OUTSIDE, can_come_from
 from rosprivacy.report.page.words import Words
 from rosprivacy.report.spreadsheet import as_csv
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from rosprivacy.report.naming import Key
 
 SEPARATORS = {"en": ",", "de": ";"}  # as spreadsheets in that language expect
 BOM = "\ufeff"  # without it Excel takes UTF-8 for something else
-LETTERS = {"controller": "a", "purpose": "b", "subjects": "c", "role": "d", "transfer": "e", "retention": "f"}
+ABROAD = (PARTLY, THIRD)  # areas to which a transfer needs a basis of its own, chapter V
 
 
 @dataclass(frozen=True, slots=True)
 class Entry:
     """One row of the record; the fields are its columns, in order."""
 
+    activity: str
     controller: str
     purpose: str
     category: str
     article9: str
     provisions: str
     subjects: str
+    exit: str
     recipient: str
-    role: str
+    country: str
     form: str
     transfer: str
+    basis: str
     retention: str
     measures: str
     findings: str
@@ -109,31 +116,68 @@ def _entry(category: str, group: Sequence[Mapping[str, Any]], facts: _Facts) -> 
     stated = [index.outside[key(element)] for element in group if key(element) in index.outside]
     law = [provision(legal, category, index) for legal in known["law"]]
     values = {
+        "activity": "",
         "controller": "",
         "purpose": "",
         "category": index.data(category),
         "article9": words(f"article9.{known['article9']}"),
         "provisions": "; ".join(f"{p.name}: {p.condition}" if p.condition else p.name for p in law),
         "subjects": words.row(facts.sources(category)),
-        "recipient": words.row(index.names(group)) if group else words("r.norecipient"),
-        "role": words.row(dict.fromkeys(_role(row, index) for row in stated if row.get("recipient"))),
+        "exit": words.row(index.names(group)) if group else words("r.norecipient"),
+        "recipient": _told(stated, _recipient, index),
+        "country": _told(stated, _country, index),
         "form": _form(findings, stated, index),
-        "transfer": words.row(dict.fromkeys(filter(None, (_transfer(row, index) for row in stated)))),
+        "transfer": _told(stated, _transfer, index),
+        "basis": "; ".join(_bases(findings)),
         "retention": _kept(category, facts),
         "measures": "; ".join(_measures(category, facts)),
         "findings": words.row(finding["id"] for finding in findings),
         "note": _note(category, index),
     }
-    missing = [
-        letter
-        for column, letter in LETTERS.items()
-        if not values[column] and (group or column not in ("role", "transfer"))
-    ]
-    return Entry(**values, complete=words.row(f"30(1)({letter})" for letter in sorted({*missing, "g"})))
+    missing = {"a", "b", "g", *(() if values["subjects"] else "c"), *(() if values["retention"] else "f")}
+    if len(stated) < len(group) or any(not row.get("operator") or not row.get("recipient") for row in stated):
+        missing.add("d")
+    if len(stated) < len(group) or any(_transfer_unknown(row) for row in stated):
+        missing.add("e")
+    return Entry(**values, complete=words.row(words("r.letter", letter=letter) for letter in sorted(missing)))
 
 
-def _role(row: Mapping[str, Any], index: Index) -> str:
-    return index.words.known(f"recipient.{row['recipient']}", row["recipient"])
+def _told(stated: Sequence[Mapping[str, Any]], said: Callable[[Mapping[str, Any], Index], str], index: Index) -> str:
+    return index.words.row(dict.fromkeys(filter(None, (said(row, index) for row in stated))))
+
+
+def _recipient(row: Mapping[str, Any], index: Index) -> str:
+    """Who operates it and as what, as people stated it."""
+    role = index.words.known(f"recipient.{row['recipient']}", row["recipient"]) if row.get("recipient") else ""
+    return ", ".join(part for part in (fit(row.get("operator", "")), role) if part)
+
+
+def _country(row: Mapping[str, Any], index: Index) -> str:
+    if not row.get("country"):
+        return ""
+    return f"{fit(row['country'])} ({index.words('area.' + row['area'])})"
+
+
+def _transfer(row: Mapping[str, Any], index: Index) -> str:
+    """The safeguard of a transfer, or that none is stated; nothing where nothing leaves the EEA."""
+    area, words = row.get("area"), index.words
+    basis = words.known(f"transfer.{row['transfer']}", row["transfer"]) if row.get("transfer") else ""
+    if not area or area == INSIDE:
+        return basis if not area else ""
+    if area in ABROAD and not basis:
+        return words(f"r.unbased.{area}", country=fit(row["country"]))
+    return f"{fit(row['country'])}: {basis or words('transfer.adequacy')}"
+
+
+def _transfer_unknown(row: Mapping[str, Any]) -> bool:
+    """Whether a person has to say what data leaves the EEA on, or whether it does."""
+    return not row.get("transfer") and row.get("area", ABROAD[-1]) in ABROAD
+
+
+def _bases(findings: Sequence[Mapping[str, Any]]) -> Iterator[str]:
+    """Legal bases that valid decisions record, each once."""
+    decisions = [finding["decision"] for finding in findings if finding.get("decision")]
+    yield from dict.fromkeys(basis for d in decisions if d["state"] == State.VALID for basis in d["legal_basis"])
 
 
 def _form(findings: Sequence[Mapping[str, Any]], stated: Sequence[Any], index: Index) -> str:
@@ -143,22 +187,15 @@ def _form(findings: Sequence[Mapping[str, Any]], stated: Sequence[Any], index: I
     return index.words("r.hidden" if hidden else "r.as.is")
 
 
-def _transfer(row: Mapping[str, Any], index: Index) -> str:
-    if not row.get("country") and not row.get("transfer"):
-        return ""
-    area = index.words(f"area.{row['area']}") if row.get("area") else ""
-    basis = index.words.known(f"transfer.{row['transfer']}", row["transfer"]) if row.get("transfer") else ""
-    return ", ".join(part for part in (fit(row.get("country", "")), area, basis) if part)
-
-
 def _kept(category: str, facts: _Facts) -> str:
-    """Time limits of the storages that the kind gets to."""
+    """Time limits of the storages that the kind gets to, each with what its backups keep longer."""
     rows = [
         row
         for row in facts.index.outside.values()
         if row["element"]["kind"] == STORAGE and category in row["holds"] and row.get("retention")
     ]
-    said = (facts.index.words("r.kept", element=name(r["element"]), duration=retention(r, facts.index)) for r in rows)
+    words = facts.index.words
+    said = (words("r.kept", element=name(r["element"]), duration=kept(r, category, facts.index)) for r in rows)
     return "; ".join(dict.fromkeys(said))
 
 
@@ -173,9 +210,8 @@ def _measures(category: str, facts: _Facts) -> Iterator[str]:
         names = words.row(index.names([row["element"] for row in group]))
         yield words("r.measure.cleans", element=names, method=method)
     for row in index.outside.values():
-        if "encrypted" in row and category in row["holds"]:
-            said = "r.measure.encrypted" if row["encrypted"] else "r.measure.unencrypted"
-            yield words(said, element=name(row["element"]))
+        if row.get("encrypted") and category in row["holds"]:
+            yield words("r.measure.encrypted", element=name(row["element"]))
 
 
 def _note(category: str, index: Index) -> str:

@@ -8,13 +8,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.model import SPECIAL
 from rosprivacy.report.page.entries_of_robots import weight
-from rosprivacy.report.page.index import CAN_BE_SPECIAL
+from rosprivacy.report.page.index import REVEALS
 
 if TYPE_CHECKING:
     from rosprivacy.report.page.index import Index
 
-OBSERVES = {"image", "video", "depth", "point-cloud", "thermal", "audio", "position"}  # data types of a sensor
+OBSERVES = {"image", "video", "depth", "point-cloud", "thermal", "audio"}  # data types of a sensor
+PERSONAL = {"CommunicationContent", "CommunicationMetadata", "Household", "Location", "Voice"}  # WP 248, criterion 4
 NAMED = 6
 
 
@@ -30,7 +32,8 @@ def criteria(index: Index) -> tuple[Criterion, ...]:
     """Return all nine, in their order."""
     words = index.words
     makes = _makes(index)
-    shows = [makes, "", _observes(index), _special(index), _scale(index), _combines(index), _subjects(index), makes, ""]
+    new = _innovative(makes, index)
+    shows = [makes, "", _observes(index), _special(index), _scale(index), _combines(index), _subjects(index), new, ""]
     return tuple(Criterion(words(f"w.{number}"), said) for number, said in enumerate(shows, 1))
 
 
@@ -59,10 +62,25 @@ def _observes(index: Index) -> str:
 
 
 def _special(index: Index) -> str:
-    kinds = [name for name, category in index.categories.items() if category["article9"] in CAN_BE_SPECIAL]
-    if not index.categories:
-        return ""
-    return index.words("w.special", names=index.all_data(kinds)) if kinds else index.words("w.special.none")
+    """Special categories, data of Article 10, and what is highly personal all the same, as WP 248 lists them."""
+    special, reveals, personal = [], [], []
+    for name, category in index.categories.items():
+        verdicts = {legal["verdict"] for legal in category["law"]} | {category["article9"]}
+        if verdicts.intersection(SPECIAL):
+            special.append(name)
+        elif verdicts.intersection(REVEALS):
+            reveals.append(name)
+        if PERSONAL.intersection(index.upwards(name)):
+            personal.append(name)
+    groups = {"w.special": special, "w.reveals": reveals, "w.personal": personal}
+    said = [index.words(key, names=index.all_data(names)) for key, names in groups.items() if names]
+    return "; ".join(said) or (index.words("w.none") if index.categories else "")
+
+
+def _innovative(makes: str, index: Index) -> str:
+    if not index.of_role.get("source"):
+        return makes
+    return index.words("w.innovative", makes=f"; {makes}" if makes else "")
 
 
 def _scale(index: Index) -> str:

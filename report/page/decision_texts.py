@@ -1,7 +1,7 @@
 """What people decided about findings, as a report shows it.
 
 In: a document with decisions, where there are any. Out: ``Decision`` of a finding, and those that match none. What the
-law asks for and nobody wrote down is named (GDPR, Article 6(1) and 9(2)).
+law asks for and nobody wrote down is named (``analysis/legal_bases.py``).
 """
 
 from __future__ import annotations
@@ -9,8 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.text import printable
-from rosprivacy.report.page.index import CAN_BE_SPECIAL
+from rosprivacy.analysis.legal_bases import gaps
+from rosprivacy.analysis.text import fit, printable
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -66,10 +66,8 @@ def _value(value: Any, key: str, index: Index) -> str:
 
 
 def _flags(said: Mapping[str, Any], findings: Iterable[Mapping[str, Any]], index: Index) -> Iterator[str]:
-    """What an acceptance lacks: a basis; an exception where the data can be a special category."""
-    bases = said["legal_basis"]
-    if not any(basis.startswith("6(1)") for basis in bases):
-        yield index.words("d.basis.missing")
-    special = any(finding["article9"] in CAN_BE_SPECIAL[:2] for finding in findings)
-    if special and not any(basis.startswith("9(2)") for basis in bases):
-        yield index.words("d.special.missing")
+    """What an acceptance lacks: a legal basis, a ground for special categories, one of chapter V."""
+    held = list(findings)
+    law = {f["category"]: tuple((legal["provision"], legal["verdict"]) for legal in f["law"]) for f in held}
+    for gap in gaps(said["legal_basis"], [(f["kind"], f["category"]) for f in held], law):
+        yield index.words(f"d.gap.{gap.lack.name.lower()}", data=index.data(gap.category), provision=fit(gap.provision))

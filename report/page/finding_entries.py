@@ -190,7 +190,7 @@ def _spread(finding: Mapping[str, Any], robots: tuple[str, ...], index: Index) -
         return words("f.robots", robots=words.count(len(robots), "robot")) if robots else ""
     if not robots:
         return words("f.fleet.none")
-    said = [words("f.fleet", n=len(robots), all=words.count(len(index.robots()), "robot"))]
+    said = [words("f.fleet", n=len(robots), all=words.count(len(index.robots()), "ofrobots"))]
     said += [words("f.fleet.across", n=pattern["findings"])] if pattern["across"] else []
     said += [f"{words.count(len(some), 'robot')}: {form}." for some, form in _forms(pattern, index)]
     return " ".join(said)

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.model import MAY_REVEAL
 from rosprivacy.analysis.text import fit
 from rosprivacy.report.naming import key, text
 from rosprivacy.report.page.entries_of_robots import names_of
@@ -20,8 +21,7 @@ if TYPE_CHECKING:
     from rosprivacy.report.naming import Key
     from rosprivacy.report.page.words import Words
 
-SPECIAL = ("always", "conditional")  # what Article 9(1) says of a kind of data by itself
-CAN_BE_SPECIAL = (*SPECIAL, "may-reveal", "unknown")
+REVEALS = (MAY_REVEAL, "unknown")
 
 
 @dataclass(frozen=True)
@@ -90,6 +90,10 @@ class Index:
         known = self.categories.get(category)
         title = (known and text(known, "title", self.words.language)) or fit(category)
         return self.words("f.data", data=title) if pseudonymised else title
+
+    def upwards(self, category: str) -> list[str]:
+        """Return a kind of data and all broader ones, the nearest first."""
+        return [category, *self.categories[category]["broader"]] if category in self.categories else [category]
 
     def all_data(self, categories: Iterable[str]) -> str:
         """Return several kinds of data in a row."""

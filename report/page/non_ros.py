@@ -90,6 +90,17 @@ def retention(row: Mapping[str, Any], index: Index) -> str:
     )
 
 
+def kept(row: Mapping[str, Any], category: str, index: Index) -> str:
+    """Return how long a storage keeps one kind of data, as stated of it or of the nearest broader one; with backups."""
+    words, stated = index.words, row["retention"]
+    nearest = next((kind for kind in index.upwards(category) if kind in stated), EVERY)
+    duration = fit(words.duration(stated[nearest])) if nearest in stated else words("o.notstated")
+    backups = row.get("backups")
+    if backups is True:
+        return words("o.kept.backups.unknown", duration=duration)
+    return words("o.kept.backups", duration=duration, more=_backups(backups, index)) if backups else duration
+
+
 def _backups(value: Any, index: Index) -> str:
     if value is None:
         return ""

@@ -6,9 +6,11 @@ texts. What the documents do not say, no report says.
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.model import SPECIAL
 from rosprivacy.analysis.text import fit
 from rosprivacy.report.compare.changes import ASKED, Changes, changes
 from rosprivacy.report.document.analysis import files_not_read, lacking
@@ -20,7 +22,7 @@ from rosprivacy.report.page.criteria import Criterion, criteria
 from rosprivacy.report.page.decision_texts import Decision, orphans
 from rosprivacy.report.page.finding_entries import Entry, finding_entries
 from rosprivacy.report.page.fleet_section import Fleet, fleet_told
-from rosprivacy.report.page.index import CAN_BE_SPECIAL, Index
+from rosprivacy.report.page.index import REVEALS, Index
 from rosprivacy.report.page.kinds import Kind, kinds
 from rosprivacy.report.page.non_ros import Outside, outside
 from rosprivacy.report.page.review import Group, review, unknown_ends
@@ -36,7 +38,10 @@ SECTIONS = (
     "criteria", "inventory", "method", "sign",
 )  # fmt: skip
 PARAGRAPHS = 10  # of the method note
-SIGNED = ("purpose", "controller", "basis", "necessity", "measures", "residual", "name", "date", "signature")
+SIGNED = (  # what Article 35(7) asks for, 35(2), 35(9), 36, and who answers for it
+    "purpose", "controller", "basis", "necessity", "risks", "measures", "residual", "advice", "views", "consultation",
+    "name", "date", "signature",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +92,7 @@ class Outline:
     title: str
     made: str
     version: str
-    law_as_of: str
+    law: str
     redacted: bool
     sections: tuple[tuple[str, str], ...]
     code: str
@@ -160,7 +165,7 @@ def outline(
         title=fit(title) if title else _title(index),
         made=words.date(made),
         version=document["assumptions"]["rosprivacy"],
-        law_as_of=words.date(document["assumptions"]["law_as_of"]),
+        law=_law(document["assumptions"], words),
         redacted=redacted,
         sections=tuple((anchor, words(f"h.{anchor}")) for anchor in names),
         code=document["verdict"],
@@ -208,6 +213,14 @@ def _title(index: Index) -> str:
     return index.words.row([*map(fit, names[:few]), *more])
 
 
+def _law(assumptions: Mapping[str, Any], words: Words) -> str:
+    """As of when the law is told, the adequacy decisions of chapter V too where a country is stated."""
+    said = [words("law.date", date=words.date(assumptions["law_as_of"]))]
+    if "countries_as_of" in assumptions:
+        said.append(words("law.countries", date=words.date(assumptions["countries_as_of"])))
+    return "; ".join(said)
+
+
 def _verdict(index: Index) -> str:
     """The verdict; ``nothing``, ``goes-nowhere`` or ``no-leak-named`` where it lacks grounds (rules S11, S12)."""
     verdict = str(index.document["verdict"])
@@ -238,13 +251,21 @@ def _numbers(index: Index) -> Iterator[tuple[int, str]]:
     if index.alike:
         yield len(index.robots()), words("n.robots")
     yield len(to_assess), words("n.ways")
-    yield sum(finding["article9"] in CAN_BE_SPECIAL for finding in to_assess), words("n.special")
+    strength = Counter(_strongest(finding) for finding in to_assess)
+    yield strength[SPECIAL], words("n.special")
+    yield strength[REVEALS], words("n.reveals")
     yield len({tuple(finding["leak"].items()) for finding in to_assess}), words("n.recipients")
     yield count_rows(index.document["open"]).elements, words("n.open")
     for what in ("accepted", "dismissed"):
         number = sum(bool(finding.get(what)) for finding in index.findings)
         if number:
             yield number, words(f"n.{what}")
+
+
+def _strongest(finding: Mapping[str, Any]) -> tuple[str, ...]:
+    """How far its data can be special: ``SPECIAL``, ``REVEALS``, or neither, under Article 9 or 10."""
+    verdicts = {legal["verdict"] for legal in finding["law"]} | {finding["article9"]}
+    return next((some for some in (SPECIAL, REVEALS) if verdicts.intersection(some)), ())
 
 
 def _changed(differ: Changes, earlier: Earlier, entries: tuple[Entry, ...], index: Index) -> Changed:

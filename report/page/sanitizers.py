@@ -8,9 +8,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.model import SPECIAL
 from rosprivacy.report.naming import key, whole
 from rosprivacy.report.page.entries_of_robots import grouped, without_robots
-from rosprivacy.report.page.index import SPECIAL
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -9,6 +9,7 @@ WORDS = {
     "made": "Made on {date} with rosprivacy {version}",
     "made.undated": "Made with rosprivacy {version}",
     "law.date": "Law as of {date}",
+    "law.countries": "adequacy decisions as of {date}",
     "skip": "Skip to the content",
     "contents": "Contents",
     "top": "Back to the contents",
@@ -31,6 +32,8 @@ WORDS = {
     "leak.many": "{n} recipients",
     "robot.one": "{n} robot",
     "robot.many": "{n} robots",
+    "ofrobots.one": "{n} robot",
+    "ofrobots.many": "{n} robots",
     "enclave.one": "{n} enclave",
     "enclave.many": "{n} enclaves",
     "step.one": "{n} step",
@@ -104,7 +107,7 @@ WORDS = {
     "verdict.code": "Verdict of the program",
     "verdict.leak.means": (
         "At least one kind of personal data can get from where it is brought in to an element that lets it out of the "
-        "system, keeps it too long, or lies in a third country. Such a path can be lawful and intended. A person has to "
+        "system, keeps it too long or without a stated end, or lies in a third country. Such a path can be lawful and intended. A person has to "
         "assess each: is it wanted, on which legal basis, who is the recipient?"
     ),
     "verdict.undetermined.means": (
@@ -135,7 +138,8 @@ WORDS = {
         "elements. Whether that is permitted is for a person to decide."
     ),
     "n.ways": "paths to assess",
-    "n.special": "of them with data that can fall under Article 9 GDPR",
+    "n.special": "of them with data that fall under Article 9 or 10 GDPR, always or on a condition",
+    "n.reveals": "of them with data that may reveal what Article 9 or 10 names, or of which that is not known",
     "n.recipients": "places that data can reach",
     "n.open": "elements not reviewed",
     "n.accepted": "accepted by decision",
@@ -160,7 +164,7 @@ WORDS = {
     "law.may-reveal": "Such data may reveal what it names",
     "law.meaning": "What the provision says",
     "law.sources": "Source",
-    "law.stated": "Stated of",
+    "law.stated": "Stated for",
     "law.as.of": "as of {date}",
     "law.narrower": "if the data are of a narrower kind: {kinds}",
     "law.no": "Not a special category by itself: {reason}",
@@ -215,7 +219,7 @@ WORDS = {
     "a.kinds.conduit": "pass on all data that gets there",
     "a.countries": "Members of the EEA and adequacy decisions as of {date}; check them.",
     "a.limit": "How long {element} keeps {data} was not judged: no label file states a limit.",
-    "a.law": "The law is that of {date}, as the ontology of the program knows it. Proposals of new law are not applied.",
+    "a.law": "Only the GDPR is followed into paths, as the ontology of the program knows it as of {date}. The AI Act, the law on electronic communications, national law and agreements with works councils are not looked at. Proposals of new law are not applied.",
     "a.labels": "Labels are a person's word. The program cannot check what a node does inside, or what leaves it past ROS.",
     "t.closed": "Closed on somebody's word: without it, data would get on",
     "k.intro": (
@@ -318,7 +322,7 @@ WORDS = {
     "f.intro": (
         "Each entry is one path to assess: one kind of data, from one source, to one place. The list below each heading "
         "is a shortest path; each step names the policy line that allows it. To close a path, change one of these lines, or "
-        "put an element in between that cleans the data. Questions for each: is the disclosure wanted? On which basis of "
+        "put an element in between that anonymises, aggregates or drops them; pseudonymising does not close it. Questions for each: is the disclosure wanted? On which basis of "
         "Article 6, and of Article 9(2) where the data are special? Who is the recipient, and in which role?"
     ),
     "f.none": "There is no path to assess.",
@@ -343,11 +347,12 @@ WORDS = {
     "f.single": "{data} is brought in and let out at {source} itself.",
     "f.pseudonymised": (
         "On these paths the data arrives pseudonymised only. That is still personal data for whoever can tell the persons "
-        "(recital 26 GDPR). To be answered: can this recipient do so, alone or with what others hold?"
+        "(recital 26 GDPR). To be answered: can this recipient do so, alone or with what others hold? For you as controller they remain "
+        "personal data (Articles 13 and 14)."
     ),
     "f.dismissed": "Every path to it goes through {names}, which has an entry of its own. Assess that one first.",
     "f.beside": "Past it, the data gets there pseudonymised only: that is an entry of its own.",
-    "f.special": "{element} makes data of this kind, which can be a special category, of data that are none.",
+    "f.special": "{element} makes data of this kind, which can be a special category, of data that are none by themselves.",
     "f.ways": "{n} paths share no step; closing one leaves the others.",
     "f.paths": "Further paths",
     "f.bounded": "There are more paths than the {n} that are listed.",
@@ -447,8 +452,12 @@ WORDS = {
     "d.state.expired": "expired: it no longer counts",
     "d.state.orphaned": "matches no path any more",
     "d.none": "No decision is recorded.",
-    "d.basis.missing": "No legal basis of Article 6 is recorded.",
-    "d.special.missing": "The data can be a special category, and no exception of Article 9(2) is recorded.",
+    "d.gap.article_6": "No legal basis under Article 6(1) is recorded.",
+    "d.gap.article_9": "{data} can be a special category ({provision}), and no exception of Article 9(2) is recorded.",
+    "d.gap.reveals": "{data} may reveal what is named in {provision}, and no exception of Article 9(2) is recorded.",
+    "d.gap.secrecy": "It rests on Article 9(2)(h), and that Article 9(3), professional secrecy, is met is not recorded.",
+    "d.gap.article_10": "{data} can be data of Article 10, and the law that authorises them is not recorded.",
+    "d.gap.chapter_v": "The data leave the EEA, and no basis of chapter V (Articles 45, 46, 47 or 49) is recorded; Article 6 alone does not permit it.",
     "d.orphans": "Decisions that match no path",
     # --- outside ROS
     "o.none": (
@@ -467,6 +476,9 @@ WORDS = {
     "c.operator": "Operator",
     "c.recipient.role": "Role of the recipient",
     "c.transfer": "Basis of a transfer",
+    "o.kept.backups": "{duration}, in backups {more} more",
+    "o.kept.backups.unknown": "{duration}, in backups for longer; how long is not stated",
+    "o.notstated": "not stated",
     "o.every": "everything: {duration}",
     "o.of": "{data}: {duration}",
     "o.backups.unknown": "yes, for how long is not stated",
@@ -528,11 +540,7 @@ WORDS = {
     "c.closes": "Only past it",
     "missing.country": "country",
     # --- criteria
-    "w.intro": (
-        "Article 35 GDPR asks for an assessment where a processing is likely to result in a high risk. The nine criteria "
-        "are those of the guidelines WP 248 rev.01. As a rule two of them call for an assessment; one can be enough, and "
-        "two need not be. The program shows what it sees; it never says that no assessment is needed."
-    ),
+    "w.intro": "Article 35 GDPR asks for an assessment where a processing is likely to result in a high risk. The nine criteria are those of the guidelines WP 248 rev.01, which the EDPB endorsed. As a rule two of them call for an assessment; one can be enough, and two need not be. Who makes none where some are met has to be able to say why. Also look at the list of your authority under Article 35(4). The program shows what it sees; it never says that no assessment is needed.",
     "t.criteria": "The nine criteria of WP 248 rev.01",
     "c.criterion": "Criterion",
     "c.shows": "What the analysis shows",
@@ -549,10 +557,12 @@ WORDS = {
     "w.person": "nothing; only a person can say",
     "w.make": "{element} makes {data} of {of}",
     "w.makes": "Elements infer data from other data: {names}",
-    "w.observes": "Sources that can observe persons: {names}",
-    "w.special": "Data that can fall under Article 9(1), or of which it is not known: {names}",
-    "w.special.none": "No kind of data here that is known to fall under Article 9(1) by itself; location and "
-    "communication can be highly personal all the same",
+    "w.observes": "Sources of sensors that can observe persons: {names}",
+    "w.special": "Special categories or data of Article 10, always or on a condition: {names}",
+    "w.reveals": "May reveal such data, or it is not known: {names}",
+    "w.personal": "Highly personal all the same (location, communication, household): {names}",
+    "w.none": "no kind of data that is known to be special; whether others are highly personal, a person has to say",
+    "w.innovative": "Robots with sensors among persons are a new technology (WP 248, criterion 8){makes}",
     "w.scale": "{robots} analysed; how many persons, how long and where, only a person can say",
     "w.combines": "{elements} with more than one kind of data, such as {names}",
     "w.subjects": "Persons that labels name: {names}",
@@ -638,12 +648,16 @@ WORDS = {
     ),
     "t.sign": "Assessment",
     "c.field": "Field",
-    "sign.purpose": "Purpose of the processing",
+    "sign.purpose": "Operations and purposes of the processing (Article 35(7)(a))",
     "sign.controller": "Controller, and data protection officer",
     "sign.basis": "Legal basis (Article 6, and Article 9(2) for special categories)",
-    "sign.necessity": "Necessity and proportion",
-    "sign.measures": "Measures that were decided",
+    "sign.necessity": "Necessity and proportion (Article 35(7)(b))",
+    "sign.measures": "Measures that were decided (Article 35(7)(d))",
     "sign.residual": "Remaining risk, and next review",
+    "sign.risks": "Risks to the rights and freedoms of the persons: likelihood, severity, for whom (Article 35(7)(c))",
+    "sign.advice": "Advice of the data protection officer (Article 35(2))",
+    "sign.views": "Views of the persons or their representatives, such as the works council (Article 35(9))",
+    "sign.consultation": "Prior consultation of the supervisory authority, if the risk stays high (Article 36)",
     "sign.name": "Name and role",
     "sign.date": "Place and date",
     "sign.signature": "Signature",
@@ -678,12 +692,18 @@ WORDS = {
     "transfer.authorised-clauses": "clauses that an authority authorised (Article 46(3))",
     "transfer.derogation": "derogation (Article 49)",
     # --- the record of processing
+    "r.unbased.partly": "{country}: no basis is stated (the adequacy decision covers some recipients only)",
+    "r.unbased.third": "{country}: no basis is stated (no adequacy decision is known)",
+    "r.activity": "Name of the processing activity",
+    "r.exit": "Where the data leave; the recipient there is to be named",
+    "r.country": "Country",
+    "r.basis": "Legal basis, as decisions record it",
+    "r.letter": "30(1)({letter})",
     "r.category": "Categories of personal data (30(1)(c))",
     "r.article9": "Special category, Article 9(1)",
     "r.provisions": "Provisions to look at",
     "r.subjects": "Categories of data subjects (30(1)(c))",
-    "r.recipient": "Categories of recipients (30(1)(d))",
-    "r.role": "Role of the recipient",
+    "r.recipient": "Categories of recipients, as stated: operator, role (30(1)(d))",
     "r.form": "Form in which the data arrives",
     "r.transfer": "Transfers to third countries and safeguards (30(1)(e))",
     "r.retention": "Time limits for erasure (30(1)(f))",
@@ -694,11 +714,10 @@ WORDS = {
     "r.complete": "To be completed by a person",
     "r.as.is": "as it is",
     "r.hidden": "pseudonymised",
-    "r.norecipient": "no recipient found under the labels given",
-    "r.measure.enclaves": "SROS 2 access control, {enclaves}",
+    "r.norecipient": "no exit found under the labels given",
+    "r.measure.enclaves": "SROS 2 policy with {enclaves} (whether it is enforced: to be completed)",
     "r.measure.cleans": "{element} {method}",
     "r.measure.encrypted": "{element}: encrypted at rest",
-    "r.measure.unencrypted": "{element}: not encrypted at rest",
     "r.note": "Note",
     "r.note.open": "not reviewed, though this data can get there: {elements}; there may be more recipients",
     "r.kept": "{element}: {duration}",

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.answer import Verdict
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.legal import MAY_REVEAL, turned_special
-from rosprivacy.analysis.model import NO_LEAK_NAMED
+from rosprivacy.analysis.legal import turned_special
+from rosprivacy.analysis.model import MAY_REVEAL, NO_LEAK_NAMED
 from rosprivacy.report.places import NOWHERE, of_step, to_review
 from rosprivacy.report.sarif.artifacts import uri_of
 from rosprivacy.report.sarif.flows import flows_of, logical, named, prose, text

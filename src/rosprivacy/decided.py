@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.decisions import Case, decided
 from rosprivacy.analysis.fleet.likeness import NO_ROBOTS, pattern_of
 from rosprivacy.clock import judged_on, today
-from rosprivacy.ontology.special import special_provision
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection
@@ -53,13 +52,15 @@ def joined_to(
     """Join decisions to findings; where only some categories were asked for, none is called orphaned."""
     if decisions is None:
         return None
-    special = {name: special_provision(vocabulary, name) for name in analysis.emitted}
-    held = {name: provision for name, provision in special.items() if provision}
+    law = {
+        name: tuple((legal.name, legal.verdict) for legal in vocabulary.categories[name].law)
+        for name in analysis.emitted
+    }
 
     def case_of(finding: Finding) -> Case:
         return in_fleet(Case.of(finding), likeness)
 
-    return decided(decisions, analysis.findings, held, everything=asked is None, case_of=case_of)
+    return decided(decisions, analysis.findings, law, everything=asked is None, case_of=case_of)
 
 
 def accepts(decisions: Decisions | None, likeness: Likeness = NO_ROBOTS) -> Callable[[Case], bool] | None:

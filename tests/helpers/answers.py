@@ -25,11 +25,12 @@ def answer_of(
     assumptions: dict[str, Any],
     diagnostics: Iterable[Diagnostic] = (),
     outside: Mapping[Element, NonRosFacts] | None = None,
+    bound: Bound | None = None,
 ) -> Answer:
     """An answer about a system that stands in no file."""
     if outside is not None:
         analysis = replace(analysis, outside=outside)
-    return Answer(analysis, Bound({}), vocabulary, tuple(diagnostics), assumptions)
+    return Answer(analysis, bound or Bound({}), vocabulary, tuple(diagnostics), assumptions)
 
 
 def accepting(answer: Answer, why: Mapping[str, str]) -> Answer:

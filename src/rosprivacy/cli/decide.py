@@ -52,7 +52,9 @@ def decide(
     owner: Annotated[str | None, typer.Option(help="Who answers for it; the same.", show_default=False)] = None,
     legal_basis: Annotated[
         list[str] | None,
-        typer.Option(metavar="ARTICLE", help="Such as 6(1)(f), and 9(2)(h); may be repeated.", show_default=False),
+        typer.Option(
+            metavar="ARTICLE", help="Such as 6(1)(f), 9(2)(h), 46(2)(c); may be repeated.", show_default=False
+        ),
     ] = None,
     expires: Annotated[
         str | None, typer.Option(metavar="YYYY-MM-DD", help="The last day on which it is valid.", show_default=False)

@@ -219,7 +219,10 @@ class TestThirdCountries:
             ("country: NO", None),  # which YAML takes for 'no'
             ("country: 'NO'", None),
             ("country: GP", None),  # a part of France
-            ("country: JP", None),
+            ("country: KR", None),
+            ("country: BR", None),  # adopted on 26 January 2026
+            ("country: JP", "in JP, whose adequacy decision covers businesses under the Act on the Protection of"),
+            ("country: JP, transfer: adequacy", None),
             ("country: CN", "in CN, for which no adequacy decision is known; no basis for the transfer is stated"),
             ("country: US", "in US, whose adequacy decision covers participants of the EU-US Data Privacy Framework"),
             ("country: CN, transfer: standard-clauses", None),

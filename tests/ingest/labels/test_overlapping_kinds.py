@@ -44,7 +44,7 @@ def _camera_to_uplink(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     Path("p.xml").write_text(f'<policy version="0.2.0"><enclaves>{"".join(enclaves)}</enclaves></policy>', "utf-8")
 
 
-def labels(uplink: str, *, source: str = "Household", planner: str = "conduit", video: str = "sensitive") -> None:
+def labels(uplink: str, *, source: str = "ContactData", planner: str = "conduit", video: str = "sensitive") -> None:
     Path("l.yaml").write_text(
         f"labels: 1\nnodes:\n  /camera: {{source: [{source}]}}\n  /planner: {planner}\n  /uplink: {uplink}\n"
         f"channels: {{/video: {video}, /plan: sensitive}}\n",
@@ -59,61 +59,61 @@ def found(cli: Cli, *options: str) -> tuple[int, set[tuple[str, str, str]]]:
     return done.returncode, {(f["category"], f["source"]["name"], f["leak"]["name"]) for f in rows}
 
 
-DISCLOSED = (1, {("Household", "/camera", "/uplink")})
+DISCLOSED = (1, {("ContactData", "/camera", "/uplink")})
 
 
-@pytest.mark.parametrize("leak", ["Household", "HomeMap", "HomeLocation", "Location", "PersonalData"])
+@pytest.mark.parametrize("leak", ["ContactData", "PostalAddress", "Location", "PersonalData"])
 def test_to_widen_a_leak_loses_no_finding(cli: Cli, leak: str) -> None:
     labels(f"{{leak: [{leak}]}}")
     assert found(cli) == DISCLOSED
 
 
-@pytest.mark.parametrize("leak", ["HomeMap", "HomeLocation", "Location"])
-@pytest.mark.parametrize("source", ["Household", "HomeMap"])
+@pytest.mark.parametrize("leak", ["PostalAddress", "Location"])
+@pytest.mark.parametrize("source", ["ContactData", "PostalAddress"])
 def test_a_conduit_of_a_broader_or_an_overlapping_kind_takes_no_leak_away(cli: Cli, leak: str, source: str) -> None:
-    labels(f"{{leak: [{leak}], conduit: [Household]}}", source=source)
+    labels(f"{{leak: [{leak}], conduit: [ContactData]}}", source=source)
     assert found(cli) == (1, {(source, "/camera", "/uplink")})
 
 
 def test_neither_does_one_of_a_higher_rank(cli: Cli) -> None:
-    labels("{conduit: [Household]}\n  /up*: {leak: [Location]}")
+    labels("{conduit: [ContactData]}\n  /up*: {leak: [Location]}")
     assert found(cli) == DISCLOSED
 
 
 def test_a_conduit_of_a_narrower_kind_is_an_exception_for_that_kind(cli: Cli) -> None:
-    labels("{leak: [Location], conduit: [HomeMap]}", source="HomeMap")
+    labels("{leak: [Location], conduit: [PostalAddress]}", source="PostalAddress")
     assert found(cli) == (0, set())
-    labels("{leak: [Location], conduit: [HomeMap]}", planner="{conduit: [Household]}")
+    labels("{leak: [Location], conduit: [PostalAddress]}", planner="{conduit: [ContactData]}")
     assert found(cli)[0] == 1
 
 
 def test_kinds_that_share_none_do_not_meet(cli: Cli) -> None:
-    labels("{leak: [Voice], conduit: [Household]}")
-    assert found(cli) == (4, set())  # nobody says where Household gets out
+    labels("{leak: [Voice], conduit: [ContactData]}")
+    assert found(cli) == (4, set())  # nobody says where ContactData gets out
 
 
 def test_must_stays_must(cli: Cli) -> None:
     """What is cleaned or kept out of an overlapping kind is not all that the data may be."""
-    labels("{leak: [Household], sanitizer: {Location: drop}}")
+    labels("{leak: [ContactData], sanitizer: {Location: drop}}")
     assert found(cli) == DISCLOSED
-    labels("{leak: [Household]}", video="{never: [Location]}")
+    labels("{leak: [ContactData]}", video="{never: [Location]}")
     assert found(cli) == DISCLOSED
 
 
 def test_what_derives_of_an_overlapping_kind_makes_it(cli: Cli) -> None:
-    labels("{leak: [Activity], conduit: [Household]}", planner="{derives: [{from: Location, to: Activity}]}")
+    labels("{leak: [Activity], conduit: [ContactData]}", planner="{derives: [{from: Location, to: Activity}]}")
     assert found(cli) == (1, {("Activity", "/camera", "/uplink")})
 
 
 def test_a_channel_with_only_an_overlapping_kind_lets_it_pass(cli: Cli) -> None:
-    labels("{leak: [Household]}", video="{only: [Location]}")
+    labels("{leak: [ContactData]}", video="{only: [Location]}")
     assert found(cli) == DISCLOSED
-    labels("{leak: [Household]}", video="{only: [Voice]}")
+    labels("{leak: [ContactData]}", video="{only: [Voice]}")
     assert found(cli)[1] == set()
 
 
 def test_what_ends_a_kind_and_makes_it_of_an_overlapping_one_is_refused(cli: Cli) -> None:
-    labels("{leak: [Location]}", planner="{sanitizer: {Location: drop}, derives: [{from: Household, to: Location}]}")
+    labels("{leak: [Location]}", planner="{sanitizer: {Location: drop}, derives: [{from: ContactData, to: Location}]}")
     (line,) = refused(cli("analyze", "p.xml", "-l", "l.yaml"))
     assert "/planner is " in line
 
@@ -125,14 +125,14 @@ class TestAskedFor:
         done = cli("analyze", "p.xml", "-l", "l.yaml", *options, "-f", "json")
         return json.loads(done.stdout)["assumptions"]["may_be_asked"]
 
-    @pytest.mark.parametrize("name", ["Location", "HomeLocation", "HomeMap"])
+    @pytest.mark.parametrize("name", ["Location", "PostalAddress"])
     def test_an_overlapping_kind_is_followed_and_marked(self, cli: Cli, name: str) -> None:
-        labels("{leak: [Location], conduit: [Household]}")
+        labels("{leak: [Location], conduit: [ContactData]}")
         assert found(cli, "-c", name) == DISCLOSED
-        assert self.said(cli, "-c", name) == {"Household": [name]}
+        assert self.said(cli, "-c", name) == {"ContactData": [name]}
         lines = cli("analyze", "p.xml", "-l", "l.yaml", "-c", name).stdout.splitlines()
-        assert any(line.startswith(f"1. Household (may be {name}): /camera -> /uplink   [") for line in lines)
-        assert f"   and Household, since data of this kind may be {name}" in lines
+        assert any(line.startswith(f"1. ContactData (may be {name}): /camera -> /uplink   [") for line in lines)
+        assert f"   and ContactData, since data of this kind may be {name}" in lines
 
     def test_one_that_shares_none_is_not(self, cli: Cli) -> None:
         labels("{leak: [Location]}")

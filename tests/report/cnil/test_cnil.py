@@ -76,8 +76,8 @@ class Tool:
             key: given_pia[key]
             for key in (
                 "category", "dpo_status", "dpo_opinion", "concerned_people_opinion", "concerned_people_status",
-                "concerned_people_searched_opinion", "concerned_people_searched_content", "rejected_reason",
-                "applied_adjustements", "dpos_names", "people_names", "author_name", "evaluator_name", "validator_name",
+                "concerned_people_searched_opinion", "concerned_people_searched_content", "rejection_reason",
+                "applied_adjustments", "dpos_names", "people_names", "author_name", "evaluator_name", "validator_name",
             )
         }  # fmt: skip
         tool.pia["name"] = "(IMPORT) " + given_pia["name"]
@@ -309,8 +309,48 @@ def test_storages_and_recipients_with_what_was_stated_of_them() -> None:
     assert "storage disk: pseudonymised Video; retention: not stated" in seen(tool, 215)
     assert "external-system cloud: country: US; basis of a transfer: standard-clauses" in seen(tool, 227)
     contents = {m["title"]: Page(m["content"]).seen for m in tool.measures.values()}
-    assert contents["Encryption of storages"].startswith("bucket: yes")
+    assert contents["Encryption of storages"].startswith("bucket: encrypted at rest, as stated")
     assert "Access control by SROS 2 policies" not in contents  # no profile, so nothing is known of it
+
+
+def with_facts(facts: dict[str, NonRosFacts], subjects: tuple[str, ...] = ()) -> Tool:
+    """A camera that everything non-ROS gets video from, and what people state of each."""
+    kinds = ("external-system" if name.startswith("cloud") else "storage" for name in facts)
+    elements = (Element("node", "/camera"), *(Element(kind, name) for kind, name in zip(kinds, facts, strict=True)))
+    flows = tuple(Flow(0, vertex, "flow") for vertex in range(1, len(elements)))
+    said = {0: (Statement("source", ("Video",), (1, 0), Place("labels.yaml", 1)),)}
+    bound = Bound(said, subjects={0: subjects} if subjects else {})
+    analysis = analyse(FlowGraph(elements, flows, (), ()), bound, load().hierarchy)
+    outside = {element: facts[element.name] for element in elements[1:]}
+    return imported(cnil_pia(answer_of(analysis, load(), {}, bound=bound, outside=outside), CREATED))
+
+
+def test_a_storage_that_is_not_encrypted_is_a_threat_and_no_measure() -> None:
+    tool = with_facts({"nas": NonRosFacts(encrypted=False)})
+    assert "Encryption of storages" not in {measure["title"] for measure in tool.measures.values()}
+    assert "data at rest not encrypted: storage nas" in tool.answers[322]["list"]
+
+
+def test_processors_are_named_as_stated_and_nobody_else() -> None:
+    """Article 28; question 226 stays without an answer where nobody names one."""
+    stated = NonRosFacts(operator="Speech Inc.", recipient="processor", country="US", area="partly")
+    tool = with_facts({"cloud": stated, "nas": NonRosFacts(operator="us")})
+    assert seen(tool, 226).startswith("external-system cloud: processor: Speech Inc. (US); contract under Article 28")
+    assert "nas" not in seen(tool, 226)
+    assert 226 not in with_facts({"nas": NonRosFacts(operator="us")}).answers
+
+
+def test_what_stays_in_the_eea_is_no_transfer() -> None:
+    facts = {"cloud_de": NonRosFacts(country="DE", area="eea"), "cloud_ch": NonRosFacts(country="CH", area="adequate")}
+    said = seen(with_facts(facts), 227)
+    assert "cloud_de: country: DE, in the EEA: no transfer to a third country" in said
+    assert "cloud_ch: country: CH, adequacy decision (Article 45 GDPR)" in said
+
+
+def test_persons_that_labels_name_are_told() -> None:
+    said = seen(with_facts({"nas": NonRosFacts()}, ("residents", "staff")), 121)
+    assert "Persons concerned, as labels name them: residents, staff" in said
+    assert "Purpose, who has access: to be completed." in said
 
 
 # ---------------------------------------------------------------- bounds, names, sameness

@@ -27,10 +27,10 @@ def record(document: dict[str, Any], language: str = "en") -> list[dict[str, str
 
 
 def test_one_row_for_each_kind_and_recipient() -> None:
-    assert [(row["category"], row["recipient"], row["form"]) for row in record(care())] == [
+    assert [(row["category"], row["exit"], row["form"]) for row in record(care())] == [
         ("face template", "/uplink", "as it is"),
-        ("location", "no recipient found under the labels given", ""),
-        ("person track", "no recipient found under the labels given", ""),
+        ("location", "no exit found under the labels given", ""),
+        ("person track", "no exit found under the labels given", ""),
         ("video of persons", "/recorder", "pseudonymised"),
         ("voice", "/uplink", "as it is"),
     ]
@@ -43,13 +43,69 @@ def test_what_only_a_person_can_know_is_empty_and_marked() -> None:
         assert ("30(1)(c)" in row["complete"]) == (row["subjects"] == "")
 
 
+def test_a_node_is_no_recipient() -> None:
+    """Article 4(9): who receives the data is a person or a body, to be named by a person."""
+    for row in record(care()):
+        assert row["recipient"] == ""
+        assert ("30(1)(d)" in row["complete"]) == (not row["exit"].startswith("no exit"))
+
+
 def test_storages_and_recipients_fill_their_fields() -> None:
-    rows = {(row["category"], row["recipient"]): row for row in record(with_outside(care()))}
+    rows = {(row["category"], row["exit"]): row for row in record(with_outside(care()))}
     speech = rows["voice", "speech service"]
-    assert speech["role"] == "processor"
-    assert speech["transfer"].startswith("US, adequacy decision for some recipients, standard contractual clauses")
-    assert rows["video of persons", "archive"]["retention"] == "archive: video of persons: 30 days; everything: 1 year"
-    assert "archive: not encrypted at rest" in rows["video of persons", "archive"]["measures"]
+    assert speech["recipient"].endswith("processor")
+    assert speech["country"] == "US (adequacy decision for some recipients)"
+    assert speech["transfer"] == "US: standard contractual clauses (Article 46(2)(c) and (d))"
+    assert rows["video of persons", "archive"]["retention"].startswith("archive: 30 days, in backups")
+
+
+def abroad(area: str, **facts: Any) -> dict[str, str]:
+    """The row of a recipient of voice of which something is stated."""
+    document = with_outside(care())
+    (row,) = (row for row in document["outside"] if row["element"]["name"] == "speech service")
+    row |= {"country": "DE" if area == "eea" else "US", "area": area, "transfer": "", **facts}
+    return next(row for row in record(document) if row["exit"] == "speech service")
+
+
+@pytest.mark.parametrize(
+    ("area", "basis", "transfer", "complete"),
+    [
+        ("eea", "", "", ""),
+        ("partly", "", "US: no basis is stated (the adequacy decision covers some recipients only)", "to be completed"),
+        ("third", "", "US: no basis is stated (no adequacy decision is known)", "to be completed"),
+        ("adequate", "", "US: adequacy decision (Article 45)", ""),
+        ("third", "derogation", "US: derogation (Article 49)", ""),
+    ],
+)
+def test_a_safeguard_is_named_only_where_one_is_stated(area: str, basis: str, transfer: str, complete: str) -> None:
+    """Article 30(1)(e) is about third countries, and about the documentation of safeguards that there are."""
+    row = abroad(area, transfer=basis)
+    assert row["transfer"] == transfer
+    assert ("30(1)(e)" in row["complete"]) == (complete == "to be completed")
+
+
+def test_a_lack_is_no_measure() -> None:
+    for row in record(with_outside(care())):
+        assert "not encrypted" not in row["measures"]
+        assert "whether it is enforced: to be completed" in row["measures"]
+
+
+def test_backups_are_part_of_the_time_limit() -> None:
+    document = with_outside(care())
+    (row,) = (row for row in document["outside"] if row["element"]["name"] == "archive")
+    row["backups"] = "P7D"
+    rows = {(row["category"], row["exit"]): row["retention"] for row in record(document)}
+    assert rows["video of persons", "archive"] == "archive: 30 days, in backups 7 days more"
+
+
+def test_a_basis_that_a_valid_decision_records_stands_in_its_row() -> None:
+    document = care()
+    for finding, state in zip(document["findings"], ("valid", "expired"), strict=False):
+        finding["decision"] = {"choice": "accept", "state": state, "legal_basis": ["6(1)(c)"]}
+    told = {row["findings"]: row["basis"] for row in record(document)}
+    first, second, *_ = (finding["id"] for finding in document["findings"])
+    assert next(basis for ids, basis in told.items() if first in ids) == "6(1)(c)"
+    assert next(basis for ids, basis in told.items() if second in ids) == ""
 
 
 def test_recipients_that_nobody_reviewed_may_be_missing_and_the_row_says_so() -> None:

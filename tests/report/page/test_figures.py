@@ -137,7 +137,7 @@ def test_boxes_speak_the_language_of_the_report() -> None:
     drawn = figures(result.analysis, outline(result.document(), "de"))
     said = "\n".join(texts(etree.fromstring(one.svg)) for one in drawn.of.values())
     assert "bringt herein: Video von Personen" in said
-    assert "macht Gesichtstemplate aus Video von Personen" in said.replace("\n", " ")
+    assert "erzeugt Gesichtstemplate aus Video von Personen" in said.replace("\n", " ")
     assert not re.search(r"\b(source|leak|makes|ends|more)\b", said)
 
 

@@ -94,7 +94,7 @@ def test_each_assumption_is_told() -> None:
         assert "only about data of these types: video" in text
         assert "only about data that can fall under Article 9(1)" in text
         assert "no label states how. It was taken as pseudonymisation" in text
-        assert "The law is that of 2026-04-30" in text
+        assert "Only the GDPR is followed into paths, as the ontology of the program knows it as of 2026-11-21" in text
 
 
 @pytest.mark.parametrize(

@@ -307,8 +307,9 @@ class TestInTheWordsOfDpv:
         (law,) = graph.objects(self.finding(graph, "FaceTemplate"), RP.fallsUnder)
         assert value(graph, law, RP.verdict) == "conditional"
         assert "uniquely" in value(graph, law, RP.condition)
-        assert value(graph, law, RP.provision, RP.asOf).isoformat() == "2026-04-30"
-        assert not list(graph.objects(self.finding(graph, "Video"), RP.fallsUnder))
+        assert value(graph, law, RP.provision, RP.asOf).isoformat() == "2026-11-21"
+        (revealed,) = graph.objects(self.finding(graph, "Video"), RP.fallsUnder)
+        assert value(graph, revealed, RP.verdict) == "may-reveal"
         assert "LegalBasis" not in as_turtle(graph)
 
     def test_what_labels_say_on_the_way(self, graph: Graph) -> None:

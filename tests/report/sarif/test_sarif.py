@@ -91,7 +91,8 @@ def test_provisions_are_a_taxonomy_and_a_question_to_check(care_home: dict[str, 
     first, _, voice = care_home["results"]
     assert [taxon["id"] for taxon in first["taxa"]] == ["GDPR Art. 9(1) biometric data"]
     assert "To be checked: GDPR Art. 9(1) biometric data (conditional: " in first["message"]["text"]
-    assert "taxa" not in voice
+    assert [taxon["id"] for taxon in voice["taxa"]] == ["GDPR Art. 9(1)"]
+    assert "It may reveal what these speak of: GDPR Art. 9(1)." in voice["message"]["text"]
     (taxonomy,) = care_home["taxonomies"]
     assert re.fullmatch(r"\d{4}-\d\d-\d\d", taxonomy["version"])
 

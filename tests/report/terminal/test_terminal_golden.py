@@ -111,7 +111,7 @@ def test_what_stands_before_what_is_dismissed_and_data_as_it_is_before_pseudonym
 def test_the_law_stands_once_for_each_kind() -> None:
     report = document("factory-run2")
     assert len(report["findings"]) == 2
-    assert printed(report, None).count("video of persons is not special by itself") == 1
+    assert printed(report, None).count("when it is processed to deduce data of a kind") == 1
 
 
 def test_services_are_told_in_words() -> None:

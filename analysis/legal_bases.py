@@ -1,0 +1,103 @@
+"""The legal bases that an acceptance states, and those that are missing: a flag for a person, no verdict.
+
+In: bases, the kinds of findings and categories that are accepted, what the law says of these. Out: ``Gap``s. Whether a
+stated basis fits is for people to judge.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.model import ARTICLE_9, MAY_REVEAL, SPECIAL, THIRD_COUNTRY
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+CHAPTER_V = ("45", "46", "47", "49")
+ARTICLE_10 = "GDPR Art. 10"
+Verdicts = tuple[tuple[str, str], ...]  # (provision, verdict)
+
+
+class Lack(StrEnum):
+    """What is missing; the value is the sentence."""
+
+    ARTICLE_6 = "states no legal basis under Article 6(1)"
+    ARTICLE_9 = "states no ground under Article 9(2), and {category} can fall under {provision}"
+    REVEALS = "states no ground under Article 9(2), and {category} may reveal what is named in {provision}"
+    SECRECY = "rests on Article 9(2)(h) and does not state that 9(3) is met, professional secrecy"
+    ARTICLE_10 = "names no law that authorises data of Article 10 (10), and {category} can be such data"
+    CHAPTER_V = (
+        "is about a transfer out of the EEA and states no basis of chapter V (45, 46, 47 or 49), which Article 6 is not"
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Gap:
+    """One thing that an acceptance lacks."""
+
+    lack: Lack
+    category: str = ""
+    provision: str = ""
+
+    def __str__(self) -> str:
+        """Return the sentence, without its subject."""
+        return self.lack.format(category=self.category, provision=self.provision)
+
+
+def gaps(stated: Sequence[str], accepted: Iterable[tuple[str, str]], law: Mapping[str, Verdicts]) -> Iterator[Gap]:
+    """Yield what an acceptance lacks.
+
+    Parameters
+    ----------
+    stated
+        As ``ingest/decisions`` reads them: ``6(1)(f)``, ``9(2)(h)``, ``46(2)(c)``, …
+    accepted
+        (kind, category) of the findings.
+    law
+        Category -> what can apply to data of it.
+
+    Notes
+    -----
+    Article 6(1) always; 9(2) where data fall or may fall under Article 9(1), and 9(3) beside 9(2)(h); the law that
+    authorises data of Article 10; a basis of chapter V (Article 44) for a transfer, which Article 6 does not cure.
+
+    Examples
+    --------
+    >>> law = {"FaceTemplate": (("GDPR Art. 9(1)", "conditional"),)}
+    >>> [gap] = gaps(["6(1)(f)"], [("disclosure", "FaceTemplate")], law)
+    >>> str(gap)
+    'states no ground under Article 9(2), and FaceTemplate can fall under GDPR Art. 9(1)'
+    """
+    held = list(accepted)
+    kinds = sorted({category for _, category in held})
+    if not _any(stated, "6(1)"):
+        yield Gap(Lack.ARTICLE_6)
+    if not _any(stated, "9(2)"):
+        for category in kinds:
+            yield from _article9(category, law.get(category, ()))
+    if "9(2)(h)" in stated and "9(3)" not in stated:
+        yield Gap(Lack.SECRECY)
+    if "10" not in stated:
+        yield from (Gap(Lack.ARTICLE_10, category) for category in kinds if _article10(law.get(category, ())))
+    if any(kind == THIRD_COUNTRY for kind, _ in held) and not _any(stated, *CHAPTER_V):
+        yield Gap(Lack.CHAPTER_V)
+
+
+def _any(stated: Sequence[str], *articles: str) -> bool:
+    return any(basis == article or basis.startswith(f"{article}(") for basis in stated for article in articles)
+
+
+def _article9(category: str, law: Verdicts) -> Iterator[Gap]:
+    """At most one: the provision under which it can fall itself, or else one of which it may reveal something."""
+    special = [(name, verdict) for name, verdict in law if name == ARTICLE_9 or name.startswith(f"{ARTICLE_9} ")]
+    for verdicts, lack in ((SPECIAL, Lack.ARTICLE_9), ((MAY_REVEAL,), Lack.REVEALS)):
+        provision = next((name for name, verdict in special if verdict in verdicts), "")
+        if provision:
+            yield Gap(lack, category, provision)
+            return
+
+
+def _article10(law: Verdicts) -> bool:
+    return any(name == ARTICLE_10 and verdict in SPECIAL for name, verdict in law)
