@@ -177,7 +177,8 @@ def _read_policy(saved: dict[str, Any]) -> Policy:
     if any(g["rule"] == "DENY" and "dead" not in g for g in saved["grants"]):
         grants, more = _of_earlier_version(grants, said)
         said += more
-    return Policy(saved["file"], tuple(sorted(saved["sources"].items())), profiles, tuple(grants), tuple(said))
+    sources = tuple(sorted(saved["sources"].items()))
+    return Policy(saved["file"], sources, profiles, tuple(grants), tuple(said), saved=True)
 
 
 def _of_earlier_version(grants: list[Grant], said: Iterable[Diagnostic]) -> tuple[list[Grant], list[Diagnostic]]:

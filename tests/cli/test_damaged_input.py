@@ -188,6 +188,19 @@ def test_a_byte_order_mark_and_keys_that_are_not_known_are_read(cli: Cli, folder
     assert (done.returncode, done.stdout) == (0, SAME)
 
 
+BASES = ("6(1)(f)", "6(4)", "9(2)(h)", "9(3)", "10", "45", "46(2)(c)", "46(3)", "47", "49(1)(a)")
+
+
+def test_what_is_written_today_is_read(cli: Cli, folder: Path) -> None:
+    """With all that a decision can say."""
+    bases = [word for basis in BASES for word in ("--legal-basis", basis)]
+    cli("decide", "accept", "59dc", "--report", "ok.json", *SIGNED, *bases, "--expires", "2999-01-01", cwd=folder)
+    cli("analyze", *SYSTEM, "--decisions", "decisions.yaml", "-f", "json", "-o", "new.json", cwd=folder)
+    assert json.loads((folder / "new.json").read_text("utf-8"))["decisions"][0]["legal_basis"] == [*BASES]
+    done = cli("diff", "new.json", "new.json", cwd=folder)
+    assert (done.returncode, done.stdout) == (0, SAME)
+
+
 GRAPHS = [
     ("policies", [], "policies is empty"),
     ("policies.0.grants.0.rule", "MAY", 'policies[0].grants[0].rule is not "ALLOW" or "DENY"'),
