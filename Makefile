@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 LOCK := uv pip compile --quiet --upgrade --universal --python-version 3.11 --generate-hashes --no-emit-index-url \
 	--no-annotate --custom-compile-command 'make locks' pyproject.toml -
 
-.PHONY: demo test locks clean
+.PHONY: demo test fuzz locks clean
 
 demo: $(VENV)/installed
 	$(BIN)/rosprivacy analyze examples/factory/before.policy.xml --labels examples/factory/run2.labels.yaml --fail-on never
@@ -14,6 +14,11 @@ demo: $(VENV)/installed
 test: $(VENV)/installed-dev
 	$(BIN)/python -m tests.helpers.fetch
 	$(BIN)/python -m pytest -rs $(PYTEST_ARGS)
+
+# make fuzz MINUTES=10, make fuzz HOURS=2: of processor time. FOLDER is gone on with: the corpus grows there.
+MINUTES := $(if $(HOURS),$(shell echo $$(($(HOURS) * 60))),10)
+fuzz: $(VENV)/installed-dev
+	$(BIN)/python -m tests.fuzzing run --minutes $(MINUTES) $(if $(FOLDER),--folder '$(FOLDER)')
 
 $(VENV)/installed: pyproject.toml
 	$(PYTHON) -m venv $(VENV)

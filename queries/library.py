@@ -176,7 +176,7 @@ def parse(stem: str, text: str) -> Query:
     for line in header:
         match = _LINE.fullmatch(line)
         if not match:
-            problem(f"{line!r} is not a line of a header; see queries/library.py")
+            problem(f"{shown(line)!r} is not a line of a header; see queries/library.py")
             continue
         key, kind, name, rest = match.groups()
         if key:
@@ -187,7 +187,7 @@ def parse(stem: str, text: str) -> Query:
             try:
                 fields[kind].append(_field(name, rest, TYPES if kind == "param" else COLUMN_TYPES))
             except ValueError as error:
-                problem(f"{line!r}: {error}")
+                problem(f"{shown(line)!r}: {error}")
     for key in KEYS:
         if key not in head:
             problem(f"{key} is missing; add // {key}: …")
@@ -222,9 +222,9 @@ def _field(name: str, rest: str, types: Mapping[str, type]) -> Field:
 def _faults(query: Query, stem: str) -> Iterator[str]:
     body = TEXT.sub("", query.text)
     if query.name != stem:
-        yield f"name is {query.name!r}; write the file's own"
+        yield f"name is {shown(query.name)!r}; write the file's own"
     if query.kind not in KINDS:
-        yield f"kind is {query.kind!r}; one of {', '.join(KINDS)}"
+        yield f"kind is {shown(query.kind)!r}; one of {', '.join(KINDS)}"
     for fields in (query.parameters, query.columns):
         names = [field.name for field in fields]
         yield from (f"{name} stands twice; keep one" for name in sorted({n for n in names if names.count(n) > 1}))
@@ -233,9 +233,9 @@ def _faults(query: Query, stem: str) -> Iterator[str]:
         yield f"${name} is {'not used' if name in declared else 'not declared'}; header and query must agree"
     columns = [field.name for field in query.columns]
     if _returned(body) != columns:
-        yield f"RETURN gives {', '.join(_returned(body))}, the header says {', '.join(columns)}; make them agree"
+        yield f"RETURN gives {shown(', '.join(_returned(body)))}, the header says {', '.join(columns)}; make them agree"
     if body.rstrip().removesuffix(";").rstrip().rpartition("ORDER BY ")[2] != ", ".join(query.order):
-        yield f"the last line is not ORDER BY {', '.join(query.order)}; rows need a stable order"
+        yield f"the last line is not ORDER BY {shown(', '.join(query.order))}; rows need a stable order"
     if not set(query.order) <= {*columns, *(f"{column} DESC" for column in columns)}:
         yield "order names what is not a column; use columns"
     if _WRITES.search(body):

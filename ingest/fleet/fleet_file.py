@@ -200,10 +200,9 @@ class _Fleet:
             self._models[name] = spec
 
     def _include(self, part: FleetReader, item: Value, within: tuple[str, ...]) -> None:
-        if item.kind != "text":
-            part.problem(item.line, f"include: a {item.kind}", "name fleet files, relative to this one")
+        file = part.file_of(item, "include")
+        if not file:
             return
-        file = str(Path(part.file).parent / item.text)
         if leaves(file, self._root):
             part.problem(item.line, what_leaves(file, self._root), WIDEN)
         elif os.path.realpath(file) in within:

@@ -16,6 +16,7 @@ from rosprivacy.analysis.model import Place
 from rosprivacy.ingest.labels.label_file import OURS
 from rosprivacy.ingest.labels.label_reader import LabelReader
 from rosprivacy.ingest.labels.non_ros_reader import is_non_ros
+from rosprivacy.ingest.reading.confined import unusable
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -85,10 +86,19 @@ class FleetReader(LabelReader):
 
     def _files(self, key: str, value: Value) -> Iterator[str]:
         for item in value.items if value.kind == "list" else (value,):
-            if item.kind == "text" and item.text and item.text.isprintable():
-                yield item.text if item.text.startswith(OURS) else str(Path(self.file).parent / item.text)
-            else:
-                self.problem(item.line, f"{key}: a {item.kind}", "name files, relative to this one")
+            if item.kind == "text" and item.text.startswith(OURS):
+                yield item.text
+            elif file := self.file_of(item, key):
+                yield file
+
+    def file_of(self, item: Value, key: str) -> str:
+        """Return the file that an item names, relative to this one; empty if it can name none."""
+        named = item.kind == "text" and item.text and item.text.isprintable()
+        file = str(Path(self.file).parent / item.text) if named else ""
+        what = f"a {item.kind}" if not named else f"{shown(item.text)}: {why}" if (why := unusable(file)) else ""
+        if what:
+            self.problem(item.line, f"{key}: {what}", "name files, relative to this one")
+        return "" if what else file
 
     def _namespace(self, spec: Spec, value: Value) -> None:
         entries = value.entries if value.kind == "map" else ()

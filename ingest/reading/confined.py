@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.errors import reason, shown
 
 WIDEN = "move the file inside it, or widen with --include-root"
 
@@ -34,3 +34,18 @@ def leaves(file: str | Path, root: str | Path) -> bool:
 def what_leaves(name: str, root: str | Path) -> str:
     """Return what to say of a name that leaves a folder."""
     return f"{shown(repr(name))} leaves the folder {shown(str(root))}"
+
+
+def unusable(file: str) -> str:
+    """Return why the system can look for no file of that name, whether there is one or not; empty if it can.
+
+    >>> unusable("nowhere.xml"), unusable("a" * 300)
+    ('', 'File name too long')
+    """
+    try:
+        os.stat(file)  # noqa: PTH116 - a path object refuses some names in its own words
+    except (FileNotFoundError, NotADirectoryError):
+        return ""
+    except (OSError, ValueError) as error:
+        return reason(error)
+    return ""

@@ -372,7 +372,7 @@ class TestRefusals:
             # includes
             ("include: no.yaml\n", "4: no.yaml: file not found; correct the path"),
             ("include: f.yaml\n", "4: f.yaml includes itself, on a ring; remove one of the includes"),
-            ("include: [1]\n", "4: include: a number; name fleet files"),
+            ("include: [1]\n", "4: include: a number; name files, relative"),
             # elements
             ("elements: {b: {kind: storage, retention: 1 month}}\n", "4: '1 month' is not an ISO 8601 duration"),
             ("elements: {b: {kind: storage, country: Germany}}\n", "4: 'Germany' is not an ISO 3166-1 country code"),

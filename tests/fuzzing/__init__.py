@@ -1,0 +1,4 @@
+"""Fuzzing: structured inputs for every reader, what must hold of each, and a record of what was tried.
+
+``python -m tests.fuzzing --help`` runs it; ``docs/security.md`` says what is promised, and what the last long run gave.
+"""

@@ -1,0 +1,179 @@
+"""The targets: what is made for each reader, how it is read, and how what it accepts is analysed.
+
+All files lie in the current folder, beside ``base.xml`` and the labels that go with it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import rosprivacy
+from rosprivacy.analysis import durations
+from rosprivacy.analysis.errors import InputError
+from rosprivacy.ingest.decisions.decisions_file import read_decisions
+from rosprivacy.ingest.fleet.fleet_file import read_fleet
+from rosprivacy.ingest.labels.label_file import read_labels
+from rosprivacy.ingest.mitigation.limits_file import read_limits
+from rosprivacy.ingest.policies import common_names, names
+from rosprivacy.ingest.policies.policy_xml import read_policy
+from rosprivacy.ingest.policies.saved_graph import read_saved
+from rosprivacy.mitigation import run_mitigation
+from rosprivacy.ontology.own import with_own
+from rosprivacy.ontology.vocabulary import load
+from rosprivacy.queries.library import parse
+from rosprivacy.report.compare.earlier import read_earlier
+from rosprivacy.report.json_text import as_text
+from tests.fuzzing import label_texts, other_texts, policy_texts
+from tests.helpers.paths import ROOT
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from rosprivacy.ontology.known import Known
+    from rosprivacy.result import Result
+    from tests.fuzzing.choices import Choices
+
+TODAY = "2026-06-01"
+
+
+@dataclass(frozen=True)
+class Target:
+    """A reader.
+
+    Attributes
+    ----------
+    share
+        Of a thousand inputs.
+    make
+        Files by name; the first one is mutated now and then.
+    read
+        Raises one of our errors for what is refused.
+    analyse
+        Of what was accepted; None where nothing is analysed.
+    arguments
+        Of the command that reads it; none where there is none without a server.
+    words
+        Which dictionary of ``fuzz_corpus`` the mutations take; none for files that are no text.
+    """
+
+    name: str
+    share: int
+    make: Callable[[Choices], Mapping[str, str | bytes]]
+    read: Callable[[], Any]
+    analyse: Callable[[], Result] | None = None
+    arguments: tuple[str, ...] = ()
+    words: str = "label"
+
+
+@cache
+def _base() -> Result:
+    return rosprivacy.analyze("base.xml", "base.yaml", today=TODAY)
+
+
+@cache
+def _known() -> Known:
+    from rosprivacy.ontology.vocabulary import SHIPPED, _shipped
+
+    return _shipped(tuple((ROOT / "ontology" / name).read_bytes() for name in SHIPPED))[0]
+
+
+def _limits() -> Result:
+    as_text(run_mitigation(_base(), "limits.yaml").document())
+    return _base()
+
+
+def _since() -> Result:
+    from rosprivacy.cli.diff import DiffFormat, _text
+    from rosprivacy.report.compare.difference import difference
+    from rosprivacy.report.compare.snapshot import snapshot
+
+    old, new = snapshot(read_earlier("old.json").document, None), snapshot(_base().document(), _base().policies)
+    for one, other in ((old, new), (new, old), (old, old)):
+        for form in DiffFormat:
+            _text(difference(one, other), form)
+    for name in ("html", "markdown"):
+        _base().to(name, since="old.json")
+    _base().to("html", since="old.json", redact=True, language="de")
+    return _base()
+
+
+def _duration() -> None:
+    text = Path("duration").read_text("utf-8")
+    durations.parts(text)
+    try:
+        read = durations.parse(text)
+    except ValueError as error:
+        raise InputError("duration", 1, str(error), "write it otherwise") from None
+    assert str(read) == text
+    assert not read.can_be_longer(read)
+
+
+def _names() -> None:
+    """What the rules of S4 say of any two patterns."""
+    some = Path("names").read_text("utf-8").split("\n")
+    for a in some:
+        resolved = names.resolve(a, "/x", "n")
+        names.endpoints("publish", "topic", resolved)
+        names.literals(a), names.literal_prefix(a), names.is_pattern(a)
+        for b in some:
+            meet = names.overlaps(a, b)
+            assert meet == names.overlaps(b, a), f"overlap of {a!r} and {b!r} is not symmetric"
+            if not names.is_pattern(b) and names.covers(a, b):
+                assert meet, f"{a!r} covers {b!r}, and does not overlap it"
+    common_names.some_name(tuple(some[:2]), tuple(some[2:]))
+
+
+def _with_base(*more: str) -> tuple[str, ...]:
+    return ("analyze", "base.xml", "-l", "base.yaml", *more)
+
+
+TARGETS = {target.name: target for target in (
+    Target(
+        "policy", 330, policy_texts.policy_files, lambda: read_policy("policy.xml"),
+        lambda: rosprivacy.analyze("policy.xml", "star.yaml", today=TODAY),
+        ("analyze", "policy.xml", "-l", "star.yaml"), "policy",
+    ),
+    Target(
+        "labels", 241, label_texts.labels, lambda: read_labels("labels.yaml", load()),
+        lambda: rosprivacy.analyze("base.xml", "labels.yaml", today=TODAY, paths="all"),
+        ("analyze", "base.xml", "-l", "labels.yaml"),
+    ),
+    Target(
+        "standard", 60, label_texts.standard, lambda: read_labels("standard.yaml", load(), shipped=True),
+        lambda: rosprivacy.analyze("base.xml", "base.yaml", standard_channels="standard.yaml", today=TODAY),
+        _with_base("--standard-channels", "standard.yaml"),
+    ),
+    Target(
+        "decisions", 90, label_texts.decisions, lambda: read_decisions("decisions.yaml", load(), TODAY),
+        lambda: rosprivacy.analyze("base.xml", "base.yaml", decisions="decisions.yaml", today=TODAY),
+        _with_base("--decisions", "decisions.yaml"),
+    ),
+    Target(
+        "limits", 60, label_texts.limits, lambda: read_limits("limits.yaml", _base().analysis.graph), _limits,
+        ("mitigate", "base.xml", "-l", "base.yaml", "--limits", "limits.yaml"),
+    ),
+    Target(
+        "fleet", 50, label_texts.fleet, lambda: read_fleet("fleet.yaml", load()),
+        lambda: rosprivacy.analyze_fleet("fleet.yaml", today=TODAY), ("analyze", "--fleet", "fleet.yaml"),
+    ),
+    Target(
+        "ontology", 1, other_texts.ontology, lambda: with_own(_known(), Path("own.ttl").read_bytes(), "own.ttl"),
+        lambda: rosprivacy.analyze("base.xml", "base.yaml", ontologies="own.ttl", today=TODAY),
+        _with_base("--ontology", "own.ttl"),
+    ),
+    Target(
+        "graph", 60, policy_texts.saved_graph, lambda: read_saved("graph.json"),
+        lambda: rosprivacy.analyze((), "star.yaml", add="graph.json", today=TODAY),
+        ("analyze", "--add", "graph.json", "-l", "star.yaml"),
+    ),
+    Target(
+        "analysis", 30, other_texts.analysis, lambda: read_earlier("old.json"), _since,
+        ("diff", "old.json", "base.xml", "-l", "base.yaml"),
+    ),
+    Target("query", 25, other_texts.query, lambda: parse("asked", Path("asked.cypher").read_text("utf-8", "replace"))),
+    Target("duration", 25, other_texts.duration, _duration, words=""),
+    Target("names", 25, other_texts.names, _names, words=""),
+)}  # fmt: skip
