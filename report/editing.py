@@ -6,6 +6,7 @@ editor or another program knows nothing of this; ``write_texts`` sees what they 
 
 from __future__ import annotations
 
+import warnings
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING
 
@@ -44,7 +45,9 @@ def editing(file: Path) -> Iterator[None]:
     with writing(neighbour if neighbour.exists() else file):  # one that another user left may be closed to us
         lock = filelock.FileLock(neighbour, timeout=LOCK_LIMIT)
         try:
-            lock.acquire()
+            with warnings.catch_warnings():  # a file system without such locks: filelock names the process in the file
+                warnings.simplefilter("ignore", UserWarning)
+                lock.acquire()
         except filelock.Timeout:
             what = f"another rosprivacy has been editing it for {LOCK_LIMIT:.0f} s"
             hint = f"wait until it has ended, or end it; if none runs on any machine, remove {shown(str(neighbour))}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -61,6 +61,8 @@ class Policy:
     ----------
     sources
         (file, SHA-256) of the policy and of all that it includes, sorted.
+    saved
+        Whether it was read from a saved graph: then its files are names that anybody may have written.
     """
 
     file: str
@@ -68,3 +70,4 @@ class Policy:
     profiles: tuple[Profile, ...]
     grants: tuple[Grant, ...]
     diagnostics: tuple[Diagnostic, ...] = ()
+    saved: bool = field(default=False, compare=False)

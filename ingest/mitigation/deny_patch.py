@@ -83,6 +83,8 @@ def patch(policies: Iterable[Policy], grants: Collection[Grant]) -> Patch:
         mine = [grant for grant in policy.grants if grant in set(grants)]
         if not mine:
             continue
+        if policy.saved:
+            return Patch(why_not=f"{shown(policy.file)}: read from a saved graph; name the policies for a patch")
         try:
             changed = _changed(policy, mine)
             if changed is None:

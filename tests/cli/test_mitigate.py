@@ -326,6 +326,17 @@ def test_where_no_patch_can_be_made_it_says_so(cli: Cli, tmp_path: Path) -> None
     assert report["proposals"][0]["proven"]
 
 
+def test_a_saved_graph_opens_no_file_that_it_names(cli: Cli, tmp_path: Path) -> None:
+    """At b86d901 what a stranger's graph calls its policy is opened, and lines of it stand in the patch (defect 11)."""
+    arguments = ("-l", RUN3, "--by", "deny", "-f", "json")
+    done = cli("analyze", BEFORE, "--save-graph", "g.json", "-q", "--fail-on", "never", cwd=tmp_path)
+    assert done.returncode == 0
+    assert json.loads(cli("mitigate", BEFORE, *arguments, cwd=tmp_path).stdout)["patch"]
+    report = json.loads(cli("mitigate", "--add", "g.json", *arguments, cwd=tmp_path).stdout)
+    assert report["patch"] == ""
+    assert report["why_no_patch"].endswith(": read from a saved graph; name the policies for a patch")
+
+
 def test_labels_that_a_patch_leaves_without_an_element_are_named(cli: Cli, tmp_path: Path) -> None:
     wildcard = "<profile ns='/' node='cloud'><topics subscribe='ALLOW'><topic>vid*</topic></topics></profile>"
     (tmp_path / "p.xml").write_text(policy(f"{CAMERA}\n{wildcard}"))

@@ -146,6 +146,28 @@ def test_an_answer_to_a_pipe_takes_no_lock(tmp_path: Path) -> None:
     assert [path.name for path in tmp_path.iterdir()] == ["l.yaml"]
 
 
+@pytest.mark.slow
+def test_where_the_file_system_has_no_locks(tmp_path: Path) -> None:
+    """The lock then names its process; one that a killed run left stands in nobody's way, and nothing more is said."""
+    code = (
+        "import errno, fcntl, os, sys\n"
+        "from rosprivacy.report import atomic\n"
+        "from rosprivacy.cli.app import main\n"
+        "def flock(*_): raise OSError(errno.ENOSYS, 'Function not implemented')\n"
+        "fcntl.flock = flock\n"
+        "if sys.argv.pop(): atomic._stage = lambda *_: os.kill(os.getpid(), 9)\n"
+        "main()\n"
+    )
+    for number, kill in ((1, ""), (2, "kill"), (2, "")):
+        arguments = ["decide", "mitigate", f"{number:016x}", "--decisions", "d.yaml", kill]
+        command = [sys.executable, "-c", code, *arguments]
+        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False)
+        assert done.returncode == (-9 if kill else 0), done.stderr
+        assert (tmp_path / ".d.yaml.lock").exists() == bool(kill)
+        assert kill or done.stderr.startswith("the ids were not checked; ")
+    assert decided(tmp_path / "d.yaml") == {1, 2}
+
+
 @pytest.mark.parametrize("kind", ["removed", "replaced", "written"])
 def test_what_is_done_to_a_file_behind_a_link_is_seen(tmp_path: Path, kind: str) -> None:
     file, link = tmp_path / "labels.yaml", tmp_path / "link.yaml"

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 OF_FILES = ("open", "write", "flush", "fsync", "chmod", "replace", "unlink", "flock", "link", "mkdir")
 OF_SOCKETS = ("sendall",)
-_MODULES = ("posix", "fcntl")
+_MODULES = ("posix", "fcntl", "_posixsubprocess")
 _TYPES = (io.BufferedWriter, socket.socket)
 
 

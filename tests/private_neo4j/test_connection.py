@@ -628,7 +628,7 @@ def test_a_start_that_is_broken_off_while_the_password_changes_locks_nobody_out(
     """Before the server took the new one, or after: one of the two files is right."""
     folder = connection.state_folder()
     later = server.next_password_file(folder)
-    server.make_password(later)
+    state.make_password(later)
     assert connection.connection(None) == private_neo4j
     new = later.read_text("ascii")
     with connection.open_driver(private_neo4j) as driver:

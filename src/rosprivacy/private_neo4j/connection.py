@@ -14,7 +14,7 @@ from urllib.parse import urlsplit
 from rosprivacy.analysis.errors import DatabaseError, shown
 from rosprivacy.private_neo4j import server
 from rosprivacy.private_neo4j.jars import VERSION, bar, on_terminal
-from rosprivacy.private_neo4j.state import locked, state_folder
+from rosprivacy.private_neo4j.state import locked, make_password, state_folder
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -273,7 +273,7 @@ def _let_in(folder: Path, found: server.Server) -> Connection:
 def _renewed(folder: Path, to: Connection) -> Connection:
     """Give the server a new password: one that somebody learnt is worth nothing after the next start."""
     later = server.next_password_file(folder)
-    new = server.make_password(later)
+    new = make_password(later)
     with open_driver(to) as driver:
         change = "ALTER CURRENT USER SET PASSWORD FROM $old TO $new"
         driver.execute_query(change, old=to.password, new=new, database_="system")

@@ -8,7 +8,6 @@ from __future__ import annotations
 import json
 import os
 import re
-import secrets
 import socket
 import subprocess
 import time
@@ -18,7 +17,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import DatabaseError, shown
 from rosprivacy.private_neo4j.jars import VERSION, bar, jar_files
-from rosprivacy.private_neo4j.state import extra, keep_private, write_private
+from rosprivacy.private_neo4j.state import extra, keep_private, make_password, write_private
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -114,13 +113,6 @@ def read_password(folder: Path) -> str:
         raise DatabaseError(f"{shown(str(password_file(folder)))}: the password cannot be read; {hint}") from None
 
 
-def make_password(file: Path) -> str:
-    """Make a password and keep it in a file."""
-    password = secrets.token_hex(24)
-    write_private(file, password)
-    return password
-
-
 def log_file(folder: Path) -> Path:
     """Return what the server prints; Neo4j's own logs stand beside it."""
     return folder / "logs" / "console.log"
@@ -129,10 +121,16 @@ def log_file(folder: Path) -> Path:
 def running(folder: Path) -> Server | None:
     """Return the server of this state folder if its process is there.
 
-    A file left by a server that died is survived, also if another program has its process number now.
+    A file left by a server that died is survived, also if another program has its process number now. Where the file
+    names no process, one is looked for: who started it may have been killed before it could be noted.
     """
     server = _remembered(folder)
-    return server if server and server.pid and _process(folder, server) else None
+    if server is None:
+        return None
+    with extra():
+        import psutil  # noqa: PLC0415
+    known = (replace(server, pid=pid) for pid in ([server.pid] if server.pid else psutil.pids()))
+    return next((one for one in known if _process(folder, one)), None)
 
 
 def listens(folder: Path, server: Server) -> bool:
@@ -206,6 +204,7 @@ def launch(folder: Path, progress: Progress = bar) -> Server:
     log_file(folder).touch(mode=0o600)
     keep_private(folder)
     _set_password(folder, str(JAVA), classpath)
+    _remember(folder, server)
     command = [
         str(JAVA),
         f"-Xms{heap}",
@@ -245,7 +244,7 @@ def _process(folder: Path, server: Server) -> psutil.Process | None:
 def _remembered(folder: Path) -> Server | None:
     try:
         return Server(**json.loads((folder / "server.json").read_text("utf-8")))
-    except (OSError, ValueError, TypeError):  # none yet, or not as we wrote it
+    except (OSError, ValueError, TypeError, RecursionError):  # none yet, or not as we wrote it
         return None
 
 

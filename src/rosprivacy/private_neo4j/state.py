@@ -7,6 +7,7 @@ Everything of the server is kept there: settings, data, logs, password, and what
 from __future__ import annotations
 
 import os
+import secrets
 import tempfile
 from contextlib import contextmanager
 from pathlib import Path
@@ -99,6 +100,13 @@ def write_private(path: Path, text: str) -> None:
     except BaseException:
         Path(temporary).unlink(missing_ok=True)
         raise
+
+
+def make_password(file: Path) -> str:
+    """Make a password and keep it in a file."""
+    password = secrets.token_hex(24)
+    write_private(file, password)
+    return password
 
 
 def keep_private(folder: Path) -> None:

@@ -167,7 +167,16 @@ def own_server(local_extra: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 @pytest.mark.database
 @pytest.mark.usefixtures("own_server")
 def test_the_server_is_killed(every: int) -> None:
-    """The client says so in one line, or had done its work; after a start nothing is half, and loading goes on."""
+    """The client says so in one line, or had done its work; after a start nothing is half, and loading goes on.
+
+    Who starts it is killed first, in the moment in which the server is there and nobody has noted it.
+    """
+    with Forked(ROOT) as program:
+        starter = program(Run(("db", "start"), str(ROOT), ("fork_exec",), at=4))  # the first process sets the password
+        assert starter.code == -signal.SIGKILL, starter
+        end = time.monotonic() + PATIENCE
+        while not connection.status().running:  # for a moment after its birth a process has no command line yet
+            assert time.monotonic() < end
     with Forked(ROOT, OTHER) as program:
         with connection.open_driver(connection.start()) as driver:
             database = Database(program, driver)
