@@ -87,6 +87,17 @@ def read_as(name: str, status: os.stat_result | None) -> str | None:
     return before[0] if before else None
 
 
+def names_read() -> list[str]:
+    """Return the names of the files that were read in this run, each once, in the order of reading.
+
+    >>> with one_run():
+    ...     note("policy.xml", os.stat(os.curdir))
+    ...     names_read()
+    ['policy.xml']
+    """
+    return list(dict.fromkeys(name for name, _ in (_NOTES.get() or {}).values()))
+
+
 def changed_since(name: str, status: os.stat_result | None) -> bool:
     """Return whether a file is another one than that which was read in this run, or is there though it was not.
 

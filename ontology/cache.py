@@ -35,7 +35,7 @@ def get(folder: Path, key: str) -> tuple[tuple[Category, ...], dict[str, str]] |
         if kept["key"] != key or kept["digest"] != _digest(kept["categories"], kept["respelt"]):
             return None
         return tuple(_category(facts) for facts in kept["categories"]), dict(kept["respelt"])
-    except (OSError, ValueError, KeyError, TypeError):
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return None
 
 

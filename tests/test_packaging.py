@@ -48,7 +48,7 @@ def test_the_wheel_holds_every_module_and_data_file(built: Path) -> None:
         f"rosprivacy/{room}/{path.relative_to(ROOT / room)}"
         for room in ROOMS
         for path in (ROOT / room).rglob("*")
-        if path.suffix in {".py", ".ttl", ".yaml", ".cypher", ".j2", ".css", ".js"}
+        if path.suffix in {".py", ".ttl", ".yaml", ".json", ".cypher", ".j2", ".css", ".js"}
     }
     assert ours <= inside
     assert "rosprivacy/py.typed" in inside

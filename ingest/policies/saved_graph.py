@@ -9,9 +9,14 @@ from __future__ import annotations
 import json
 import re
 from dataclasses import replace
+from functools import cache
+from importlib.resources import files
+from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import GraphError, InputErrors, shown
+from rosprivacy.analysis.json_shape import MOST, misfits, validator
+from rosprivacy.analysis.json_values import parsed
 from rosprivacy.analysis.model import (
     DEAD_DENY,
     NOT_READ,
@@ -27,7 +32,9 @@ from rosprivacy.ingest.policies.policy_xml import ROLES
 from rosprivacy.ingest.reading.bounded_file import read_regular
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Iterator
+
+    from jsonschema.protocols import Validator
 
 FORMAT = "rosprivacy.graph/1"
 MAX_BYTES = 2**30
@@ -72,27 +79,42 @@ def read_saved(file: str) -> tuple[tuple[Policy, ...], tuple[Diagnostic, ...]]:
         return _read(file, fail)
     except GraphError as error:
         raise InputErrors([error]) from None
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
-        what = f"a damaged graph: {shown(f'{type(error).__name__} at {error}')}"
-        raise InputErrors([fail(1, what, AGAIN)]) from None
 
 
 def _read(file: str, fail: Callable[[int, str, str], GraphError]) -> tuple[tuple[Policy, ...], tuple[Diagnostic, ...]]:
-    text = read_regular(file, MAX_BYTES, fail)
-    try:
-        data = json.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise fail(getattr(error, "lineno", 1), "not JSON", AGAIN) from None
-    if not isinstance(data, dict) or data.get("format") != FORMAT:
-        raise fail(1, f"not a saved graph ({FORMAT})", "name a file written by --save-graph of this version")
+    data = parsed(read_regular(file, MAX_BYTES, fail), fail, AGAIN)
+    said = data.get("format") if isinstance(data, dict) else None
+    if said != FORMAT:
+        newer = isinstance(said, str) and said.startswith("rosprivacy.graph/")
+        hint = "use the version of rosprivacy that wrote it" if newer else "name a file written by --save-graph"
+        raise fail(0, f"not a saved graph ({FORMAT})", f"{hint}, or {AGAIN}")
+    wrong = misfits(_validator(), data) or list(islice(_unowned(data["policies"]), MOST))
+    if wrong:
+        raise InputErrors([fail(0, f"a damaged graph: {one}", AGAIN) for one in wrong])
     policies = tuple(_read_policy(policy) for policy in data["policies"])
-    if not policies:
-        raise fail(1, "a saved graph without policies", AGAIN)
     if any("absolute" not in grant for policy in data["policies"] for grant in policy["grants"]):
         first = policies[0]
         told = (*first.diagnostics, Diagnostic(Place(file, 1), Severity.WARNING, UNKNOWN))
         policies = (replace(first, diagnostics=told), *policies[1:])
     return policies, tuple(map(_read_diagnostic, data.get("not_read", ())))
+
+
+@cache
+def _validator() -> Validator:
+    schema = files("rosprivacy.ingest.policies").joinpath("saved_graph.schema.json")
+    return validator(json.loads(schema.read_text("utf-8")))
+
+
+def _unowned(policies: Iterable[dict[str, Any]]) -> Iterator[str]:
+    """Grants of profiles that are not there, and lines of files that were not read."""
+    for number, policy in enumerate(policies):
+        owners = {(profile["enclave"], profile["node"]) for profile in policy["profiles"]}
+        for index, grant in enumerate(policy["grants"]):
+            at = f"policies[{number}].grants[{index}]"
+            if (grant["enclave"], grant["node"]) not in owners:
+                yield f"{at} is of a node that has no profile in its enclave"
+            if grant["file"] not in policy["sources"]:
+                yield f"{at}.file is not in the sources of its policy"
 
 
 def _policy(policy: Policy) -> dict[str, Any]:
@@ -131,37 +153,32 @@ def _diagnostic(d: Diagnostic) -> dict[str, Any]:
 
 
 def _read_diagnostic(saved: dict[str, Any]) -> Diagnostic:
-    severity, message = Severity(saved["severity"]), _text(saved["message"])
-    return Diagnostic(_place(saved), severity, message, _text(saved.get("code", "")))
+    return Diagnostic(_place(saved), Severity(saved["severity"]), saved["message"], saved.get("code", ""))
 
 
 def _read_policy(saved: dict[str, Any]) -> Policy:
-    profiles = [Profile(_text(p["enclave"]), _text(p["node"]), _place(p)) for p in saved["profiles"]]
+    profiles = tuple(Profile(p["enclave"], p["node"], _place(p)) for p in saved["profiles"])
     grants = [
         Grant(
-            {"ALLOW": True, "DENY": False}[g["rule"]],
-            g["role"],
-            _ROLES[g["role"]],
-            _text(g["name"]),
-            _text(g["enclave"]),
-            _text(g["node"]),
-            _place(g),
-            _text(saved["file"]),
-            _flag(g.get("dead", False)),
-            _flag(g.get("absolute", True)),
+            allow=g["rule"] == "ALLOW",
+            role=g["role"],
+            kind=_ROLES[g["role"]],
+            name=g["name"],
+            enclave=g["enclave"],
+            node=g["node"],
+            place=_place(g),
+            policy=saved["file"],
+            dead=g.get("dead", False),
+            absolute=g.get("absolute", True),
         )
         for g in saved["grants"]
     ]
-    owners = {(profile.enclave, profile.node) for profile in profiles}
-    for grant in grants:
-        if (grant.enclave, grant.node) not in owners:
-            raise ValueError(f"grant of {grant.node}, which has no profile in {grant.enclave}")
-    sources = tuple(sorted((_text(name), _text(digest)) for name, digest in saved["sources"].items()))
     said = list(map(_read_diagnostic, saved["diagnostics"]))
     if any(g["rule"] == "DENY" and "dead" not in g for g in saved["grants"]):
         grants, more = _of_earlier_version(grants, said)
         said += more
-    return Policy(_text(saved["file"]), sources, tuple(profiles), tuple(grants), tuple(said), saved=True)
+    sources = tuple(sorted(saved["sources"].items()))
+    return Policy(saved["file"], sources, profiles, tuple(grants), tuple(said), saved=True)
 
 
 def _of_earlier_version(grants: list[Grant], said: Iterable[Diagnostic]) -> tuple[list[Grant], list[Diagnostic]]:
@@ -184,20 +201,4 @@ def _of_earlier_version(grants: list[Grant], said: Iterable[Diagnostic]) -> tupl
 
 
 def _place(saved: dict[str, Any]) -> Place:
-    line = saved["line"]
-    if not isinstance(line, int):
-        raise TypeError(f"line {line!r}")
-    return Place(_text(saved["file"]), line)
-
-
-def _flag(value: Any) -> bool:
-    if not isinstance(value, bool):
-        raise TypeError(repr(value))
-    return value
-
-
-def _text(value: Any) -> str:
-    if not isinstance(value, str):
-        raise TypeError(repr(value))
-    value.encode()  # half a surrogate pair is no text
-    return value
+    return Place(saved["file"], saved["line"])

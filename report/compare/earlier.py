@@ -1,49 +1,27 @@
-"""A JSON document that was saved, to compare with: read, and checked as far as a comparison needs it.
+"""A JSON document that was saved, to compare with or to decide about: read, and checked whole before it is used.
 
-In: a path. Out: ``Earlier``. For ``diff`` and for ``report --since``.
+In: a path. Out: ``Earlier``. For ``diff``, ``report --since`` and ``decide --report``, and for what Parquet holds.
 """
 
 from __future__ import annotations
 
 import hashlib
-import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import InputError, reason, shown
 from rosprivacy.analysis.files_read import noted
+from rosprivacy.analysis.json_values import parsed
+from rosprivacy.report.compare.validity import problems
 from rosprivacy.report.document.analysis import FORMAT
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
 HINT = "give what 'rosprivacy analyze --format json' printed"
+NEWER = "use the version of rosprivacy that wrote it, or write it again"
 LARGEST = 512 * 2**20  # bytes
-TEXT, TRUTH, NUMBER = str, bool, int
-ELEMENT = {"robot": TEXT, "kind": TEXT, "name": TEXT}
-FINDING = {
-    "id": TEXT, "kind": TEXT, "category": TEXT, "pseudonymised": TRUTH, "dismissed": TRUTH, "disjoint_paths": NUMBER,
-    "source": ELEMENT, "leak": ELEMENT, "witness": [ELEMENT],
-}  # fmt: skip
-ENTRY = {"file": TEXT, "sha256": TEXT}
-PATTERN = {"finding": TEXT, "across": TRUTH, "findings": NUMBER, "dismissed": NUMBER, "pseudonymised": NUMBER}
-DOCUMENT = {
-    "verdict": TEXT,
-    "findings": [FINDING],
-    "open": [{"element": ELEMENT, "categories": [TEXT]}],
-    "carries": [{"element": ELEMENT, "categories": [TEXT], "pseudonymised": [TEXT]}],
-    "roles": [{"element": ELEMENT, "category": TEXT, "roles": [TEXT]}],
-    "categories": [{"name": TEXT, "title": TEXT}],
-    "assumptions": {"policies": [ENTRY], "labels": [ENTRY]},
-}
-
-
-FLEET = {
-    "alike": [{"robot": TEXT, "model": TEXT, "robots": [TEXT]}],
-    "patterns": [PATTERN | {"robots": [TEXT]}],
-}
-OUTSIDE = [{"element": ELEMENT}]
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,44 +39,48 @@ def read_earlier(file: str) -> Earlier:
     Raises
     ------
     InputError
-        If it cannot be read, or is no such document.
+        If it cannot be read, or is no such document; with the first place where it is not, and how many more.
     """
+    data = _bytes(file)
+    return Earlier(document_of(data, file, HINT), file, hashlib.sha256(data).hexdigest())
+
+
+def document_of(data: bytes, file: str, again: str) -> Mapping[str, Any]:
+    """Return the document that some bytes are, if they are one.
+
+    Parameters
+    ----------
+    again
+        How to get one: the hint.
+
+    Raises
+    ------
+    InputError
+        As ``read_earlier``.
+    """
+    document: dict[str, Any] = parsed(data, lambda *said: InputError(file, *said), again)
+    said = document.get("format") if isinstance(document, dict) else None
+    if said != FORMAT:
+        if isinstance(said, str) and said.startswith("rosprivacy.analysis/"):
+            raise InputError(file, 0, f"is of the format {shown(said)}, and this version reads {FORMAT}", NEWER)
+        raise InputError(file, 0, f"is not a document of the format {FORMAT}", again)
+    wrong = problems(document)
+    if wrong:
+        more = f" ({len(wrong) - 1} more)" if len(wrong) > 1 else ""
+        raise InputError(file, 0, f"damaged or changed: {wrong[0]}{more}", again)
+    for category in document["categories"]:
+        category.setdefault("translations", {})
+    return document
+
+
+def _bytes(file: str) -> bytes:
     try:
         path = Path(file)
         if not path.is_file():
-            raise InputError(file, 0, "is not a file", HINT)
+            raise InputError(file, 0, "is not a file" if path.exists() else "not found", HINT)
         if path.stat().st_size > LARGEST:
             raise InputError(file, 0, f"{path.stat().st_size / 2**20:.0f} MB are too large", HINT)
         with path.open("rb") as opened:
-            data = noted(opened, file).read()
-        document = json.loads(data.decode("utf-8"))
-    except (OSError, ValueError, RecursionError) as error:
-        line = getattr(error, "lineno", 0)
-        raise InputError(file, line, f"cannot be read: {reason(error)}", HINT) from None
-    if not isinstance(document, dict) or document.get("format") != FORMAT:
-        raise InputError(file, 0, f"is not a document of the format {FORMAT}", HINT)
-    if wrong := _wrong(document, DOCUMENT | _more(document), ""):
-        raise InputError(file, 0, f"{shown(wrong)} is missing or of another type", HINT)
-    for category in document["categories"]:
-        category.setdefault("translations", {})
-    return Earlier(document, file, hashlib.sha256(data).hexdigest())
-
-
-def _more(document: dict[str, Any]) -> dict[str, Any]:
-    """What a document may lack."""
-    return {key: shape for key, shape in (("fleet", FLEET), ("outside", OUTSIDE)) if key in document}
-
-
-def _wrong(value: Any, expected: Any, at: str) -> str:
-    """Where a value is not what is expected; empty if nowhere."""
-    if isinstance(expected, type):
-        fits = isinstance(value, expected) and (expected is not int or not isinstance(value, bool))
-        return "" if fits else at
-    if isinstance(expected, list):
-        if not isinstance(value, list):
-            return at
-        return next((w for i, item in enumerate(value) if (w := _wrong(item, expected[0], f"{at}[{i}]"))), "")
-    if not isinstance(value, dict):
-        return at or "the document"
-    checked = ((key, value.get(key), kind) for key, kind in expected.items())
-    return next((w for key, item, kind in checked if (w := _wrong(item, kind, f"{at}.{key}".strip(".")))), "")
+            return noted(opened, file).read()
+    except (OSError, ValueError) as error:
+        raise InputError(file, 0, f"cannot be read: {reason(error)}", HINT) from None

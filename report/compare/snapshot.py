@@ -86,7 +86,7 @@ def _elements(document: Mapping[str, Any], identity: Identity) -> Facts:
         found[identity.element(row["element"])]["pseudonymised"] |= set(row["pseudonymised"])
     for row in document["open"]:
         found[identity.element(row["element"])]["open"] |= set(row["categories"])
-    for row in document["roles"]:
+    for row in document.get("roles", ()):
         said = {f"{role} of {row['category']}" for role in row["roles"]}
         found[identity.element(row["element"])]["labels"] |= said
     for row in document.get("outside", ()):
@@ -121,5 +121,5 @@ def _findings(document: Mapping[str, Any], identity: Identity) -> Facts:
 
 def _lines(document: Mapping[str, Any], identity: Identity) -> Iterator[tuple[Key, str]]:
     for finding in document["findings"]:
-        for line in [line for step in finding["steps"][-1:] for line in step["policy"]][:1]:
+        for line in [line for step in finding.get("steps", ())[-1:] for line in step["policy"]][:1]:
             yield identity.finding(finding), f"{line['file']}:{line['line']}"

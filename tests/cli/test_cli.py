@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 import pytest
 
 import rosprivacy
-from rosprivacy.cli.app import main
 from tests.helpers.command import XI, Cli, refused, run
 
 if TYPE_CHECKING:
@@ -184,22 +183,6 @@ def test_a_word_that_fail_on_does_not_know_is_told_which_to_write(cli: Cli, word
     done = cli("analyze", "p.xml", "--fail-on", word)
     assert (done.returncode, done.stdout) == (2, "")
     assert instead in " ".join(done.stderr.replace("│", "").split())
-
-
-def test_an_error_of_our_own_is_no_finding(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], before: Path
-) -> None:
-    """Exit code 1 says 'leak'; a defect of the program is none. A defect is made here, since none is known."""
-
-    def defect(*_: object) -> int:
-        raise ZeroDivisionError
-
-    monkeypatch.setattr("rosprivacy.cli.analyze.exit_code", defect)
-    monkeypatch.setattr(sys, "argv", ["rosprivacy", "analyze", str(before)])
-    with pytest.raises(SystemExit) as ended:
-        main()
-    assert ended.value.code == 70
-    assert "ZeroDivisionError" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -59,8 +59,8 @@ def main() -> None:
         piece = Slice(target, folder, watch, outside, asked, stack)
         signal.signal(signal.SIGTERM, piece.stop)
         options = [
-            f"-seed={asked.seed}", f"-max_len={LONGEST}", "-timeout=60", "-rss_limit_mb=4096", "-handle_term=0",
-            f"-artifact_prefix={folder}/faults/{target.name}-", str(corpus),
+            f"-seed={asked.seed}", f"-max_len={LONGEST}", "-len_control=0", "-timeout=60", "-rss_limit_mb=4096",
+            "-handle_term=0", f"-artifact_prefix={folder}/faults/{target.name}-", str(corpus),
         ]  # fmt: skip
         atheris.Setup([sys.argv[0], *options], piece.one)
         atheris.Fuzz()

@@ -26,6 +26,7 @@ from rosprivacy.ontology.vocabulary import load
 from rosprivacy.queries.library import parse
 from rosprivacy.report.compare.earlier import read_earlier
 from rosprivacy.report.json_text import as_text
+from rosprivacy.spark import parquet
 from tests.fuzzing import label_texts, other_texts, policy_texts
 from tests.helpers.paths import ROOT
 
@@ -98,6 +99,12 @@ def _since() -> Result:
         _base().to(name, since="old.json")
     _base().to("html", since="old.json", redact=True, language="de")
     return _base()
+
+
+def _results() -> None:
+    document, rows = parquet.read("results")
+    list(rows)
+    assert isinstance(document["verdict"], str)
 
 
 def _duration() -> None:
@@ -173,6 +180,7 @@ TARGETS = {target.name: target for target in (
         "analysis", 30, other_texts.analysis, lambda: read_earlier("old.json"), _since,
         ("diff", "old.json", "base.xml", "-l", "base.yaml"),
     ),
+    Target("parquet", 3, other_texts.parquet, _results, words=""),
     Target("query", 25, other_texts.query, lambda: parse("asked", Path("asked.cypher").read_text("utf-8", "replace"))),
     Target("duration", 25, other_texts.duration, _duration, words=""),
     Target("names", 25, other_texts.names, _names, words=""),

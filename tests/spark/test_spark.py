@@ -325,6 +325,17 @@ def test_it_listens_on_this_machine_only(session: SparkSession) -> None:
     assert session.sparkContext.uiWebUrl is None
 
 
+def test_a_defect_of_ours_in_a_worker_is_no_error_of_the_cluster(session: SparkSession) -> None:
+    """It ends with 70, and not with 3: nobody's server is to blame. The defect is what a worker is given here."""
+    from py4j.protocol import Py4JError
+    from pyspark.errors import PySparkException
+
+    from rosprivacy.spark.workers import steps
+
+    with pytest.raises((PySparkException, Py4JError), match="AttributeError"):
+        spark.scatter(session, ["no part"]).map(steps).collect()
+
+
 def test_what_is_no_master_is_told() -> None:
     told = r"^--master: 'moon' is not a Spark master; write local"
     with pytest.raises(InputError, match=told), spark.session("moon"):

@@ -7,8 +7,8 @@ completion are quick.
 from __future__ import annotations
 
 import sys
-import traceback
-from typing import Annotated
+from contextlib import suppress
+from typing import Annotated, NoReturn
 
 import typer
 
@@ -62,11 +62,9 @@ app.add_typer(db.app, name="db", help="The private Neo4j: start it, stop it, see
 
 @app.callback(invoke_without_command=True)
 def root(
-    context: typer.Context,
     version: Annotated[bool, typer.Option("--version", help="Print the version.")] = False,
 ) -> None:
     """Where personal data can go in a ROS 2 system, per kind of data."""
-    context.with_resource(one_run())  # until the command has ended
     if version:
         print(f"rosprivacy {__version__}")
         raise typer.Exit
@@ -77,11 +75,19 @@ def main() -> None:
 
     An error of our own is no finding: Python would end with 1, which says 'leak'.
     """
-    try:
-        app()
-    except RosPrivacyError as error:
-        print(error, file=sys.stderr)
-        sys.exit(error.exit_code)
-    except Exception:  # noqa: BLE001 - whatever it is, it is an error of our own
-        traceback.print_exc()
-        sys.exit(OWN_ERROR)
+    with one_run():
+        try:
+            app()
+        except RosPrivacyError as error:
+            _end(str(error), error.exit_code)
+        except Exception as error:  # noqa: BLE001 - whatever it is, it is an error of our own
+            from rosprivacy.cli.own_error import told
+
+            _end(told(error), OWN_ERROR)
+
+
+def _end(said: str, code: int) -> NoReturn:
+    """End with some lines on standard error; that nobody reads them makes no other code."""
+    with suppress(OSError):
+        print(said, file=sys.stderr, flush=True)
+    sys.exit(code)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import sys
 from datetime import date
@@ -181,19 +180,13 @@ def _text(file: Path) -> str | None:
 
 def _findings(report: Path) -> dict[str, dict[str, Any]]:
     """The findings of a JSON report by id, those of a fleet by the ids of their patterns."""
-    from rosprivacy.ingest.reading.bounded_file import contents
+    from rosprivacy.report.compare.earlier import read_earlier
 
-    hint = "write it with rosprivacy analyze --format json -o FILE"
-    try:
-        document = json.loads(contents(report))
-        findings = {finding["id"]: finding for finding in document["findings"]}
-        if not document.get("fleet"):
-            return findings
-        patterns = document["fleet"]["patterns"]
-        return {p["id"]: findings[p["finding"]] | _all_of(p) for p in patterns}
-    except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
-        what = "not found" if isinstance(error, FileNotFoundError) else "is no report of an analysis"
-        raise DecisionError(str(report), 0, what, hint) from None
+    document = read_earlier(str(report)).document
+    findings = {finding["id"]: finding for finding in document["findings"]}
+    if "fleet" not in document:
+        return findings
+    return {p["id"]: findings[p["finding"]] | _all_of(p) for p in document["fleet"]["patterns"]}
 
 
 def _all_of(pattern: dict[str, Any]) -> dict[str, Any]:

@@ -19,9 +19,10 @@ CODES = {
     2: "bad input or usage",
     3: "a server (database, Spark) cannot be reached",
     4: "`analyze`: undetermined; `--fail-on leak` makes it 0, but never where no data was followed",
-    70: "an error of the program itself",
+    70: "an error of the program itself: no answer; the message says which file to send",
 }
 LEAK, UNDETERMINED, OWN_ERROR = 1, 4, 70
+SIGPIPE = 13  # the module signal lacks it on Windows; who is gone is told with 128 more
 
 
 class FailOn(StrEnum):

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 from typer.core import TyperGroup
 
+from rosprivacy.cli.exit_code import SIGPIPE
 from rosprivacy.cli.wrong_values import with_nearest
 
 if TYPE_CHECKING:
@@ -37,11 +38,19 @@ class Group(TyperGroup):
         return command
 
     def invoke(self, ctx: Any) -> Any:
-        """Read the words of a command and run it."""
+        """Read the words of a command and run it.
+
+        Typer ends with 1, which says 'leak', where a pipe is closed and where input ends: what reads standard error may
+        be gone, and no command asks anything.
+        """
         try:
             return super().invoke(ctx)
         except typer.BadParameter as error:
             raise with_nearest(error) from None
+        except BrokenPipeError:
+            raise typer.Exit(128 + SIGPIPE) from None
+        except EOFError as error:
+            raise RuntimeError("the input ended") from error
 
 
 def _untyped(parameters: Iterable[Any]) -> list[Any]:

@@ -7,14 +7,13 @@ import sys
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError
+from rosprivacy.cli.exit_code import SIGPIPE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
     from pathlib import Path
 
     from rich.console import Console
-
-SIGPIPE = 13  # the module signal lacks it on Windows
 
 
 def emit(

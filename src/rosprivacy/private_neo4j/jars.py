@@ -107,7 +107,14 @@ def _remembered(listing: Path) -> list[Path]:
             return []
         jars = {Path(jar): tuple(stamp) for jar, stamp in known["jars"].items()}
         return list(jars) if all(_stamp(jar) == stamp for jar, stamp in jars.items()) else []
-    except (OSError, ValueError, KeyError, TypeError, AttributeError):  # none yet, or not as we wrote it
+    except (
+        OSError,
+        ValueError,
+        KeyError,
+        TypeError,
+        AttributeError,
+        RecursionError,
+    ):  # none yet, or not as we wrote it
         return []
 
 

@@ -244,7 +244,7 @@ def _process(folder: Path, server: Server) -> psutil.Process | None:
 def _remembered(folder: Path) -> Server | None:
     try:
         return Server(**json.loads((folder / "server.json").read_text("utf-8")))
-    except (OSError, ValueError, TypeError):  # none yet, or not as we wrote it
+    except (OSError, ValueError, TypeError, RecursionError):  # none yet, or not as we wrote it
         return None
 
 

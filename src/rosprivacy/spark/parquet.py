@@ -8,20 +8,23 @@ several, which are put together. ``elements``: for people who ask with other too
 from __future__ import annotations
 
 import json
+from collections import Counter
+from contextlib import contextmanager
 from dataclasses import fields
 from functools import partial
-from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.errors import ClusterError, GraphError, InputErrors, reason, shown
+from rosprivacy.analysis.errors import ClusterError, GraphError, InputError, InputErrors, reason, shown
 from rosprivacy.ingest.database.rows import RobotRows
+from rosprivacy.report.compare.earlier import document_of
 from rosprivacy.report.installing import command_for
+from rosprivacy.spark.checked_rows import check_ends, robot_rows
 from rosprivacy.spark.session import scatter, told
 from rosprivacy.spark.unit_rows import Plan, core_rows, put_together, unit_rows
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from pyspark.sql import SparkSession
 
@@ -32,6 +35,9 @@ PARTS = tuple(field.name for field in fields(RobotRows) if field.name != "robot"
 ROBOTS = "robot string, verdict string, model string, shared boolean, part int, " + ", ".join(
     f"{name} string" for name in PARTS
 )
+ANSWER = "format string, document string"
+WHOLE = "name a folder that analyze --results has written to its end"
+AGAIN = "analyse again, with analyze --results and another folder"
 LISTS = ("carries", "pseudonymised", "begins", "leaks", "sanitizes", "open")
 ELEMENTS = "robot string, id string, kind string, name string, leg string, " + ", ".join(
     f"{name} array<string>" for name in LISTS
@@ -73,7 +79,7 @@ def write(spark: SparkSession, folder: str, units: Sequence[Unit], plan: Plan, d
         spark.createDataFrame(robots, ROBOTS).write.parquet(f"{place}/robots")
         spark.createDataFrame(robots.flatMap(_elements), ELEMENTS).write.parquet(f"{place}/elements")
         answer = [(FORMAT, json.dumps(document, sort_keys=True))]
-        spark.createDataFrame(answer, "format string, document string").coalesce(1).write.parquet(f"{place}/answer")
+        spark.createDataFrame(answer, ANSWER).coalesce(1).write.parquet(f"{place}/answer")
 
 
 def _rows(part: tuple[Sequence[Unit], int], plan: Plan, core: frozenset[str]) -> list[Row]:
@@ -94,50 +100,112 @@ def _elements(row: Row) -> Iterator[Row]:
         yield (row[0], element["id"], properties["kind"], properties["name"], properties["leg"], *lists)
 
 
-def read(folder: str) -> tuple[dict[str, Any], Iterator[RobotRows]]:
+def read(folder: str) -> tuple[Mapping[str, Any], Iterator[RobotRows]]:
     """Return the document and the rows of every robot; no more than a few robots are in memory at a time.
+
+    All rows are read and checked before the first one is given, so that nothing is written of results of which some
+    are damaged; they are checked again when they are given.
 
     Raises
     ------
     InputErrors
-        If these are no whole results.
+        If these are no whole results, or not what was written.
     ClusterError
         Without the ``[spark]`` extra, which brings what reads Parquet.
     """
     try:
-        from pyarrow import ArrowException, dataset  # noqa: PLC0415 - an extra
+        from pyarrow import dataset  # noqa: PLC0415 - an extra
     except ImportError:
         raise ClusterError(f"--results needs pyarrow; {command_for('spark')}") from None
-    hint = "name a folder that analyze --results has written to its end"
-    try:
-        answer = dataset.dataset(f"{folder}/answer", format="parquet").to_table().to_pylist()
+    with _damages(folder, "no results: ", WHOLE):
+        answer = dataset.dataset(f"{folder}/answer", format="parquet").to_table()
         robots = dataset.dataset(f"{folder}/robots", format="parquet")
+    _check_columns(folder, answer.schema, ANSWER)
+    if answer.column("format").to_pylist() != [FORMAT] or answer.column("document").null_count:
+        raise InputErrors([GraphError(folder, 0, f"no results ({FORMAT})", WHOLE)])
+    _check_columns(folder, robots.schema, ROBOTS)
+    with _damages(folder, "damaged: ", AGAIN):
+        text = answer.column("document").to_pylist()[0]
+    try:
+        document = document_of(text.encode(), f"{folder}/answer", AGAIN)
+    except InputError as error:
+        raise InputErrors([error]) from None
+    _check_all(folder, document, robots, dataset)
+    return document, _read(folder, robots, dataset)
+
+
+@contextmanager
+def _damages(folder: str, what: str, hint: str) -> Iterator[None]:
+    """What the library says of files that are not Parquet, or not to their end; it raises all these."""
+    from pyarrow import ArrowException  # noqa: PLC0415 - an extra
+
+    try:
+        yield
     except (OSError, ArrowException, ValueError) as error:
         why = reason(error).partition(". ")[0]
-        raise InputErrors([GraphError(folder, 0, f"no results: {shown(why)}", hint)]) from None
-    if [row.get("format") for row in answer] != [FORMAT]:
-        raise InputErrors([GraphError(folder, 0, f"no results ({FORMAT})", hint)])
-    if set(PARTS) - set(robots.schema.names):
-        hint = "analyse again, with analyze --results and another folder"
-        raise InputErrors([GraphError(folder, 0, "results of an earlier version", hint)])
-    return json.loads(answer[0]["document"]), _read(robots, dataset)
+        raise InputErrors([GraphError(folder, 0, f"{what}{shown(why)}", hint)]) from None
 
 
-def _read(robots: Any, dataset: Any) -> Iterator[RobotRows]:
+def _check_columns(folder: str, schema: Any, wanted: str) -> None:
+    """Refuse tables with other columns than those that are written."""
+    from pyarrow import types  # noqa: PLC0415 - an extra
+
+    known = {"string": types.is_string, "boolean": types.is_boolean, "int": types.is_int32}
+    for column in wanted.split(", "):
+        name, kind = column.split(" ")
+        if schema.get_field_index(name) < 0:  # none, or several
+            raise InputErrors([GraphError(folder, 0, "results of an earlier version", AGAIN)])
+        if not known[kind](schema.field(name).type):
+            raise InputErrors([GraphError(folder, 0, f"the column {name} is no {kind}", AGAIN)])
+
+
+def _check_all(folder: str, document: Mapping[str, Any], robots: Any, dataset: Any) -> None:
+    """Read everything once: what is shared in all its parts, each robot once, and every robot that the answer names."""
+    if "fleet" not in document:
+        raise _problem(folder, "the answer is not of a fleet")
+    names = Counter(rows.robot for rows in _read(folder, robots, dataset))
+    twice = sorted(name for name, number in names.items() if number > 1)
+    lost = sorted({robot for group in document["fleet"]["alike"] for robot in group["robots"]} - names.keys())
+    if twice or lost:
+        raise _problem(folder, f"robot {shown((twice or lost)[0])} is {'there twice' if twice else 'not there'}")
+    parts: dict[str, list[int]] = {}
+    for row in _each(folder, robots, None, columns=["robot", "part"]):
+        parts.setdefault(row["robot"], []).append(row["part"])
+    whole = list(range(max(map(max, parts.values()), default=0) + 1))
+    if any(0 in numbers and sorted(numbers) != whole for numbers in parts.values()):
+        raise _problem(folder, "a part of what robots share is not there, or there twice")
+
+
+def _problem(folder: str, what: str) -> InputErrors:
+    return InputErrors([GraphError(folder, 0, f"damaged or changed: {what}", AGAIN)])
+
+
+def _read(folder: str, robots: Any, dataset: Any) -> Iterator[RobotRows]:
     """What is shared first."""
+
+    def made(row: dict[str, Any]) -> RobotRows:
+        def fail(problem: str) -> InputErrors:
+            return _problem(folder, f"robot {shown(str(row['robot']))}: {problem}")
+
+        rows = robot_rows(row, fail, AGAIN)
+        return rows if row["shared"] else check_ends(rows, fail)
+
     shared: dict[str, list[tuple[int, RobotRows]]] = {}
     is_shared = dataset.field("shared")
-    for row in _each(robots, is_shared):
-        shared.setdefault(row["robot"], []).append((row["part"], _robot_rows(row)))
-    for _, some in sorted(shared.items()):
-        yield put_together([rows for _, rows in sorted(some, key=lambda pair: pair[0])])
-    yield from map(_robot_rows, _each(robots, ~is_shared))
+    for row in _each(folder, robots, is_shared.is_null() | is_shared):  # null is refused then
+        shared.setdefault(row["robot"], []).append((row["part"], made(row)))
+    for name, some in sorted(shared.items()):
+        rows = put_together([rows for _, rows in sorted(some, key=lambda pair: pair[0])])
+        yield check_ends(rows, partial(_shared_problem, folder, name))
+    yield from map(made, _each(folder, robots, ~is_shared))
 
 
-def _each(robots: Any, chosen: Any) -> Iterable[dict[str, Any]]:
-    batches = robots.to_batches(batch_size=16, filter=chosen, batch_readahead=0, fragment_readahead=0)
-    return chain.from_iterable(batch.to_pylist() for batch in batches)
+def _shared_problem(folder: str, name: str, problem: str) -> InputErrors:
+    return _problem(folder, f"{shown(name)}, which robots share: {problem}")
 
 
-def _robot_rows(row: dict[str, Any]) -> RobotRows:
-    return RobotRows(row["robot"], **{name: json.loads(row[name]) for name in PARTS})
+def _each(folder: str, robots: Any, chosen: Any, columns: list[str] | None = None) -> Iterator[dict[str, Any]]:
+    read_ahead = {"batch_readahead": 0, "fragment_readahead": 0}
+    with _damages(folder, "damaged: ", AGAIN):
+        for batch in robots.to_batches(batch_size=16, filter=chosen, columns=columns, **read_ahead):
+            yield from batch.to_pylist()

@@ -7,6 +7,7 @@ may be a checkout of a stranger's.
 
 from __future__ import annotations
 
+import builtins
 import os
 import re
 import shlex
@@ -142,17 +143,33 @@ def session(master: str | None) -> Iterator[SparkSession]:
 
 @contextmanager
 def told(master: str = "") -> Iterator[None]:
-    """Say in one line what goes wrong on the cluster."""
+    """Say in one line what goes wrong on the cluster; an error of our own in a worker is none of the cluster's."""
     from py4j.protocol import Py4JError  # noqa: PLC0415 - an extra
     from pyspark.errors import PySparkException  # noqa: PLC0415 - an extra
 
     try:
         yield
     except (PySparkException, Py4JError) as error:
+        if _our_own(str(error)):
+            raise
         lines = [line.strip() for line in str(error).splitlines() if re.match(r"\s*[\w.]*(Error|Exception)\b", line)]
         what = shown(lines[-1] if lines else str(error).partition("\n")[0])
         where = f"Spark at {shown(master)}" if master else "Spark"
         raise ClusterError(f"{where} fails: {what}; see the log of its driver and workers") from error
+
+
+def _our_own(said: str) -> bool:
+    r"""Whether a worker's traceback ends in an exception that neither its machine nor what is installed there makes.
+
+    >>> said = "Traceback (most recent call last):\n  File '/rosprivacy/a.py'\n{}: x\n\n\tat org.apache"
+    >>> _our_own(said.format("KeyError")), _our_own(said.format("ModuleNotFoundError"))
+    (True, False)
+    """
+    trace = said.partition("Traceback (most recent call last):\n")[2].partition("\n\tat ")[0]
+    kinds = re.findall(r"^([\w.]+)(?::|$)", trace, re.MULTILINE)
+    kind = getattr(builtins, kinds[-1], None) if kinds else None
+    theirs = (ImportError, OSError, MemoryError, EOFError)
+    return isinstance(kind, type) and not issubclass(kind, theirs) and "rosprivacy" in trace
 
 
 def _reach(master: str) -> None:

@@ -193,21 +193,21 @@ def _more(member: Member, analysis: Analysis, plan: Plan, vocabulary: Any) -> di
 
 def _derived_at(rows: RobotRows, known: Collection[str]) -> RobotRows:
     """Without what is made of the data of other units."""
-    parts = _parts(rows)
+    parts = parts_of(rows)
     parts["derived"] = [row for row in rows.derived if row["target"] in known]
-    return rows_of(rows.robot, _own(rows.properties), _with_foreign(parts, rows))
+    return rows_of(rows.robot, own_properties(rows.properties), _with_foreign(parts, rows))
 
 
 def _ending_at(rows: RobotRows, ids: Collection[str], *, whole: bool) -> RobotRows:
     """Of what is shared, the flows, findings and what is made that end at some elements; or with all else, too."""
-    parts = _parts(rows)
+    parts = parts_of(rows)
     for name in ("flows", "findings", "derived", "carried"):
         parts[name] = [row for row in parts[name] if row["target"] in ids]
     found = {row["id"] for row in parts["findings"]}
     parts["across"] = [row for row in rows.across if row["source"] in found]
     if not whole:
         parts |= {"elements": [], "intakes": [], "enclaves": [], "memberships": [], "roles": {}}
-    return rows_of(rows.robot, _own(rows.properties), _with_foreign(parts, rows))
+    return rows_of(rows.robot, own_properties(rows.properties), _with_foreign(parts, rows))
 
 
 def _with_foreign(parts: dict[str, Any], rows: RobotRows) -> dict[str, Any]:
@@ -225,21 +225,22 @@ def _with_foreign(parts: dict[str, Any], rows: RobotRows) -> dict[str, Any]:
 def put_together(some: Sequence[RobotRows]) -> RobotRows:
     """Return the rows of what is shared, made of those that parts have of it; the first says what it is."""
     first, *others = some
-    parts = _parts(first)
+    parts = parts_of(first)
     for rows in others:
         for name in ("flows", "derived", "carried", "findings", "across", "foreign"):
             parts[name] = [*parts[name], *getattr(rows, name)]
     parts["foreign"] = sorted({row["id"]: row for row in parts["foreign"]}.values(), key=lambda row: str(row["id"]))
-    return rows_of(first.robot, _own(first.properties), parts)
+    return rows_of(first.robot, own_properties(first.properties), parts)
 
 
-def _parts(rows: RobotRows) -> dict[str, Any]:
+def parts_of(rows: RobotRows) -> dict[str, Any]:
+    """Return all but the robot and its properties, by name."""
     return {
         field.name: getattr(rows, field.name) for field in fields(rows) if field.name not in ("robot", "properties")
     }
 
 
-def _own(properties: Row) -> Row:
-    """Without what ``rows_of`` adds."""
+def own_properties(properties: Row) -> Row:
+    """Return properties without what ``rows_of`` adds."""
     added = ("digest", "elements", "flows", "roles", "carried")
     return {key: value for key, value in properties.items() if key not in added}

@@ -203,16 +203,16 @@ class TestSaved:
         [
             (
                 '{"format": "rosprivacy.analysis/1"}',
-                "old.json: verdict is missing or of another type; give what 'rosprivacy analyze --format json'",
+                "old.json: damaged or changed: the document lacks verdict, view, categories, findings",
             ),
-            ('{"format": "rosprivacy.analysis/1",', "old.json:1: cannot be read: "),
+            ('{"format": "rosprivacy.analysis/1",', "old.json:1: not JSON, or not to its end: "),
             (
                 '{"format": "rosprivacy.analysis/1", ' + SAVED % "[1]",
-                "old.json: findings[0] is missing or of another type",
+                "old.json: damaged or changed: findings[0] is a number, not an object",
             ),
             (
                 '{"format": "rosprivacy.analysis/2", ' + SAVED % "[]",
-                "old.json: is not a document of the format rosprivacy.analysis/1; give what",
+                "old.json: is of the format rosprivacy.analysis/2, and this version reads rosprivacy.analysis/1; use",
             ),
             ("fleet: 2", "old.json:1: fleet format '2'"),
         ],

@@ -75,11 +75,11 @@ def test_files_that_differ_are_named() -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", ":1: cannot be read"),
+        ("", ": the file is empty; give what"),
         ("[]", ": is not a document of the format rosprivacy.analysis/1"),
-        ('{"format": "rosprivacy.analysis/2"}', ": is not a document of the format"),
-        ('{"format": "rosprivacy.analysis/1"}', ": verdict is missing or of another type"),
-        ("[" * 100_000, ": cannot be read"),
+        ('{"format": "rosprivacy.analysis/2"}', ": is of the format rosprivacy.analysis/2, and this"),
+        ('{"format": "rosprivacy.analysis/1"}', ": damaged or changed: the document lacks verdict, view, categories,"),
+        ("[" * 100_000, ": nested too deeply"),
         ("\ud800", None),
     ],
 )
