@@ -45,7 +45,8 @@ class Bounds:
         Half as many wildcards as grants match as many names: flows grow with the square of a policy, and so they do in
         the enforced view, where each node of an enclave may do what all of them may.
     comparisons
-        Pairs of wildcards times their length, and what DENYs leave of them: the cube of a policy.
+        Pairs of wildcards times their length, and what DENYs leave of them: the cube of a policy. Of labels by itself:
+        globs times names.
     findings
         Sources times leaks times kinds of data: the cube of a label file.
     search_steps
@@ -59,7 +60,7 @@ class Bounds:
     nesting: int = _bound(64, "levels of lists and maps")
     robots: int = _bound(200_000, "robots in the fleet")
     flows: int = _bound(1_000_000, "flows between the elements of a robot or a domain")
-    comparisons: int = _bound(100_000_000, "steps of comparing wildcards")
+    comparisons: int = _bound(60_000_000, "steps of comparing wildcards and globs")
     findings: int = _bound(200_000, "findings")
     search_steps: int = _bound(100_000_000, "elements reached, counted for each source")
     path_steps: int = _bound(300_000_000, "steps of counting paths")

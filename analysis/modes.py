@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from difflib import get_close_matches
 from enum import StrEnum
 from typing import TYPE_CHECKING
@@ -10,6 +11,9 @@ from rosprivacy.analysis.errors import InputError, InputErrors, shown
 
 if TYPE_CHECKING:
     from typing import NoReturn
+
+
+_WORD = re.compile(r"(?<=.)(?=[A-Z])")
 
 
 class Mode(StrEnum):
@@ -24,7 +28,8 @@ class Mode(StrEnum):
         known = [str(mode) for mode in cls]
         near = get_close_matches(str(value).casefold(), known, n=1, cutoff=0)[0]
         what = f"{shown(str(value))!r} is none of {', '.join(known)}"
-        raise InputErrors([InputError(f"--{cls.__name__.lower()}", 0, what, f"did you mean {near}?")])
+        option = _WORD.sub("-", cls.__name__).lower()
+        raise InputErrors([InputError(f"--{option}", 0, what, f"did you mean {near}?")])
 
 
 class View(Mode):
@@ -32,6 +37,14 @@ class View(Mode):
 
     declared = "declared"
     enforced = "enforced"
+
+
+class Article9Level(Mode):
+    """How far data have to fall under Article 9(1) GDPR to be asked for: each takes in those before it."""
+
+    always = "always"
+    conditional = "conditional"
+    may_reveal = "may-reveal"
 
 
 class Paths(Mode):

@@ -11,6 +11,7 @@ from dataclasses import replace
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.bounds import BOUNDS, Tally
 from rosprivacy.analysis.durations import ordered
 from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, shown
 from rosprivacy.analysis.model import Bound, Diagnostic, Severity
@@ -23,32 +24,35 @@ from rosprivacy.ingest.policies.names import covered
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-    from rosprivacy.analysis.model import FlowGraph, NonRosFacts, Statement
+    from rosprivacy.analysis.bounds import Bounds
+    from rosprivacy.analysis.model import FlowGraph, NonRosFacts, Place, Statement
     from rosprivacy.ingest.labels.entries import Entry, FlowEntry
     from rosprivacy.ingest.labels.label_file import Labels
 
 NEAREST = 3
+STEPS_OF_A_NAME = 4  # beside a glob
 GLOB_LIKE_A_WILDCARD = "glob-like-a-wildcard"
 COMPARISONS = 50_000  # of names, in the search for the nearest; a label file of another system is refused soon
 
 
-def bind(graph: FlowGraph, labels: Sequence[Labels]) -> Bound:
+def bind(graph: FlowGraph, labels: Sequence[Labels], bounds: Bounds = BOUNDS) -> Bound:
     """Join label files to a graph.
 
     Raises
     ------
     InputErrors
-        With every name that matches nothing, but for shipped files.
+        With every name that matches nothing, but for shipped files; above a bound.
     """
-    bound, problems = join(graph, labels)
+    bound, problems = join(graph, labels, bounds)
     if problems:
         raise InputErrors(problems)
     return bound
 
 
-def join(graph: FlowGraph, labels: Sequence[Labels]) -> tuple[Bound, list[InputError]]:
+def join(graph: FlowGraph, labels: Sequence[Labels], bounds: Bounds = BOUNDS) -> tuple[Bound, list[InputError]]:
     """Join label files to a graph as far as its names go; return also what matches nothing."""
     names = _Names(graph)
+    _check_work(names, labels, bounds)
     elements: dict[int, list[Statement]] = defaultdict(list)
     flows: dict[int, list[Statement]] = defaultdict(list)
     through: dict[tuple[int, tuple[str, ...]], tuple[int, ...]] = {}
@@ -82,6 +86,18 @@ def join(graph: FlowGraph, labels: Sequence[Labels]) -> tuple[Bound, list[InputE
         subjects={vertex: tuple(sorted(groups)) for vertex, groups in sorted(subjects.items())},
     )
     return bound, problems
+
+
+def _check_work(names: _Names, labels: Iterable[Labels], bounds: Bounds) -> None:
+    """Globs times names grow faster than the files that state them."""
+    work = Tally(bounds, "comparisons", LabelError)
+    for file in labels:
+        globs: list[tuple[str, Iterable[str], Place]] = []
+        globs += [(entry.name, entry.kinds, entry.place) for entry in file.entries]
+        globs += [(end.name, names.by_kind, flow.place) for flow in file.flows for end in flow.ends]
+        for name, kinds, place in globs:
+            if is_glob(name):
+                work.add(STEPS_OF_A_NAME * sum(len(names.by_kind.get(kind, ())) for kind in kinds), place)
 
 
 def remarks(graph: FlowGraph, labels: Iterable[Labels]) -> Iterator[Diagnostic]:

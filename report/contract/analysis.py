@@ -77,6 +77,7 @@ class Given(TypedDict):
     unlabelled_channel: str
     categories_asked: str | list[str]
     article9_only: bool
+    article9_level: NotRequired[str]
     data_types_asked: str | list[str]
     may_be_asked: NotRequired[dict[str, list[str]]]
     paths: str

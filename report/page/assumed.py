@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.model import MAY_REVEAL
 from rosprivacy.analysis.text import fit, printable
 from rosprivacy.report.document.ledger import hanging
 from rosprivacy.report.naming import infrastructure_file, name
@@ -50,7 +51,7 @@ def assumed(index: Index) -> Iterator[str]:
     if said.get("data_types_asked", ALL) != ALL:
         yield words("a.types", names=words.row(_type(kind, index) for kind in said["data_types_asked"]))
     if said.get("article9_only"):
-        yield words("a.article9")
+        yield words(f"a.article9.{said.get('article9_level', MAY_REVEAL)}")
     if taken := said.get("backups_taken_as_none"):
         yield words("a.backups", names=words.row(map(name, taken)))
     for category, kinds in said.get("may_be_asked", {}).items():

@@ -30,7 +30,7 @@ PLACES = ("d", "points", "x", "y", "cx", "cy", "rx", "ry")
 INKS = frozenset({"black", INK})
 LONGEST_TIP = 300
 WIDE = 400  # points; on a small screen such a picture is moved, others are made smaller
-_DECIMALS = re.compile(r"-?(?<!\d)\d+\.\d+")
+_DECIMALS = re.compile(r"-?\d+(\.\d+)?")
 _LOADS = re.compile(r"url|[\\<>]", re.IGNORECASE)
 
 
@@ -94,7 +94,9 @@ def _cleaned(element: etree._Element) -> None:
             del element.attrib[name]
     for name in PLACES:
         if place := element.get(name):
-            element.set(name, _DECIMALS.sub(lambda number: f"{float(number[0]):.1f}", place))
+            element.set(
+                name, _DECIMALS.sub(lambda number: f"{float(number[0]):.1f}" if number[1] else number[0], place)
+            )
     _coloured(element)
     if element.get("font-size") == f"{SIZE:.2f}":
         del element.attrib["font-size"]

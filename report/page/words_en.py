@@ -203,10 +203,9 @@ WORDS = {
     "a.overruled.leak": "{elements}: no leak of {data}, since the label at {by} takes away that at {lost}.",
     "a.categories": "The answer is only about these kinds of data and narrower ones: {names}. Others were not looked at.",
     "a.types": "The answer is only about data of these types: {names}. Others were not looked at.",
-    "a.article9": (
-        "The answer is only about data that can fall under Article 9(1) GDPR, or of which that is not known. Other "
-        "personal data were not looked at."
-    ),
+    "a.article9.always": "The answer is only about data that always fall under Article 9(1) GDPR, or of which that is not known. Other personal data were not looked at.",
+    "a.article9.conditional": "The answer is only about data that fall under Article 9(1) GDPR always or on a condition, or of which that is not known. Other personal data were not looked at.",
+    "a.article9.may-reveal": "The answer is only about data that can fall under Article 9(1) GDPR, or of which that is not known. Other personal data were not looked at.",
     "a.backups": "Backups are not stated, and taken to be none: {names}.",
     "a.broader": "{data} is a part of this answer too: data of this kind may be {kinds}.",
     "a.database": "The graph of {robots} came from a database, where people can have changed it after it was loaded.",
@@ -272,6 +271,7 @@ WORDS = {
     "ch.scope.categories_asked": "kinds asked for: {before}, now {now}",
     "ch.scope.data_types_asked": "types of data asked for: {before}, now {now}",
     "ch.scope.article9_only": "only what can fall under Article 9: {before}, now {now}",
+    "ch.scope.article9_level": "level of Article 9: {before}, now {now}",
     "ch.scope.standard_channels": "file of the standard channels: {before}, now {now}",
     "ch.scope.law_as_of": "date of the law: {before}, now {now}",
     "ch.scope.rosprivacy": "version of the program: {before}, now {now}",

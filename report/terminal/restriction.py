@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.model import MAY_REVEAL
 from rosprivacy.report.terminal.fleet import named
 
 if TYPE_CHECKING:
@@ -15,6 +16,11 @@ if TYPE_CHECKING:
 
 Line = tuple[str, str]  # text, style
 ALL = "all"
+LEVELS = {
+    "always": "what always falls under Article 9(1) GDPR",
+    "conditional": "what falls under Article 9(1) GDPR always or on a condition",
+    MAY_REVEAL: "what can fall under Article 9(1) GDPR",
+}
 
 
 def asked_at_verdict(report: Mapping[str, Any]) -> str:
@@ -26,7 +32,7 @@ def asked_at_verdict(report: Mapping[str, Any]) -> str:
     if said["data_types_asked"] != ALL:
         parts.append(f"data that is {' or '.join(map(shown, said['data_types_asked']))}")
     if said["article9_only"]:
-        parts.append("what can fall under Article 9(1) GDPR")
+        parts.append(LEVELS[said.get("article9_level", MAY_REVEAL)])
     return f"; only {' and '.join(parts)} was asked for" if parts else ""
 
 
@@ -44,6 +50,6 @@ def asked_lines(report: Mapping[str, Any]) -> Iterator[Line]:
     if said["data_types_asked"] != ALL:
         yield f"   only data that is {' or '.join(map(shown, said['data_types_asked']))}", ""
     if said["article9_only"]:
-        yield "   only what can fall under Article 9(1) GDPR, or of which that is not known", ""
+        yield f"   only {LEVELS[said.get('article9_level', MAY_REVEAL)]}, or of which that is not known", ""
     for category, kinds in said.get("may_be_asked", {}).items():
         yield f"   and {category}, since data of this kind may be {named(kinds)}", ""

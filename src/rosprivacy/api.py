@@ -20,7 +20,7 @@ from rosprivacy.robot_system import answer_robot
 from rosprivacy.settings import Settings
 
 if TYPE_CHECKING:
-    from rosprivacy.analysis.modes import View
+    from rosprivacy.analysis.modes import Article9Level, View
     from rosprivacy.result import Result
 
 Path: TypeAlias = str | PathLike[str]
@@ -35,6 +35,7 @@ def analyze(
     view: View | Literal["declared", "enforced"] = "declared",
     categories: Names = (),
     article9: bool = False,
+    article9_level: Article9Level | Literal["always", "conditional", "may-reveal"] | None = None,
     data_types: Names = (),
     ontologies: Paths = (),
     category: str = TOP,
@@ -65,6 +66,8 @@ def analyze(
         Answer for these, narrower, broader and overlapping ones only; empty for all.
     article9
         Answer only for what can fall under Article 9(1) GDPR, or of which that is not known.
+    article9_level
+        The same up to a level: ``always``, ``conditional`` (that too), ``may-reveal`` (as ``article9`` alone).
     data_types
         Answer only for data that are represented so, such as ``video``; empty for all.
     ontologies
@@ -114,6 +117,7 @@ def analyze(
         view=view,
         categories=_several(categories),
         article9=article9,
+        article9_level=article9_level,
         data_types=_several(data_types),
         ontologies=_paths(ontologies),
         category=category,
@@ -136,6 +140,7 @@ def analyze_fleet(
     view: View | Literal["declared", "enforced"] = "declared",
     categories: Names = (),
     article9: bool = False,
+    article9_level: Article9Level | Literal["always", "conditional", "may-reveal"] | None = None,
     data_types: Names = (),
     ontologies: Paths = (),
     category: str = TOP,
@@ -155,7 +160,8 @@ def analyze_fleet(
     ----------
     file
         Fleet file, YAML or JSON; it names policies and labels.
-    view, categories, article9, data_types, ontologies, category, standard_channels, paths, max_paths, decisions, today
+    view, categories, article9, article9_level, data_types, ontologies, category, standard_channels, paths, max_paths,
+    decisions, today
         As in ``analyze``.
     include_root, max_bytes, bounds, progress
         As in ``analyze``.
@@ -181,6 +187,7 @@ def analyze_fleet(
         view=view,
         categories=_several(categories),
         article9=article9,
+        article9_level=article9_level,
         data_types=_several(data_types),
         ontologies=_paths(ontologies),
         category=category,

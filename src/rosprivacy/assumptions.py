@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.model import Diagnostic, Place, Severity
+from rosprivacy.analysis.model import MAY_REVEAL, Diagnostic, Place, Severity
 from rosprivacy.ingest.database.robot_notices import diagnostics_of, diagnostics_text
 from rosprivacy.ingest.labels.countries import countries
 from rosprivacy.question import may_be
@@ -58,6 +58,7 @@ def _of_question(analysis: Analysis, question: Question) -> dict[str, Any]:
         "unlabelled_channel": "sensitive, not reviewed",
         "categories_asked": list(settings.categories) or "all",
         "article9_only": settings.article9,
+        **({"article9_level": settings.article9_level or MAY_REVEAL} if settings.article9 else {}),
         "data_types_asked": list(settings.data_types) or "all",
         **({"may_be_asked": broader} if broader else {}),
         "paths": settings.paths,

@@ -175,7 +175,8 @@ class Reader:
         graph, full = stripped(build(run, settings.view, settings.bounds), robot.strip or robot.add)
         extended = extend(graph, files)
         diagnostics += (*remarks(extended, files), *careful_notices(extended.careful))
-        part = with_grants(Part.of(extended, bind(extended, files)), lambda grant: as_written(grant, robot.add))
+        bound = bind(extended, files, settings.bounds)
+        part = with_grants(Part.of(extended, bound), lambda grant: as_written(grant, robot.add))
         return Member(robot, policies, part, full, graph.profiles, tuple(files), tuple(dict.fromkeys(diagnostics)))
 
     def _read_labels(self, robot: Robot) -> list[Labels]:

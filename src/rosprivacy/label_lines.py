@@ -64,7 +64,7 @@ def updated(policies: tuple[str, ...], labels: tuple[str, ...], settings: Settin
     read, _ = read_system(policies, settings)
     known = read_label_files(tuple(own if one == own.file else one for one in labels), vocabulary, settings)
     graph = extend(build(read, settings.view, settings.bounds), known)
-    _, problems = join(graph, known)
+    _, problems = join(graph, known, settings.bounds)
     standard = standard_channels(graph, vocabulary, settings)
     there = [element for element in graph.elements if element.is_node or element.is_channel]
     left_out = standard | infrastructure_of(there, vocabulary)

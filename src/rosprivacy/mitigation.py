@@ -95,7 +95,7 @@ def run_mitigation(
 
     def deny(grants: Collection[Grant]) -> tuple[FlowGraph, Bound]:
         changed = build(with_denied(result.policies, grants), view, bounds)
-        return changed, join(changed, result.labels)[0]
+        return changed, join(changed, result.labels, bounds)[0]
 
     system = System(
         graph, result.bound, result.vocabulary.hierarchy, result.options,
@@ -106,7 +106,7 @@ def run_mitigation(
     if not grants:
         return Mitigation(result, limits, proposals, Patch(), notes=notes)
     changed = build(with_denied(result.policies, grants), view, bounds)
-    unmatched = tuple(str(problem) for problem in join(changed, result.labels)[1])
+    unmatched = tuple(str(problem) for problem in join(changed, result.labels, bounds)[1])
     return Mitigation(result, limits, proposals, patch(result.policies, grants), unmatched, notes)
 
 

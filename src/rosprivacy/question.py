@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputErrors, OntologyError, shown
+from rosprivacy.analysis.model import ARTICLE_9_VERDICTS, MAY_REVEAL
 from rosprivacy.clock import judged_on
 from rosprivacy.decided import decisions_of
 from rosprivacy.ontology.vocabulary import load
@@ -122,4 +123,10 @@ def _named(vocabulary: Vocabulary, settings: Settings) -> set[str] | None:
 def _chosen(category: Category, settings: Settings) -> bool:
     """Whether the filters keep a category; what is not known of it is kept, since silence would look like an answer."""
     types = not settings.data_types or not category.data_types or set(category.data_types) & set(settings.data_types)
-    return bool(types) and (not settings.article9 or category.article9 != "no")
+    return bool(types) and (not settings.article9 or category.article9 in _levels(settings))
+
+
+def _levels(settings: Settings) -> tuple[str, ...]:
+    """What of Article 9 is asked for: up to the level, and what is not known."""
+    widest = settings.article9_level or MAY_REVEAL
+    return (*ARTICLE_9_VERDICTS[: ARTICLE_9_VERDICTS.index(widest) + 1], "unknown")

@@ -64,7 +64,7 @@ def _under(labels: tuple[str | Labels, ...], *, read: Read, settings: Settings, 
     """Put policies that were read under labels."""
     files = read_label_files(labels, vocabulary, settings)
     graph = extend(build(read[0], settings.view, settings.bounds), files)
-    system = _joined(graph, bind(graph, files), read, files, settings, vocabulary)
+    system = _joined(graph, bind(graph, files, settings.bounds), read, files, settings, vocabulary)
     return replace(system, under=partial(_under, read=read, settings=settings, vocabulary=vocabulary))
 
 
@@ -95,13 +95,15 @@ def answer_each(
     vocabulary = question.vocabulary
     read, said = read_system(policies, settings)
     files = read_label_files(labels, vocabulary, settings)
-    bind(extend(build(read, settings.view, settings.bounds), files), files)  # raises what fits none of them
+    bind(
+        extend(build(read, settings.view, settings.bounds), files), files, settings.bounds
+    )  # raises what fits none of them
     left = tuple(one for one in said if one.code not in (MERGED, SHARED_ENCLAVE, REFUSED_NAME))
     results = []
     for policy in read:
         alone = (policy,), (*left, *joint_warnings((policy,)))
         graph, _ = extended(build((policy,), settings.view, settings.bounds), files)
-        system = _joined(graph, join(graph, files)[0], alone, files, settings, vocabulary)
+        system = _joined(graph, join(graph, files, settings.bounds)[0], alone, files, settings, vocabulary)
         results.append((policy.file, answer(system, question)))
     return tuple(results)
 

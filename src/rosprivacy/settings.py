@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.bounds import BOUNDS, Bounds
 from rosprivacy.analysis.findings.findings import MAX_PATHS
-from rosprivacy.analysis.modes import Paths, View
+from rosprivacy.analysis.modes import Article9Level, Paths, View
 from rosprivacy.ingest.labels.label_file import STANDARD
 from rosprivacy.ingest.policies.xinclude import MAX_BYTES
 from rosprivacy.ontology.vocabulary import TOP
@@ -30,6 +30,8 @@ class Settings:
         Names; the answer is about these and narrower ones. Empty for all.
     article9
         Answer only for kinds that fall or may fall under Article 9(1) GDPR, or of which that is not known.
+    article9_level
+        How far they have to: ``always``, ``conditional`` or ``may-reveal``; a level implies ``article9``.
     data_types
         Answer only for kinds that are represented so, such as video. Empty for all.
     ontologies
@@ -56,6 +58,7 @@ class Settings:
     view: str = View.declared
     categories: tuple[str, ...] = ()
     article9: bool = False
+    article9_level: str | None = None
     data_types: tuple[str, ...] = ()
     ontologies: tuple[str, ...] = ()
     category: str = TOP
@@ -73,6 +76,9 @@ class Settings:
         """Refuse modes that there are not; one name where several may stand is a list of one."""
         View(self.view)
         Paths(self.paths)
+        if self.article9_level is not None:
+            Article9Level(self.article9_level)
+            object.__setattr__(self, "article9", True)
         for name in ("add", "categories", "data_types", "ontologies"):
             if isinstance(getattr(self, name), str):
                 object.__setattr__(self, name, (getattr(self, name),))

@@ -76,6 +76,13 @@ def two_wildcards(number: int) -> Input:
     return Input({"p.xml": policy(f"\n{written}{topics('/*', role='subscribe')}")}, ("analyze", "p.xml"), "p.xml:2: ")
 
 
+def label_globs(number: int) -> Input:
+    """A glob beside a name has 4 steps; the standard channels are switched off, since they are globs too."""
+    text = "labels: 1\nnodes:\n" + "".join(f"  /{'*' * (i + 1)}a: conduit\n" for i in range((number + 3) // 4))
+    files = {"p.xml": policy(topics("t")), "l.yaml": text}
+    return Input(files, ("analyze", "p.xml", "-l", "l.yaml", "--no-standard-channels"), "l.yaml:13: ")
+
+
 def matched_names(number: int) -> Input:
     """A flow for each name that is read, for the wildcard, and for each name that it matches."""
     read = [f"t{i}" for i in range((number - 1) // 2)]
@@ -103,6 +110,7 @@ ROWS: list[tuple[str, int, Callable[[int], Input], int]] = [  # bound, set to, w
     ("robots", 10, named_robots, 0),
     ("findings", 7, leaks, 0),
     ("comparisons", 60, two_wildcards, 0),
+    ("comparisons", 40, label_globs, 0),
     ("flows", 20, matched_names, 0),
     ("flows", 21, matched_names, 0),
 ]
@@ -129,7 +137,7 @@ def test_one_above_is_refused_and_at_it_all_passes(
     assert told.startswith(over.line)
     assert f"more than the bound of {bound}" in told
     assert told.endswith(f"raise it with --bound {name}=N")
-    for given, set_to in ((made(bound), bound), (over, bound + 1)):
+    for given, set_to in ((made(bound), bound), (over, bound + 4)):
         code, lines = ran(tmp_path, given, "--bound", f"{name}={set_to}", by=cli)
         assert not any("--bound" in line for line in lines)
         assert (code == 2) == bool(problems)

@@ -70,6 +70,18 @@ class TestFilters:
         assert kinds == {"FaceTemplate", "Location", "PersonTrack", "Video", "Voice"}  # all may reveal at least
         assert found(document(article9=True)) == found(document())
 
+    def test_up_to_a_level(self) -> None:
+        always = document(article9_level="always")
+        assert (always["findings"], always["verdict"]) == ([], "undetermined")  # nothing of the kind is brought in
+        on_condition = document(article9_level="conditional")
+        assert found(on_condition) == {("FaceTemplate", "/uplink")}
+        assert on_condition["assumptions"]["article9_level"] == "conditional"
+        assert found(document(article9_level="may-reveal")) == found(document(article9=True))
+
+    def test_an_unknown_level_is_an_error(self) -> None:
+        with pytest.raises(InputErrors, match=r"^--article9-level: 'alwas' is none of .*; did you mean always\?"):
+            document(article9_level="alwas")
+
     def test_a_data_type_only(self) -> None:
         assert found(document(data_types=("video",))) == {("Video", "/recorder")}
         assert found(document(data_types=("video", "audio"))) == {("Video", "/recorder"), ("Voice", "/uplink")}

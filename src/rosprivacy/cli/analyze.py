@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from rosprivacy.analysis.modes import Paths
+from rosprivacy.analysis.modes import Article9Level, Paths
 from rosprivacy.cli.exit_code import FailOn, exit_code
 from rosprivacy.cli.inputs import Inputs, reads_system, refuse
 from rosprivacy.cli.options import ASKED, Engine, Format, Output
@@ -65,6 +65,14 @@ def analyze(
             "--article9", help="Answer for what can fall under Article 9(1) GDPR only.", rich_help_panel=ASKED
         ),
     ] = False,
+    article9_level: Annotated[
+        Article9Level | None,
+        typer.Option(
+            help="The same, up to this level: always, on a condition too, or also what may reveal such data.",
+            rich_help_panel=ASKED,
+            show_default=False,
+        ),
+    ] = None,
     data_type: Annotated[
         list[str] | None,
         typer.Option(
@@ -92,7 +100,12 @@ def analyze(
     from rosprivacy.formats import Style, written
 
     settings = replace(
-        inputs.settings, article9=article9, data_types=tuple(data_type or ()), paths=paths.value, max_paths=max_paths
+        inputs.settings,
+        article9=article9,
+        article9_level=article9_level and article9_level.value,
+        data_types=tuple(data_type or ()),
+        paths=paths.value,
+        max_paths=max_paths,
     )
     _check(inputs, engine, save_graph=bool(save_graph), per_policy=per_policy, of_spark=bool(master or results))
     style = Style(verbose=verbose, quiet=quiet, colour=output is None)
