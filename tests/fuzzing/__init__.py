@@ -1,4 +1,5 @@
 """Fuzzing: structured inputs for every reader, what must hold of each, and a record of what was tried.
 
-``python -m tests.fuzzing --help`` runs it; ``docs/security.md`` says what is promised, and what the last long run gave.
+``python -m tests.fuzzing --help`` runs it; ``docs/security.md`` says what must hold of each input, and what was
+weighed.
 """
