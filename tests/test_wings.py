@@ -28,6 +28,7 @@ SAME_PART = {
     "decisions": {"analysis", "report/document"},  # what they mean, and how the document tells them
     "findings": {"analysis/findings", "report/rdf"},  # findings, and findings as RDF
     "fleet": {"cli", "report/contract", "report/document", "report/terminal"},  # what is told of a fleet
+    "law": {"cli", "report/terminal"},  # the command, and what it prints
     "labels": {"cli", "report/terminal"},  # the command, and what was said of labels
     "review": {"report/page", "report/terminal"},  # what nobody has reviewed, for each kind of reader
     "globs": {"analysis/findings", "report/terminal"},  # what globs of label files decide, and how it is told

@@ -23,6 +23,7 @@ from rosprivacy.cli import (
     fleet,
     graph,
     labels,
+    law,
     load,
     mitigate,
     query,
@@ -45,6 +46,7 @@ app = typer.Typer(
 )
 app.command(rich_help_panel=LABEL)(labels.labels)
 app.command(rich_help_panel=LABEL)(categories.categories)
+app.command(rich_help_panel=LABEL)(law.law)
 app.command(rich_help_panel=ANALYSE)(analyze.analyze)
 app.command(rich_help_panel=ANALYSE)(show.show)
 app.command("why-not", rich_help_panel=ANALYSE)(why_not.why_not)

@@ -1,0 +1,80 @@
+"""The provisions of ``law.ttl`` by themselves: what they are called, as of when they were read, where they stand.
+
+In: a language. Out: ``Provision`` facts. rdflib reads them, which is heavy: import this where it is used.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from importlib.resources import files
+from typing import TYPE_CHECKING
+
+from rdflib import DCTERMS, RDF, RDFS, SKOS
+
+from rosprivacy.ontology.turtle import ENGLISH, RP, read
+
+if TYPE_CHECKING:
+    from rdflib import Graph
+    from rdflib.term import Node
+
+FILE = "law.ttl"
+MONTHS = 6  # after which a person has to look whether the law is still as it was read
+
+
+@dataclass(frozen=True, slots=True)
+class Provision:
+    """One provision, recital, guideline or judgment.
+
+    Attributes
+    ----------
+    name
+        As findings cite it in the language.
+    meaning
+        In one sentence of our own.
+    as_of
+        The day of the newest source that was read, ``YYYY-MM-DD``.
+    address
+        Where EUR-Lex has it; empty where nothing is known.
+    """
+
+    name: str
+    title: str
+    meaning: str
+    as_of: str
+    address: str
+
+
+def provisions(language: str = ENGLISH) -> tuple[Provision, ...]:
+    """Return all of them, in the order of their identifiers.
+
+    >>> [one.title for one in provisions("de") if one.name == "Art. 32 DSGVO"]
+    ['Sicherheit der Verarbeitung']
+    """
+    graph = read((files(__package__) / FILE).read_text("utf-8"), FILE)
+    subjects = set(graph.subjects(RDF.type, RP.LegalProvision))
+    return tuple(
+        Provision(
+            _text(graph, subject, DCTERMS.bibliographicCitation, language),
+            _text(graph, subject, DCTERMS.title, language),
+            _text(graph, subject, SKOS.definition, language),
+            str(graph.value(subject, RP.asOf)),
+            str(graph.value(subject, RDFS.seeAlso) or ""),
+        )
+        for subject in sorted(subjects, key=lambda subject: str(graph.value(subject, RP.identifier)))
+    )
+
+
+def is_old(as_of: str, today: str) -> bool:
+    """Whether a day lies more than six months before another; both ``YYYY-MM-DD``.
+
+    >>> is_old("2026-11-21", "2027-05-21"), is_old("2026-11-21", "2027-05-22")
+    (False, True)
+    """
+    year, month, day = map(int, as_of.split("-"))
+    years, months = divmod(month - 1 + MONTHS, 12)
+    return today > f"{year + years}-{months + 1:02}-{day:02}"
+
+
+def _text(graph: Graph, subject: Node, predicate: Node, language: str) -> str:
+    texts = {getattr(text, "language", None): str(text) for text in graph.objects(subject, predicate)}
+    return texts.get(language) or texts.get(ENGLISH, "")
