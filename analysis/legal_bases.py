@@ -10,13 +10,12 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.model import ARTICLE_9, MAY_REVEAL, SPECIAL, THIRD_COUNTRY
+from rosprivacy.analysis.model import ARTICLE_9, ARTICLE_10, MAY_REVEAL, SPECIAL, THIRD_COUNTRY
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 CHAPTER_V = ("45", "46", "47", "49")
-ARTICLE_10 = "GDPR Art. 10"
 Verdicts = tuple[tuple[str, str], ...]  # (provision, verdict)
 
 

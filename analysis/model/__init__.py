@@ -6,6 +6,7 @@ Nothing here reads or writes anything; validation is done where a fact is made.
 from rosprivacy.analysis.model.category import (
     ARTICLE_9,
     ARTICLE_9_VERDICTS,
+    ARTICLE_10,
     DISCLOSURE,
     MAY_REVEAL,
     SPECIAL,
@@ -61,6 +62,7 @@ from rosprivacy.analysis.model.statement import (
 __all__ = [
     "ARTICLE_9",
     "ARTICLE_9_VERDICTS",
+    "ARTICLE_10",
     "CAREFUL_DENY",
     "CHANGED",
     "CHANNELS",

@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.model import ARTICLE_10
 from rosprivacy.analysis.text import blanked
 
 if TYPE_CHECKING:
@@ -21,8 +22,9 @@ LANGUAGES = ("en", "de", "fr")
 WORDS = {
     "en": {
         "definition": "Definition", "names": "Also", "broader": "Broader", "narrower": "Narrower",
-        "label": "Neo4j label", "data": "Data types", "gdpr": "GDPR", "article9": "Article 9(1)", "law": "Law",
-        "because": "because", "source": "source", "stated": "said of", "as of": "law as of", "same": "Same as",
+        "label": "Neo4j label", "data": "Data types", "gdpr": "GDPR", "article9": "Article 9(1)",
+        "article10": "Article 10", "law": "Law", "because": "because", "source": "source",
+        "stated": "stated for", "as of": "law as of", "same": "Same as",
         "within": "Part of",
         "note": "Note", "above": "see above", "iri": "IRI",
         "always": "always", "conditional": "on a condition", "may-reveal": "may reveal it", "no": "no",
@@ -30,17 +32,19 @@ WORDS = {
     },
     "de": {
         "definition": "Definition", "names": "Auch", "broader": "Weiter", "narrower": "Enger", "label": "Neo4j-Label",
-        "data": "Datentypen", "gdpr": "DSGVO", "article9": "Artikel 9(1)", "law": "Recht", "because": "denn",
-        "source": "Quelle", "stated": "gesagt von", "as of": "Rechtsstand", "same": "Dasselbe wie",
+        "data": "Datentypen", "gdpr": "DSGVO", "article9": "Artikel 9 Absatz 1",
+        "article10": "Artikel 10", "law": "Recht", "because": "denn", "source": "Quelle",
+        "stated": "angegeben für", "as of": "Rechtsstand", "same": "Dasselbe wie",
         "within": "Teil von", "note": "Hinweis", "above": "siehe oben", "iri": "IRI",
-        "always": "immer", "conditional": "unter einer Bedingung", "may-reveal": "kann sie erkennen lassen",
-        "no": "nein", "unknown": "nicht bekannt",
+        "always": "immer", "conditional": "unter einer Bedingung",
+        "may-reveal": "kann besondere Kategorien erkennen lassen", "no": "nein", "unknown": "nicht bekannt",
     },
     "fr": {
         "definition": "Définition", "names": "Aussi", "broader": "Plus large", "narrower": "Plus étroit",
-        "label": "Label Neo4j", "data": "Types de données", "gdpr": "RGPD", "article9": "Article 9(1)", "law": "Droit",
-        "because": "car", "source": "source", "stated": "dit de", "as of": "état du droit", "same": "Identique à",
-        "within": "Partie de", "note": "Remarque", "above": "voir plus haut", "iri": "IRI",
+        "label": "Label Neo4j", "data": "Types de données", "gdpr": "RGPD", "article9": "article 9, paragraphe 1",
+        "article10": "article 10", "law": "Droit", "because": "car", "source": "source", "stated": "indiqué pour",
+        "as of": "état du droit", "same": "Identique à", "within": "Partie de", "note": "Remarque",
+        "above": "voir plus haut", "iri": "IRI",
         "always": "toujours", "conditional": "sous condition", "may-reveal": "peut les révéler", "no": "non",
         "unknown": "inconnu",
     },
@@ -72,8 +76,10 @@ def tree(vocabulary: Vocabulary, top: str, language: str = "en") -> str:
 
 def _entry(category: Category, language: str, *, again: bool) -> str:
     words = WORDS[language]
-    verdict = f"  [{words['article9']}: {words[category.article9]}]" if category.article9 != "no" else ""
-    return f"{category.name}  {shown(category.text('title', language))}{verdict}" + (
+    verdicts = [(words["article9"], category.article9)] if category.article9 != "no" else []
+    verdicts += [(words["article10"], legal.verdict) for legal in category.law if legal.name == ARTICLE_10]
+    said = "".join(f"  [{article}: {words[verdict]}]" for article, verdict in verdicts)
+    return f"{category.name}  {shown(category.text('title', language))}{said}" + (
         f"  ({words['above']})" if again else ""
     )
 
@@ -91,7 +97,7 @@ def details(vocabulary: Vocabulary, category: Category, language: str = "en") ->
         ("narrower", ", ".join(narrower)),
         ("article9", words[category.article9] + (f", {words['because']} {reason}" if reason else "")),
         *(("law", _legal(legal, category, language)) for legal in category.law),
-        ("gdpr", category.gdpr),
+        ("gdpr", category.text("gdpr", language)),
         ("data", ", ".join(category.data_types)),
         ("label", category.label),
         ("iri", category.iri),
@@ -111,9 +117,13 @@ def _legal(legal: Legal, category: Category, language: str) -> str:
     words = WORDS[language]
     condition = legal.text("condition", language)
     parts = [
-        f"{legal.name}, {words[legal.verdict]}" + (f": {condition}" if condition else ""),
+        f"{legal.text('name', language)}, {words[legal.verdict]}" + (f": {condition}" if condition else ""),
         *([f"{words['stated']} {legal.stated_of}"] if legal.stated_of not in ("", category.name) else []),
-        *([f"{words['source']} {', '.join(legal.sources)}"] if legal.sources else []),
+        *([f"{words['source']} {_sources(legal, language)}"] if legal.sources else []),
         f"{words['as of']} {legal.as_of}",
     ]
     return "; ".join(parts)
+
+
+def _sources(legal: Legal, language: str) -> str:
+    return legal.translations.get(language, {}).get("sources") or ", ".join(legal.sources)
