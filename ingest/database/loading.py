@@ -7,7 +7,6 @@ people added by hand (without our mark ``robot``) stays, as do other robots.
 
 from __future__ import annotations
 
-import json
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -15,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.errors import DatabaseError, InputError, shown
 from rosprivacy.ingest.database import cypher
 from rosprivacy.ingest.database.ids import category_labels
+from rosprivacy.ingest.database.robot_notices import loaded_with, unreadable
 from rosprivacy.ingest.database.schema import (
     DERIVES_FROM,
     FALLS_UNDER,
@@ -180,8 +180,10 @@ def _read_there(transaction: ManagedTransaction, names: list[str]) -> dict[str, 
 
 
 def _policies(assumptions: str | None) -> frozenset[tuple[str, str]]:
-    """The (file, SHA-256) of a robot's policies, as its assumptions name them; none of what earlier versions wrote."""
-    return frozenset((entry["file"], entry["sha256"]) for entry in json.loads(assumptions or "{}").get("policies", ()))
+    """The (file, SHA-256) of a robot's policies, as its assumptions name them; none where nobody can read these."""
+    robot = {"assumptions": assumptions}
+    said = {} if unreadable(robot) else loaded_with(robot)
+    return frozenset((entry["file"], entry["sha256"]) for entry in said.get("policies", ()))
 
 
 def _changed(there: Mapping[str, _There], batch: list[RobotRows]) -> list[RobotRows]:

@@ -27,6 +27,7 @@ from rosprivacy.analysis.non_ros import by_kind
 from rosprivacy.ingest.database.flow_statements import DATABASE, names_of, statements_of
 from rosprivacy.ingest.database.non_ros_properties import facts_of
 from rosprivacy.ingest.database.other_schemas import HINT, of_other_schemas
+from rosprivacy.ingest.database.robot_notices import unreadable
 from rosprivacy.ingest.database.row_facts import (
     ADDED,
     MATCHES,
@@ -133,6 +134,11 @@ def _read(transaction: ManagedTransaction, vocabulary: Vocabulary) -> Stored:
     reader.flows(transaction.run(FLOWS))
     reader.said(transaction.run(SAID))
     reader.profiles(transaction.run(PROFILES))
+    for name, robot in sorted(robots.items()):
+        if damaged := unreadable(robot):
+            reader.problems.append(
+                _problem(f"{damaged} of robot {shown(name)!r} cannot be understood", "load it again")
+            )
     views = sorted({str(robot.get("view", "declared")) for robot in robots.values()})
     if len(views) > 1:
         hint = "load all robots with the same --view"

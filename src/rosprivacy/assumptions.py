@@ -9,7 +9,7 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.model import MAY_REVEAL, Diagnostic, Place, Severity
-from rosprivacy.ingest.database.robot_notices import diagnostics_of, diagnostics_text
+from rosprivacy.ingest.database.robot_notices import FILES, diagnostics_of, diagnostics_text, loaded_with
 from rosprivacy.ingest.labels.countries import countries
 from rosprivacy.question import may_be
 from rosprivacy.version import __version__
@@ -117,10 +117,10 @@ def remembered(assumptions: Mapping[str, Any], diagnostics: Iterable[Diagnostic]
 def put_together(robots: Iterable[Mapping[str, Any]]) -> tuple[tuple[Diagnostic, ...], dict[str, Any]]:
     """Return what the robots of a database were loaded with, put together (rule S12): diagnostics, what it rests on."""
     robots = list(robots)
-    loaded = [json.loads(robot["assumptions"]) for robot in robots if robot.get("assumptions")]
+    loaded = [loaded_with(robot) for robot in robots if robot.get("assumptions")]
     count = sum(bool(robot.get("assumptions")) and not robot.get("shared") for robot in robots)
     files: dict[str, list[dict[str, str]]] = {}
-    for kind in ("policies", "labels", "fleet"):
+    for kind in FILES:
         named = {(entry["file"], entry["sha256"]) for said in loaded for entry in said.get(kind, ())}
         if named or kind != "fleet":
             files[kind] = [{"file": name, "sha256": digest} for name, digest in sorted(named)]
