@@ -14,7 +14,7 @@ from tests.helpers.house import parsed
 from tests.helpers.paths import ROOT
 
 HERE = ROOT / "analysis" / "text.py"
-FORMATS = {ROOT / "report" / "rdf" / "serialise.py": "Turtle and JSON escape in ways of their own"}
+FORMATS = {ROOT / "report" / "json_text.py": "Turtle and JSON escape in ways of their own"}
 DANGEROUS = "\n\r\t\0\x1b\x7f\x85\x9b\u2028\u2029\u202a\u202e\u2066\u2069\u200f\ufeff\udc80"
 
 
