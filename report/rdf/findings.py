@@ -13,7 +13,7 @@ from rdflib import RDF, RDFS, SKOS, XSD, Graph, Literal
 from rdflib.namespace import PROV
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.non_ros import EVERY
+from rosprivacy.analysis.non_ros import EVERY, INSIDE, retention_of
 from rosprivacy.report.document.whole import document
 from rosprivacy.report.rdf.facts import changes, emitted_by, foreign_terms, kinds_along, legal_of
 from rosprivacy.report.rdf.provenance import by_path, provenance
@@ -28,6 +28,7 @@ from rosprivacy.report.rdf.terms import (
     duration,
     finding_iri,
     foreign,
+    legal_basis,
     listed,
     named,
     text,
@@ -54,6 +55,10 @@ PREFIXES: dict[str, object] = {
 }  # fmt: skip
 STORED = "storage-limitation"
 OF_KIND = {"disclosure": DPV.Disclose, STORED: DPV.Store, "third-country-transfer": DPV.CrossBorderTransfer}
+PARTIES = {
+    "controller": DPV.DataController, "joint-controller": DPV.JointDataControllers, "processor": DPV.DataProcessor,
+    "third-party": DPV.ThirdParty,
+}  # fmt: skip
 AT_LEAK = {"storage": DPV.Store, "external-system": DPV.Transfer}
 ROLES = {
     "source": RP.sourceOf, "leak": RP.leakOf, "sanitizer": RP.sanitizerOf, "conduit": RP.conduitOf,
@@ -74,7 +79,9 @@ def rdf_graph(answer: Answer, when: datetime | None = None) -> Graph:
     Takes time linear in the hops of all witnesses and paths.
     """
     analysis, told = answer.shown, document(answer)
-    things = Things(answer.vocabulary, by_path(told["assumptions"]), answer.stated)
+    elements = answer.analysis.graph.elements
+    subjects = {elements[vertex].identity: groups for vertex, groups in answer.bound.subjects.items()}
+    things = Things(answer.vocabulary, by_path(told["assumptions"]), answer.stated, subjects)
     findings = _Findings.of(answer, analysis, things)
     graph = Graph(bind_namespaces="none")
     for prefix, namespace in PREFIXES.items():
@@ -151,12 +158,14 @@ class _Findings:
             (RP.disjointPaths, [Literal(finding.disjoint_paths)]),
             (DPV.hasDataSource, [source]),
             (DPV.hasPersonalData, self._data(finding)),
+            (DPV.hasLegalBasis, self._bases(finding)),
         )
         yield source, RDF.type, DPV.DataSource
         changed = changes(finding, self.emitted.get(finding.source, ()))
         yield from self._processing(iri, finding, changed)
         for number, change in enumerate((change for change in changed if change.pseudonymises), 1):
             yield from self._measure(iri, below(iri, "measure", number), change)
+        yield from self._persons(iri, finding)
         yield from self._leak(iri, finding)
         yield from self._law(iri, finding)
         yield from self._witness(iri, finding)
@@ -166,6 +175,18 @@ class _Findings:
         terms = [foreign(term) for term in foreign_terms(finding.category, self.answer.vocabulary)]
         form = [DPV.PseudonymisedData] if finding.pseudonymised else []
         return [*self.things.categories([finding.category]), *terms, *form]
+
+    def _bases(self, finding: Finding) -> list[URIRef]:
+        """The legal bases that a valid decision to accept the finding records; no word of whether they fit."""
+        decision = self.answer.decided.valid(finding) if self.answer.decided and finding.accepted else None
+        return [term for basis in (decision.legal_basis if decision else ()) for term in legal_basis(basis)]
+
+    def _persons(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:
+        """Whose data they are, as labels of the source name them (GDPR, Article 30(1)(c))."""
+        for group in self.things.subjects(finding.source):
+            persons = named("subject", group)
+            yield iri, DPV.hasDataSubject, persons
+            yield from about(persons, (RDF.type, [DPV.DataSubject]), (RDFS.label, [text(shown(group))]))
 
     def _processing(self, iri: URIRef, finding: Finding, changed: list[Change]) -> list[Triple]:
         """What is done with the data, and what could come of it."""
@@ -202,17 +223,50 @@ class _Findings:
             recipient = named("recipient", *leak.identity)
             label = shown(known["operator"]) if "operator" in known else f"whoever receives what {name} lets out"
             yield iri, DPV.hasRecipient, recipient
-            yield from about(recipient, (RDF.type, [DPV.Recipient]), (RDFS.label, [text(label)]), (RP.at, [at]))
+            role = PARTIES.get(known.get("role", ""))
+            yield from about(recipient, (RDF.type, [DPV.Recipient, *([role] if role else [])]))
+            yield from about(recipient, (RDFS.label, [text(label)]), (RP.at, [at]))
+            yield from self._country(recipient, leak)
         if leak.kind == "storage":
-            facts, kept = self.analysis.outside.get(leak), self.answer.retention(leak, finding.category)
-            of = () if facts is None or _alike_for_all(facts) else (finding.category,)
-            condition = named("storage-duration", *leak.identity, *of)
-            what = shown(finding.category) if of else "data"
-            label = f"{name} keeps {what} for {shown(kept)}" if kept else f"how long {name} keeps {what} is not stated"
-            yield iri, DPV.hasStorageCondition, condition
-            yield from about(condition, (RDF.type, [DPV.StorageDuration]), (RDFS.label, [text(label)]), (RP.at, [at]))
-            yield from about(condition, (RP.stated, [Literal(bool(kept))]))
-            yield from about(condition, (DPV.hasDuration, [duration(kept)] if kept else []))
+            yield from self._kept(iri, finding)
+
+    def _kept(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:
+        """How long a storage keeps the category, and its backups after that: a condition of its own (rule S9)."""
+        leak, facts = finding.leak, self.analysis.outside.get(finding.leak)
+        of = () if facts is None or _alike_for_all(facts) else (finding.category,)
+        name, what = shown(leak.name), shown(finding.category) if of else "data"
+        kept = retention_of(facts, finding.category, self.answer.vocabulary.hierarchy) if facts else []
+        whole = named("storage-duration", *leak.identity, *of)
+        yield from self._condition(iri, whole, finding, f"{name} keeps {what}", [str(one) for one in kept])
+        if kept and facts and facts.backups:
+            more = [] if facts.backups is True else [str(facts.backups)]
+            yield from self._condition(
+                iri, below(whole, "backups"), finding, f"{name} then keeps {what} in backups", more
+            )
+
+    def _condition(
+        self, iri: URIRef, condition: URIRef, finding: Finding, what: str, durations: list[str]
+    ) -> Iterator[Triple]:
+        label = f"{what} for {shown(', '.join(durations))}" if durations else f"{what}; for how long is not stated"
+        yield iri, DPV.hasStorageCondition, condition
+        yield from about(
+            condition,
+            (RDF.type, [DPV.StorageDuration]),
+            (RDFS.label, [text(label)]),
+            (RP.at, [self.things.element(finding.leak)]),
+            (RP.stated, [Literal(bool(durations))]),
+            (DPV.hasDuration, [duration(one) for one in durations]),
+        )
+
+    def _country(self, recipient: URIRef, leak: Element) -> Iterator[Triple]:
+        """Where a recipient is, and whether that is a third country (GDPR, chapter V)."""
+        facts = self.analysis.outside.get(leak)
+        if facts is None or not facts.country:
+            return
+        country = named("country", facts.country)
+        third = [DPV.ThirdCountry] if facts.area != INSIDE else []
+        yield recipient, DPV.hasCountry, country
+        yield from about(country, (RDF.type, [DPV.Country, *third]), (RP.country, [text(facts.country)]))
 
     def _law(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:
         for number, (legal, names) in enumerate(legal_of(finding, self.answer.vocabulary), 1):

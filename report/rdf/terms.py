@@ -29,21 +29,31 @@ OWN = "urn:x-rosprivacy:"
 RP = Namespace(OWN)
 
 DPV_CLASSES = (
+    "Country",
     "CrossBorderTransfer",
+    "DataController",
+    "DataProcessor",
     "DataSource",
+    "DataSubject",
     "Derive",
     "Disclose",
+    "JointDataControllers",
     "Process",
     "Pseudonymisation",
     "PseudonymisedData",
     "Recipient",
     "Store",
     "StorageDuration",
+    "ThirdCountry",
+    "ThirdParty",
     "Transfer",
 )
 DPV_PROPERTIES = (
+    "hasCountry",
     "hasDataSource",
+    "hasDataSubject",
     "hasDuration",
+    "hasLegalBasis",
     "hasPersonalData",
     "hasProcessing",
     "hasRecipient",
@@ -51,9 +61,18 @@ DPV_PROPERTIES = (
     "hasStorageCondition",
     "hasTechnicalMeasure",
 )
+# Legal bases as the extension for the GDPR has them: Articles 6(1), 9(2), 45, 46(2) and 49(1).
+BASES = (
+    *(f"A6-1-{letter}" for letter in "abcdef"),
+    *(f"A9-2-{letter}" for letter in "abcdefghij"),
+    "A45-3",
+    *(f"A46-2-{letter}" for letter in "abcdef"),
+    *(f"A49-1-{letter}" for letter in "abcdefg"),
+)
 RISKS = ("DataRisk", "Reidentification", "UnwantedDisclosureData")
 # Closed: a term that is not listed is an AttributeError, and a test holds the lists against the files of DPV 2.3.
 DPV = ClosedNamespace("https://w3id.org/dpv#", [*DPV_CLASSES, *DPV_PROPERTIES])
+EU_GDPR = ClosedNamespace("https://w3id.org/dpv/legal/eu/gdpr#", list(BASES))
 RISK = ClosedNamespace("https://w3id.org/dpv/risk#", list(RISKS))
 
 LONGEST = 500  # characters of a name in an IRI; a longer one stands there as its hash; `=` is never left in a name
@@ -103,6 +122,16 @@ def line_iri(grant: Grant) -> URIRef:
 def file_iri(file: str, sha256: str) -> URIRef:
     """Return the IRI of a file that was read; another content is another file."""
     return named("file", sha256, file)
+
+
+def legal_basis(article: str) -> list[URIRef]:
+    """Return the term for a legal basis as decisions state it, none where DPV has none.
+
+    >>> legal_basis("46(2)(c)"), legal_basis("10")
+    ([rdflib.term.URIRef('https://w3id.org/dpv/legal/eu/gdpr#A46-2-c')], [])
+    """
+    name = "A45-3" if article == "45" else "A" + article.replace(")(", "-").replace("(", "-").replace(")", "")
+    return [EU_GDPR[name]] if name in BASES else []
 
 
 def duration(value: str) -> Literal:

@@ -43,13 +43,22 @@ class Things:
         Path -> IRIs of the files that were read there.
     stated
         (robot, kind, name) -> what people stated of an element.
+    subjects
+        (robot, kind, name) -> groups of persons that the data of a source are about.
     """
 
-    def __init__(self, vocabulary: Vocabulary, files: Mapping[str, tuple[URIRef, ...]], stated: Stated) -> None:
+    def __init__(
+        self,
+        vocabulary: Vocabulary,
+        files: Mapping[str, tuple[URIRef, ...]],
+        stated: Stated,
+        subjects: Mapping[tuple[str, str, str], tuple[str, ...]],
+    ) -> None:
         self._categories = vocabulary.categories
         self._ancestors = vocabulary.hierarchy.ancestors
         self._files = files
         self._stated = stated
+        self._subjects = subjects
         self._elements: dict[URIRef, Element] = {}
         self._lines: dict[URIRef, Grant] = {}
         self._provisions: dict[URIRef, Legal] = {}
@@ -60,6 +69,10 @@ class Things:
         iri = element_iri(element)
         self._elements.setdefault(iri, element)
         return iri
+
+    def subjects(self, element: Element) -> tuple[str, ...]:
+        """Return whom the data of a source are about, as labels say."""
+        return self._subjects.get(element.identity, ())
 
     def line(self, grant: Grant) -> URIRef:
         """Return the IRI of the policy line of a grant."""
@@ -85,6 +98,7 @@ class Things:
             yield from _element(iri, element)
             known = self._stated.get(element.identity, {})
             yield from about(iri, *((term, [text(known[what])]) for what, term in STATED.items() if known.get(what)))
+            yield from about(iri, (RP.aboutPersons, map(text, self.subjects(element))))
         for iri, grant in self._lines.items():
             yield from _line(iri, grant, self._files.get(grant.place.file, ()))
         for iri, legal in self._provisions.items():

@@ -281,7 +281,7 @@ class TestProblems:
             ("MATCH ()-[f:FLOWS_TO]->({name: '/blur'}) SET f.line = 'high'", "a flow cannot be understood"),
             ("MATCH ()-[f:FLOWS_TO]->({name: '/blur'}) SET f.further = ['{']", "a flow cannot be understood"),
             ("MATCH ()-[f:FLOWS_TO]->({name: '/blur'}) SET f.never = 7", "a flow cannot be understood"),
-            ("MATCH (r:Robot) SET r.assumptions = '{'", "assumptions of robot 'care' cannot be understood; load it again"),
+            ("MATCH (r:Robot) SET r.assumptions = '{'", "assumptions of robot 'care' cannot be understood; load"),
             ("MATCH (r:Robot) SET r.assumptions = '[]'", "assumptions of robot 'care' cannot be understood"),
             ("MATCH (r:Robot) SET r.diagnostics = '[7]'", "diagnostics of robot 'care' cannot be understood"),
             ("MATCH (r:Robot) SET r.diagnostics = 7", "diagnostics of robot 'care' cannot be understood"),

@@ -28,7 +28,18 @@ from rosprivacy.ontology.vocabulary import Vocabulary
 from rosprivacy.report.rdf.facts import legal_of
 from rosprivacy.report.rdf.findings import rdf_graph
 from rosprivacy.report.rdf.serialise import as_turtle
-from rosprivacy.report.rdf.terms import DPV, DPV_CLASSES, DPV_PROPERTIES, RISK, RISKS, RP, element_iri, named
+from rosprivacy.report.rdf.terms import (
+    BASES,
+    DPV,
+    DPV_CLASSES,
+    DPV_PROPERTIES,
+    EU_GDPR,
+    RISK,
+    RISKS,
+    RP,
+    element_iri,
+    named,
+)
 from rosprivacy.report.rdf.things import STATED
 from tests.helpers.answers import accepting, answer_of
 from tests.helpers.cases import CASES
@@ -105,6 +116,11 @@ class TestTerms:
         for name in DPV_PROPERTIES:
             assert (DPV[name], RDF.type, RDF.Property) in dpv, name
 
+    def test_legal_bases_are_legal_bases(self, dpv: Graph) -> None:
+        for name in BASES:
+            assert (EU_GDPR[name], RDF.type, RDFS.Class) in dpv, name
+            assert (EU_GDPR[name], SKOS.prefLabel, None) in dpv, name
+
     def test_risks_are_risks(self, dpv: Graph) -> None:
         for name in RISKS:
             assert (RISK[name], RDF.type, URIRef("https://w3id.org/dpv/risk#PotentialRisk")) in dpv, name
@@ -127,7 +143,7 @@ class TestTerms:
 
     def test_a_word_that_is_not_listed_cannot_be_written(self) -> None:
         with pytest.raises(AttributeError):
-            DPV.hasLegalBasis  # noqa: B018
+            DPV.hasJurisdiction  # noqa: B018
 
 
 def value(graph: Graph, node: Node | None, *way: Node) -> Any:
@@ -452,7 +468,10 @@ class TestOutsideRos:
         finding = self.at(graph, BUCKET)
         assert set(graph.objects(finding, DPV.hasProcessing)) == {DPV.Disclose, DPV.Store}
         assert value(graph, finding, DPV.hasStorageCondition, RP.stated) is False
-        assert value(graph, finding, DPV.hasStorageCondition, RDFS.label) == "how long bucket keeps data is not stated"
+        assert (
+            value(graph, finding, DPV.hasStorageCondition, RDFS.label)
+            == "bucket keeps data; for how long is not stated"
+        )
         assert problems(graph) == ""
 
     def test_what_reaches_an_external_system_is_transferred(self, analysis: Analysis) -> None:
@@ -482,11 +501,18 @@ class TestOutsideRos:
         graph = graph_of_analysis(analysis, {BUCKET: NonRosFacts(retention=kept_for({EVERY: "P4W"}))})
         assert set(graph.objects(None, DPV.hasDuration)) == {Literal("P4W")}
 
-    def test_backups_keep_it_longer_than_any_duration_says(self, analysis: Analysis) -> None:
+    @pytest.mark.parametrize(("backups", "more"), [(True, []), (parse("P7D"), [Literal("P7D", datatype=XSD.duration)])])
+    def test_backups_are_a_condition_of_their_own(self, analysis: Analysis, backups: Any, more: list[Literal]) -> None:
         """Rule S9: nobody may take the storage's own duration for the whole."""
-        facts = NonRosFacts(retention=kept_for({EVERY: "P30D"}), backups=True)
+        facts = NonRosFacts(retention=kept_for({EVERY: "P30D"}), backups=backups)
         graph = graph_of_analysis(analysis, {BUCKET: facts})
-        assert set(graph.objects(None, DPV.hasDuration)) == {Literal("P30D, in backups, nobody says for how long")}
+        conditions = set(graph.objects(self.at(graph, BUCKET), DPV.hasStorageCondition))
+        (then,) = (one for one in conditions if "backups" in str(graph.value(one, RDFS.label)))
+        (first,) = conditions - {then}
+        assert list(graph.objects(first, DPV.hasDuration)) == [Literal("P30D", datatype=XSD.duration)]
+        assert list(graph.objects(then, DPV.hasDuration)) == more
+        assert value(graph, then, RP.stated) is bool(more)
+        assert problems(graph) == ""
 
     def test_how_long_one_category_is_kept_says_nothing_of_another(self, analysis: Analysis) -> None:
         """Rules S7 and S9: what is stated of a broader category holds, what is stated of a narrower one does not."""
