@@ -27,7 +27,12 @@ WANTED = {
 
 
 def validator(schema: Mapping[str, Any]) -> Validator:
-    """Return what checks values; 1.0 is no whole number here, though it is one in JSON Schema."""
+    """Return what checks values; 1.0 is no whole number here, though it is one in JSON Schema.
+
+    >>> check = validator({"type": "integer"})
+    >>> check.is_valid(1), check.is_valid(1.0)
+    (True, False)
+    """
     from jsonschema import Draft202012Validator, validators  # noqa: PLC0415 - light start
 
     whole = Draft202012Validator.TYPE_CHECKER.redefine("integer", lambda _, value: type(value) is int)
