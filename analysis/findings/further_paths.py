@@ -167,7 +167,7 @@ def number_disjoint(edges: Sequence[tuple[State, State]], source: State, leak: S
     Each path found may take back a step of an earlier one, until there is none left, or one for each way out or in
     (Ford and Fulkerson; a search in breadth for each path). O(paths x edges).
 
-    >>> from rosprivacy.analysis.bounds import BOUNDS
+    >>> from rosprivacy.analysis.bounds import BOUNDS, Tally
     >>> camera, left, right, cloud = ((vertex, 0) for vertex in range(4))
     >>> edges = [(camera, left), (camera, right), (left, cloud), (right, cloud), (left, right)]
     >>> number_disjoint(edges, camera, cloud, Tally(BOUNDS, "path_steps"))
