@@ -13,12 +13,11 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from fnmatch import fnmatchcase, translate
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.written_names import GLOB_SIGNS, is_glob, meant
-from rosprivacy.ingest.policies.expressions import have_common_name, holds, posix, tokens
+from rosprivacy.ingest.policies.expressions import have_common_name, holds, regex, tokens
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection
@@ -155,13 +154,13 @@ def covers(pattern: str, name: str) -> bool:
     (True, False)
     """
     if not is_pattern(name):
-        return fnmatchcase(name, posix(pattern)) if is_pattern(pattern) else pattern == name
+        return regex(pattern).match(name) is not None if is_pattern(pattern) else pattern == name
     return pattern == name or (not _apart(pattern, name) and holds(pattern, name))
 
 
 def matcher(pattern: str) -> Callable[[str], bool]:
     """Return the test whether a plain name is covered, compiled once for many names."""
-    match = re.compile(translate(posix(pattern))).match
+    match = regex(pattern).match
     return lambda name: match(name) is not None
 
 

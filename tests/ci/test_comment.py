@@ -60,9 +60,11 @@ def test_what_was_not_analysed_before_is_all_new(tmp_path: Path) -> None:
     """The report that the workflow takes in its place."""
     steps = yaml.safe_load((CI / "privacy.yml").read_text("utf-8"))["jobs"]["paths-to-assess"]["steps"]
     (nothing,) = (step["env"]["NOTHING"] for step in steps if "NOTHING" in step.get("env", {}))
-    comment = compare(tmp_path, json.loads(nothing), report_of(2))
+    (tmp_path / "nothing.xml").write_text(nothing, "utf-8")
+    before = tool("rosprivacy", "analyze", "nothing.xml", "--fail-on", "never", "--format", "json", cwd=tmp_path)
+    comment = compare(tmp_path, json.loads(before.stdout), report_of(2))
     assert "**New paths to assess: 2**" in comment
-    assert "Verdict: `not analysed before` before, `leak` now." in comment
+    assert "Verdict: `undetermined` before, `leak` now." in comment
     assert "Asked otherwise" not in comment
 
 
@@ -71,6 +73,7 @@ def test_no_name_can_link_or_mention_anybody(tmp_path: Path) -> None:
     for finding in after["findings"]:
         finding["leak"]["name"] = f"`@everyone ![x](http://e)\n# {HOSTILE}"
         finding["leak"]["robot"] = "`<img>"
+        finding["witness"][-1] = finding["leak"]
     comment = compare(tmp_path, report_of(1), after)
     (line, *_) = [line for line in comment.splitlines() if "@everyone" in line]
     spans = re.fullmatch(r"- `[^`]+`: `[^`]+` → `[^`]+`, allowed at `[^`]+`", line)
@@ -82,7 +85,11 @@ def test_no_name_can_link_or_mention_anybody(tmp_path: Path) -> None:
 def test_long_lists_are_cut_and_say_so(tmp_path: Path) -> None:
     after = report_of(2)
     one = after["findings"][0]
-    after["findings"] = [{**one, "id": f"{i:016x}", "leak": {**one["leak"], "name": f"/l{i}x"}} for i in range(500)]
+    leaks = [{**one["leak"], "name": f"/l{i}x"} for i in range(500)]
+    witness = one["witness"][:-1]
+    after["findings"] = [
+        {**one, "id": f"{i:016x}", "leak": leak, "witness": [*witness, leak]} for i, leak in enumerate(leaks)
+    ]
     comment = compare(tmp_path, report_of(1), after)
     assert "**New paths to assess: 500**" in comment
     assert "- and 480 more" in comment
@@ -115,8 +122,7 @@ def test_a_pull_request_is_not_its_own_baseline(outcome: str, runner: dict[str, 
     comment = say_what_changes(runner, tmp_path / "checkout", outcome)
     assert "**New paths to assess: 2**" in comment
     assert ("**There is no baseline**: " in comment) == (outcome == "failure")
-    before = "not analysed before" if outcome == "failure" else "undetermined"
-    assert f"Verdict: `{before}` before, `leak` now." in comment
+    assert "Verdict: `undetermined` before, `leak` now." in comment
 
 
 def test_nothing_of_a_hostile_checkout_runs_while_it_is_compared(runner: dict[str, str], tmp_path: Path) -> None:

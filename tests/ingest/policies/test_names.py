@@ -1,5 +1,6 @@
 """Names (rule S4): each row is one sentence of the SROS 2 policy semantics."""
 
+import re
 from fnmatch import fnmatchcase
 
 import pytest
@@ -106,9 +107,29 @@ def test_what_is_not_a_part_of_an_action_is_left_as_it_is(role: str, kind: str, 
 
 @given(EXPRESSIONS, NAMES)
 def test_covers_agrees_with_fnmatch_on_names(pattern: str, name: str) -> None:
+    """But for ranges that run backwards, of which Python's makes something else."""
     if "[^" not in pattern and not is_pattern(name):
-        assert covers(pattern, name) == fnmatchcase(name, pattern)
         assert matcher(pattern)(name) == covers(pattern, name)
+        if not any(low > high for low, high in re.findall(r"(?s)(?=(.)-(.))", pattern)):
+            assert covers(pattern, name) == fnmatchcase(name, pattern)
+
+
+@pytest.mark.parametrize(
+    ("pattern", "covered", "others"),
+    [("/[b-a!x]", ("/!", "/x"), ("/a", "/b", "/y")), ("/[\\-[!a]", ("/!", "/a"), ("/b", "/["))],
+)
+def test_a_range_that_runs_backwards_has_nothing(
+    pattern: str, covered: tuple[str, ...], others: tuple[str, ...]
+) -> None:
+    """Found by fuzzing: Python's ``fnmatch`` takes the range out and then negates what is left."""
+    assert all(covers(pattern, name) and overlaps(pattern, name) for name in covered)
+    assert not any(covers(pattern, name) or overlaps(pattern, name) for name in others)
+
+
+@given(EXPRESSIONS, NAMES)
+def test_what_covers_a_name_overlaps_it(pattern: str, name: str) -> None:
+    if not is_pattern(name):
+        assert covers(pattern, name) == overlaps(pattern, name) == overlaps(name, pattern)
 
 
 def test_a_caret_negates_as_it_does_in_glibc() -> None:
