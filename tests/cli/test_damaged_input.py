@@ -128,11 +128,12 @@ def refused_as(cli: Cli, folder: Path, reader: str, said: str, data: bytes) -> N
 @pytest.mark.parametrize("reader", one_in(5, READERS))
 @pytest.mark.parametrize(("data", "said"), BYTES, ids=[said for _, said in BYTES])
 def test_what_is_no_document_is_refused(cli: Cli, folder: Path, reader: str, data: bytes, said: str) -> None:
-    if reader.startswith("diff") and not data.strip():
-        pytest.skip("an empty file is taken for a policy there")
-    if reader.startswith("diff") and b'"rosprivacy.analysis/' not in data:
-        pytest.skip("no analysis by its first lines: it is read as a fleet file there")
-    refused_as(cli, folder, reader, said, data)
+    if reader.startswith("diff") and b'"rosprivacy.analysis/' not in data:  # a policy or a fleet file, by its beginning
+        (folder / "bad.json").write_bytes(data)
+        lines = refused(cli(*READERS[reader], cwd=folder))
+        assert all(line.startswith("bad.json:") for line in lines)
+    else:
+        refused_as(cli, folder, reader, said, data)
 
 
 @pytest.mark.parametrize("cli", ["here"], indirect=True)  # there are many
