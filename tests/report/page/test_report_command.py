@@ -119,7 +119,7 @@ def test_a_report_that_is_written_is_no_failure_whatever_it_says() -> None:
     [
         ([], b"name at least one policy"),
         (["--from-database", *SYSTEM], b"takes what is in the database"),
-        ([*SYSTEM, "--since", "missing.json"], b"missing.json: is not a file; give what"),
+        ([*SYSTEM, "--since", "missing.json"], b"missing.json: not found; give what"),
         ([*SYSTEM, "--lang", "xx"], b"xx"),
     ],
 )
