@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
     from types import FrameType, TracebackType
 
-LINE = re.compile(r".+:\d+: .+; .+")  # file:line: what is wrong; what to do
+LINE = re.compile(r".+?(:\d+)?: .+; .+")  # file:line: what is wrong; what to do. In JSON a place stands for the line.
 SECRET = "outside_the_root"  # noqa: S105 - the name of a topic
 IN_OPEN = 0x20
 EVENT = struct.Struct("iIII")
