@@ -36,7 +36,8 @@ class Behind:
     closes, leaks
         How many other open elements, and how many leaks, data gets to past this one only, at least.
     waits
-        Whether it is a channel from which data gets to no other open element but channels, and to no leak.
+        Whether it is a channel from which data gets to no other open element but channels, to no leak, and to nothing
+        else that a finding ends at.
     """
 
     through: Element | None = None
@@ -70,10 +71,11 @@ def review_order(analysis: Analysis) -> dict[Shown, Behind]:
             following[flow.source].append(flow.target)
     following[START] = [vertex for vertex in range(len(elements)) if spread.begins(vertex)]
     reached = _reached(following)
-    open_at = [vertex for vertex in reached if elements[vertex].shown_as in asked]
+    open_at = dict.fromkeys(vertex for vertex in reached if elements[vertex].shown_as in asked)
     through = _through(spread, {vertex: asked[elements[vertex].shown_as] for vertex in open_at}, reached)
     leaks = {vertex for vertex, bits in spread.leaks.items() if bits & spread.present(vertex)}
-    wanted = leaks.union(vertex for vertex in open_at if not elements[vertex].is_channel)
+    ends = {finding.leak for finding in analysis.findings}  # storages and third countries too (rule S10)
+    wanted = leaks.union(v for v in reached if elements[v] in ends or (v in open_at and not elements[v].is_channel))
     going_on = _reaching(following, wanted)
     below = _below(following, {elements[v].shown_as: v for v in reversed(open_at)}.values(), leaks)
     result: dict[Shown, Behind] = {}

@@ -147,7 +147,7 @@ FACTS = {
     "pseudonymised": Fact(pseudonymised, dict.fromkeys((name for name in FORMATS if name != "json"), same)),
     "a method that is not stated": Fact(without_method, MEASURE),
     "a retention that is not stated": Fact(
-        no_retention, {"turtle": lambda category: f"keeps {category} is not stated"}
+        no_retention, {"turtle": lambda category: f"keeps {category}; for how long is not stated"}
     ),
 }
 

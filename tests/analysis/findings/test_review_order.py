@@ -9,7 +9,8 @@ from hypothesis import assume, given
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.findings.findings import analyse
 from rosprivacy.analysis.findings.review_order import review_order
-from rosprivacy.analysis.model import Bound, Method, Place, Statement
+from rosprivacy.analysis.model import Bound, Element, Flow, FlowGraph, Method, NonRosFacts, Place, Statement
+from rosprivacy.analysis.non_ros import by_kind
 from tests.helpers.systems import HIERARCHY, System, systems
 
 EVERY = Statement("sanitizer", (), (99, 99), Place("more", 1), Method.DROP)
@@ -46,6 +47,17 @@ def test_what_is_only_past_an_element_vanishes_with_it_and_data_comes_from_where
         if behind.waits:
             assert {q.element.shown_as for q in before.open if not q.element.is_channel} <= left
             assert [f.id for f in after.findings] == [f.id for f in before.findings]
+
+
+def test_a_channel_before_a_storage_that_keeps_too_long_cannot_wait() -> None:
+    """Found by random systems: only leaks were asked for, and a storage without a retention is a finding too (S10)."""
+    elements = (Element("node", "/camera"), Element("storage", "disk"), Element("topic", "/video"))
+    flows = (Flow(0, 2, "publish"), Flow(2, 1, "flow"))
+    said = {0: (Statement("source", ("Any",), (1, 0), Place("labels", 1)),), 1: by_kind(elements[1])}
+    bound = Bound(said, outside={1: NonRosFacts(country="DE", area="eea")})
+    analysis = analyse(FlowGraph(elements, flows, (), ()), bound, HIERARCHY)
+    assert [finding.kind for finding in analysis.findings] == ["storage-limitation"]
+    assert not review_order(analysis)[elements[2].shown_as].waits
 
 
 def replace_elements(bound: Bound, elements: dict[int, tuple[Statement, ...]]) -> Bound:
