@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.model import ARTICLE_9, ARTICLE_10, MAY_REVEAL, SPECIAL, THIRD_COUNTRY
+from rosprivacy.analysis.model import ARTICLE_10, MAY_REVEAL, SPECIAL, THIRD_COUNTRY, is_article_9
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -90,7 +90,7 @@ def _any(stated: Sequence[str], *articles: str) -> bool:
 
 def _article9(category: str, law: Verdicts) -> Iterator[Gap]:
     """At most one: the provision under which it can fall itself, or else one of which it may reveal something."""
-    special = [(name, verdict) for name, verdict in law if name == ARTICLE_9 or name.startswith(f"{ARTICLE_9} ")]
+    special = [(name, verdict) for name, verdict in law if is_article_9(name)]
     for verdicts, lack in ((SPECIAL, Lack.ARTICLE_9), ((MAY_REVEAL,), Lack.REVEALS)):
         provision = next((name for name, verdict in special if verdict in verdicts), "")
         if provision:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from rdflib import DCTERMS, RDF, RDFS, SKOS
 
-from rosprivacy.ontology.turtle import ENGLISH, RP, read
+from rosprivacy.ontology.turtle import ENGLISH, RP, first_texts, read
 
 if TYPE_CHECKING:
     from rdflib import Graph
@@ -76,5 +76,5 @@ def is_old(as_of: str, today: str) -> bool:
 
 
 def _text(graph: Graph, subject: Node, predicate: Node, language: str) -> str:
-    texts = {getattr(text, "language", None): str(text) for text in graph.objects(subject, predicate)}
+    texts = first_texts(graph, subject, predicate)
     return texts.get(language) or texts.get(ENGLISH, "")

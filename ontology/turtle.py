@@ -94,7 +94,8 @@ def _texts(graph: Graph, subject: Node, predicate: Node) -> dict[str, list[str]]
     return found
 
 
-def _first(graph: Graph, subject: Node, predicate: Node) -> dict[str, str]:
+def first_texts(graph: Graph, subject: Node, predicate: Node) -> dict[str, str]:
+    """Return language -> the first text in it; one without a language counts as English."""
     return {language: values[0] for language, values in _texts(graph, subject, predicate).items()}
 
 
@@ -108,8 +109,8 @@ def _translated(**texts: dict[str, str]) -> dict[str, dict[str, str]]:
 
 
 def _category(graph: Graph, subject: Node, ours: set[Node], same: dict[Node, str]) -> Category:
-    title, definition = _first(graph, subject, SKOS.prefLabel), _first(graph, subject, SKOS.definition)
-    reason = _first(graph, subject, RP.reason)
+    title, definition = first_texts(graph, subject, SKOS.prefLabel), first_texts(graph, subject, SKOS.definition)
+    reason = first_texts(graph, subject, RP.reason)
     parents = set(graph.objects(subject, SKOS.broader))
     broader = {local_name(str(up)) for up in parents if up in ours}
     broader |= {same[up] for up in parents if up in same}
@@ -119,7 +120,7 @@ def _category(graph: Graph, subject: Node, ours: set[Node], same: dict[Node, str
     return Category(
         name=own,
         iri=str(subject),
-        label=_first(graph, subject, RP.label).get(ENGLISH, ""),
+        label=first_texts(graph, subject, RP.label).get(ENGLISH, ""),
         title=title.get(ENGLISH, ""),
         definition=definition.get(ENGLISH, ""),
         broader=tuple(sorted(broader - {own})),
@@ -130,7 +131,7 @@ def _category(graph: Graph, subject: Node, ours: set[Node], same: dict[Node, str
         gdpr="" if gdpr is None else _identifier(graph, gdpr),
         same_as=tuple(sorted(str(other) for other in graph.objects(subject, SKOS.exactMatch))),
         within=tuple(sorted(str(up) for up in parents if up not in ours)),
-        note=_first(graph, subject, SKOS.note).get(ENGLISH, ""),
+        note=first_texts(graph, subject, SKOS.note).get(ENGLISH, ""),
         translations=_translated(
             title=title, definition=definition, reason=reason, gdpr={} if gdpr is None else _cited(graph, gdpr)
         ),
@@ -142,7 +143,7 @@ def _law(graph: Graph, subject: Node, own: str) -> Iterator[Legal]:
         provision = graph.value(link, RP.provision)
         if provision is None:
             continue
-        meaning, condition = _first(graph, provision, SKOS.definition), _first(graph, link, RP.condition)
+        meaning, condition = first_texts(graph, provision, SKOS.definition), first_texts(graph, link, RP.condition)
         sources = sorted(graph.objects(link, RP.source), key=lambda source: _identifier(graph, source))
         yield Legal(
             iri=str(provision),
@@ -164,7 +165,10 @@ def _law(graph: Graph, subject: Node, own: str) -> Iterator[Legal]:
 
 def _cited(graph: Graph, provision: Node) -> dict[str, str]:
     """How a provision is cited in each language; an article with what it is about."""
-    citations, titles = _first(graph, provision, DCTERMS.bibliographicCitation), _first(graph, provision, DCTERMS.title)
+    citations, titles = (
+        first_texts(graph, provision, DCTERMS.bibliographicCitation),
+        first_texts(graph, provision, DCTERMS.title),
+    )
     article = str(graph.value(provision, RP.kind)) == "article"
     return {
         language: f"{cited} ({titles[language]})" if article and language in titles else cited

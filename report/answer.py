@@ -98,6 +98,12 @@ class Answer:
         """
         return {element.identity: dict(_stated(facts)) for element, facts in self.analysis.outside.items()}
 
+    @property
+    def subjects(self) -> dict[tuple[str, str, str], tuple[str, ...]]:
+        """Whom the data of a source are about, as labels name them: (robot, kind, name) -> groups of persons."""
+        elements = self.analysis.graph.elements
+        return {elements[vertex].identity: groups for vertex, groups in self.bound.subjects.items()}
+
     def retention(self, element: Element, category: str) -> str:
         """Return how long an element keeps a category, with its backups; empty where nobody states it (rule S9)."""
         facts = self.analysis.outside.get(element)

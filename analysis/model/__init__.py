@@ -14,6 +14,7 @@ from rosprivacy.analysis.model.category import (
     THIRD_COUNTRY,
     Category,
     Legal,
+    is_article_9,
 )
 from rosprivacy.analysis.model.diagnostic import (
     CAREFUL_DENY,
@@ -109,5 +110,6 @@ __all__ = [
     "Severity",
     "Statement",
     "UnknownEnd",
+    "is_article_9",
     "unread",
 ]

@@ -14,6 +14,15 @@ SPECIAL, MAY_REVEAL = ("always", "conditional"), "may-reveal"
 ARTICLE_9_VERDICTS = (*SPECIAL, MAY_REVEAL, "no", "unknown")
 
 
+def is_article_9(provision: str) -> bool:
+    """Return whether a provision is Article 9(1) GDPR, or one of the kinds of data that it names.
+
+    >>> is_article_9("GDPR Art. 9(1) biometric data"), is_article_9("GDPR Art. 10")
+    (True, False)
+    """
+    return provision == ARTICLE_9 or provision.startswith(f"{ARTICLE_9} ")
+
+
 @dataclass(frozen=True, slots=True)
 class Legal:
     """That data of a category can be what a provision speaks of.
@@ -49,7 +58,7 @@ class Legal:
     @property
     def special(self) -> bool:
         """Whether it is Article 9(1) GDPR."""
-        return self.name == ARTICLE_9 or self.name.startswith(f"{ARTICLE_9} ")
+        return is_article_9(self.name)
 
     def text(self, what: str, language: str) -> str:
         """Return its ``meaning``, ``condition`` or ``name`` in a language, in English if there is no translation."""

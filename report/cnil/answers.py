@@ -80,7 +80,11 @@ class Known:
     def storages_of(self, category: str) -> list[Element]:
         """Return the storages that data of the category itself get to."""
         here = (c for c in self.analysis.carried if category in (*c.categories, *c.pseudonymised))
-        return [carried.element for carried in here if carried.element.kind == "storage"]
+        return _storages(carried.element for carried in here)
+
+    def storages(self) -> list[Element]:
+        """Return the storages that personal data get to."""
+        return _storages(carried.element for carried in self.analysis.carried)
 
     def findings(self) -> list[Finding]:
         """Return what is to be assessed, by kind of data."""
@@ -231,8 +235,7 @@ def threats(known: Known) -> list[str]:
     if known.analysis.open:
         unreviewed = count_elements(question.element for question in known.analysis.open).elements
         said.append(f"{counted(unreviewed, 'element')} reached by personal data and not reviewed")
-    stored = [carried.element for carried in known.analysis.carried if carried.element.kind == "storage"]
-    open_to_all = [element for element in stored if known.of(element, "encrypted") == "no"]
+    open_to_all = [element for element in known.storages() if known.of(element, "encrypted") == "no"]
     said += [harmless(f"data at rest not encrypted: {_name(element)}") for element in open_to_all[:THREATS]]
     return said
 

@@ -58,9 +58,7 @@ def cnil_pia(answer: Answer, created: str) -> dict[str, Any]:
     view, vocabulary, assumptions = answer.fleet, answer.vocabulary, answer.assumptions
     analysis = _of_shown_robots(answer.shown, view) if view else answer.shown
     kinds = kinds_of(analysis, vocabulary.categories, vocabulary.hierarchy)
-    elements = answer.analysis.graph.elements
-    subjects = {elements[vertex].identity: groups for vertex, groups in answer.bound.subjects.items()}
-    known = Known(analysis, kinds, answer.stated, answer.accepted, subjects, answer.retention)
+    known = Known(analysis, kinds, answer.stated, answer.accepted, answer.subjects, answer.retention)
     measures = list(_measures(known))
     note = _note(analysis, assumptions, robots.note(view) if view else "")
     texts = {
@@ -153,8 +151,7 @@ def _measures(known: Known) -> Iterator[tuple[str, Html]]:
         if done:
             still = [] if method.ends else [paragraph(Html("The data is still personal (GDPR, recital 26)."))]
             yield title, joined(_rows(done), *still)
-    storages = [carried.element for carried in known.analysis.carried if carried.element.kind == "storage"]
-    encrypted = [element.name for element in storages if known.of(element, "encrypted") == "yes"]
+    encrypted = [element.name for element in known.storages() if known.of(element, "encrypted") == "yes"]
     if encrypted:
         yield STORAGE, _rows([joined(escaped(name), Html(": encrypted at rest, as stated")) for name in encrypted])
 

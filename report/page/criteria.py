@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import SPECIAL
 from rosprivacy.report.page.entries_of_robots import weight
-from rosprivacy.report.page.index import REVEALS
+from rosprivacy.report.page.index import REVEALS, strength
 
 if TYPE_CHECKING:
     from rosprivacy.report.page.index import Index
@@ -63,16 +63,12 @@ def _observes(index: Index) -> str:
 
 def _special(index: Index) -> str:
     """Special categories, data of Article 10, and what is highly personal all the same, as WP 248 lists them."""
-    special, reveals, personal = [], [], []
-    for name, category in index.categories.items():
-        verdicts = {legal["verdict"] for legal in category["law"]} | {category["article9"]}
-        if verdicts.intersection(SPECIAL):
-            special.append(name)
-        elif verdicts.intersection(REVEALS):
-            reveals.append(name)
-        if PERSONAL.intersection(index.upwards(name)):
-            personal.append(name)
-    groups = {"w.special": special, "w.reveals": reveals, "w.personal": personal}
+    kinds = index.categories.items()
+    groups = {
+        "w.special": [name for name, category in kinds if strength(category) == SPECIAL],
+        "w.reveals": [name for name, category in kinds if strength(category) == REVEALS],
+        "w.personal": [name for name in index.categories if PERSONAL.intersection(index.upwards(name))],
+    }
     said = [index.words(key, names=index.all_data(names)) for key, names in groups.items() if names]
     return "; ".join(said) or (index.words("w.none") if index.categories else "")
 

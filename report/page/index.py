@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.model import MAY_REVEAL
+from rosprivacy.analysis.model import MAY_REVEAL, SPECIAL
 from rosprivacy.analysis.text import fit
 from rosprivacy.report.naming import key, text
 from rosprivacy.report.page.entries_of_robots import names_of
@@ -120,6 +120,15 @@ class Index:
     def names(self, elements: Iterable[Mapping[str, Any]]) -> tuple[str, ...]:
         """Return the names of elements, each once; one that several robots have, with their number."""
         return names_of(elements, self.words, self.alike)
+
+
+def strength(row: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return how far data of a finding or a category can be special, under Article 9 or 10.
+
+    ``SPECIAL``, or else ``REVEALS``, or neither.
+    """
+    verdicts = {legal["verdict"] for legal in row["law"]} | {row["article9"]}
+    return next((some for some in (SPECIAL, REVEALS) if verdicts.intersection(some)), ())
 
 
 def state(finding: Mapping[str, Any]) -> str:

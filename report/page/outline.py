@@ -22,7 +22,7 @@ from rosprivacy.report.page.criteria import Criterion, criteria
 from rosprivacy.report.page.decision_texts import Decision, orphans
 from rosprivacy.report.page.finding_entries import Entry, finding_entries
 from rosprivacy.report.page.fleet_section import Fleet, fleet_told
-from rosprivacy.report.page.index import REVEALS, Index
+from rosprivacy.report.page.index import REVEALS, Index, strength
 from rosprivacy.report.page.kinds import Kind, kinds
 from rosprivacy.report.page.non_ros import Outside, outside
 from rosprivacy.report.page.review import Group, review, unknown_ends
@@ -251,21 +251,15 @@ def _numbers(index: Index) -> Iterator[tuple[int, str]]:
     if index.alike:
         yield len(index.robots()), words("n.robots")
     yield len(to_assess), words("n.ways")
-    strength = Counter(_strongest(finding) for finding in to_assess)
-    yield strength[SPECIAL], words("n.special")
-    yield strength[REVEALS], words("n.reveals")
+    strengths = Counter(map(strength, to_assess))
+    yield strengths[SPECIAL], words("n.special")
+    yield strengths[REVEALS], words("n.reveals")
     yield len({tuple(finding["leak"].items()) for finding in to_assess}), words("n.recipients")
     yield count_rows(index.document["open"]).elements, words("n.open")
     for what in ("accepted", "dismissed"):
         number = sum(bool(finding.get(what)) for finding in index.findings)
         if number:
             yield number, words(f"n.{what}")
-
-
-def _strongest(finding: Mapping[str, Any]) -> tuple[str, ...]:
-    """How far its data can be special: ``SPECIAL``, ``REVEALS``, or neither, under Article 9 or 10."""
-    verdicts = {legal["verdict"] for legal in finding["law"]} | {finding["article9"]}
-    return next((some for some in (SPECIAL, REVEALS) if verdicts.intersection(some)), ())
 
 
 def _changed(differ: Changes, earlier: Earlier, entries: tuple[Entry, ...], index: Index) -> Changed:

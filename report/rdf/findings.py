@@ -79,9 +79,7 @@ def rdf_graph(answer: Answer, when: datetime | None = None) -> Graph:
     Takes time linear in the hops of all witnesses and paths.
     """
     analysis, told = answer.shown, document(answer)
-    elements = answer.analysis.graph.elements
-    subjects = {elements[vertex].identity: groups for vertex, groups in answer.bound.subjects.items()}
-    things = Things(answer.vocabulary, by_path(told["assumptions"]), answer.stated, subjects)
+    things = Things(answer.vocabulary, by_path(told["assumptions"]), answer.stated, answer.subjects)
     findings = _Findings.of(answer, analysis, things)
     graph = Graph(bind_namespaces="none")
     for prefix, namespace in PREFIXES.items():

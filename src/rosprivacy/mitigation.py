@@ -86,9 +86,8 @@ def run_mitigation(
     graph, view = result.analysis.graph, result.analysis.graph.view
     limits = read_limits(limits_file, graph, bounds) if limits_file else Limits()
     notes: tuple[str, ...] = ()
-    if (
-        DENY in kinds and build(result.policies, view, bounds) != graph
-    ):  # what else is in it would be lost when built anew
+    # What else is in the graph would be lost when built anew.
+    if DENY in kinds and build(result.policies, view, bounds) != graph:
         kinds = set(kinds) - {DENY}
         notes = ("no line is proposed for DENY: the graph holds more than the policies say",)
     limits = replace(limits, kinds=limits.kinds & set(kinds))

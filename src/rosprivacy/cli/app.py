@@ -83,9 +83,9 @@ def main() -> None:
         except RosPrivacyError as error:
             _end(str(error), error.exit_code)
         except Exception as error:  # noqa: BLE001 - whatever it is, it is an error of our own
-            from rosprivacy.cli.own_error import told
+            from rosprivacy.cli.own_error import confessed
 
-            _end(told(error), OWN_ERROR)
+            _end(confessed(error), OWN_ERROR)
 
 
 def _end(said: str, code: int) -> NoReturn:

@@ -24,7 +24,7 @@ PACKAGE = Path(__file__).resolve().parent.parent
 NAMED = 3  # files that are named
 
 
-def told(error: BaseException) -> str:
+def confessed(error: BaseException) -> str:
     """Write down where the program failed; return the line that says so.
 
     Where no file can be written, the line alone has to do.

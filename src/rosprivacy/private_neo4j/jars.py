@@ -107,15 +107,8 @@ def _remembered(listing: Path) -> list[Path]:
             return []
         jars = {Path(jar): tuple(stamp) for jar, stamp in known["jars"].items()}
         return list(jars) if all(_stamp(jar) == stamp for jar, stamp in jars.items()) else []
-    except (
-        OSError,
-        ValueError,
-        KeyError,
-        TypeError,
-        AttributeError,
-        RecursionError,
-    ):  # none yet, or not as we wrote it
-        return []
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        return []  # none yet, or not as we wrote it
 
 
 def _version_of_list() -> str:
