@@ -9,10 +9,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import StrEnum
-from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import DecisionError
+from rosprivacy.analysis.expressions import regex
 from rosprivacy.analysis.legal_bases import gaps
 from rosprivacy.analysis.model import Diagnostic, Place, Severity
 from rosprivacy.analysis.written_names import is_glob, meant
@@ -168,7 +168,7 @@ class Decision:
 def _covers(written: str, name: str) -> bool:
     """Nothing written covers every name."""
     if is_glob(written):
-        return fnmatchcase(name, written.replace("[^", "[!"))
+        return regex(written).match(name) is not None
     return not written or meant(written) == name
 
 

@@ -33,7 +33,7 @@ SQUARE = {
     "queries/unknown_names.py:_EARLIER": (MESSAGE, "a message of the server"),
     "queries/unknown_names.py:_NAMED": (MESSAGE, "a message of the server"),
 }
-GLOBS = "ingest/policies/expressions.py:regex"  # made of a stranger's glob, with groups that JavaScript does not have
+GLOBS = "analysis/expressions.py:regex"  # made of a stranger's glob, with groups that JavaScript does not have
 SECONDS = 5.0  # of one core; the worst takes a tenth of it
 
 

@@ -10,12 +10,12 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from rosprivacy.ingest.policies.expressions import LAST_CHARACTER, tokens
+from rosprivacy.analysis.expressions import LAST_CHARACTER, tokens
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from rosprivacy.ingest.policies.expressions import Token
+    from rosprivacy.analysis.expressions import Token
 
 LARGEST_SEARCH = 4_096  # sets of states; beyond, the careful answer: a name is left
 MOST_STEPS = 10_000_000  # of one search, for the same reason

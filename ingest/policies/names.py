@@ -16,8 +16,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.expressions import have_common_name, holds, regex, tokens
 from rosprivacy.analysis.written_names import GLOB_SIGNS, is_glob, meant
-from rosprivacy.ingest.policies.expressions import have_common_name, holds, regex, tokens
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection

@@ -102,6 +102,13 @@ def test_an_expired_decision_about_a_finding_is_not_replaced_by_one_about_more()
     assert decisions(entries[0]).accepts(case())
 
 
+def test_a_range_that_runs_backwards_accepts_nothing_more() -> None:
+    """As in policies and labels: Python's ``fnmatch`` reads ``[d-c!x]loud`` as ``[!x]loud``."""
+    signed = "decision: accept"
+    assert not decisions(f"leak: '/[d-c!x]loud', {signed}").accepts(case())
+    assert decisions(f"leak: '/[c!x]loud', {signed}").accepts(case())
+
+
 def test_decisions_of_one_rank_that_differ_accept_nothing() -> None:
     found = decisions("leak: /cloud, decision: accept", "source: /camera, decision: mitigate")
     assert found.on(case()) is None
