@@ -15,7 +15,7 @@ import pytest
 import rosprivacy
 from rosprivacy.formats import FORMATS, Style, written
 from rosprivacy.private_neo4j import connection
-from rosprivacy.report.page.words import Words
+from rosprivacy.report.words.words import Words
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from rosprivacy.cli.inputs import Inputs, reads_system
-from rosprivacy.cli.options import Output
+from rosprivacy.cli.options import Language, Output
 from rosprivacy.cli.output import emit, not_for_a_terminal
 
 
@@ -21,13 +21,6 @@ class ReportFormat(StrEnum):
     article30 = "article30"
 
 
-class ReportLanguage(StrEnum):
-    """Of the report."""
-
-    en = "en"
-    de = "de"
-
-
 @reads_system()
 def report(
     inputs: Inputs,
@@ -36,7 +29,7 @@ def report(
         typer.Option("--format", "-f", help="A page, a text, or rows for the record of processing (Article 30 GDPR)."),
     ] = ReportFormat.html,
     output: Output = None,
-    lang: Annotated[ReportLanguage, typer.Option(help="Language of the report.")] = ReportLanguage.en,
+    lang: Annotated[Language, typer.Option(help="Language of the report.")] = Language.en,
     title: Annotated[
         str, typer.Option(metavar="TEXT", show_default=False, help="Name of the system; by default its policy files.")
     ] = "",
