@@ -78,6 +78,7 @@ class Result(Answer):
         title: str = "",
         since: str | None = None,
         redact: bool = False,
+        base: str | None = None,
     ) -> str:
         """Return the answer in a format, as the command line writes it.
 
@@ -91,11 +92,13 @@ class Result(Answer):
             Of a report: ``en`` or ``de``; name of the system; replace names of elements, files, robots and persons.
         since
             File of an earlier analysis, to tell what changed.
+        base
+            Of linked data: what the IRIs of elements and findings begin with; by default a UUID of the system.
 
         Raises
         ------
         InputError
-            If there is no such format, or the earlier file cannot be read.
+            If there is no such format, the earlier file cannot be read, or the base is no IRI.
 
         Examples
         --------
@@ -104,7 +107,9 @@ class Result(Answer):
         >>> print(result.to("text", quiet=True), end="")
         no-leak-found: no way to a leak, everything on the way is reviewed
         """
-        style = Style(verbose=verbose, quiet=quiet, language=language, title=title, since=since, redact=redact)
+        style = Style(
+            verbose=verbose, quiet=quiet, language=language, title=title, since=since, redact=redact, base=base
+        )
         return written(self, format, style)
 
     def to_networkx(self) -> nx.MultiDiGraph[Element]:
