@@ -68,13 +68,14 @@ class Opening:
     said
         What is there, by name, and what is not known.
     rows
-        The first of them; ``more`` tells how many others there are.
+        The first of them, ``count`` in all; ``more`` tells how many others there are.
     """
 
     headline: str
     said: tuple[str, ...]
-    rows: tuple[ToDecide, ...]
-    more: str
+    rows: tuple[ToDecide, ...] = ()
+    count: int = 0
+    more: str = ""
 
 
 def opening(index: Index, entries: Iterable[Entry], verdict: str, means: str) -> Opening:
@@ -93,11 +94,11 @@ def opening(index: Index, entries: Iterable[Entry], verdict: str, means: str) ->
     rows.sort(key=lambda row: not row.waits)
     waiting = sum(row.waits for row in rows)
     if not rows:
-        return Opening(verdict, (means, *_first_to_review(index)), (), "")
+        return Opening(verdict, (means, *_first_to_review(index)))
     headline = words.count(waiting, "b.decide") if waiting else words.count(len(rows), "b.carry")
     said = [_can(rows, index), *([words.count(len(rows) - waiting, "b.decided")] if 0 < waiting < len(rows) else [])]
     more = words("b.more", n=len(rows) - MOST) if len(rows) > MOST else ""
-    return Opening(headline, (*said, *_unreviewed(index)), tuple(rows[:MOST]), more)
+    return Opening(headline, (*said, *_unreviewed(index)), tuple(rows[:MOST]), len(rows), more)
 
 
 def _flow(entry: Entry) -> Any:
