@@ -8,13 +8,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.text import fit, printable
+from rosprivacy.analysis.text import fit
 from rosprivacy.report.finding_order import in_order
 from rosprivacy.report.naming import key, line, name
 from rosprivacy.report.page.decision_texts import Decision, decision_of
 from rosprivacy.report.page.entries_of_robots import finding_pattern, grouped
 from rosprivacy.report.page.index import anchor, state
 from rosprivacy.report.robots import forms_in_words
+from rosprivacy.report.words.reasons import reason_told
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -192,7 +193,7 @@ def _spread(finding: Mapping[str, Any], robots: tuple[str, ...], index: Index) -
         return words("f.fleet.none")
     said = [words("f.fleet", n=len(robots), all=words.count(len(index.robots()), "ofrobots"))]
     said += [words("f.fleet.across", n=pattern["findings"])] if pattern["across"] else []
-    said += [f"{words.count(len(some), 'robot')}: {form}." for some, form in _forms(pattern, index)]
+    said += [words.pair(words.count(len(some), "robot"), f"{form}.") for some, form in _forms(pattern, index)]
     return " ".join(said)
 
 
@@ -240,8 +241,8 @@ def _sentence(finding: Mapping[str, Any], index: Index) -> str:
 
 def _notes(finding: Mapping[str, Any], index: Index) -> Iterator[str]:
     words = index.words
-    if finding.get("reason"):
-        yield f"{words('f.reason')}: {printable(finding['reason'])}"
+    if reason := reason_told(finding, words, index.data):
+        yield words("f.because", reason=reason)
     if finding["dismissed"]:
         yield words("f.dismissed", names=words.row(map(name, finding["through"])))
     if finding.get("beside_pseudonymised"):
