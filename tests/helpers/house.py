@@ -62,6 +62,7 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "sarif": {""},
         "cnil": {"", "words"},
         "rdf": {"", "document"},
+        "docx": set(),
     },
     "rosprivacy": {
         "": set(),
