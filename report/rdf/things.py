@@ -149,6 +149,7 @@ def _category(category: Category, broader: list[URIRef]) -> list[Triple]:
         (RDF.type, [SKOS.Concept]),
         (SKOS.prefLabel, [text(category.title, "en")]),
         (SKOS.definition, [text(category.definition, "en")]),
+        (RP.identityFactor, map(text, category.identity_factors)),
         (SKOS.broader, [*broader, *(foreign(iri) for iri in category.within)]),
         (SKOS.exactMatch, [foreign(iri) for iri in category.same_as]),
     )

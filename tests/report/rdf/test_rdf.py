@@ -407,8 +407,8 @@ class TestShapesCanFail:
             if not problems(changed):
                 accepted.append(re.split("[:#]", str(predicate))[-1])
         assert sorted(accepted) == [  # what a finding, a hop, a category can be without
-            "broader", "conduitOf", "derivationOf", "diagnostic", "exactMatch", "fallsUnder", "followed", "inFile",
-            "leakOf", "leg", "path", "sanitizerOf", "sourceOf", "used",
+            "broader", "conduitOf", "derivationOf", "diagnostic", "exactMatch", "fallsUnder", "followed", "identityFactor",
+            "inFile", "leakOf", "leg", "path", "sanitizerOf", "sourceOf", "used",
         ]  # fmt: skip
 
     @pytest.mark.parametrize(
