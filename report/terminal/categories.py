@@ -42,7 +42,7 @@ WORDS = {
     },
     "fr": {
         "definition": "Définition", "names": "Aussi", "broader": "Plus large", "narrower": "Plus étroit",
-        "label": "Label Neo4j", "data": "Types de données", "factors": "Facteurs d'identité", "gdpr": "RGPD",
+        "label": "Label Neo4j", "data": "Types de données", "factors": "Éléments d'identité", "gdpr": "RGPD",
         "article9": "article 9, paragraphe 1",
         "article10": "article 10", "law": "Droit", "because": "car", "source": "source", "stated": "indiqué pour",
         "as of": "état du droit", "same": "Identique à", "within": "Partie de", "note": "Remarque",
