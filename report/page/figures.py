@@ -8,13 +8,13 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.text import printable
 from rosprivacy.report.page.inline import Inline, Wishes, picture_of_all, pictures_of
 from rosprivacy.report.page.redacted_pictures import renamed
 from rosprivacy.report.pictures.graphviz import available
 from rosprivacy.report.pictures.looks import INK, LINE_LOOKS, ROLE_LOOKS, SHORTEST, WAY, Look
 from rosprivacy.report.pictures.overview import drawable
 from rosprivacy.report.pictures.phrases import TEXTS, Phrases
+from rosprivacy.report.words.typography import plain
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -69,8 +69,8 @@ def figures(
     entries = [entry for entry in report.entries if entry.id in findings]
     words = report.words
     titles = {kind.name: kind.title for kind in report.kinds}
-    say = Phrases({name: words.places(f"p.{name}") for name in TEXTS}, titles)
-    labels = {entry.id: printable(words("f.picture", way=entry.brief)) for entry in entries}
+    say = Phrases({name: plain(words.places(f"p.{name}")) for name in TEXTS}, titles)
+    labels = {entry.id: words("f.picture", way=entry.brief) for entry in entries}
     wishes = Wishes(say=say, labels=labels)
     if aliases is not None:
         wishes = replace(wishes, change=lambda picture: renamed(picture, aliases))
@@ -96,7 +96,7 @@ def _overview(analysis: Analysis, report: Outline, wishes: Wishes) -> tuple[Inli
     shown = [finding for row in rows[:count] for finding in row]
     if not shown:
         return None, 0
-    label = printable(report.words("b.picture"))
+    label = plain(report.words("b.picture"))
     return picture_of_all(analysis, shown, replace(wishes, labels={shown[0].id: label})), count
 
 
