@@ -168,7 +168,6 @@ WORDS = {
     "z.none.fleet": "Änderungen werden für die Policies eines Roboters vorgeschlagen: „rosprivacy mitigate“ mit den Policies und Angaben eines Roboters nennt die günstigsten, durch eine neue Analyse belegt.",
     "z.none.many": "Es sind zu viele Wege, um hier Änderungen vorzuschlagen; „rosprivacy mitigate“ mit den Dateien dieses Berichts nennt die günstigsten, durch eine neue Analyse belegt.",
     "z.none.graph": "Hier kann keine Änderung vorgeschlagen werden: Die Policies hinter diesem Bericht liegen nicht vor.",
-    "z.none.large": "Hier wird keine Änderung vorgeschlagen, weil die Policies über einer Grenze des Programms liegen; „rosprivacy mitigate“ nimmt --bound.",
     "z.nothing": "Keine Änderung, die vorgeschlagen werden kann, beseitigt diese Wege.",
     "z.intro": "Mit {changes} würde geschlossen: {removed}. Das ist keine Entscheidung: Eine Änderung ist Arbeit für eine Person, und es kann andere geben.",
     "z.change.one": "{n} Änderung",

@@ -199,7 +199,6 @@ WORDS = {
         "cheapest ones, proven by a new analysis."
     ),
     "z.none.graph": "No change can be proposed here: the policies behind this report are not at hand.",
-    "z.none.large": "No change is proposed here, since the policies are above a bound of the program; 'rosprivacy mitigate' takes --bound.",
     "z.nothing": "No change that can be proposed removes these paths.",
     "z.intro": "With {changes}, this would be closed: {removed}. That is no decision: a change is work for a person, and there may be others.",
     "z.change.one": "{n} change",

@@ -173,7 +173,6 @@ _TYPED = {
     "z.none.fleet": "Des modifications sont proposées pour les politiques d'un seul robot : « rosprivacy mitigate », avec les politiques et annotations d'un robot, indique les moins coûteuses, vérifiées par une nouvelle analyse.",
     "z.none.many": "Il y a trop de chemins pour proposer ici des modifications ; « rosprivacy mitigate », avec les fichiers de ce rapport, indique les moins coûteuses, vérifiées par une nouvelle analyse.",
     "z.none.graph": "Aucune modification ne peut être proposée ici : les politiques de ce rapport ne sont pas disponibles.",
-    "z.none.large": "Aucune modification n'est proposée ici, car les politiques dépassent une limite du programme ; « rosprivacy mitigate » accepte --bound.",
     "z.nothing": "Aucune modification qui puisse être proposée ne supprime ces chemins.",
     "z.intro": "Avec {changes}, seraient fermés : {removed}. Ce n'est pas une décision : une modification demande le travail d'une personne, et il peut y en avoir d'autres.",
     "z.change.one": "{n} modification",

@@ -170,33 +170,27 @@ def _html(answer: Answer, style: Style) -> str:
 def _outline(answer: Answer, style: Style) -> tuple[Outline, Aliases | None]:
     from rosprivacy.report.page.outline import outline
 
-    told, earlier, proposals, aliases = _told(answer, style, _proposals(answer))
-    made = today(os.environ)
-    more = {"made": made, "earlier": earlier, "redacted": style.redact, "proposals": proposals}
-    return outline(told, style.language, title=style.title or _title(answer, style), **more), aliases
+    told, earlier, proposals, aliases = _told(answer, style, answer.proposals())
+    report = outline(
+        told,
+        style.language,
+        title=style.title or ("" if style.redact else _title(answer, style)),
+        made=today(os.environ),
+        earlier=earlier,
+        redacted=style.redact,
+        proposals=proposals,
+    )
+    return report, aliases
 
 
 def _title(answer: Answer, style: Style) -> str:
-    """The policies that were named, without what they include; empty where that is not known, or names are replaced."""
+    """The policies that were named, without what they include; empty where that is not known."""
     from rosprivacy.analysis.text import fit
     from rosprivacy.report.words.words import Words
-    from rosprivacy.result import Result
 
-    words = Words(style.language)
-    known = isinstance(answer, Result) and not answer.fleet and not style.redact
-    names = [Path(policy.file).name for policy in answer.policies] if known else []
+    words, names = Words(style.language), list(dict.fromkeys(Path(file).name for file in answer.named))
     more = [words("more", n=len(names) - NAMED)] if len(names) > NAMED else []
-    return words.row([*map(fit, dict.fromkeys(names[:NAMED])), *more])
-
-
-def _proposals(answer: Answer) -> Mapping[str, Any] | str:
-    """What closes paths; or why nothing is proposed, see ``page/closing.py``."""
-    from rosprivacy.mitigation import proposed
-    from rosprivacy.result import Result
-
-    if answer.fleet:
-        return "fleet"
-    return proposed(answer) if isinstance(answer, Result) and answer.policies else "graph"
+    return words.row([*map(fit, names[:NAMED]), *more])
 
 
 def _told(

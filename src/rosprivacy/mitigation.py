@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.bounds import BOUNDS
-from rosprivacy.analysis.errors import InputError
 from rosprivacy.analysis.mitigation.limits import CHANGES, DENY, Limits
 from rosprivacy.analysis.mitigation.propose import System, mitigate, open_findings
 from rosprivacy.ingest.labels.binding import join
@@ -113,7 +112,7 @@ def run_mitigation(
 
 
 def proposed(result: Result) -> MitigationDocument | str:
-    """Return what a report proposes, or why it proposes nothing: ``many`` findings, or ``large`` policies.
+    """Return what a report proposes, or ``many`` if there are too many findings.
 
     Notes
     -----
@@ -122,10 +121,7 @@ def proposed(result: Result) -> MitigationDocument | str:
     """
     if len(open_findings(result.analysis)) > REPORTED:
         return "many"
-    try:
-        return run_mitigation(result).document()
-    except InputError:  # the bounds that the answer was made with are not known here
-        return "large"
+    return run_mitigation(result, bounds=result.options.bounds).document()
 
 
 def _denied(proposals: Iterable[Proposal]) -> Iterable[Grant]:
