@@ -24,7 +24,7 @@ KEPT = {
     "pattern", "provision", "pseudonymised", "recipient", "retention", "role", "roles", "rosprivacy", "severity",
     "sha256", "special_basis", "state", "taken_as", "taken_by_kind", "to", "transfer", "unlabelled_channel",
     "unknown", "unlabelled_node",
-    "verdict", "view", "without_limit",
+    "verdict", "view", "what", "without_limit",
 }  # fmt: skip
 MAPS = ("retention", "taken_away_by", "taken_by_kind")  # of kinds of data and kinds of elements, values as they are
 NAMED = {
