@@ -162,9 +162,9 @@ def _name(element: Mapping[str, Any], index: Index, *, many: bool) -> str:
 
 
 def _waits(finding: Mapping[str, Any], index: Index) -> bool:
-    """Whether nobody has decided about it, or the decision is over, or is about some of its robots only."""
+    """Whether nobody has decided about it, or the decision is over, about something else now, or about some robots."""
     said = finding.get("decision")
-    return not said or said["state"] != VALID or bool(_only(finding, index))
+    return not said or said["state"] != VALID or bool(said.get("changed") or _only(finding, index))
 
 
 def _only(finding: Mapping[str, Any], index: Index) -> str:
@@ -217,6 +217,8 @@ def _state(finding: Mapping[str, Any], index: Index) -> str:
     decided = words.known(f"d.{said['choice']}", printable(said["choice"]))
     if only := _only(finding, index):
         decided = words("b.only", decided=decided, robot=fit(only))
+    if said.get("changed"):
+        decided = words("b.changed", decided=decided)
     state = words.known(f"d.state.{said['state']}", printable(said["state"]))
     return decided if said["state"] == VALID else f"{decided}; {state}"
 

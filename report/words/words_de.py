@@ -158,6 +158,7 @@ WORDS = {
     "b.owner": "Zuständig",
     "b.owner.none": "niemand benannt",
     "b.only": "{decided}, nur für {robot}",
+    "b.changed": "{decided}; seither geändert",
     "b.see": "Vollständig",
     "b.dismissed": "{ways} nur über einen dieser Orte; sie stehen unten am Ende ihrer Datenart.",
     "code.leak": "Daten können an einen Austrittspunkt gelangen",

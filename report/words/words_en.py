@@ -183,6 +183,7 @@ WORDS = {
     "b.owner": "Who decides",
     "b.owner.none": "nobody is named",
     "b.only": "{decided}, for {robot} only",
+    "b.changed": "{decided}; changed since",
     "b.see": "In full",
     "b.dismissed": "{ways} lead only through one of these places; they stand below, at the end of their kind.",
     "code.leak": "data can get to a point of exit",

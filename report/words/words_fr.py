@@ -163,6 +163,7 @@ _TYPED = {
     "b.owner": "Qui décide",
     "b.owner.none": "personne n'est nommé",
     "b.only": "{decided}, pour {robot} seulement",
+    "b.changed": "{decided} ; modifié depuis",
     "b.see": "En entier",
     "b.dismissed": "{ways} passent uniquement par l'un de ces endroits ; ils figurent plus bas, à la fin de leur type.",
     "code.leak": "des données peuvent atteindre un point de sortie",
