@@ -7,7 +7,7 @@ nobody stated about an element is taken by its kind: data passes what only holds
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from rosprivacy.analysis.model import (
     NOWHERE,
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.model import Element
 
+T = TypeVar("T")
 INSIDE, ADEQUATE, PARTLY, THIRD = "eea", "adequate", "partly", "third"  # where a country lies, GDPR chapter V
 ADEQUACY = "adequacy"
 TRANSFERS = (  # bases of a transfer: GDPR Article 45, 46(2)(a) to (f), 46(3), 49
@@ -91,7 +92,7 @@ def kept_too_long(facts: NonRosFacts, category: str, hierarchy: Hierarchy) -> st
             return f"no retention is stated for {kind}" if facts.retention else "no retention is stated"
         for duration in kept:
             whole = duration + facts.backups if facts.backups else duration
-            for limit in _nearest(facts.limits, kind, hierarchy):
+            for limit in nearest(facts.limits, kind, hierarchy):
                 if whole.can_be_longer(limit):
                     how = f"{duration} and in backups {facts.backups} more" if facts.backups else duration
                     return f"kept for {how}, which can be longer than the {limit} that {kind} may be kept"
@@ -107,7 +108,7 @@ def limited(facts: NonRosFacts, category: str, hierarchy: Hierarchy) -> bool:
     >>> limited(facts, "FaceTemplate", factory()[2]), limited(facts, "Video", factory()[2])
     (True, False)
     """
-    return bool(_nearest(facts.limits, category, hierarchy))
+    return bool(nearest(facts.limits, category, hierarchy))
 
 
 def retention_of(facts: NonRosFacts, category: str, hierarchy: Hierarchy) -> list[Duration]:
@@ -119,16 +120,21 @@ def retention_of(facts: NonRosFacts, category: str, hierarchy: Hierarchy) -> lis
     >>> [str(*retention_of(facts, name, factory()[2])) for name in ("FaceTemplate", "Video")]
     ['P1D', 'P6M']
     """
-    return _nearest(facts.retention, category, hierarchy)
+    return nearest(facts.retention, category, hierarchy)
 
 
-def _nearest(stated: Iterable[tuple[str, Duration]], category: str, hierarchy: Hierarchy) -> list[Duration]:
-    """The durations stated for the category, or for the nearest broader one."""
+def nearest(stated: Iterable[tuple[str, T]], category: str, hierarchy: Hierarchy) -> list[T]:
+    """Return what is stated of a category, or of the nearest broader one, ``EVERY`` above all.
+
+    >>> from rosprivacy.analysis.example import factory
+    >>> [nearest([(EVERY, 1), ("Biometric", 2)], name, factory()[2]) for name in ("FaceTemplate", "Video")]
+    [[2], [1]]
+    """
     above = hierarchy.ancestors[category]
     everything = {**above, EVERY: len(hierarchy.ancestors)}
-    known = [(everything[name], duration) for name, duration in stated if name in everything]
-    nearest = min((steps for steps, _ in known), default=0)
-    return [duration for steps, duration in known if steps == nearest]
+    known = [(everything[name], value) for name, value in stated if name in everything]
+    fewest = min((steps for steps, _ in known), default=0)
+    return [value for steps, value in known if steps == fewest]
 
 
 def on_day(outside: Mapping[int, NonRosFacts], today: str) -> dict[int, NonRosFacts]:

@@ -14,7 +14,7 @@ from rosprivacy.analysis.fleet.likeness import NO_ROBOTS, pattern_of
 from rosprivacy.clock import judged_on, today
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection
+    from collections.abc import Callable, Collection, Iterable
 
     from rosprivacy.analysis.answer import Analysis, Finding
     from rosprivacy.analysis.decisions import Decided, Decisions
@@ -52,15 +52,19 @@ def joined_to(
     """Join decisions to findings; where only some categories were asked for, none is called orphaned."""
     if decisions is None:
         return None
-    law = {
-        name: tuple((legal.name, legal.verdict) for legal in vocabulary.categories[name].law)
-        for name in analysis.emitted
-    }
+    law = law_of(vocabulary, analysis.emitted)
 
     def case_of(finding: Finding) -> Case:
         return in_fleet(Case.of(finding), likeness)
 
     return decided(decisions, analysis.findings, law, everything=asked is None, case_of=case_of)
+
+
+def law_of(vocabulary: Vocabulary, categories: Iterable[str]) -> dict[str, tuple[tuple[str, str], ...]]:
+    """Return what can apply to data of some categories: (provision, verdict)."""
+    return {
+        name: tuple((legal.name, legal.verdict) for legal in vocabulary.categories[name].law) for name in categories
+    }
 
 
 def accepts(decisions: Decisions | None, likeness: Likeness = NO_ROBOTS) -> Callable[[Case], bool] | None:
