@@ -17,7 +17,7 @@ from typing import Any
 
 from rosprivacy.analysis.model import Category, Legal
 
-FORMAT = 5  # one more when what is kept, or what is refused, changes
+FORMAT = 6  # one more when what is kept, or what is refused, changes
 _TUPLES = ("broader", "synonyms", "data_types", "same_as", "within", "stated_of")
 
 

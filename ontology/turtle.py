@@ -130,7 +130,7 @@ def _category(graph: Graph, subject: Node, ours: set[Node], same: dict[Node, str
         data_types=tuple(sorted(str(value) for value in graph.objects(subject, RP.dataType))),
         gdpr="" if gdpr is None else _identifier(graph, gdpr),
         same_as=tuple(sorted(str(other) for other in graph.objects(subject, SKOS.exactMatch))),
-        within=tuple(sorted(str(up) for up in parents if up not in ours)),
+        within=tuple(sorted({str(up) for up in (parents | set(graph.objects(subject, SKOS.broadMatch))) - ours})),
         note=first_texts(graph, subject, SKOS.note).get(ENGLISH, ""),
         translations=_translated(
             title=title, definition=definition, reason=reason, gdpr={} if gdpr is None else _cited(graph, gdpr)
