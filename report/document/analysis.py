@@ -221,6 +221,7 @@ def _category(category: Category, hierarchy: Hierarchy) -> CategoryEntry:
         "title": category.title,
         "definition": category.definition,
         "data_types": list(category.data_types),
+        "identity_factors": list(category.identity_factors),
         "gdpr": category.gdpr,
         "article9": category.article9,
         "reason": category.reason,

@@ -83,6 +83,7 @@ def test_each_finding_is_told_with_its_way_lines_and_law(language: str) -> None:
 def test_each_assumption_is_told() -> None:
     document = care()
     document["assumptions"] |= {"categories_asked": ["Video"], "article9_only": True, "data_types_asked": ["video"]}
+    document["assumptions"]["identity_factors_asked"] = ["economic"]
     document["assumptions"]["sanitizers_without_method"] = [
         {"element": document["findings"][0]["source"], "category": "Video", "taken_as": "pseudonymise"}
     ]
@@ -94,6 +95,7 @@ def test_each_assumption_is_told() -> None:
         assert "75 standard ROS channels taken to carry no personal data" in text
         assert "only about these kinds of data and narrower ones: Video. Others were not looked at" in text
         assert "only about data of these types: video" in text
+        assert "or of which that is not stated: economic" in text
         assert "only about data that can fall under Article 9(1)" in text
         assert "no label states how. It was taken as pseudonymisation" in text
         assert "Only the GDPR is followed into paths, as the ontology of the program knows it as of 2026-11-21" in text
