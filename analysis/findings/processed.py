@@ -11,11 +11,11 @@ None of it changes a finding: a stated basis is no acceptance.
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.kernel.backward import backward
+from rosprivacy.analysis.kernel.search import Search, present, search
+from rosprivacy.analysis.kernel.states import Net
 from rosprivacy.analysis.legal_bases import GROUPS, gaps, group_of
 from rosprivacy.analysis.model import (
     LEGAL_BASIS,
@@ -29,9 +29,9 @@ from rosprivacy.analysis.model import (
 from rosprivacy.analysis.non_ros import nearest, transferred
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping
 
-    from rosprivacy.analysis.answer import Analysis, Finding
+    from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.legal_bases import Verdicts
     from rosprivacy.analysis.model import Bound, ByCategory, Element, Place, Processing
@@ -75,7 +75,8 @@ def processed(analysis: Analysis, bound: Bound, hierarchy: Hierarchy) -> tuple[P
 
     Notes
     -----
-    Linear in the findings; for an element outside ROS without a finding one search backward for each kind.
+    One search for all sources of which the same is stated, and one for each node that states why it makes a kind of
+    another: O(flows) each. What reaches an end on a fleet is so told of all its robots, not of those in findings alone.
 
     Examples
     --------
@@ -92,7 +93,7 @@ def processed(analysis: Analysis, bound: Bound, hierarchy: Hierarchy) -> tuple[P
     if not bound.processing and not bound.of_robots:
         return ()
     rows = _Rows(analysis, bound, hierarchy)
-    found = [rows.row(vertex, category, origins) for (vertex, category), origins in sorted(rows.ends.items())]
+    found = [rows.row(vertex, category) for vertex, category in sorted(rows.ends())]
     return tuple(row for row in found if row)
 
 
@@ -114,7 +115,7 @@ def lacks(rows: Iterable[Processed], law: Mapping[str, Verdicts]) -> tuple[Diagn
     return tuple(sorted(found, key=lambda said: (said.place.file, said.place.line, said.message)))
 
 
-Origin = tuple[int, int]  # vertex of the source; of the node that makes the kind, or of the source again
+Way = tuple["Processing", ...]  # what is stated on the way to an end, the nearest first
 
 
 class _Rows:
@@ -125,76 +126,75 @@ class _Rows:
         self._bound = bound
         self._hierarchy = hierarchy
         self._spread = analysis.spread
-        self._number = {element: i for i, element in enumerate(analysis.graph.elements)}
+        self._reached = self._ways()
 
-    @cached_property
-    def ends(self) -> dict[tuple[int, str], set[Origin]]:
-        """(vertex, kind) of sources and exits -> where the data come from."""
-        found: dict[tuple[int, str], set[Origin]] = defaultdict(set)
-        spread, emitted = self._spread, set(self._analysis.emitted)
-        for vertex in spread.facts:
-            for category in emitted.intersection(spread.names(spread.begins(vertex))):
-                found[vertex, category].add((vertex, vertex))
-        for finding in self._analysis.findings:
-            end = self._number[finding.leak], finding.category
-            found[end].add((self._number[finding.source], self._number[_maker(finding)]))
-        for element in self._analysis.outside:
-            vertex = self._number[element]
-            for category in emitted.intersection(spread.names(spread.present(vertex))):
-                if (vertex, category) not in found:
-                    found[vertex, category] = self._coming_to(vertex, category)
-        return dict(found)
+    def ends(self) -> Iterator[tuple[int, str]]:
+        """Sources, leaks and elements outside ROS, each with the kinds of data that are there."""
+        spread, elements = self._spread, self._analysis.graph.elements
+        outside = set(self._analysis.outside)
+        for vertex, element in enumerate(elements):
+            bits = spread.begins(vertex) | spread.leaks.get(vertex, 0) & spread.present(vertex)
+            here = spread.names(spread.present(vertex) if element in outside else bits)
+            yield from ((vertex, category) for category in here if category in self._analysis.emitted)
 
-    def _coming_to(self, vertex: int, category: str) -> set[Origin]:
-        """Where data that no finding is about come from."""
-        spread = self._spread
-        leading = backward(spread, {vertex: spread.both(category)})
-        sources = {v for v in spread.facts if spread.emits.get(v, 0) & leading.leaving.get(v, 0)}
-        for index, bits in spread.flow_emits.items():
-            flow = spread.graph.flows[index]
-            if bits & leading.entering.get(flow.target, 0):
-                sources.add(flow.source)
-        own = spread.both(category)
-        makers = [
-            v
-            for v, pairs in spread.derives.items()
-            if v in self._bound.processing
-            and any(own >> after & 1 and not own >> before & 1 for before, after in pairs)
-            and leading.leaving.get(v, 0) & own
-            and spread.present(v)
-        ]
-        emitting = {v for v in sources if spread.begins(v) & own}
-        return {(v, v) for v in emitting} | {(v, m) for v in sources - emitting for m in makers or [v]}
-
-    def row(self, vertex: int, category: str, origins: set[Origin]) -> Processed:
+    def row(self, vertex: int, category: str) -> Processed:
         """What is stated of a kind of data at one end."""
-        elements, robots = self._analysis.graph.elements, self._bound.of_robots
-        element = elements[vertex]
-        own = [self._of(vertex)]
-        ways = [[self._of(maker), self._of(source), self._of_robot(source)] for source, maker in sorted(origins)]
-        ways = ways or [[self._of_robot(vertex)]]
-        purposes = [self._first(way, category, "purposes") for way in (own, *ways)]
-        stated: list[str] = []
-        missing = [] if purposes[0] or all(purposes[1:]) else [PURPOSE]
+        element, both = self._analysis.graph.elements[vertex], self._spread.both(category)
+        ways = [way for reach, way in self._reached if present(reach, vertex) & both]
+        ways = list(dict.fromkeys(ways)) or [(self._of_robot(vertex),)]
+        own = (self._of(vertex),)
+        here, *there = [self._first(way, category, "purposes") for way in (own, *ways)]
+        purposes = here or [text for some in there for text in some]
+        missing = [] if here or all(there) else [PURPOSE]
+        bases: list[str] = []
         for group in GROUPS:
             here, *there = [self._first(way, category, "bases", group) for way in (own, *ways)]
-            stated += here or [basis for some in there for basis in some]
+            bases += here or [basis for some in there for basis in some]
             if group == GROUPS[0] and not here and not all(there):
                 missing.append(BASIS)
-        everywhere = [element.robot, *(elements[source].robot for source, _ in sorted(origins))]
-        who = [robots[robot] for robot in everywhere if robot in robots]
+        who = [self._of_robot(vertex), *(said for way in ways for said in way)]
         facts = self._analysis.outside.get(element)
         return Processed(
             element,
             category,
             _distinct(said.controller for said in who),
             _distinct(said.dpo for said in who),
-            _distinct(sorted(purposes[0] or (text for some in purposes[1:] for text in some))),
-            _distinct(sorted(stated)),
+            _distinct(sorted(purposes)),
+            _distinct(sorted(bases)),
             tuple(missing),
             next((said.place for way in (own, *ways) for said in way if said.bases), NOWHERE),
             bool(facts and transferred(facts)),
         )
+
+    def _ways(self) -> list[tuple[Search, Way]]:
+        """How far data get of which the same is stated: from sources, and from nodes that state why they make others.
+
+        What such a node makes is no longer followed from the source: the node's word is nearer.
+        """
+        spread = self._spread
+        makers = {v: pairs for v, pairs in spread.derives.items() if v in self._bound.processing}
+        makes = {v: [(a, b) for a, b in pairs if self._differ(a, b)] for v, pairs in makers.items()}
+        kept = {v: tuple(pair for pair in pairs if pair not in makes.get(v, ())) for v, pairs in spread.derives.items()}
+        plain = replace(spread, derives=kept)
+        groups: dict[Way, list[int]] = defaultdict(list)
+        for vertex in spread.facts:
+            if spread.begins(vertex):
+                groups[self._of(vertex), self._of_robot(vertex)].append(vertex)
+        net = Net.of(plain)
+        found = [(search(net, sources, spread.all_bits, {}), way) for way, sources in groups.items()]
+        for maker, pairs in makes.items():
+            made = sum(1 << after for _, after in dict(pairs).items()) & spread.present(maker)
+            if made:
+                before = sum({1 << of for of, _ in pairs})
+                ways = [way for reach, way in found if present(reach, maker) & before] or [(self._of_robot(maker),)]
+                of_it = replace(plain, emits={maker: made}, flow_emits={}, flow_begins={})
+                reach = search(Net.of(of_it), [maker], spread.all_bits, {})
+                found += [(reach, (self._of(maker), *way)) for way in ways]
+        return found
+
+    def _differ(self, before: int, after: int) -> bool:
+        """Whether two bits are of two kinds, not of one as it is and pseudonymised."""
+        return self._spread.names(1 << before) != self._spread.names(1 << after)
 
     def _of(self, vertex: int) -> Processing:
         return self._bound.processing.get(vertex, UNSTATED)
@@ -202,9 +202,7 @@ class _Rows:
     def _of_robot(self, vertex: int) -> Processing:
         return self._bound.of_robots.get(self._analysis.graph.elements[vertex].robot, UNSTATED)
 
-    def _first(
-        self, way: Sequence[Processing], category: str, what: str, group: tuple[str, ...] | None = None
-    ) -> list[str]:
+    def _first(self, way: Way, category: str, what: str, group: tuple[str, ...] | None = None) -> list[str]:
         """What the first of several states of a kind of data; of one group of articles, where one is named."""
         for said in way:
             stated: ByCategory = getattr(said, what)
@@ -212,14 +210,6 @@ class _Rows:
             if some := [one for one in found if group is None or group_of(one) == group]:
                 return some
         return []
-
-
-def _maker(finding: Finding) -> Element:
-    """The element that makes the kind on the witness; its source, where that brings it in."""
-    for step in reversed(finding.steps):
-        if step.category != finding.category:
-            return step.target
-    return finding.source
 
 
 def _distinct(texts: Iterable[str]) -> tuple[str, ...]:

@@ -179,3 +179,23 @@ def test_a_fleet_keeps_what_is_stated_of_robots_and_of_what_is_shared(tmp_path: 
     assert at_disk["Voice"]["purposes"] == ["ringing"]
     assert at_disk["Voice"]["controllers"] == ["The Inn"]
     assert next(row for row in document["outside"] if row["element"]["name"] == "disk")["contract"] == "Article 28"
+
+
+def test_what_robots_share_is_processed_for_what_each_of_them_states(tmp_path: Path) -> None:
+    """Findings that differ only in the robot are one pattern; a purpose of the second model is no less stated."""
+    (tmp_path / "p.xml").write_text(policy("cam>/v<", "up><v"), "utf-8")
+    for model in ("guide", "guard", "other"):
+        why = "" if model == "other" else f", purpose: {model}, legal_basis: [6(1)(f), 9(2)(g)]"
+        text = f"labels: 1\nnodes:\n  /cam: {{source: [Video]{why}}}\n  /up: conduit\n"
+        (tmp_path / f"{model}.yaml").write_text(text, "utf-8")
+    text = (
+        "fleet: 1\nname: inn\nmodels: {guide: {policies: p.xml, labels: guide.yaml},"
+        " guard: {policies: p.xml, labels: guard.yaml}, other: {policies: p.xml, labels: other.yaml}}\n"
+        "groups: [{robots: 3, model: guide}, {robots: 2, model: guard}GROUP]\n"
+        'elements: {cloud: {kind: external-system}}\nflows: [{from: "*:/up", to: cloud}]\n'
+    )
+    for group, missing in (("", []), (", {robots: 1, model: other}", ["purpose", "legal_basis"])):
+        (tmp_path / "f.yaml").write_text(text.replace("GROUP", group), "utf-8")
+        rows = rosprivacy.analyze_fleet(tmp_path / "f.yaml").document()["processed_for"]
+        (row,) = (row for row in rows if row["element"]["name"] == "cloud")
+        assert (row["purposes"], row["missing"]) == (["guard", "guide"], missing)
