@@ -73,7 +73,7 @@ def concluded(
     rows = processed(analysis, system.bound, system.vocabulary.hierarchy)
     said = lacks(rows, law_of(system.vocabulary, analysis.emitted))
     analysis = replace(analysis, diagnostics=(*analysis.diagnostics, *said))
-    joined = joined_to(question.decisions, analysis, system.vocabulary, question.asked, system.likeness)
+    joined = joined_to(question.decisions, analysis, system.vocabulary, question.asked, system.likeness, view)
     return Result(
         analysis,
         system.bound,
