@@ -12,7 +12,6 @@ from rosprivacy.analysis.findings.globs import GlobUse, globs
 from rosprivacy.analysis.findings.ledger import ledger
 from rosprivacy.analysis.findings.review_order import Behind, review_order
 from rosprivacy.analysis.fleet.counts import Counts, counted
-from rosprivacy.analysis.non_ros import retention_of
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator
@@ -22,7 +21,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.durations import Duration
     from rosprivacy.analysis.findings.ledger import TakenAway
     from rosprivacy.analysis.fleet.patterns import FleetView
-    from rosprivacy.analysis.model import Bound, Diagnostic, Element, NonRosFacts
+    from rosprivacy.analysis.model import Bound, Diagnostic, NonRosFacts
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 
@@ -103,12 +102,6 @@ class Answer:
         """Whom the data of a source are about, as labels name them: (robot, kind, name) -> groups of persons."""
         elements = self.analysis.graph.elements
         return {elements[vertex].identity: groups for vertex, groups in self.bound.subjects.items()}
-
-    def retention(self, element: Element, category: str) -> str:
-        """Return how long an element keeps a category, with its backups; empty where nobody states it (rule S9)."""
-        facts = self.analysis.outside.get(element)
-        kept = retention_of(facts, category, self.vocabulary.hierarchy) if facts else []
-        return _with_backups(map(str, kept), facts.backups) if facts and kept else ""
 
     def fleet_counts(self, view: FleetView) -> Counts:
         """Return how many elements, flows and standard channels the fleet has, not its graph."""
