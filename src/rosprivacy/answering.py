@@ -68,7 +68,7 @@ def concluded(
     counts
         As of ``Answer``.
     """
-    joined = joined_to(question.decisions, analysis, system.vocabulary, question.asked, system.likeness)
+    joined = joined_to(question.decisions, analysis, system.vocabulary, question.asked, system.likeness, view)
     return Result(
         analysis,
         system.bound,

@@ -11,8 +11,10 @@ from hypothesis import strategies as st
 from tests.helpers.fleet_files import policy
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
+    from rosprivacy.analysis.answer import Finding
     from rosprivacy.result import Result
 
 NODES = tuple(f"/n{i}" for i in range(5))
@@ -39,11 +41,12 @@ class Written:
         (folder / f"{name}.yaml").write_text(self.labels, "utf-8")
         return f"{name}.xml", f"{name}.yaml"
 
-    @property
-    def decisions(self) -> str:
-        """The text of a decisions file."""
+    def decisions(self, found: Sequence[Finding]) -> str:
+        """The text of a decisions file: accepted leaks, and a finding of which everything has changed since."""
         said = {"decision": "accept", "reason": "agreed", "owner": "Ada Judge"}
-        return json.dumps({"decisions": 1, "findings": [{"leak": leak, **said} for leak in self.accepted]})
+        then = {"view": "enforced", "path": ["/gone", "/away"], "disjoint_paths": 99}
+        of_old = [{"id": finding.id, "decision": "mitigate", "made_about": then} for finding in found[1:2]]
+        return json.dumps({"decisions": 1, "findings": [*of_old, *({"leak": leak, **said} for leak in self.accepted)]})
 
 
 @st.composite
