@@ -13,7 +13,6 @@ from rosprivacy.analysis.findings.ledger import ledger
 from rosprivacy.analysis.findings.processed import processed
 from rosprivacy.analysis.findings.review_order import Behind, review_order
 from rosprivacy.analysis.fleet.counts import Counts, counted
-from rosprivacy.analysis.non_ros import retention_of
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator
@@ -24,7 +23,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.findings.ledger import TakenAway
     from rosprivacy.analysis.findings.processed import Processed
     from rosprivacy.analysis.fleet.patterns import FleetView
-    from rosprivacy.analysis.model import Bound, Diagnostic, Element, NonRosFacts
+    from rosprivacy.analysis.model import Bound, Diagnostic, NonRosFacts
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 
@@ -111,12 +110,6 @@ class Answer:
         """What is stated of purposes and legal bases where data begin and end, by kind; of robots alike of one."""
         rows = processed(self.shown, self.bound, self.vocabulary.hierarchy)
         return tuple(row for row in rows if row.element.robot not in self._beside)
-
-    def retention(self, element: Element, category: str) -> str:
-        """Return how long an element keeps a category, with its backups; empty where nobody states it (rule S9)."""
-        facts = self.analysis.outside.get(element)
-        kept = retention_of(facts, category, self.vocabulary.hierarchy) if facts else []
-        return _with_backups(map(str, kept), facts.backups) if facts and kept else ""
 
     def fleet_counts(self, view: FleetView) -> Counts:
         """Return how many elements, flows and standard channels the fleet has, not its graph."""
