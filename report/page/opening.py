@@ -26,6 +26,7 @@ MOST = 12  # rows; the others are told by their number
 PLACES = 3  # groups of places that the first sentence names
 NAMED = 3  # elements in one row
 VALID = "valid"
+TO_DECIDE = ("open", "decided")  # states of entries
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,9 +90,7 @@ def opening(index: Index, entries: Iterable[Entry], verdict: str, means: str) ->
     Complexity: O(entries).
     """
     words = index.words
-    to_decide = [entry for entry in entries if entry.state in ("open", "decided")]
-    rows = [_row(group, index) for group in grouped(to_decide, _flow)]
-    rows.sort(key=lambda row: not row.waits)
+    rows = [flow for flow in flows(index, entries) if flow.entries[0].state in TO_DECIDE]
     waiting = sum(row.waits for row in rows)
     if not rows:
         return Opening(verdict, (means, *_first_to_review(index)))
@@ -101,8 +100,16 @@ def opening(index: Index, entries: Iterable[Entry], verdict: str, means: str) ->
     return Opening(headline, (*said, *_unreviewed(index)), tuple(rows[:MOST]), len(rows), more)
 
 
+def flows(index: Index, entries: Iterable[Entry]) -> list[ToDecide]:
+    """Return the flows that are decided by themselves, what waits for somebody first, what is accepted last."""
+    decided = [entry for entry in entries if entry.state != "dismissed"]
+    rows = [_row(group, index) for group in grouped(decided, _flow)]
+    return sorted(rows, key=lambda row: (row.entries[0].state not in TO_DECIDE, not row.waits))
+
+
 def _flow(entry: Entry) -> Any:
-    return entry.category, entry.source, entry.leak, entry.robots, entry.pseudonymised, entry.mark
+    same = (entry.category, entry.source, entry.leak, entry.robots, entry.pseudonymised)
+    return same, entry.mark, entry.state in TO_DECIDE
 
 
 def _can(rows: Sequence[ToDecide], index: Index) -> str:
@@ -182,7 +189,7 @@ def _facts(findings: Sequence[Mapping[str, Any]], index: Index) -> Iterator[tupl
     subjects = index.subjects.get(key(first["source"]))
     yield words("b.whose"), words.row(subjects) if subjects else words("not.stated")
     yield words("b.law"), "; ".join(dict.fromkeys(_provisions(findings, index)))
-    yield words("b.basis"), words.row(_bases(findings)) or words("b.basis.none")
+    yield words("b.basis"), words.row(_bases(findings, index)) or words("b.basis.none")
     yield words("b.recipient"), _recipient(first["leak"], index)
     yield words("b.owner"), words.row(_owners(findings)) or words("b.owner.none")
     yield words("d.state"), words.row(dict.fromkeys(_state(finding, index) for finding in findings))
@@ -195,9 +202,16 @@ def _provisions(findings: Iterable[Mapping[str, Any]], index: Index) -> Iterator
             yield text(legal, "provision", index.words.language)
 
 
-def _bases(findings: Iterable[Mapping[str, Any]]) -> list[str]:
-    bases = (basis for finding in findings for basis in _decided(finding, "legal_basis"))
-    return [printable(basis) for basis in dict.fromkeys(bases)]
+def _bases(findings: Sequence[Mapping[str, Any]], index: Index) -> list[str]:
+    """As decisions record them; else as label files state them of the place that data get to, or of the source."""
+    decided = dict.fromkeys(basis for finding in findings for basis in _decided(finding, "legal_basis"))
+    stated = (
+        (key(row["element"]), row["category"], row["legal_bases"]) for row in index.document.get("processed_for", ())
+    )
+    of_place = {(place, category): bases for place, category, bases in stated}
+    first = findings[0]
+    places = (of_place.get((key(first[end]), first["category"]), ()) for end in ("leak", "source"))
+    return [printable(index.words.basis(basis)) for basis in decided or next(filter(None, places), ())]
 
 
 def _owners(findings: Iterable[Mapping[str, Any]]) -> list[str]:

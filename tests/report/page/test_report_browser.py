@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from rosprivacy.report.compare.earlier import Earlier
+from rosprivacy.report.page.assessment_file import read_answers
 from rosprivacy.report.page.figures import Figures, figures
 from rosprivacy.report.page.html import html
 from rosprivacy.report.page.inline import Wishes, pictures_of
@@ -212,6 +213,39 @@ def test_the_inventory_can_be_searched(browser: WebDriver, pages: dict[str, Path
     """)
     assert rows
     assert all("recorder" in row for row in rows)
+
+
+def test_answers_are_saved_to_a_file_that_the_next_report_reads(
+    browser: WebDriver, pages: dict[str, Path], tmp_path: Path
+) -> None:
+    from selenium.webdriver.support.wait import WebDriverWait
+
+    browser.execute_cdp_cmd("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(tmp_path)})
+    chrome.open_page(browser, pages["care-en"].as_uri())
+    finding = care()["findings"][0]["id"]
+    typed = {f"risk.{finding}.severity": "high\nfor residents", "sign.purpose": 'care </textarea> "at night"'}
+    for key, text in typed.items():
+        browser.find_element("css selector", f"textarea[data-field='{key}']").send_keys(text)
+    browser.find_element("id", "save").click()
+    file = tmp_path / "assessment.json"
+    WebDriverWait(browser, 10).until(lambda _: file.is_file())
+    answers = read_answers(str(file))
+    assert answers.texts == typed
+    again = tmp_path / "again.html"
+    again.write_text(html(outline(care(), "en", answers=answers)), "utf-8")
+    chrome.open_page(browser, again.as_uri())
+    script = "return document.querySelector(`textarea[data-field='${arguments[0]}']`).value"
+    assert {key: browser.execute_script(script, key) for key in typed} == typed
+
+
+def test_what_was_typed_is_printed(browser: WebDriver, pages: dict[str, Path]) -> None:
+    from pypdf import PdfReader
+
+    chrome.open_page(browser, pages["care-en"].as_uri())
+    browser.find_element("css selector", "textarea[data-field='sign.purpose']").send_keys("nightcare\n" * 30 + "theend")
+    text = "".join("".join(page.extract_text().split()) for page in PdfReader(BytesIO(chrome.pdf(browser))).pages)
+    assert text.count("nightcare") == 30  # all of it, and once
+    assert "theend" in text
 
 
 def test_without_javascript_everything_is_shown(browser: WebDriver, pages: dict[str, Path]) -> None:
