@@ -18,6 +18,7 @@ OURS = "rosprivacy:"  # files that come with the program
 PATHS = ("node", "topic", "service", "action")
 AS_IT_IS = ("categories",)  # of the ontology: kinds of data and the law
 KEPT = {
+    "because",
     "area", "article9", "backups", "beside", "by", "carries", "categories", "categories_asked", "category", "condition",
     "countries_as_of", "country", "data_types_asked", "decision", "expires", "finding", "findings", "format", "from",
     "holds", "id", "identity_factors_asked", "kind",
@@ -27,7 +28,7 @@ KEPT = {
     "unknown", "unlabelled_node",
     "verdict", "view", "without_limit",
 }  # fmt: skip
-MAPS = ("retention", "taken_away_by", "taken_by_kind")  # of kinds of data and kinds of elements, values as they are
+MAPS = ("because", "retention", "taken_away_by", "taken_by_kind")  # values as they are: durations, kinds, countries
 NAMED = {
     "robot": "robot", "robots": "robot", "model": "model", "file": "file", "enclave": "enclave",
     "operator": "operator", "profile": "node", "nodes": "node",

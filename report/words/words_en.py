@@ -1,5 +1,7 @@
 """The words of reports in English. Paths to assess, recipients, conditions: no verdict of law, no promise."""
 
+from rosprivacy.analysis.model import REASONS
+
 WORDS = {
     "thousands": ",",
     "date": "{year}-{month}-{day}",
@@ -10,6 +12,7 @@ WORDS = {
     "made.undated": "Made with rosprivacy {version}",
     "law.date": "Law as of {date}",
     "law.countries": "adequacy decisions as of {date}",
+    "pair": "{what}: {said}",
     "skip": "Skip to the content",
     "contents": "Contents",
     "top": "Back to the contents",
@@ -395,7 +398,9 @@ WORDS = {
     "f.paths": "Further paths",
     "f.bounded": "There are more paths than the {n} that are listed.",
     "f.robots": "The same on {robots}. The policy lines are those of the first.",
-    "f.reason": "Reason",
+    "f.because": "Reason: {reason}",
+    # --- why data may not be where they get to
+    **{f"reason.{key}": text for key, text in REASONS.items()},
     "f.id": "id",
     "f.way": "Shortest path",
     "f.picture": "Picture of the path: {way}",
@@ -473,6 +478,10 @@ WORDS = {
     "robotkind.one": "{n} kind of robot",
     "robotkind.many": "{n} kinds of robots",
     "file.fleet": "fleet",
+    # --- Articles of the GDPR
+    "cite.article": "{article}",
+    "cite.paragraph": "{article}({paragraph})",
+    "cite.point": "{article}({paragraph})({point})",
     # --- decisions
     "d.decision": "Decision",
     "d.accept": "accepted",
