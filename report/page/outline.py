@@ -148,7 +148,7 @@ def outline(
     Parameters
     ----------
     language
-        ``en`` or ``de``.
+        ``en``, ``de`` or ``fr``.
     title
         Of the system; by default the names of its policy files.
     made

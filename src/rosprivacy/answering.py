@@ -5,15 +5,17 @@ In: ``System`` and ``Question``. Out: ``Result``. Who computes the analysis else
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.findings.findings import Options, analyse
+from rosprivacy.analysis.findings.processed import lacks, processed
 from rosprivacy.analysis.fleet.patterns import FleetView
 from rosprivacy.analysis.fleet.patterns_of_pairs import Groups
 from rosprivacy.analysis.model import unread
 from rosprivacy.assumptions import assumptions_of
-from rosprivacy.decided import accepts, joined_to
+from rosprivacy.decided import accepts, joined_to, law_of
 from rosprivacy.ingest.labels.shipped import infrastructure_of
 from rosprivacy.result import Result
 
@@ -68,7 +70,10 @@ def concluded(
     counts
         As of ``Answer``.
     """
-    joined = joined_to(question.decisions, analysis, system.vocabulary, question.asked, system.likeness)
+    rows = processed(analysis, system.bound, system.vocabulary.hierarchy)
+    said = lacks(rows, law_of(system.vocabulary, analysis.emitted))
+    analysis = replace(analysis, diagnostics=(*analysis.diagnostics, *said))
+    joined = joined_to(question.decisions, analysis, system.vocabulary, question.asked, system.likeness, view)
     return Result(
         analysis,
         system.bound,
