@@ -210,8 +210,9 @@ def _bases(findings: Sequence[Mapping[str, Any]], index: Index) -> list[str]:
     )
     of_place = {(place, category): bases for place, category, bases in stated}
     first = findings[0]
-    places = (of_place.get((key(first[end]), first["category"]), ()) for end in ("leak", "source"))
-    return [printable(index.words.basis(basis)) for basis in decided or next(filter(None, places), ())]
+    places = (of_place.get((key(first[end]), first["category"])) for end in ("leak", "source"))
+    bases = list(decided) or next(filter(None, places), [])
+    return [printable(index.words.basis(basis)) for basis in bases]
 
 
 def _owners(findings: Iterable[Mapping[str, Any]]) -> list[str]:

@@ -6,7 +6,7 @@ sources bring in, or that can be made of it, can get there; how long it is kept 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.text import fit
@@ -59,17 +59,13 @@ def rights(index: Index) -> tuple[Group, ...]:
 
 def _places(members: set[Key], index: Index) -> Iterator[Place]:
     """Storages first, then who receives data."""
-    there = _kinds(members, index)
-    rows: dict[tuple[str, ...], list[Mapping[str, Any]]] = {}
-    texts: dict[tuple[str, ...], Place] = {}
-    for place, kinds in sorted(there.items(), key=lambda one: (one[0][1] != STORAGE, one[0])):
-        made = _place(index.elements[place], kinds, index)
-        same = (place[1], place[2], made.data, made.kept, made.who)
-        rows.setdefault(same, []).append(index.elements[place])
-        texts[same] = made
-    for same, elements in rows.items():
-        made = texts[same]
-        yield Place(index.words.row(index.names(elements)), made.kind, made.data, made.kept, made.who)
+    there = sorted(_kinds(members, index).items(), key=lambda one: (one[0][1] != STORAGE, one[0]))
+    alike: dict[tuple[str, Place], list[Mapping[str, Any]]] = {}
+    for place, kinds in there:
+        element = index.elements[place]
+        alike.setdefault((element["name"], _place(element, kinds, index)), []).append(element)
+    for (_, made), elements in alike.items():
+        yield replace(made, name=index.words.row(index.names(elements)))
 
 
 def _kinds(members: set[Key], index: Index) -> dict[Key, dict[str, None]]:
