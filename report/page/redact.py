@@ -26,7 +26,7 @@ KEPT = {
     "pattern", "provision", "pseudonymised", "recipient", "retention", "role", "roles", "rosprivacy", "severity",
     "sha256", "special_basis", "state", "taken_as", "taken_by_kind", "to", "transfer", "unlabelled_channel",
     "unknown", "unlabelled_node",
-    "verdict", "view", "what", "without_limit",
+    "verdict", "verdict_then", "view", "what", "without_limit",
 }  # fmt: skip
 MAPS = ("because", "legal_bases", "purposes", "retention", "taken_away_by", "taken_by_kind")  # keys are no names
 NAMED = {
