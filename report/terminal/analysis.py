@@ -16,7 +16,7 @@ from rosprivacy.report.document.analysis import files_not_read, lacking
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import shown_name
 from rosprivacy.report.review_groups import SHOWN
-from rosprivacy.report.terminal.counts import legs
+from rosprivacy.report.terminal.called_alike import legs
 from rosprivacy.report.terminal.denied import denied_lines
 from rosprivacy.report.terminal.finding_lines import MANY, details, law_lines, overview
 from rosprivacy.report.terminal.fleet import fleet_lines
@@ -68,7 +68,7 @@ def print_report(
 def verdict_line(report: Mapping[str, Any], words: Words = IN_ENGLISH) -> Line:
     """Return the line that says the verdict, what it leaves open, and what was not asked for (rules S11, S12)."""
     verdict = report["verdict"]
-    style, meaning = STYLES[verdict], words(f"tty.{verdict}")
+    style, meaning = STYLES[verdict], words(f"tty.verdict.{verdict}")
     if not any(report["categories"]) or (verdict == "undetermined" and not report["open"]):
         unread = files_not_read(report) and any(report["categories"])
         meaning = words("tty.unread" if unread else f"tty.lacking.{lacking(report) or 'nothing'}")
@@ -137,7 +137,8 @@ def _assumed(report: Mapping[str, Any], words: Words, most: int | None) -> Itera
     assumptions = report["assumptions"]
     yield "", ""
     yield words("tty.assumed"), "bold"
-    yield f"   {words('tty.view.' + report['view'])}", ""
+    view = report["view"]
+    yield f"   {words(f'tty.view.{view}')}", ""
     yield from standard_lines(report, most, words)
     yield from taken_away_lines(report, words)
     yield from hanging_lines(report, most, words)

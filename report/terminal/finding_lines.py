@@ -14,8 +14,8 @@ from rosprivacy.analysis.model import CHANNELS
 from rosprivacy.analysis.text import blanked
 from rosprivacy.report.finding_order import in_order
 from rosprivacy.report.naming import key, shown_name
-from rosprivacy.report.terminal.counts import kind_in
-from rosprivacy.report.terminal.decided import decision_lines
+from rosprivacy.report.terminal.called_alike import kind_in
+from rosprivacy.report.terminal.decision_lines import decision_lines
 from rosprivacy.report.terminal.fleet import on_robots, robots_of
 from rosprivacy.report.terminal.restriction import may_be_asked
 from rosprivacy.report.words.reasons import reason_told

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.report.robots import forms_in_words
-from rosprivacy.report.terminal.counts import both, named
+from rosprivacy.report.terminal.called_alike import both, named
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.errors import shown
 from rosprivacy.report.document.ledger import hanging
 from rosprivacy.report.naming import shown_name
-from rosprivacy.report.terminal.counts import both
+from rosprivacy.report.terminal.called_alike import both
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

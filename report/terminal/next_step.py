@@ -14,7 +14,7 @@ from rosprivacy.report.document.analysis import lacking
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import shown_name
 from rosprivacy.report.review_groups import next_round
-from rosprivacy.report.terminal.counts import named
+from rosprivacy.report.terminal.called_alike import named
 from rosprivacy.report.terminal.restriction import asked_at_verdict
 from rosprivacy.report.words.words import IN_ENGLISH, Words
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import MAY_REVEAL
-from rosprivacy.report.terminal.counts import both, named
+from rosprivacy.report.terminal.called_alike import both, named
 from rosprivacy.report.words.words import IN_ENGLISH, Words
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import shown_name, whole
-from rosprivacy.report.terminal.counts import kind_in, legs
+from rosprivacy.report.terminal.called_alike import kind_in, legs
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -28,7 +28,7 @@ def ends_at_verdict(report: Mapping[str, Any], words: Words) -> Iterator[str]:
             ends = {whole(end["element"]) for end in report["unknown_ends"] if end["unknown"] == what}
             count = sum(alike.get(robot, 1) for robot, *_ in ends)
             if count:
-                yield words.count(count, f"tty.{what}")
+                yield words.count(count, f"tty.end.{what}")
 
 
 def end_lines(report: Mapping[str, Any], most: int | None, words: Words) -> Iterator[Line]:

@@ -1,9 +1,9 @@
 """What the terminal says in English; kinds of data have the names of label files there."""
 
 WORDS = {
-    "tty.leak": "data can reach a leak",
-    "tty.undetermined": "no leak reached, but not everything on the way is reviewed",
-    "tty.no-leak-found": "no way to a leak, everything on the way is reviewed",
+    "tty.verdict.leak": "data can reach a leak",
+    "tty.verdict.undetermined": "no leak reached, but not everything on the way is reviewed",
+    "tty.verdict.no-leak-found": "no way to a leak, everything on the way is reviewed",
     "tty.accepted.undetermined": "no leak reached but what is accepted, and not everything on the way is reviewed",
     "tty.accepted.no-leak-found": "no way to a leak but what is accepted, everything on the way is reviewed",
     "tty.unread": "no leak reached, but policy files with grants were not read",
@@ -13,10 +13,10 @@ WORDS = {
     "tty.finding.one": "{n} finding",
     "tty.finding.many": "{n} findings",
     "tty.n.accepted": "{findings} accepted",
-    "tty.reader.one": "{n} channel ends at no known reader",
-    "tty.reader.many": "{n} channels end at no known reader",
-    "tty.flow.one": "{n} element outside ROS is reached by no flow",
-    "tty.flow.many": "{n} elements outside ROS are reached by no flow",
+    "tty.end.reader.one": "{n} channel ends at no known reader",
+    "tty.end.reader.many": "{n} channels end at no known reader",
+    "tty.end.flow.one": "{n} element outside ROS is reached by no flow",
+    "tty.end.flow.many": "{n} elements outside ROS are reached by no flow",
     "tty.title.reader": "Channels with data that nobody known reads (who reads them may stand in a policy that was not given)",
     "tty.title.flow": "Elements outside ROS that no flow reaches (say what flows into them, or remove them)",
     "tty.asked": "; only {what} was asked for",

@@ -3,9 +3,9 @@
 from rosprivacy.report.words.typography import spaced
 
 _TYPED = {
-    "tty.leak": "des données peuvent atteindre un point de sortie",
-    "tty.undetermined": "aucun point de sortie atteint, mais tout n'est pas examiné sur les chemins",
-    "tty.no-leak-found": "aucun chemin vers un point de sortie, tout est examiné sur les chemins",
+    "tty.verdict.leak": "des données peuvent atteindre un point de sortie",
+    "tty.verdict.undetermined": "aucun point de sortie atteint, mais tout n'est pas examiné sur les chemins",
+    "tty.verdict.no-leak-found": "aucun chemin vers un point de sortie, tout est examiné sur les chemins",
     "tty.accepted.undetermined": "aucun point de sortie atteint hors ceux acceptés, et tout n'est pas examiné sur les chemins",
     "tty.accepted.no-leak-found": "aucun chemin vers un point de sortie hors ceux acceptés, tout est examiné sur les chemins",
     "tty.unread": "aucun point de sortie atteint, mais des fichiers de politiques avec des droits n'ont pas été lus",
@@ -15,10 +15,10 @@ _TYPED = {
     "tty.finding.one": "{n} constat",
     "tty.finding.many": "{n} constats",
     "tty.n.accepted": "{findings} accepté(s)",
-    "tty.reader.one": "{n} canal ne mène à aucun lecteur connu",
-    "tty.reader.many": "{n} canaux ne mènent à aucun lecteur connu",
-    "tty.flow.one": "{n} élément hors ROS n'est atteint par aucun flux",
-    "tty.flow.many": "{n} éléments hors ROS ne sont atteints par aucun flux",
+    "tty.end.reader.one": "{n} canal ne mène à aucun lecteur connu",
+    "tty.end.reader.many": "{n} canaux ne mènent à aucun lecteur connu",
+    "tty.end.flow.one": "{n} élément hors ROS n'est atteint par aucun flux",
+    "tty.end.flow.many": "{n} éléments hors ROS ne sont atteints par aucun flux",
     "tty.title.reader": "Canaux avec des données qu'aucun lecteur connu ne lit (le lecteur peut figurer dans une politique qui n'a pas été fournie)",
     "tty.title.flow": "Éléments hors ROS qu'aucun flux n'atteint (dire ce qui y entre, ou les retirer)",
     "tty.asked": "; demandé seulement : {what}",

@@ -32,9 +32,6 @@ CODES = re.compile(
     r"no-leak-found|storage-limitation|-l rosprivacy:\S+|rosprivacy [\w-]+(?: --?[\w-]+)*|nodes: \{.*?\}\}\}?"
 )
 MESSAGE = re.compile(r"(Fehler|Warnung|Hinweis|erreur|avertissement|remarque) ?: \S+\.\w+:")  # about a file
-    "messages about files",
-    "what `mitigate`, `query`, `labels`, `diff`, `fleet`, `why-not` and `decide` print",
-)
 
 
 def names_in(result: Result) -> list[str]:
