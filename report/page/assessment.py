@@ -7,12 +7,13 @@ stays the same as long as the finding does; answers whose field is gone are kept
 from __future__ import annotations
 
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.text import fit
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from rosprivacy.report.page.assessment_file import Answers
     from rosprivacy.report.page.opening import ToDecide
@@ -24,20 +25,22 @@ GENERAL = (  # what Article 35(7) asks for of the whole, 35(2), 35(9), 36, and w
 )  # fmt: skip
 RISK = ("likelihood", "severity", "whom", "measures", "residual", "decision")  # of one flow, 35(7)(c) and (d)
 CRITERIA = 9
+NOTHING: Mapping[str, str] = MappingProxyType({})
 
 
 @dataclass(frozen=True, slots=True)
 class Field:
-    """A field: its key in the file, what it asks, and what was answered."""
+    """A field: its key in the file, what it asks, what was answered, and what label files state beside it."""
 
     key: str
     label: str
     text: str
+    stated: str = ""
 
     @property
     def line(self) -> str:
-        """The answer on one line."""
-        return "; ".join(self.text.splitlines())
+        """What is stated, and the answer, on one line."""
+        return "; ".join([*([self.stated] if self.stated else []), *self.text.splitlines()])
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,14 +71,25 @@ class Assessment:
     sha256: str
 
 
-def assessment(words: Words, flows: Sequence[ToDecide], answers: Answers) -> Assessment:
-    """Return the fields of a report, filled in as far as there are answers. Complexity: O(flows + answers)."""
+def assessment(
+    words: Words, flows: Sequence[ToDecide], answers: Answers, stated: Mapping[str, str] = NOTHING
+) -> Assessment:
+    """Return the fields of a report, filled in as far as there are answers.
+
+    Parameters
+    ----------
+    stated
+        What label files say of a general field; it stands beside the answer and is not saved with it.
+
+    Complexity: O(flows + answers).
+    """
     used: set[str] = set()
 
     def field(key: str, label: str, also: Iterable[str] = ()) -> Field:
         known = [name for name in (key, *also) if name in answers.texts]
         used.update(known)
-        return Field(key, words(label), "\n".join(dict.fromkeys(answers.texts[name] for name in known)))
+        text = "\n".join(dict.fromkeys(answers.texts[name] for name in known))
+        return Field(key, words(label), text, stated.get(key.removeprefix("sign."), ""))
 
     def risk(flow: ToDecide) -> Risk:
         ids = dict.fromkeys(one for e in flow.entries for one in (e.pattern or e.id, e.id, *e.others))

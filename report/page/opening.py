@@ -203,16 +203,11 @@ def _provisions(findings: Iterable[Mapping[str, Any]], index: Index) -> Iterator
 
 
 def _bases(findings: Sequence[Mapping[str, Any]], index: Index) -> list[str]:
-    """As decisions record them; else as label files state them of the place that data get to, or of the source."""
-    decided = dict.fromkeys(basis for finding in findings for basis in _decided(finding, "legal_basis"))
-    stated = (
-        (key(row["element"]), row["category"], row["legal_bases"]) for row in index.document.get("processed_for", ())
-    )
-    of_place = {(place, category): bases for place, category, bases in stated}
-    first = findings[0]
-    places = (of_place.get((key(first[end]), first["category"])) for end in ("leak", "source"))
-    bases = list(decided) or next(filter(None, places), [])
-    return [printable(index.words.basis(basis)) for basis in bases]
+    """The legal bases that decisions record, and those that labels state where the data get to."""
+    ends = [index.processed_for.get((key(finding["leak"]), finding["category"]), {}) for finding in findings]
+    decided = [basis for finding in findings for basis in _decided(finding, "legal_basis")]
+    stated = [basis for end in ends for basis in end.get("legal_bases", ())]
+    return [index.words.basis(printable(basis)) for basis in dict.fromkeys((*decided, *stated))]
 
 
 def _owners(findings: Iterable[Mapping[str, Any]]) -> list[str]:

@@ -30,6 +30,7 @@ from rosprivacy.report.page.index import Index, state
 from rosprivacy.report.page.kinds import Kind, kinds
 from rosprivacy.report.page.non_ros import Outside, outside
 from rosprivacy.report.page.opening import Opening, flows, opening
+from rosprivacy.report.page.purposes import Row, processed, signed
 from rosprivacy.report.page.review import Group, review, unknown_ends
 from rosprivacy.report.words.words import Words
 
@@ -116,6 +117,7 @@ class Outline:
     subjects: tables.Table
     silent: tuple[str, ...]
     recipients: tables.Table
+    processed: tuple[Row, ...]
     kinds: tuple[Kind, ...]
     entries: tuple[Entry, ...]
     orphans: tuple[Decision, ...]
@@ -202,6 +204,7 @@ def outline(
         subjects=subjects,
         silent=silent,
         recipients=tables.recipients(index, links),
+        processed=processed(index),
         kinds=kinds(index, entries),
         entries=entries,
         orphans=orphans(index),
@@ -212,7 +215,7 @@ def outline(
         ends=unknown_ends(index),
         criteria=criteria(index),
         rights=rights.rights(index),
-        assessment=assessment(words, flows(index, entries), answers or Answers()),
+        assessment=assessment(words, flows(index, entries), answers or Answers(), signed(index)),
         size=words(
             "i.intro",
             elements=words.count(document["elements"], "element"),
