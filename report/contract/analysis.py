@@ -27,6 +27,8 @@ if TYPE_CHECKING:
         DerivationEntry,
         NonRosEntry,
         OverruledEntry,
+        ProcessedEntry,
+        ProcessingEntry,
         RolesEntry,
         SanitizerEntry,
         SubjectsEntry,
@@ -122,6 +124,8 @@ class AnalysisDocument(TypedDict):
     roles: NotRequired[list[RolesEntry]]
     outside: list[NonRosEntry]
     subjects: list[SubjectsEntry]
+    processing: NotRequired[list[ProcessingEntry]]
+    processed_for: NotRequired[list[ProcessedEntry]]
     sanitizers: list[SanitizerEntry]
     derivations: list[DerivationEntry]
     unreached: list[ElementEntry]

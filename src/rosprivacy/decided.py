@@ -55,10 +55,7 @@ def joined_to(
     """Join decisions to findings; where only some categories were asked for, none is called orphaned."""
     if decisions is None:
         return None
-    law = {
-        name: tuple((legal.name, legal.verdict) for legal in vocabulary.categories[name].law)
-        for name in analysis.emitted
-    }
+    law = law_of(vocabulary, analysis.emitted)
 
     def case_of(finding: Finding) -> Case:
         return in_fleet(Case.of(finding), likeness)
@@ -79,6 +76,13 @@ def about_today(analysis: Analysis, view: FleetView | None) -> dict[str, About]:
         return found
     everywhere = {robot for robots in view.likeness.members.values() for robot in robots}
     return found | {p.id: about(p.finding, everywhere if p.across else p.robots) for p in view.patterns}
+
+
+def law_of(vocabulary: Vocabulary, categories: Iterable[str]) -> dict[str, tuple[tuple[str, str], ...]]:
+    """Return what can apply to data of some categories: (provision, verdict)."""
+    return {
+        name: tuple((legal.name, legal.verdict) for legal in vocabulary.categories[name].law) for name in categories
+    }
 
 
 def accepts(decisions: Decisions | None, likeness: Likeness = NO_ROBOTS) -> Callable[[Case], bool] | None:

@@ -24,6 +24,18 @@ ROLES = (
     "{sanitizer: {Video: pseudonymise}}", "{sanitizer: {Voice: drop}}", "conduit",
     "{derives: [{from: Video, to: FaceTemplate}]}",
 )  # fmt: skip
+WHY = (  # of the system, of nodes, of the storage
+    ((), "", ""),
+    (
+        ("controller: Haven Home", "dpo: Ada Officer"),
+        "",
+        ", operator: Us, recipient: processor, contract: Art. 28",
+    ),
+    (("purpose: [care, safety]", "legal_basis: {Video: 6(1)(f)}"), "subjects: [residents]", ", purpose: proof"),
+    (("legal_basis: 6(1)(e)",), "purpose: {Video: [counting], PersonalData: guiding}", ", legal_basis: 6(1)(c)"),
+    ((), "legal_basis: [6(1)(a), 9(2)(a)]", ", legal_basis: [6(1)(b), 46(2)(c)]"),
+    (("purpose: safety",), "purpose: lighting, legal_basis: {FaceTemplate: 9(2)(h)}", ""),
+)
 CHANNEL = ("mundane", "sensitive", "{only: [Video]}", "{never: [Voice]}")
 
 
@@ -60,11 +72,14 @@ def written(draw: st.DrawFn) -> Written:
     channels = {name: draw(st.sampled_from(CHANNEL)) for name in used if draw(st.booleans())}
     behind = draw(st.sampled_from(NODES))
     country = draw(st.sampled_from(("DE", "US")))
-    lines = ["labels: 1", "nodes:", *(f"  {name}: {said}" for name, said in sorted(roles.items()))]
-    lines += ["channels:", *(f"  {name}: {said}" for name, said in channels.items())] if channels else []
-    lines += ["elements:", f"  disk: {{kind: storage, country: {country}, retention: P3D}}"]
-    lines += ["flows:", f"  - {{from: {behind}, to: disk}}"]
     accepted = draw(st.sets(st.sampled_from((*NODES, "disk")), min_size=2, max_size=4))
+    top, of_node, of_disk = draw(st.sampled_from(WHY))
+    for name in [name for name in sorted(roles) if of_node and roles[name].endswith("}")][:2]:
+        roles[name] = f"{roles[name][:-1]}, {of_node}}}"
+    lines = ["labels: 1", *top, "nodes:", *(f"  {name}: {said}" for name, said in sorted(roles.items()))]
+    lines += ["channels:", *(f"  {name}: {said}" for name, said in channels.items())] if channels else []
+    lines += ["elements:", f"  disk: {{kind: storage, country: {country}, retention: P3D{of_disk}}}"]
+    lines += ["flows:", f"  - {{from: {behind}, to: disk}}"]
     return Written(policy(*profiles.values()), "\n".join([*lines, ""]), tuple(sorted(accepted)))
 
 
