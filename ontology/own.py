@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 from rdflib import RDF, SH, SKOS, Graph, URIRef
 
 from rosprivacy.analysis.errors import InputErrors, OntologyError, shown
+from rosprivacy.ontology.iris import as_published, as_stored
 from rosprivacy.ontology.known import Known, Problem
 from rosprivacy.ontology.lines import Lines
-from rosprivacy.ontology.namespaces import as_published, as_stored
 from rosprivacy.ontology.odd_terms import odd_terms, silence
 from rosprivacy.ontology.own_hierarchy import parent_problems, unfollowed
 from rosprivacy.ontology.own_names import taken_names

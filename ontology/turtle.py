@@ -13,7 +13,7 @@ from rdflib import DCTERMS, RDF, SKOS, Graph, Namespace, URIRef
 
 from rosprivacy.analysis.errors import InputErrors, OntologyError, shown
 from rosprivacy.analysis.model import Category, Legal
-from rosprivacy.ontology.namespaces import PUBLISHED, STORED, as_stored
+from rosprivacy.ontology.iris import PUBLISHED, STORED, as_stored
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -27,7 +27,7 @@ _QUOTED = re.compile(r" at \^ in: .*")  # rdflib quotes the text, which may be a
 
 
 def read(turtle: str, file: str) -> Graph:
-    """Return the triples of a Turtle text; our terms have the stored form (``namespaces.py``), whichever it uses.
+    """Return the triples of a Turtle text; our terms have the stored form (``iris.py``), whichever it uses.
 
     Raises
     ------
@@ -43,10 +43,14 @@ def read(turtle: str, file: str) -> Graph:
         raise InputErrors(
             [OntologyError(file, line + 1 if line else 0, f"not Turtle: {said}", "correct the syntax")]
         ) from None
-    for triple in [triple for triple in graph if any(PUBLISHED in str(term) for term in triple)]:
-        graph.remove(triple)  # written with escapes, or relative to a base
-        graph.add(tuple(URIRef(as_stored(term)) if isinstance(term, URIRef) else term for term in triple))
+    for subject, predicate, value in [triple for triple in graph if any(PUBLISHED in str(term) for term in triple)]:
+        graph.remove((subject, predicate, value))  # written with escapes, or relative to a base
+        graph.add((_stored(subject), _stored(predicate), _stored(value)))
     return graph
+
+
+def _stored(term: Node) -> Node:
+    return URIRef(as_stored(term)) if isinstance(term, URIRef) else term
 
 
 def categories_of(graph: Graph, subjects: Iterable[Node] | None = None) -> tuple[Category, ...]:

@@ -19,8 +19,8 @@ from rosprivacy.analysis.files_read import noted
 from rosprivacy.analysis.hierarchy import Hierarchy
 from rosprivacy.analysis.legal import close
 from rosprivacy.ontology import cache as kept
+from rosprivacy.ontology.iris import STORED, as_stored
 from rosprivacy.ontology.known import Known
-from rosprivacy.ontology.namespaces import STORED, as_stored
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.text import fit, printable
-from rosprivacy.ontology.namespaces import as_published
+from rosprivacy.ontology.iris import as_published
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import text
 from rosprivacy.report.words.typography import spaced

@@ -17,7 +17,7 @@ from uuid import NAMESPACE_URL, uuid5
 from rdflib import URIRef
 
 from rosprivacy.analysis.errors import InputError, shown
-from rosprivacy.ontology.namespaces import as_published
+from rosprivacy.ontology.iris import as_published
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -12,7 +12,7 @@ from rdflib import RDF, XSD, BNode, Literal, Namespace
 from rdflib.namespace import ClosedNamespace
 
 from rosprivacy.analysis.text import utf8
-from rosprivacy.ontology.namespaces import PUBLISHED
+from rosprivacy.ontology.iris import PUBLISHED
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

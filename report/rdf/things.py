@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from rdflib import OWL, RDF, SKOS, XSD, Literal, URIRef
 from rdflib.namespace import PROV
 
-from rosprivacy.ontology.namespaces import STORED
+from rosprivacy.ontology.iris import STORED
 from rosprivacy.report.rdf.individuals import foreign
 from rosprivacy.report.rdf.terms import DPV, RP, Triple, about, text
 

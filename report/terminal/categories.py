@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import ARTICLE_10
 from rosprivacy.analysis.text import blanked
-from rosprivacy.ontology.namespaces import as_published
+from rosprivacy.ontology.iris import as_published
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

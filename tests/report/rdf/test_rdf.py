@@ -24,7 +24,7 @@ from rosprivacy.analysis.findings.findings import analyse
 from rosprivacy.analysis.model import Bound, Category, Element, Flow, FlowGraph, Legal, Method, NonRosFacts
 from rosprivacy.analysis.non_ros import EVERY
 from rosprivacy.formats import written
-from rosprivacy.ontology.namespaces import as_published
+from rosprivacy.ontology.iris import as_published
 from rosprivacy.ontology.vocabulary import Vocabulary
 from rosprivacy.report.rdf.facts import legal_of
 from rosprivacy.report.rdf.findings import rdf_graph

@@ -10,7 +10,7 @@ import pytest
 from rdflib import OWL, SKOS, Graph, URIRef
 
 import rosprivacy
-from rosprivacy.ontology.namespaces import PUBLISHED, STORED, as_published, as_stored
+from rosprivacy.ontology.iris import PUBLISHED, STORED, as_published, as_stored
 from rosprivacy.ontology.vocabulary import load
 from tests.helpers.ontologies import SHIPPED
 from tests.helpers.paths import ROOT
