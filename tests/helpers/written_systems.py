@@ -19,10 +19,10 @@ NODES = tuple(f"/n{i}" for i in range(5))
 TOPICS = ("/a", "/b", "/c", "/a*", "/parameter_events")
 ROLES = (
     "{source: [Video]}", "{source: [Voice], leak: [Video]}", "{leak: [Biometric]}", "{leak: [Video, Voice]}",
-    "{sanitizer: {Video: pseudonymise}}", "{sanitizer: {Voice: drop}}", "conduit",
+    "{sanitizer: {Video: pseudonymise}, note: a filter, author: Ada Judge}", "{sanitizer: {Voice: drop}}", "conduit",
     "{derives: [{from: Video, to: FaceTemplate}]}",
 )  # fmt: skip
-CHANNEL = ("mundane", "sensitive", "{only: [Video]}", "{never: [Voice]}")
+CHANNEL = ("mundane", "sensitive", "{only: [Video], note: checked}", "{never: [Voice]}")
 
 
 @dataclass(frozen=True)
