@@ -24,6 +24,7 @@ from rosprivacy.report.terminal.globs import glob_lines, glob_warnings
 from rosprivacy.report.terminal.labels import absent_lines, overruled_lines, standard_lines
 from rosprivacy.report.terminal.ledger import hanging_lines, ledger_lines, taken_away_lines
 from rosprivacy.report.terminal.next_step import next_lines
+from rosprivacy.report.terminal.reliance import reliance_lines
 from rosprivacy.report.terminal.restriction import asked_at_verdict, asked_lines
 from rosprivacy.report.terminal.review import review_lines
 from rosprivacy.report.terminal.unknown_ends import end_lines, ends_at_verdict
@@ -94,6 +95,7 @@ def _lines(report: Mapping[str, Any], *, verbose: bool, quiet: bool) -> Iterator
     yield from review_lines(report, verbose=verbose)
     yield from end_lines(report, most=None if verbose else SHOWN)
     yield from denied_lines(report, most=None if verbose else SHOWN)
+    yield from reliance_lines(report, verbose=verbose)
     if verbose:
         yield from ledger_lines(report)
         yield from glob_lines(report)

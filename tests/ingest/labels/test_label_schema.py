@@ -28,7 +28,11 @@ FULL: dict[str, Any] = {
         "/d": {"sanitizer": ["Video"], "derives": [{"from": "Video", "to": "FaceTemplate"}]},
         "/e": None,
     },
-    "channels": {"/t": "mundane", "/u": {"only": ["Video"], "never": ["Voice"], "note": "x", "author": "B"}, "/v": None},
+    "channels": {
+        "/t": "mundane",
+        "/u": {"only": ["Video"], "never": ["Voice"], "note": "x", "author": "B"},
+        "/v": None,
+    },
     "topics": {"/t": "sensitive"},
     "services": {"*": {"never": ["Video"]}},
     "actions": {},
