@@ -17,8 +17,8 @@ from typing import Any
 
 from rosprivacy.analysis.model import Category, Legal
 
-FORMAT = 6  # one more when what is kept, or what is refused, changes
-_TUPLES = ("broader", "synonyms", "data_types", "same_as", "within", "stated_of")
+FORMAT = 7  # one more when what is kept, or what is refused, changes
+_TUPLES = ("broader", "synonyms", "data_types", "identity_factors", "same_as", "within", "stated_of")
 
 
 def default_folder() -> Path:

@@ -75,10 +75,18 @@ class LawEntry(TypedDict):
     condition: str
 
 
+class WhyEntry(TypedDict):
+    """A reason as a key and values, for words of any language."""
+
+    key: str
+    values: dict[str, str]
+
+
 class FindingMore(TypedDict, total=False):
     """What only some findings have."""
 
     reason: str
+    because: WhyEntry
     beside_pseudonymised: bool
     paths: list[list[ElementEntry]]
     paths_bounded: bool

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TypedDict
+from typing import NotRequired, TypedDict
 
 from rosprivacy.report.contract.records import ElementEntry, LawEntry, PlaceEntry, Reached
 
@@ -29,6 +29,7 @@ class CategoryEntry(TypedDict):
     title: str
     definition: str
     data_types: list[str]
+    identity_factors: NotRequired[list[str]]  # not in documents of earlier versions
     gdpr: str
     article9: str
     reason: str
