@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
     Pair = tuple[Mapping[Key, State], Mapping[Key, State]]  # findings at an element before and after
     Shown = tuple[str, str, str, str]
-    One = tuple[Statement, *tuple[str, ...]]
+    One = tuple[Statement, tuple[str, ...]]
 
 BRINGS_IN = frozenset({"source", "leak", "derivation"})
 TOGETHER = 64  # sources that are followed at once
@@ -132,7 +132,7 @@ def reliances(
     if work is None:
         return ()
     spots = _spots(analysis.spread, bound)
-    order = sorted(spots, key=lambda key: (line_key(key[0]), key[1:]))
+    order = sorted(spots, key=lambda key: (line_key(key[0]), key[1]))
     rows = (work.without(key[0], spots[key]) for key in order)
     return tuple(row for row in rows if row.hangs)
 
@@ -176,9 +176,9 @@ def _spots(spread: Spread, bound: Bound) -> dict[One, _Spots]:
 def _one(statement: Statement, *ends: Element) -> One:
     """What is one statement: a glob with all that it is about, a name on all robots; by hand, of one robot."""
     if statement.glob:
-        return (statement,)
+        return statement, ()
     robots = () if statement.place.line else tuple(end.robot for end in ends)
-    return (statement, *(end.name for end in ends), *robots)
+    return statement, (*(end.name for end in ends), *robots)
 
 
 def _takes(statement: Statement) -> bool:

@@ -83,8 +83,12 @@ def _stated(properties: Mapping[str, Any]) -> list[Statement]:
     stated = []
     for said in map(json.loads, properties.get("statements") or ()):
         rank, place = (int(said["tier"]), int(said["specificity"])), Place(str(said["file"]), int(said["line"]))
-        by = {"why": str(said.get("why") or ""), "author": str(said.get("author") or "")}
-        stated.append(Statement(said["role"], tuple(said["categories"]), rank, place, naming=said["naming"], **by))
+        why, author = (str(said.get(key) or "") for key in ("why", "author"))
+        stated.append(
+            Statement(
+                said["role"], tuple(said["categories"]), rank, place, naming=said["naming"], why=why, author=author
+            )
+        )
     return stated
 
 

@@ -232,7 +232,7 @@ class RelianceEntry(TypedDict):
     line: int
     glob: bool
     shipped: bool
-    reason: str
+    why: str
     author: str
     elements: list[ElementEntry]
     to: list[ElementEntry]

@@ -28,7 +28,7 @@ def rows(hanging: Iterable[Reliance], element_dict: Callable[[Element], ElementE
             "line": row.statement.place.line,
             "glob": row.statement.glob,
             "shipped": _shipped(row),
-            "reason": row.statement.why,
+            "why": row.statement.why,
             "author": row.statement.author,
             "elements": [element_dict(element) for element in row.elements],
             "to": [element_dict(element) for element in row.to],

@@ -27,6 +27,7 @@ from rosprivacy.report.page.index import Index, state
 from rosprivacy.report.page.kinds import Kind, kinds
 from rosprivacy.report.page.non_ros import Outside, outside
 from rosprivacy.report.page.opening import Opening, opening
+from rosprivacy.report.page.reliance import Hanging, hanging
 from rosprivacy.report.page.review import Group, review, unknown_ends
 from rosprivacy.report.words.words import Words
 
@@ -37,7 +38,7 @@ if TYPE_CHECKING:
 
 DECIDE = "decide"  # its heading is what there is to decide
 SECTIONS = (
-    DECIDE, "changes", "fleet", "findings", "questions", "tables", "outside", "sanitizers", "criteria", "sign",
+    DECIDE, "changes", "fleet", "findings", "hangs", "questions", "tables", "outside", "sanitizers", "criteria", "sign",
     "kinds", "assumptions", "inventory", "method",
 )  # fmt: skip
 PARAGRAPHS = 10  # of the method note
@@ -117,6 +118,7 @@ class Outline:
     kinds: tuple[Kind, ...]
     entries: tuple[Entry, ...]
     orphans: tuple[Decision, ...]
+    hanging: tuple[Hanging, ...]
     outside: tuple[Outside, ...]
     cleanings: tuple[sanitizers.Cleaning, ...]
     makings: tuple[sanitizers.Making, ...]
@@ -193,6 +195,7 @@ def outline(
         kinds=kinds(index, entries),
         entries=entries,
         orphans=orphans(index),
+        hanging=hanging(index),
         outside=outside(index),
         cleanings=sanitizers.cleanings(index, entries),
         makings=sanitizers.makings(index),

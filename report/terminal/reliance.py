@@ -41,7 +41,7 @@ def _row(row: Mapping[str, Any], most: int | None) -> str:
     ends = _some([shown_name(element) for element in row["elements"]], FEW)
     to = f" -> {_some([shown_name(element) for element in row['to']], FEW)}" if row["to"] else ""
     by = f", says {shown(row['author'])}" if row["author"] else ""
-    why = f" ({shown(row['reason'])})" if row["reason"] else ""
+    why = f" ({shown(row['reason'])})" if row["why"] else ""
     glob = " by a glob" if row["glob"] else ""
     return f"{shown(row['file'])}:{row['line']}: {ends}{to} {_says(row)}{glob}{by}{why}; if wrong: {_opened(row, most)}"
 
@@ -64,7 +64,7 @@ def _opened(row: Mapping[str, Any], most: int | None) -> str:
         return "this was not worked out, too many statements need an analysis of the whole"
     found = _some([_finding(opening) for opening in row["findings"]], most)
     asked = _some([f"{shown_name(one['element'])} ({', '.join(one['categories'])})" for one in row["questions"]], most)
-    return "; ".join(filter(None, (found, f"not reviewed: {asked}" if asked else "")))
+    return "; ".join(filter(None, (found, f"to review: {asked}" if asked else "")))
 
 
 def _finding(opening: Mapping[str, Any]) -> str:
