@@ -41,7 +41,7 @@ def _row(row: Mapping[str, Any], most: int | None) -> str:
     ends = _some([shown_name(element) for element in row["elements"]], FEW)
     to = f" -> {_some([shown_name(element) for element in row['to']], FEW)}" if row["to"] else ""
     by = f", says {shown(row['author'])}" if row["author"] else ""
-    why = f" ({shown(row['reason'])})" if row["why"] else ""
+    why = f" ({shown(row['why'])})" if row["why"] else ""
     glob = " by a glob" if row["glob"] else ""
     return f"{shown(row['file'])}:{row['line']}: {ends}{to} {_says(row)}{glob}{by}{why}; if wrong: {_opened(row, most)}"
 
