@@ -10,20 +10,21 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.findings.globs import GlobUse, globs
 from rosprivacy.analysis.findings.ledger import ledger
+from rosprivacy.analysis.findings.processed import processed
 from rosprivacy.analysis.findings.reliance import Reliance, reliances
 from rosprivacy.analysis.findings.review_order import Behind, review_order
 from rosprivacy.analysis.fleet.counts import Counts, counted
-from rosprivacy.analysis.non_ros import retention_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Iterator
+    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.decisions import Case, Decided, Decision
     from rosprivacy.analysis.durations import Duration
     from rosprivacy.analysis.findings.ledger import TakenAway
+    from rosprivacy.analysis.findings.processed import Processed
     from rosprivacy.analysis.fleet.patterns import FleetView
-    from rosprivacy.analysis.model import Bound, Diagnostic, Element, NonRosFacts
+    from rosprivacy.analysis.model import Bound, Diagnostic, NonRosFacts
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 
@@ -64,6 +65,15 @@ class Answer:
     def shown(self) -> Analysis:
         """The analysis as readers get it: of a fleet one finding of each pattern, one robot of those that are alike."""
         return self.fleet.shown(self.analysis) if self.fleet else self.analysis
+
+    @property
+    def named(self) -> tuple[str, ...]:
+        """The policy files that a user named, without what they include; none where that is not known."""
+        return ()
+
+    def proposals(self) -> Mapping[str, Any] | str:
+        """Return what closes the open findings, a mitigation document; or why there is none, a word."""
+        return "fleet" if self.fleet else "graph"
 
     @property
     def taken_away(self) -> tuple[TakenAway, ...]:
@@ -115,8 +125,8 @@ class Answer:
     def stated(self) -> dict[tuple[str, str, str], dict[str, str]]:
         """What people stated of what lies outside ROS, as texts (rule S9).
 
-        (robot, kind, name) -> ``retention``, ``country``, ``encrypted``, ``operator``, ``role``, ``basis``, whichever
-        are known.
+        (robot, kind, name) -> ``retention``, ``country``, ``encrypted``, ``operator``, ``role``, ``basis``,
+        ``contract``, whichever are known.
         """
         return {element.identity: dict(_stated(facts)) for element, facts in self.analysis.outside.items()}
 
@@ -126,11 +136,11 @@ class Answer:
         elements = self.analysis.graph.elements
         return {elements[vertex].identity: groups for vertex, groups in self.bound.subjects.items()}
 
-    def retention(self, element: Element, category: str) -> str:
-        """Return how long an element keeps a category, with its backups; empty where nobody states it (rule S9)."""
-        facts = self.analysis.outside.get(element)
-        kept = retention_of(facts, category, self.vocabulary.hierarchy) if facts else []
-        return _with_backups(map(str, kept), facts.backups) if facts and kept else ""
+    @property
+    def processed(self) -> tuple[Processed, ...]:
+        """What is stated of purposes and legal bases where data begin and end, by kind; of robots alike of one."""
+        rows = processed(self.shown, self.bound, self.vocabulary.hierarchy)
+        return tuple(row for row in rows if row.element.robot not in self._beside)
 
     def fleet_counts(self, view: FleetView) -> Counts:
         """Return how many elements, flows and standard channels the fleet has, not its graph."""
@@ -152,6 +162,7 @@ def _stated(facts: NonRosFacts) -> Iterator[tuple[str, str]]:
         "operator": facts.operator,
         "role": facts.recipient,
         "basis": facts.transfer,
+        "contract": facts.contract,
     }
     yield from ((what, value) for what, value in said.items() if value)
 

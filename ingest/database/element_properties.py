@@ -13,7 +13,9 @@ from rosprivacy.analysis.findings.derived_from import origins
 from rosprivacy.analysis.fleet.likeness import NO_ROBOTS, pattern_id
 from rosprivacy.analysis.kernel.roles import facts
 from rosprivacy.analysis.legal import turned_special
+from rosprivacy.analysis.model import UNSTATED
 from rosprivacy.ingest.database.carrying import moving
+from rosprivacy.ingest.database.processing_properties import processing_properties
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -22,7 +24,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.findings.derived_from import Origin
     from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.analysis.kernel.spread import Spread
-    from rosprivacy.analysis.model import Bound, Element, Statement
+    from rosprivacy.analysis.model import Bound, Element, Processing, Statement
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 Row = dict[str, Any]
@@ -123,6 +125,7 @@ def element_results(analysis: Analysis, bound: Bound, names: Names, roles: Roles
             "sanitizes": cleans,
             "stops": names.exact(_stopped(found, found.keeps.get(vertex, found.all_bits))),
             "subjects": list(bound.subjects.get(vertex, ())),
+            **_of_element(bound.processing.get(vertex, UNSTATED)),
             "open": list(question.categories) if question else [],
             "frontier": question.frontier if question else None,
             "distance": question.distance if question else None,
@@ -133,6 +136,11 @@ def element_results(analysis: Analysis, bound: Bound, names: Names, roles: Roles
             *labelled,
         ]
         yield properties, list(dict.fromkeys(labels))
+
+
+def _of_element(said: Processing) -> Row:
+    """Only a robot has a controller and an officer."""
+    return {key: value for key, value in processing_properties(said).items() if key not in ("controller", "dpo")}
 
 
 def _stopped(found: Spread, kept: int) -> int:

@@ -5,7 +5,7 @@ In: graphs and bound statements. Out: ``Part``, which can be renamed and put tog
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from operator import itemgetter
 from typing import TYPE_CHECKING, TypeVar
 
@@ -14,7 +14,7 @@ from rosprivacy.analysis.model import Bound, Element, Flow, FlowGraph
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
-    from rosprivacy.analysis.model import Grant, NonRosFacts, Profile, Statement
+    from rosprivacy.analysis.model import Grant, NonRosFacts, Processing, Profile, Statement
 
 K = TypeVar("K")
 V = TypeVar("V")
@@ -39,6 +39,10 @@ class Part:
         (source, name expressions) -> the flows that these mean.
     outside
         What is stated about elements outside ROS.
+    subjects, processing
+        Whom data of elements are about; what data there are processed for, and on which basis.
+    of_robots
+        By robot: who is responsible, what for, on which basis.
     """
 
     elements: dict[Element, tuple[Statement, ...]] = field(default_factory=dict)
@@ -47,6 +51,9 @@ class Part:
     said: dict[Key, tuple[Statement, ...]] = field(default_factory=dict)
     through: dict[tuple[Element, tuple[str, ...]], tuple[Key, ...]] = field(default_factory=dict)
     outside: dict[Element, NonRosFacts] = field(default_factory=dict)
+    subjects: dict[Element, tuple[str, ...]] = field(default_factory=dict)
+    processing: dict[Element, Processing] = field(default_factory=dict)
+    of_robots: dict[str, Processing] = field(default_factory=dict)
 
     @classmethod
     def of(cls, graph: FlowGraph, bound: Bound) -> Part:
@@ -60,10 +67,13 @@ class Part:
             {keys[index]: said for index, said in bound.flows.items()},
             {(elements[v], names): tuple(keys[i] for i in flows) for (v, names), flows in bound.through.items()},
             {elements[vertex]: facts for vertex, facts in bound.outside.items()},
+            {elements[vertex]: groups for vertex, groups in bound.subjects.items()},
+            {elements[vertex]: said for vertex, said in bound.processing.items()},
+            dict(bound.of_robots),
         )
 
     def renamed(self, name: Callable[[Element], Element]) -> Part:
-        """Return the part with other names; two elements may become one."""
+        """Return the part with other names, without what is said of robots; two elements may become one."""
         new = {element: name(element) for element in self.elements}
 
         def key_of(key: Key) -> Key:
@@ -76,6 +86,8 @@ class Part:
             _joined((key_of(key), said) for key, said in self.said.items()),
             {(new[v], names): tuple(map(key_of, keys)) for (v, names), keys in self.through.items()},
             {new[element]: facts for element, facts in self.outside.items()},
+            _joined((new[element], groups) for element, groups in self.subjects.items()),
+            {new[element]: said for element, said in self.processing.items()},
         )
 
 
@@ -89,6 +101,9 @@ def together(parts: Iterable[Part]) -> Part:
         _joined(pair for part in parts for pair in part.said.items()),
         _joined(pair for part in parts for pair in part.through.items()),
         {element: facts for part in parts for element, facts in part.outside.items()},
+        _joined(pair for part in parts for pair in part.subjects.items()),
+        {element: said for part in parts for element, said in part.processing.items()},
+        {robot: said for part in parts for robot, said in part.of_robots.items()},
     )
 
 
@@ -121,14 +136,16 @@ def numbered(part: Part, profiles: Mapping[str, tuple[Profile, ...]], view: str)
         {number[element]: said for element, said in part.elements.items() if said},
         {index[key]: said for key, said in part.said.items() if said},
         {(number[v], names): tuple(sorted(map(index.__getitem__, keys))) for (v, names), keys in part.through.items()},
-        {number[element]: facts for element, facts in part.outside.items()},
+        _by_number(number, part.outside),
+        _by_number(number, {element: tuple(sorted(groups)) for element, groups in part.subjects.items()}),
+        _by_number(number, part.processing),
+        dict(sorted(part.of_robots.items())),
     )
-    return graph, _sorted(bound)
+    return graph, replace(bound, elements=dict(sorted(bound.elements.items())), flows=dict(sorted(bound.flows.items())))
 
 
-def _sorted(bound: Bound) -> Bound:
-    outside = dict(sorted(bound.outside.items()))
-    return Bound(dict(sorted(bound.elements.items())), dict(sorted(bound.flows.items())), bound.through, outside)
+def _by_number(number: Mapping[Element, int], said: Mapping[Element, V]) -> dict[int, V]:
+    return dict(sorted(((number[element], one) for element, one in said.items()), key=itemgetter(0)))
 
 
 def _joined(pairs: Iterable[tuple[K, tuple[V, ...]]]) -> dict[K, tuple[V, ...]]:

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, shown
-from rosprivacy.analysis.model import Place
+from rosprivacy.analysis.model import UNSTATED, Place
 from rosprivacy.analysis.non_ros import EVERY
 from rosprivacy.ingest.labels.entries import OWN, PROPOSED, ROBOT, SHIPPED
 from rosprivacy.ingest.labels.label_reader import LabelReader, check_mundane
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from rosprivacy.analysis.bounds import Bounds
-    from rosprivacy.analysis.model import Diagnostic
+    from rosprivacy.analysis.model import Diagnostic, Processing
     from rosprivacy.ingest.labels.entries import Entry, FlowEntry
     from rosprivacy.ingest.labels.non_ros_reader import Limit, Stated
     from rosprivacy.ingest.reading.yaml_values import Value
@@ -53,6 +53,8 @@ class Labels:
         How long kinds of data may be kept at most.
     own
         Whether it is about one robot of a fleet, and outranks its model's.
+    processing
+        Who is responsible for the whole system, what it is for, on which basis.
     """
 
     file: str
@@ -64,6 +66,7 @@ class Labels:
     elements: tuple[Stated, ...] = ()
     limits: tuple[Limit, ...] = ()
     own: bool = False
+    processing: Processing = UNSTATED
 
 
 def read_labels(
@@ -149,6 +152,7 @@ def _labels(reader: LabelReader, top: Value, data: bytes, *, shipped: bool = Fal
         tuple(reader.elements),
         tuple(reader.limits),
         own,
+        reader.processing,
     )
 
 
@@ -159,6 +163,8 @@ def unknown_categories(labels: Labels, vocabulary: Vocabulary) -> Iterator[Label
     named = {(name, said.place) for said in statements for name in (*said.categories, said.to)}
     named |= {(name, stated.place) for stated in labels.elements for name, _ in stated.outside.retention}
     named |= {(name, Place(labels.file, 0)) for name, _ in labels.limits}
+    processing = [labels.processing, *(entry.processing for entry in labels.entries)]
+    named |= {(name, one.place) for one in processing for name, _ in (*one.purposes, *one.bases)}
     for name, place in named:
         if name != EVERY and name not in vocabulary.categories:
             hint = "give parse_labels the ontologies that analyze gets"

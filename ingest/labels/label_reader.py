@@ -13,10 +13,28 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.kernel.ranks import NONE_OF
-from rosprivacy.analysis.model import CLEANS, GLOB, NAME, Diagnostic, Method, Place, Severity, Statement
+from rosprivacy.analysis.model import (
+    CLEANS,
+    GLOB,
+    NAME,
+    UNSTATED,
+    Diagnostic,
+    Method,
+    Place,
+    Processing,
+    Severity,
+    Statement,
+)
 from rosprivacy.ingest.labels.entries import EXACT, SHIPPED, Entry, FlowEntry, naming, specificity
 from rosprivacy.ingest.labels.name_reader import NameReader
 from rosprivacy.ingest.labels.non_ros_reader import is_non_ros, read_element, read_limits
+from rosprivacy.ingest.labels.stated_processing import (
+    OF_ELEMENT,
+    OF_SYSTEM,
+    read_processing,
+    read_system,
+    with_transfer,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -32,8 +50,8 @@ SECTIONS = {
     "actions": ("action",),
 }
 SIX_LISTS = ("source", "leak", "conduit", "sanitizer", "sensitive", "mundane")
-NODE_KEYS = ("source", "leak", "sanitizer", "conduit", "derives", "subjects", "absent", "note", "author")
-SAYS_NOTHING = ("subjects", "note", "author")  # of what data does
+NODE_KEYS = ("source", "leak", "sanitizer", "conduit", "derives", "subjects", *OF_ELEMENT, "absent", "note", "author")
+SAYS_NOTHING = ("subjects", *OF_ELEMENT, "note", "author")  # of what data does
 CHANNEL_KEYS = ("only", "never", "note", "author")
 FLOW_KEYS = ("from", "to", "only", "never", "note", "author")
 OUTSIDE = ("elements", "limits")
@@ -53,6 +71,7 @@ class LabelReader(NameReader):
     flows: list[FlowEntry] = field(default_factory=list)
     elements: list[Stated] = field(default_factory=list)
     limits: list[Limit] = field(default_factory=list)
+    processing: Processing = UNSTATED
 
     def rank(self, specific: int) -> tuple[int, int]:
         """Return the rank of a statement."""
@@ -69,12 +88,19 @@ class LabelReader(NameReader):
 
     def _labels(self, top: Value) -> None:
         self.version(top, "labels", "label")
+        self.system(top)
         self.author = self._author(top)
-        for key, line, value in self.entries_of(top, ("labels", "author", *SECTIONS, *OUTSIDE, "flows")):
+        for key, line, value in self.entries_of(top, ("labels", "author", *OF_SYSTEM, *SECTIONS, *OUTSIDE, "flows")):
             if key in ("flows", *OUTSIDE):
                 self.outside(key, line, value)
             elif key in SECTIONS:
                 self._section(key, line, value)
+
+    def system(self, top: Value) -> None:
+        """Read what the top says of the whole system; fleet files say it too."""
+        lines = [line for key, line, _ in top.entries if key in OF_SYSTEM]
+        if lines:
+            self.processing = read_system(self, top, Place(self.file, lines[0]))
 
     def outside(self, section: str, line: int, value: Value) -> None:
         """Read a section that fleet files have too."""
@@ -96,8 +122,12 @@ class LabelReader(NameReader):
         statements = self._said(labels, self._node(labels, stated.place, self.rank(EXACT)))
         if stated.kind == "device" and all(key in SAYS_NOTHING for key, *_ in labels.entries):
             self.problem(line, f"device {shown(name)!r} does nothing", "say what comes from it: source: [Voice]")
-        self.elements.append(stated)
-        self.entries.append(Entry((stated.kind,), name, stated.place, statements, self._subjects(labels)))
+        processing = self._processing(labels, stated.place)
+        facts = with_transfer(self, value, stated.outside, processing.bases)
+        self.elements.append(replace(stated, outside=facts))
+        subjects = self._subjects(labels)
+        kinds, rank = (stated.kind,), self.rank(EXACT)
+        self.entries.append(Entry(kinds, name, stated.place, statements, subjects, processing, rank))
 
     def _section(self, section: str, line: int, value: Value) -> None:
         if value.kind == "empty":
@@ -114,8 +144,10 @@ class LabelReader(NameReader):
             rank = self.rank(specificity(name))
             read = self._node if section == "nodes" else self._channel
             statements = self._said(label, read(label, Place(self.file, at), rank), naming(name))
-            subjects = self._subjects(label) if section == "nodes" else ()
-            self.entries.append(Entry(SECTIONS[section], name, Place(self.file, at), statements, subjects))
+            place, of_node = Place(self.file, at), section == "nodes"
+            subjects = self._subjects(label) if of_node else ()
+            processing = self._processing(label, place) if of_node else UNSTATED
+            self.entries.append(Entry(SECTIONS[section], name, place, statements, subjects, processing, rank))
 
     def _said(self, label: Value, statements: Iterable[Statement], how: str = NAME) -> tuple[Statement, ...]:
         """Statements of one entry, with how it names, its reason, and who says it: its author, or the file's."""
@@ -229,6 +261,10 @@ class LabelReader(NameReader):
                 self.problem(item.line, what, f"write a word or two, at most {LONGEST_GROUP} characters")
         return tuple(sorted({item.text.strip() for item in value.items}))
 
+    def _processing(self, label: Value, place: Place) -> Processing:
+        """What data there are processed for, and on which basis."""
+        return read_processing(self, label.entries, place, OF_ELEMENT)
+
     def _channel(self, label: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
         if label.kind == "empty":
             return
@@ -299,7 +335,7 @@ def check_mundane(reader: LabelReader, top: Value) -> None:
     """Refuse what a file of standard channels says beside that channels are mundane (rule S13)."""
     hint = "write channels: {/name: mundane} only; other labels go into a file for --labels"
     for key, line, _ in top.entries if top.kind == "map" else ():
-        if key in ("nodes", "flows", *OUTSIDE, *SIX_LISTS):
+        if key in ("nodes", "flows", *OF_SYSTEM, *OUTSIDE, *SIX_LISTS):
             reader.problem(line, f"{key} in a file of standard channels", hint)
     for entry in reader.entries:
         for statement in entry.statements if "node" not in entry.kinds else ():

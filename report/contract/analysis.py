@@ -28,6 +28,8 @@ if TYPE_CHECKING:
         DerivationEntry,
         NonRosEntry,
         OverruledEntry,
+        ProcessedEntry,
+        ProcessingEntry,
         RolesEntry,
         SanitizerEntry,
         SubjectsEntry,
@@ -124,6 +126,8 @@ class AnalysisDocument(TypedDict):
     roles: NotRequired[list[RolesEntry]]
     outside: list[NonRosEntry]
     subjects: list[SubjectsEntry]
+    processing: NotRequired[list[ProcessingEntry]]
+    processed_for: NotRequired[list[ProcessedEntry]]
     sanitizers: list[SanitizerEntry]
     derivations: list[DerivationEntry]
     unreached: list[ElementEntry]

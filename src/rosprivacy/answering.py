@@ -5,20 +5,22 @@ In: ``System`` and ``Question``. Out: ``Result``. Who computes the analysis else
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.findings.findings import Options, analyse
+from rosprivacy.analysis.findings.processed import lacks, processed
 from rosprivacy.analysis.fleet.patterns import FleetView
 from rosprivacy.analysis.fleet.patterns_of_pairs import Groups
 from rosprivacy.analysis.model import unread
 from rosprivacy.assumptions import assumptions_of
-from rosprivacy.decided import accepts, joined_to
+from rosprivacy.decided import accepts, joined_to, law_of
 from rosprivacy.ingest.labels.shipped import infrastructure_of
 from rosprivacy.result import Result
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.fleet.counts import Counts
@@ -68,7 +70,10 @@ def concluded(
     counts
         As of ``Answer``.
     """
-    joined = joined_to(question.decisions, analysis, system.vocabulary, question.asked, system.likeness)
+    rows = processed(analysis, system.bound, system.vocabulary.hierarchy)
+    said = lacks(rows, law_of(system.vocabulary, analysis.emitted))
+    analysis = replace(analysis, diagnostics=(*analysis.diagnostics, *said))
+    joined = joined_to(question.decisions, analysis, system.vocabulary, question.asked, system.likeness, view)
     return Result(
         analysis,
         system.bound,
@@ -84,7 +89,14 @@ def concluded(
         labels=system.labels,
         options=options,
         again=partial(_again, system.under, question) if system.under else None,
+        closes=_proposed if system.policies else None,
     )
+
+
+def _proposed(result: Result) -> Mapping[str, Any] | str:
+    from rosprivacy.mitigation import proposed  # noqa: PLC0415 - only where a report asks for it
+
+    return {**document} if isinstance(document := proposed(result), dict) else document
 
 
 def _again(

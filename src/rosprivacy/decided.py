@@ -11,14 +11,16 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.decisions import Case, decided
 from rosprivacy.analysis.fleet.likeness import NO_ROBOTS, pattern_of
+from rosprivacy.analysis.remembered import About
 from rosprivacy.clock import judged_on, today
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection
+    from collections.abc import Callable, Collection, Iterable
 
     from rosprivacy.analysis.answer import Analysis, Finding
     from rosprivacy.analysis.decisions import Decided, Decisions
     from rosprivacy.analysis.fleet.likeness import Likeness
+    from rosprivacy.analysis.fleet.patterns import FleetView
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.settings import Settings
 
@@ -48,19 +50,39 @@ def joined_to(
     vocabulary: Vocabulary,
     asked: Collection[str] | None,
     likeness: Likeness = NO_ROBOTS,
+    view: FleetView | None = None,
 ) -> Decided | None:
     """Join decisions to findings; where only some categories were asked for, none is called orphaned."""
     if decisions is None:
         return None
-    law = {
-        name: tuple((legal.name, legal.verdict) for legal in vocabulary.categories[name].law)
-        for name in analysis.emitted
-    }
+    law = law_of(vocabulary, analysis.emitted)
 
     def case_of(finding: Finding) -> Case:
         return in_fleet(Case.of(finding), likeness)
 
-    return decided(decisions, analysis.findings, law, everything=asked is None, case_of=case_of)
+    now = about_today(analysis, view)
+    return decided(decisions, analysis.findings, law, everything=asked is None, case_of=case_of, now=now)
+
+
+def about_today(analysis: Analysis, view: FleetView | None) -> dict[str, About]:
+    """Return what a decision would be made about today: of each finding by its id, of a fleet of each pattern."""
+
+    def about(finding: Finding, robots: Iterable[str] = ()) -> About:
+        path = tuple(element.name for element in finding.witness)
+        return About(analysis.graph.view, path, finding.disjoint_paths, frozenset(robots))
+
+    found = {finding.id: about(finding) for finding in analysis.findings}
+    if view is None:
+        return found
+    everywhere = {robot for robots in view.likeness.members.values() for robot in robots}
+    return found | {p.id: about(p.finding, everywhere if p.across else p.robots) for p in view.patterns}
+
+
+def law_of(vocabulary: Vocabulary, categories: Iterable[str]) -> dict[str, tuple[tuple[str, str], ...]]:
+    """Return what can apply to data of some categories: (provision, verdict)."""
+    return {
+        name: tuple((legal.name, legal.verdict) for legal in vocabulary.categories[name].law) for name in categories
+    }
 
 
 def accepts(decisions: Decisions | None, likeness: Likeness = NO_ROBOTS) -> Callable[[Case], bool] | None:

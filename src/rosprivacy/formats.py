@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, overload
 
 from rosprivacy.analysis.errors import InputError, shown
@@ -24,8 +25,12 @@ if TYPE_CHECKING:
 
     Aliases = Mapping[Key, tuple[str, str]]
 
+LANGUAGES = ("en", "de", "fr")
+
 # What is text; the table below has one row for each, and 'docx'.
 TextFormat = Literal["text", "json", "sarif", "cnil-pia", "turtle", "json-ld", "html", "markdown", "article30"]
+
+NAMED = 3  # policies in the title of a report
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +41,9 @@ class Style:
     ----------
     verbose, quiet, colour
         Of text: every open element and notice, the verdict only, for a terminal.
-    language, title
+    language
+        Of a report and of the answers for the CNIL's tool: ``en``, ``de`` or ``fr``.
+    title
         Of a report.
     since
         Document of an earlier analysis, to tell what changed; of a page and of Markdown.
@@ -77,11 +84,15 @@ def written(answer: Answer, name: str, style: Style | None = None) -> str | byte
     Raises
     ------
     InputError
-        If there is no such format, ``SOURCE_DATE_EPOCH`` is no time, or the earlier document cannot be read.
+        If there is no such format or language, ``SOURCE_DATE_EPOCH`` is no time, or the earlier document cannot be
+        read.
     """
     if name not in FORMATS:
         raise InputError("format", 0, f"unknown format {shown(name)!r}", f"one of {', '.join(FORMATS)}")
-    return FORMATS[name].write(answer, style or Style())
+    style = style or Style()
+    if style.language not in LANGUAGES:
+        raise InputError("language", 0, f"unknown language {shown(style.language)!r}", f"one of {', '.join(LANGUAGES)}")
+    return FORMATS[name].write(answer, style)
 
 
 def _text(answer: Answer, style: Style) -> str:
@@ -126,13 +137,13 @@ def _sarif(answer: Answer, _: Style) -> str:
     return as_text(sarif(answer, repository_root(named)))
 
 
-def _cnil_pia(answer: Answer, _: Style) -> str:
+def _cnil_pia(answer: Answer, style: Style) -> str:
     """Without ``SOURCE_DATE_EPOCH`` the file is dated now, since the tool wants a date (rule S14)."""
     from rosprivacy.report.cnil.pia import cnil_pia
     from rosprivacy.report.json_text import as_text
 
     created = (source_date(os.environ) or datetime.now(UTC)).isoformat(timespec="milliseconds")
-    return as_text(cnil_pia(answer, created.replace("+00:00", "Z")))
+    return as_text(cnil_pia(answer, created.replace("+00:00", "Z"), style.language))
 
 
 def _article30(answer: Answer, style: Style) -> str:
@@ -167,27 +178,48 @@ def _html(answer: Answer, style: Style) -> str:
 def _outline(answer: Answer, style: Style) -> tuple[Outline, Aliases | None]:
     from rosprivacy.report.page.outline import outline
 
-    told, earlier, aliases = _told(answer, style)
-    made = today(os.environ)
-    entries = outline(told, style.language, title=style.title, made=made, earlier=earlier, redacted=style.redact)
-    return entries, aliases
+    told, earlier, proposals, aliases = _told(answer, style, answer.proposals())
+    report = outline(
+        told,
+        style.language,
+        title=style.title or ("" if style.redact else _title(answer, style)),
+        made=today(os.environ),
+        earlier=earlier,
+        redacted=style.redact,
+        proposals=proposals,
+    )
+    return report, aliases
 
 
-def _told(answer: Answer, style: Style) -> tuple[Mapping[str, Any], Earlier | None, Aliases | None]:
-    """The document, the earlier one if there is one, and what elements are called if names are replaced."""
+def _title(answer: Answer, style: Style) -> str:
+    """The policies that were named, without what they include; empty where that is not known."""
+    from rosprivacy.analysis.text import fit
+    from rosprivacy.report.words.words import Words
+
+    words, names = Words(style.language), list(dict.fromkeys(Path(file).name for file in answer.named))
+    more = [words("more", n=len(names) - NAMED)] if len(names) > NAMED else []
+    return words.row([*map(fit, names[:NAMED]), *more])
+
+
+def _told(
+    answer: Answer, style: Style, proposals: Mapping[str, Any] | str = ""
+) -> tuple[Mapping[str, Any], Earlier | None, Mapping[str, Any] | str, Aliases | None]:
+    """The document, the earlier one if there is one, proposals, and what elements are called if names are replaced."""
     from rosprivacy.report.compare.earlier import read_earlier
     from rosprivacy.report.document.whole import document
 
     told = document(answer)
     earlier = read_earlier(style.since) if style.since else None
     if not style.redact:
-        return told, earlier, None
+        return told, earlier, proposals, None
     from rosprivacy.report.page.redact import redacted
     from rosprivacy.report.page.redacted_pictures import aliases_of
 
-    copies = redacted([told, *([earlier.document] if earlier else [])])
+    beside = [earlier.document] if earlier else []
+    also = [proposals] if not isinstance(proposals, str) else []
+    copies = redacted([told, *beside, *also])
     earlier = replace(earlier, document=copies[1], file="file-0") if earlier else None
-    return copies[0], earlier, aliases_of(told, copies[0])
+    return copies[0], earlier, copies[-1] if also else proposals, aliases_of(told, copies[0])
 
 
 FORMATS = {
