@@ -178,7 +178,7 @@ def supports(known: Known) -> Html:
     parts = []
     for kind in (kind for kind in KINDS if kind in carries):
         rows = [told.pair(escaped(name), _held(carried, told)) for name, carried in list(carries[kind].items())[:NAMES]]
-        parts.append(paragraph(strong(told.count(len(carries[kind]), f"cnil.{kind}"))))
+        parts.append(paragraph(strong(told.count(len(carries[kind]), f"cnil.kind.{kind}"))))
         parts.append(told.rows(rows, len(carries[kind])))
     parts.append(paragraph(told("cnil.paper")))
     return joined(*parts) if carries else nothing(known)

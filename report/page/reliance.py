@@ -71,7 +71,7 @@ def _said(row: Mapping[str, Any], index: Index) -> str:
     if row["role"] == "sanitizer" and role != "absent":
         method = words(f"method.{row['method']}")
         said = f"{said} ({method})"
-    said = words("u.of", said=said, data=index.all_data(row["categories"])) if row["categories"] else said
+    said = words.pair(said, index.all_data(row["categories"])) if row["categories"] else said
     return words("k.glob", said=said) if row["glob"] else said
 
 
@@ -84,7 +84,7 @@ def _findings(row: Mapping[str, Any], index: Index) -> Iterator[str]:
     for opening in row["findings"]:
         data = index.data(opening["category"], pseudonymised=opening["pseudonymised"])
         ends = [words.row(index.names([opening[end]])) for end in ("source", "leak")]
-        told = words("u.of", said=data, data=" → ".join(ends))
+        told = words.pair(data, " → ".join(ends))
         more = [] if opening["kind"] == "disclosure" else [words(f"finding.{opening['kind']}")]
         more += [words("u.dismissed")] if opening["dismissed"] else []
         more += [] if opening["new"] else [words("u.worse")]

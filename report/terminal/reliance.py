@@ -8,75 +8,81 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.text import counted
 from rosprivacy.report.naming import shown_name
+from rosprivacy.report.terminal.called_alike import both
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from rosprivacy.report.words.words import Words
 
 Line = tuple[str, str]  # text, style
 WORST = 3
 FEW = 3  # findings, questions and elements that are named in a line
 
 
-def reliance_lines(report: Mapping[str, Any], *, verbose: bool) -> Iterator[Line]:
-    """Return what the answer hangs on: its own part of the report."""
+def reliance_lines(report: Mapping[str, Any], words: Words, *, verbose: bool) -> Iterator[Line]:
+    """Return what the answer hangs on: a part of the report by itself."""
     rows = report.get("hangs_on", ())
     if not rows:
         return
     own = sum(not row["shipped"] for row in rows)
-    parts = [counted(own, "statement of your labels", "statements of your labels")] if own else []
-    parts += [counted(len(rows) - own, "shipped one", "shipped ones")] if len(rows) > own else []
+    counts = [(own, "tty.hangs.own"), (len(rows) - own, "tty.hangs.shipped")]
     yield "", ""
-    yield f"What the answer hangs on: {' and '.join(parts)}", "bold"
+    yield words("tty.hangs", what=both([words.count(n, key) for n, key in counts if n], words)), "bold"
     worst = [row for row in rows if not row["shipped"] and (row["findings"] or row["perhaps"])]
     told = rows if verbose else worst[:WORST]
     for row in told:
-        yield f"   {_row(row, None if verbose else FEW)}", "yellow" if row["findings"] else ""
+        yield f"   {_row(row, None if verbose else FEW, words)}", "yellow" if row["findings"] else ""
     if len(told) < len(rows):
-        yield "   if one of these is wrong, there are more findings or open questions (-v lists them)", "dim"
+        yield f"   {words('tty.hangs.wrong')}", "dim"
 
 
-def _row(row: Mapping[str, Any], most: int | None) -> str:
-    ends = _some([shown_name(element) for element in row["elements"]], FEW)
-    to = f" -> {_some([shown_name(element) for element in row['to']], FEW)}" if row["to"] else ""
-    by = f", says {shown(row['author'])}" if row["author"] else ""
-    why = f" ({shown(row['why'])})" if row["why"] else ""
-    glob = " by a glob" if row["glob"] else ""
-    return f"{shown(row['file'])}:{row['line']}: {ends}{to} {_says(row)}{glob}{by}{why}; if wrong: {_opened(row, most)}"
+def _row(row: Mapping[str, Any], most: int | None, words: Words) -> str:
+    ends = (_some(map(shown_name, row[end]), FEW, words) for end in ("elements", "to") if row[end])
+    return words(
+        "tty.hangs.line",
+        place=f"{shown(row['file'])}:{row['line']}",
+        ends=" -> ".join(ends),
+        said=_says(row) + (words("tty.by.glob") if row["glob"] else ""),
+        by=words("tty.hangs.by", author=shown(row["author"])) if row["author"] else "",
+        why=f" ({shown(row['why'])})" if row["why"] else "",
+        opened=_opened(row, most, words),
+    )
 
 
 def _says(row: Mapping[str, Any]) -> str:
-    """What the statement says, in the words of label files."""
+    """What the statement says, as a label file writes it."""
     names = ", ".join(row["categories"])
     if row["role"] == "sanitizer":
-        return "absent" if row["method"] == "absent" else f"sanitizer of {names} ({row['method']})"
-    if row["role"] in ("only", "never"):
-        return f"{row['role']} [{names}]"
+        return "absent" if row["method"] == "absent" else f"sanitizer: {{{names}: {row['method']}}}"
     said = {"no-leak": "leak: none", "no-source": "source: none"}.get(row["role"], row["role"])
-    return f"{said} of {names}" if names else said
+    return f"{said}: [{names}]" if names else said
 
 
-def _opened(row: Mapping[str, Any], most: int | None) -> str:
+def _opened(row: Mapping[str, Any], most: int | None, words: Words) -> str:
     if row["refused"]:
-        return f"the other labels contradict each other: {shown(row['refused'])}"
+        return words("u.refused", why=shown(row["refused"]))
     if row["perhaps"]:
-        return "this was not worked out, too many statements need an analysis of the whole"
-    found = _some([_finding(opening) for opening in row["findings"]], most)
-    asked = _some([f"{shown_name(one['element'])} ({', '.join(one['categories'])})" for one in row["questions"]], most)
-    return "; ".join(filter(None, (found, f"to review: {asked}" if asked else "")))
+        return words("tty.not.worked.out")
+    asked = (f"{shown_name(one['element'])} ({', '.join(one['categories'])})" for one in row["questions"])
+    parts = [_some((_finding(opening, words) for opening in row["findings"]), most, words)]
+    parts += [words("tty.hangs.asked", elements=_some(asked, most, words))] if row["questions"] else []
+    return "; ".join(filter(None, parts))
 
 
-def _finding(opening: Mapping[str, Any]) -> str:
-    form = "pseudonymised " if opening["pseudonymised"] else ""
-    through = " through another leak" if opening["dismissed"] else ""
-    kind = "" if opening["kind"] == "disclosure" else f" ({opening['kind']})"
-    worse = "" if opening["new"] else ", worse than today"
-    source, leak = shown_name(opening["source"]), shown_name(opening["leak"])
-    return f"{form}{opening['category']}: {source} -> {leak}{kind}{through}{worse}"
+def _finding(opening: Mapping[str, Any], words: Words) -> str:
+    category = opening["category"]
+    data = words("tty.hidden", kind=category) if opening["pseudonymised"] else category
+    more = [] if opening["kind"] == "disclosure" else [words(f"finding.{opening['kind']}")]
+    more += [words("u.dismissed")] if opening["dismissed"] else []
+    more += [] if opening["new"] else [words("u.worse")]
+    told = words.pair(data, f"{shown_name(opening['source'])} -> {shown_name(opening['leak'])}")
+    return f"{told} ({words.row(more)})" if more else told
 
 
-def _some(names: Sequence[str], most: int | None) -> str:
-    texts = list(dict.fromkeys(names))  # the legs of a service have one name
-    more = f" and {len(texts) - most:,} more" if most is not None and len(texts) > most else ""
-    return f"{', '.join(texts[:most])}{more}"
+def _some(texts: Iterable[str], most: int | None, words: Words) -> str:
+    """Some of them, each once: the legs of a service have one name."""
+    distinct = list(dict.fromkeys(texts))
+    left_out = len(distinct) - most if most is not None else 0
+    return words.row(distinct[:most]) + (words("tty.more", n=left_out) if left_out > 0 else "")

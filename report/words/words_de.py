@@ -709,5 +709,4 @@ WORDS = {
     "u.refused": "ohne sie widersprechen sich die übrigen Angaben: {why}",
     "u.dismissed": "nur über einen anderen Empfänger",
     "u.worse": "heute nur pseudonymisiert oder nur über einen anderen Empfänger",
-    "u.of": "{said}: {data}",
 }

@@ -836,5 +836,4 @@ WORDS = {
     "u.refused": "without it the other labels contradict each other: {why}",
     "u.dismissed": "through another recipient only",
     "u.worse": "today only pseudonymised, or only through another recipient",
-    "u.of": "{said}: {data}",
 }

@@ -714,7 +714,6 @@ _TYPED = {
     "u.refused": "sans elle, les autres annotations se contredisent : {why}",
     "u.dismissed": "seulement par un autre destinataire",
     "u.worse": "aujourd'hui seulement pseudonymisées, ou seulement par un autre destinataire",
-    "u.of": "{said} : {data}",
 }
 
 WORDS = {key: spaced(text, "fr") for key, text in _TYPED.items()}
