@@ -9,10 +9,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rdflib import RDF, RDFS, SKOS, XSD, Graph, Literal
+from rdflib import OWL, RDF, RDFS, SKOS, XSD, Graph, Literal
 from rdflib.namespace import PROV
 
 from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.findings.processed import of_end
 from rosprivacy.report.document.whole import document
 from rosprivacy.report.rdf.facts import changes, emitted_by, kinds_along, label_of, legal_of
 from rosprivacy.report.rdf.individuals import below, names_of
@@ -20,7 +21,6 @@ from rosprivacy.report.rdf.process import Processes
 from rosprivacy.report.rdf.provenance import by_path, provenance
 from rosprivacy.report.rdf.terms import (
     DPV,
-    OWN,
     RISK,
     RP,
     Triple,
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 
 PREFIXES: dict[str, object] = {
     "dpv": DPV, "risk": RISK, "pd": "https://w3id.org/dpv/pd#", "eu-gdpr": "https://w3id.org/dpv/legal/eu/gdpr#",
-    "rp": OWN, "prov": PROV, "rdf": RDF, "rdfs": RDFS, "skos": SKOS, "xsd": XSD,
+    "rp": RP, "owl": OWL, "prov": PROV, "rdf": RDF, "rdfs": RDFS, "skos": SKOS, "xsd": XSD,
 }  # fmt: skip
 ROLES = {
     "source": RP.sourceOf, "leak": RP.leakOf, "sanitizer": RP.sanitizerOf, "conduit": RP.conduitOf,
@@ -129,7 +129,7 @@ class _Findings:
     def of(cls, answer: Answer, analysis: Analysis, names: Names, things: Things) -> _Findings:
         unstated = frozenset((element.shown_as, category) for element, category in analysis.unstated)
         unreviewed = frozenset((q.element.shown_as, category) for q in analysis.open for category in q.categories)
-        processes = Processes(answer, names, things, answer.stated, unstated)
+        processes = Processes(answer, names, things, answer.stated, unstated, of_end(answer.processed))
         return cls(answer, analysis, names, things, answer.accepted, emitted_by(analysis), unreviewed, processes)
 
     def triples(self, finding: Finding) -> Iterator[Triple]:

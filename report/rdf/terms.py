@@ -12,6 +12,7 @@ from rdflib import RDF, XSD, BNode, Literal, Namespace
 from rdflib.namespace import ClosedNamespace
 
 from rosprivacy.analysis.text import utf8
+from rosprivacy.ontology.iris import PUBLISHED
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -21,8 +22,7 @@ if TYPE_CHECKING:
 
 Triple = tuple["Node", "Node", "Node"]
 
-OWN = "urn:x-rosprivacy:"
-RP = Namespace(OWN)
+RP = Namespace(PUBLISHED)
 
 DPV_CLASSES = (
     "ActivityStatus",
@@ -30,6 +30,7 @@ DPV_CLASSES = (
     "CrossBorderTransfer",
     "DataController",
     "DataProcessor",
+    "DataProtectionOfficer",
     "DataSource",
     "DataSubject",
     "Derive",
@@ -39,6 +40,7 @@ DPV_CLASSES = (
     "Process",
     "Pseudonymisation",
     "PseudonymisedData",
+    "Purpose",
     "Recipient",
     "Store",
     "SpecialCategoryPersonalData",
@@ -50,12 +52,15 @@ DPV_CLASSES = (
 DPV_PROPERTIES = (
     "hasActivityStatus",
     "hasCountry",
+    "hasDataController",
+    "hasDataProtectionOfficer",
     "hasDataSource",
     "hasDataSubject",
     "hasDuration",
     "hasLegalBasis",
     "hasPersonalData",
     "hasProcessing",
+    "hasPurpose",
     "hasRecipient",
     "hasRisk",
     "hasStorageCondition",

@@ -8,16 +8,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from rdflib import RDF, SKOS, XSD, Literal
+from rdflib import OWL, RDF, SKOS, XSD, Literal, URIRef
 from rdflib.namespace import PROV
 
+from rosprivacy.ontology.iris import STORED
 from rosprivacy.report.rdf.individuals import foreign
 from rosprivacy.report.rdf.terms import DPV, RP, Triple, about, text
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
-
-    from rdflib import URIRef
 
     from rosprivacy.analysis.model import Category, Element, Grant, Legal
     from rosprivacy.ontology.vocabulary import Vocabulary
@@ -33,7 +32,7 @@ CLASSES = {
 Stated = Mapping[tuple[str, str, str], Mapping[str, str]]
 STATED = {
     "country": RP.country, "encrypted": RP.encrypted, "operator": RP.operator, "role": RP.operatorRole,
-    "basis": RP.transferBasis, "retention": RP.retention,
+    "basis": RP.transferBasis, "contract": RP.contract, "retention": RP.retention,
 }  # fmt: skip
 
 
@@ -147,6 +146,7 @@ def _provision(iri: URIRef, legal: Legal) -> list[Triple]:
         (RP.identifier, [text(legal.name)]),
         (SKOS.definition, [text(legal.meaning, "en")]),
         (RP.asOf, [Literal(legal.as_of, datatype=XSD.date)]),
+        (OWL.sameAs, _stored(legal.iri)),
     )
 
 
@@ -160,4 +160,10 @@ def _category(category: Category, broader: list[URIRef]) -> list[Triple]:
         (SKOS.broader, broader),
         (SKOS.broadMatch, map(foreign, category.within)),
         (SKOS.exactMatch, map(foreign, category.same_as)),
+        (OWL.sameAs, _stored(category.iri)),
     )
+
+
+def _stored(iri: str) -> list[URIRef]:
+    """What a term of ours is called in documents and databases; nothing of what is not ours."""
+    return [URIRef(iri)] if iri.startswith(STORED) else []
