@@ -47,6 +47,7 @@ from rosprivacy.analysis.model.policy import Grant, Policy, Profile
 from rosprivacy.analysis.model.statement import (
     CHANGED,
     CLEANS,
+    CONTEXTS,
     GLOB,
     NAME,
     NOWHERE,
@@ -57,6 +58,7 @@ from rosprivacy.analysis.model.statement import (
     Method,
     NonRosFacts,
     Statement,
+    Surroundings,
     UnknownEnd,
 )
 
@@ -68,6 +70,7 @@ __all__ = [
     "CHANGED",
     "CHANNELS",
     "CLEANS",
+    "CONTEXTS",
     "DEAD_DENY",
     "DISCLOSURE",
     "EMPTY_GROUP",
@@ -109,6 +112,7 @@ __all__ = [
     "Profile",
     "Severity",
     "Statement",
+    "Surroundings",
     "UnknownEnd",
     "is_article_9",
     "unread",

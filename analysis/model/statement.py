@@ -144,6 +144,29 @@ class NonRosFacts:
     place: Place = NOWHERE
 
 
+CONTEXTS = ("care", "public-space", "school", "union", "workplace", "worship")  # those of ontology/contexts.ttl
+
+
+@dataclass(frozen=True, slots=True)
+class Surroundings:
+    """Where an element of a robot works, as labels state it: what data reveals there, and whose law is to be looked at.
+
+    Attributes
+    ----------
+    contexts
+        Some of ``CONTEXTS``, sorted.
+    country
+        ISO 3166-1 alpha-2 code of the country where it runs; empty where nobody states it.
+    """
+
+    contexts: tuple[str, ...] = ()
+    country: str = ""
+
+    def __bool__(self) -> bool:
+        """Whether anything is stated."""
+        return bool(self.contexts or self.country)
+
+
 @dataclass(frozen=True, slots=True)
 class Bound:
     """Statements joined to a graph.
@@ -160,6 +183,8 @@ class Bound:
         What is stated about non-ROS elements, by vertex (rule S9).
     subjects
         By vertex: whom the data of a source are about, sorted. It changes no flow.
+    surroundings
+        By vertex: where an element works, its own with those of its system. It changes no flow.
     """
 
     elements: Mapping[int, tuple[Statement, ...]]
@@ -167,6 +192,7 @@ class Bound:
     through: Mapping[tuple[int, tuple[str, ...]], tuple[int, ...]] = field(default_factory=dict)
     outside: Mapping[int, NonRosFacts] = field(default_factory=dict)
     subjects: Mapping[int, tuple[str, ...]] = field(default_factory=dict)
+    surroundings: Mapping[int, Surroundings] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

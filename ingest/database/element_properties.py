@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.findings.derived_from import Origin
     from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.analysis.kernel.spread import Spread
-    from rosprivacy.analysis.model import Bound, Element, Statement
+    from rosprivacy.analysis.model import Bound, Element, Statement, Surroundings
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 Row = dict[str, Any]
@@ -123,6 +123,7 @@ def element_results(analysis: Analysis, bound: Bound, names: Names, roles: Roles
             "sanitizes": cleans,
             "stops": names.exact(_stopped(found, found.keeps.get(vertex, found.all_bits))),
             "subjects": list(bound.subjects.get(vertex, ())),
+            **_surroundings(bound.surroundings.get(vertex), element),
             "open": list(question.categories) if question else [],
             "frontier": question.frontier if question else None,
             "distance": question.distance if question else None,
@@ -133,6 +134,12 @@ def element_results(analysis: Analysis, bound: Bound, names: Names, roles: Roles
             *labelled,
         ]
         yield properties, list(dict.fromkeys(labels))
+
+
+def _surroundings(where: Surroundings | None, element: Element) -> Row:
+    """Where it works; the country of an element outside ROS is a fact of its own."""
+    of_system = {"country": where.country} if where and where.country and element.is_node else {}
+    return {"context": list(where.contexts) or None if where else None, **of_system}
 
 
 def _stopped(found: Spread, kept: int) -> int:

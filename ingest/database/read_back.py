@@ -39,6 +39,7 @@ from rosprivacy.ingest.database.row_facts import (
     subjects_of,
 )
 from rosprivacy.ingest.database.schema import KIND_LABELS, ROLES
+from rosprivacy.ingest.labels.surroundings import surroundings_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -191,6 +192,11 @@ class _Reader:
             except TypeError as error:
                 self.problems.append(_problem(f"{shown(name)!r}: {error}", "SET n.subjects = ['residents', 'staff']"))
                 continue
+            try:
+                surroundings_of(properties, ros="node" in kinds)
+            except TypeError as error:
+                self.problems.append(_problem(f"{shown(name)!r}: {error}", "SET n.context = ['care'], n.country = 'DE'"))
+                continue
             parts = {key: str(properties.get(key) or "") for key in ("leg", "side")}
             shown_robot = "" if self._alone and robot else robot
             element = Element(
@@ -275,6 +281,11 @@ class _Reader:
                 {i: said for i, said in restrictions.items() if said},
                 flows_through(graph, statements),
                 outside,
+                surroundings={
+                    v: where
+                    for v, vertex in enumerate(vertices)
+                    if (where := surroundings_of(vertex.properties, ros=elements[v].is_node))
+                },
                 subjects={v: groups for v, vertex in enumerate(vertices) if (groups := subjects_of(vertex.properties))},
             ),
             robots,

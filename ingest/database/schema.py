@@ -10,6 +10,8 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
+from rosprivacy.analysis.model import CONTEXTS
+
 SCHEMA = 4  # raised when what a load writes gains what an answer rests on, or changes its meaning; none was stored at 1
 _IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 STRING, INTEGER, BOOLEAN, STRINGS = "STRING", "INTEGER", "BOOLEAN", "LIST<STRING>"
@@ -102,6 +104,7 @@ ELEMENT = NodeKind(
         Property("pseudonymised", STRINGS, f"kinds of data that get here pseudonymised{_BROAD}"),
         Property("begins", STRINGS, "kinds that it brings in"),
         Property("subjects", STRINGS, "of a source: whom its data are about"),
+        Property("context", STRINGS, f"where it works, with its system: some of {', '.join(CONTEXTS)}"),
         Property("leaks", STRINGS, "kinds that it lets out, if they come"),
         Property("sanitizes", STRINGS, "kinds that it cleans, if they come"),
         Property("stops", STRINGS, "kinds that some source brings in and that do not go on from here"),
@@ -112,7 +115,7 @@ ELEMENT = NodeKind(
         Property("limits", STRINGS, "of a storage: how long kinds may be kept, as above"),
         Property("backups", STRING, "of a storage: how much longer backups keep data; true where that is not known"),
         Property("encrypted", BOOLEAN, "of a storage: at rest"),
-        Property("country", STRING, "outside ROS: ISO 3166-1 code"),
+        Property("country", STRING, "ISO 3166-1 code; of a node that of its system, where it is stated"),
         Property("operator", STRING, "outside ROS: who runs it"),
         Property("recipient", STRING, "outside ROS: controller, joint-controller, processor or third-party"),
         Property("transfer", STRING, "outside ROS: basis of a transfer out of the EEA"),

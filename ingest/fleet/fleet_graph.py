@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.durations import ordered
 from rosprivacy.analysis.errors import FleetError, InputError, InputErrors, shown
 from rosprivacy.analysis.fleet.likeness import Likeness
-from rosprivacy.analysis.model import Element
+from rosprivacy.analysis.model import Element, Surroundings
 from rosprivacy.analysis.non_ros import by_kind
 from rosprivacy.analysis.written_names import meant
 from rosprivacy.ingest.fleet.alike_robots import COLON, chosen, known_to_flows
@@ -22,6 +22,7 @@ from rosprivacy.ingest.fleet.dds_domains import alone, pseudo_robot, shared
 from rosprivacy.ingest.fleet.mergeable_graph import Part, numbered, together
 from rosprivacy.ingest.labels.add_non_ros import FLOW, Ends, ambiguous, line_of, merged, missing, two_meanings
 from rosprivacy.ingest.labels.entries import End
+from rosprivacy.ingest.labels.surroundings import joined
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -230,6 +231,12 @@ class _Placing:
             element = Element(one.kind, name, fleet.name)
             part.elements[element] = (*dict.fromkeys(said[name]), *by_kind(element))
             part.outside[element] = one.outside
+            about = [entry for entry in fleet.entries if entry.name == name]
+            if groups := {group for entry in about for group in entry.subjects}:
+                part.subjects[element] = tuple(sorted(groups))
+            own = (Surroundings(entry.contexts) for entry in about)
+            if where := joined((Surroundings(fleet.surroundings.contexts), *own)):
+                part.surroundings[element] = where
         self._ends[""] = Ends(part.elements)
         return part
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.ingest.fleet.fleet_reader import ID, NAMESPACE
-from rosprivacy.ingest.labels.label_schema import END, END_OF_KIND, label_schema, non_ros_sections
+from rosprivacy.ingest.labels.label_schema import END, END_OF_KIND, SURROUNDINGS, label_schema, non_ros_sections
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -48,6 +48,7 @@ def fleet_schema(categories: Iterable[Category]) -> dict[str, Any]:
             "infrastructure": _section("robot", "What has policies and is not a robot, such as a base station."),
             "groups": {"type": ["array", "null"], "items": {"$ref": "#/$defs/group"}},
             **non_ros_sections(),
+            **SURROUNDINGS,
             "note": {"type": "string"},
         },
         "$defs": {**definitions, "flow": flow},
@@ -79,6 +80,7 @@ def _definitions() -> dict[str, Any]:
         "policies": {**_files(), "description": "SROS 2 policies: files, folders or globs, relative to this file."},
         "labels": {**_files(), "description": "Label files; those of a robot outrank those of its model."},
         "domain": {**WORD, "description": "DDS domain that it shares with others; by default it has its own."},
+        **SURROUNDINGS,
         "namespace": {
             "description": "Of a robot, in which * is its id: what its policies have before names, or lack.",
             "oneOf": [_object({key: space}, [key]) for key in ("strip", "add")],

@@ -14,7 +14,7 @@ from rosprivacy.analysis.model import Bound, Element, Flow, FlowGraph
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
-    from rosprivacy.analysis.model import Grant, NonRosFacts, Profile, Statement
+    from rosprivacy.analysis.model import Grant, NonRosFacts, Profile, Statement, Surroundings
 
 K = TypeVar("K")
 V = TypeVar("V")
@@ -39,6 +39,8 @@ class Part:
         (source, name expressions) -> the flows that these mean.
     outside
         What is stated about elements outside ROS.
+    subjects, surroundings
+        Whom the data of a source are about; where an element works.
     """
 
     elements: dict[Element, tuple[Statement, ...]] = field(default_factory=dict)
@@ -47,6 +49,8 @@ class Part:
     said: dict[Key, tuple[Statement, ...]] = field(default_factory=dict)
     through: dict[tuple[Element, tuple[str, ...]], tuple[Key, ...]] = field(default_factory=dict)
     outside: dict[Element, NonRosFacts] = field(default_factory=dict)
+    subjects: dict[Element, tuple[str, ...]] = field(default_factory=dict)
+    surroundings: dict[Element, Surroundings] = field(default_factory=dict)
 
     @classmethod
     def of(cls, graph: FlowGraph, bound: Bound) -> Part:
@@ -60,6 +64,8 @@ class Part:
             {keys[index]: said for index, said in bound.flows.items()},
             {(elements[v], names): tuple(keys[i] for i in flows) for (v, names), flows in bound.through.items()},
             {elements[vertex]: facts for vertex, facts in bound.outside.items()},
+            {elements[vertex]: groups for vertex, groups in bound.subjects.items()},
+            {elements[vertex]: where for vertex, where in bound.surroundings.items()},
         )
 
     def renamed(self, name: Callable[[Element], Element]) -> Part:
@@ -76,6 +82,8 @@ class Part:
             _joined((key_of(key), said) for key, said in self.said.items()),
             {(new[v], names): tuple(map(key_of, keys)) for (v, names), keys in self.through.items()},
             {new[element]: facts for element, facts in self.outside.items()},
+            _joined((new[element], groups) for element, groups in self.subjects.items()),
+            {new[element]: where for element, where in self.surroundings.items()},
         )
 
 
@@ -89,6 +97,8 @@ def together(parts: Iterable[Part]) -> Part:
         _joined(pair for part in parts for pair in part.said.items()),
         _joined(pair for part in parts for pair in part.through.items()),
         {element: facts for part in parts for element, facts in part.outside.items()},
+        _joined(pair for part in parts for pair in part.subjects.items()),
+        {element: where for part in parts for element, where in part.surroundings.items()},
     )
 
 
@@ -122,13 +132,21 @@ def numbered(part: Part, profiles: Mapping[str, tuple[Profile, ...]], view: str)
         {index[key]: said for key, said in part.said.items() if said},
         {(number[v], names): tuple(sorted(map(index.__getitem__, keys))) for (v, names), keys in part.through.items()},
         {number[element]: facts for element, facts in part.outside.items()},
+        {number[element]: tuple(sorted(groups)) for element, groups in part.subjects.items()},
+        {number[element]: where for element, where in part.surroundings.items()},
     )
     return graph, _sorted(bound)
 
 
 def _sorted(bound: Bound) -> Bound:
-    outside = dict(sorted(bound.outside.items()))
-    return Bound(dict(sorted(bound.elements.items())), dict(sorted(bound.flows.items())), bound.through, outside)
+    return Bound(
+        dict(sorted(bound.elements.items())),
+        dict(sorted(bound.flows.items())),
+        bound.through,
+        dict(sorted(bound.outside.items())),
+        dict(sorted(bound.subjects.items())),
+        dict(sorted(bound.surroundings.items())),
+    )
 
 
 def _joined(pairs: Iterable[tuple[K, tuple[V, ...]]]) -> dict[K, tuple[V, ...]]:

@@ -29,6 +29,8 @@ class Entry:
     ----------
     subjects
         Of a source: whom its data are about, in a person's words.
+    contexts
+        Of a source: where it works, some of ``CONTEXTS``.
     """
 
     kinds: tuple[str, ...]
@@ -36,6 +38,7 @@ class Entry:
     place: Place
     statements: tuple[Statement, ...]
     subjects: tuple[str, ...] = ()
+    contexts: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, shown
-from rosprivacy.analysis.model import Place
+from rosprivacy.analysis.model import Place, Surroundings
 from rosprivacy.analysis.non_ros import EVERY
 from rosprivacy.ingest.labels.entries import OWN, PROPOSED, ROBOT, SHIPPED
 from rosprivacy.ingest.labels.label_reader import LabelReader, check_mundane
@@ -53,6 +53,8 @@ class Labels:
         How long kinds of data may be kept at most.
     own
         Whether it is about one robot of a fleet, and outranks its model's.
+    surroundings
+        Where the system works, as the top of the file states it.
     """
 
     file: str
@@ -64,6 +66,7 @@ class Labels:
     elements: tuple[Stated, ...] = ()
     limits: tuple[Limit, ...] = ()
     own: bool = False
+    surroundings: Surroundings = Surroundings()  # noqa: RUF009 - it is frozen
 
 
 def read_labels(
@@ -149,6 +152,7 @@ def _labels(reader: LabelReader, top: Value, data: bytes, *, shipped: bool = Fal
         tuple(reader.elements),
         tuple(reader.limits),
         own,
+        reader.surroundings,
     )
 
 

@@ -13,10 +13,11 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.kernel.ranks import NONE_OF
-from rosprivacy.analysis.model import CLEANS, GLOB, NAME, Diagnostic, Method, Place, Severity, Statement
+from rosprivacy.analysis.model import CLEANS, GLOB, NAME, Diagnostic, Method, Place, Severity, Statement, Surroundings
 from rosprivacy.ingest.labels.entries import EXACT, SHIPPED, Entry, FlowEntry, naming, specificity
 from rosprivacy.ingest.labels.name_reader import NameReader
 from rosprivacy.ingest.labels.non_ros_reader import is_non_ros, read_element, read_limits
+from rosprivacy.ingest.labels.surroundings import read_contexts, read_country
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -32,11 +33,12 @@ SECTIONS = {
     "actions": ("action",),
 }
 SIX_LISTS = ("source", "leak", "conduit", "sanitizer", "sensitive", "mundane")
-NODE_KEYS = ("source", "leak", "sanitizer", "conduit", "derives", "subjects", "absent", "note")
-SAYS_NOTHING = ("subjects", "note")  # of what data does
+NODE_KEYS = ("source", "leak", "sanitizer", "conduit", "derives", "subjects", "context", "absent", "note")
+SAYS_NOTHING = ("subjects", "context", "note")  # of what data does
 CHANNEL_KEYS = ("only", "never", "note")
 FLOW_KEYS = ("from", "to", "only", "never", "note")
 OUTSIDE = ("elements", "limits")
+SURROUNDINGS = ("context", "country")  # of a system
 NONE = "none"  # in place of categories: takes back what labels of lower rank say (rule S7)
 LONGEST_GROUP = 100  # characters of a group of persons
 
@@ -52,6 +54,7 @@ class LabelReader(NameReader):
     flows: list[FlowEntry] = field(default_factory=list)
     elements: list[Stated] = field(default_factory=list)
     limits: list[Limit] = field(default_factory=list)
+    surroundings: Surroundings = field(default_factory=Surroundings)
 
     def rank(self, specific: int) -> tuple[int, int]:
         """Return the rank of a statement."""
@@ -68,11 +71,19 @@ class LabelReader(NameReader):
 
     def _labels(self, top: Value) -> None:
         self.version(top, "labels", "label")
-        for key, line, value in self.entries_of(top, ("labels", *SECTIONS, *OUTSIDE, "flows")):
-            if key in ("flows", *OUTSIDE):
+        for key, line, value in self.entries_of(top, ("labels", *SURROUNDINGS, *SECTIONS, *OUTSIDE, "flows")):
+            if key in SURROUNDINGS:
+                self.surroundings = self.surrounded(self.surroundings, key, value)
+            elif key in ("flows", *OUTSIDE):
                 self.outside(key, line, value)
             elif key in SECTIONS:
                 self._section(key, line, value)
+
+    def surrounded(self, known: Surroundings, key: str, value: Value) -> Surroundings:
+        """Return where a system works with what one more key says of it."""
+        if key == "context":
+            return replace(known, contexts=read_contexts(self, value))
+        return replace(known, country=read_country(self, value))
 
     def outside(self, section: str, line: int, value: Value) -> None:
         """Read a section that fleet files have too."""
@@ -95,7 +106,7 @@ class LabelReader(NameReader):
         if stated.kind == "device" and all(key in SAYS_NOTHING for key, *_ in labels.entries):
             self.problem(line, f"device {shown(name)!r} does nothing", "say what comes from it: source: [Voice]")
         self.elements.append(stated)
-        self.entries.append(Entry((stated.kind,), name, stated.place, statements, self._subjects(labels)))
+        self.entries.append(Entry((stated.kind,), name, stated.place, statements, self._subjects(labels), self._contexts(labels)))
 
     def _section(self, section: str, line: int, value: Value) -> None:
         if value.kind == "empty":
@@ -112,8 +123,8 @@ class LabelReader(NameReader):
             rank = self.rank(specificity(name))
             read = self._node if section == "nodes" else self._channel
             statements = tuple(replace(s, naming=naming(name)) for s in read(label, Place(self.file, at), rank))
-            subjects = self._subjects(label) if section == "nodes" else ()
-            self.entries.append(Entry(SECTIONS[section], name, Place(self.file, at), statements, subjects))
+            about = (self._subjects(label), self._contexts(label)) if section == "nodes" else ()
+            self.entries.append(Entry(SECTIONS[section], name, Place(self.file, at), statements, *about))
 
     def _node(self, label: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
         if label.kind == "empty":  # a line of --init that nobody has filled in yet
@@ -209,6 +220,11 @@ class LabelReader(NameReader):
                 what = f"{shown(item.text) or f'a {item.kind}'!r} where a group of persons is named"
                 self.problem(item.line, what, f"write a word or two, at most {LONGEST_GROUP} characters")
         return tuple(sorted({item.text.strip() for item in value.items}))
+
+    def _contexts(self, label: Value) -> tuple[str, ...]:
+        """Where a source works, beside what is said of its system."""
+        value = label.get("context")
+        return () if value is None else read_contexts(self, value)
 
     def _channel(self, label: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
         if label.kind == "empty":
