@@ -14,6 +14,8 @@ from rosprivacy.analysis.model.category import (
     THIRD_COUNTRY,
     Category,
     Legal,
+    Pointer,
+    Situation,
     is_article_9,
 )
 from rosprivacy.analysis.model.diagnostic import (
@@ -108,9 +110,11 @@ __all__ = [
     "Method",
     "NonRosFacts",
     "Place",
+    "Pointer",
     "Policy",
     "Profile",
     "Severity",
+    "Situation",
     "Statement",
     "Surroundings",
     "UnknownEnd",
