@@ -34,7 +34,7 @@ Kept = tuple[tuple[Category, ...], dict[str, str], Pointed]
 
 
 def get(folder: Path, key: str) -> Kept | None:
-    """Return the categories, former spellings and pointers to law that an earlier run kept, if they are whole and of these files."""
+    """Return what an earlier run kept, if it is whole and of these files."""
     try:
         kept = json.loads(_path(folder, key).read_text("utf-8"))
         if kept["key"] != key or kept["digest"] != _digest(*(kept[part] for part in PARTS)):

@@ -1,6 +1,6 @@
 """Law that is pointed at and not followed into paths: the provisions, and the situations that point at them.
 
-In: facts read from the Turtle files. Out: which provisions are to be looked at for some categories, contexts, countries.
+In: facts read from the Turtle files. Out: which provisions are to be looked at for some categories and contexts.
 """
 
 from __future__ import annotations

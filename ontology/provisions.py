@@ -1,4 +1,4 @@
-"""The provisions of ``law.ttl`` and ``other_law.ttl`` by themselves: what they are called, as of when they were read, where they stand.
+"""The provisions of the Turtle files by themselves: what they are called, as of when they were read, where they stand.
 
 In: a language. Out: ``Provision`` facts. rdflib reads them, which is heavy: import this where it is used.
 """

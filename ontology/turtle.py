@@ -132,7 +132,7 @@ def _category(graph: Graph, subject: Node, ours: set[Node], same: dict[Node, str
         data_types=tuple(sorted(str(value) for value in graph.objects(subject, RP.dataType))),
         gdpr="" if gdpr is None else _identifier(graph, gdpr),
         same_as=tuple(sorted(str(other) for other in graph.objects(subject, SKOS.exactMatch))),
-        within=tuple(sorted(str(up) for up in parents if up not in ours)),
+        within=tuple(sorted({str(up) for up in (parents | set(graph.objects(subject, SKOS.broadMatch))) - ours})),
         note=first_texts(graph, subject, SKOS.note).get(ENGLISH, ""),
         in_context=tuple(sorted(_in_context(graph, subject), key=lambda legal: (legal.context, legal.name))),
         look_at=tuple(sorted(_identifier(graph, at) for at in graph.objects(subject, RP.lookAt))),

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.text import fit, printable
+from rosprivacy.report.words.typography import spaced
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -84,7 +85,7 @@ def text(of: Mapping[str, Any], what: str, language: str) -> str:
     >>> text({"title": "voice", "translations": {"de": {"title": "Stimme"}}}, "title", "de")
     'Stimme'
     """
-    return printable(of.get("translations", {}).get(language, {}).get(what) or str(of[what]))
+    return spaced(printable(of.get("translations", {}).get(language, {}).get(what) or str(of[what])), language)
 
 
 def _full_name(element: Mapping[str, Any]) -> str:

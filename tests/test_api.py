@@ -193,7 +193,7 @@ def test_a_result_is_shown_in_one_line_that_begins_with_the_verdict(care: rospri
     assert repr(unlabelled).startswith("<Result: undetermined: no data was followed")
 
 
-@pytest.mark.parametrize("name", FORMATS)
+@pytest.mark.parametrize("name", sorted(FORMATS.keys() - {"docx"}))  # no text: tests/report/docx
 def test_every_format_is_written_by_its_name(
     care: rosprivacy.Result, name: str, cli: Cli, monkeypatch: pytest.MonkeyPatch
 ) -> None:

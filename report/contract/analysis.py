@@ -24,12 +24,15 @@ if TYPE_CHECKING:
     from rosprivacy.report.contract.stated import (
         Carried,
         CategoryEntry,
+        ContextEntry,
         DerivationEntry,
         NonRosEntry,
         OverruledEntry,
+        PointerEntry,
         RolesEntry,
         SanitizerEntry,
         SubjectsEntry,
+        SurroundingsEntry,
     )
 
 
@@ -121,6 +124,9 @@ class AnalysisDocument(TypedDict):
     roles: NotRequired[list[RolesEntry]]
     outside: list[NonRosEntry]
     subjects: list[SubjectsEntry]
+    surroundings: NotRequired[list[SurroundingsEntry]]
+    contexts: NotRequired[list[ContextEntry]]
+    look_at: NotRequired[list[PointerEntry]]
     sanitizers: list[SanitizerEntry]
     derivations: list[DerivationEntry]
     unreached: list[ElementEntry]

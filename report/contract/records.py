@@ -75,8 +75,16 @@ class LawEntry(TypedDict):
     condition: str
 
 
+class ContextLaw(LawEntry):
+    """What a finding's data may reveal in a context."""
+
+    context: str
+
+
 class FindingMore(TypedDict, total=False):
     """What only some findings have."""
+
+    in_context: list[ContextLaw]  # absent in earlier versions
 
     reason: str
     beside_pseudonymised: bool

@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
+from rosprivacy.analysis.contexts import article9_in, revealed
 from rosprivacy.analysis.findings.review_order import Behind
 from rosprivacy.analysis.findings.sanitizing import absent, cleanings, makings
 from rosprivacy.analysis.kernel.ranks import in_words
@@ -15,6 +16,7 @@ from rosprivacy.analysis.legal import turned_special
 from rosprivacy.analysis.model import GOES_NOWHERE, NO_LEAK_NAMED, UNREAD_FILE
 from rosprivacy.analysis.written_names import literal
 from rosprivacy.report.document import ledger
+from rosprivacy.report.document.look_at import pointers, situations
 from rosprivacy.report.document.non_ros import inventory, taken_by_kind, without_backups
 
 if TYPE_CHECKING:
@@ -45,6 +47,7 @@ if TYPE_CHECKING:
         OverruledEntry,
         ProvisionEntry,
         SanitizerEntry,
+        SurroundingsEntry,
         Texts,
     )
 
@@ -57,12 +60,13 @@ def analysis_document(answer: Answer) -> AnalysisDocument:
     """Return the analysis as one JSON object; decisions and a fleet's keys are added in ``whole.py``."""
     analysis, taken = answer.shown, answer.taken_away
     categories, hierarchy, graph = answer.vocabulary.categories, answer.vocabulary.hierarchy, analysis.graph
+    contexts = frozenset[str]().union(*answer.contexts.values())
     return {
         "format": FORMAT,
         "verdict": str(analysis.verdict),
         "view": graph.view,
-        "categories": [_category(categories[name], hierarchy) for name in analysis.emitted],
-        "findings": [_finding(finding, categories) for finding in analysis.findings],
+        "categories": [_category(categories[name], hierarchy, contexts) for name in analysis.emitted],
+        "findings": [_finding(finding, answer) for finding in analysis.findings],
         "open": _open(answer, analysis.open),
         "unknown_ends": [
             {
@@ -92,6 +96,9 @@ def analysis_document(answer: Answer) -> AnalysisDocument:
             {"element": element_dict(graph.elements[vertex]), "subjects": list(groups)}
             for vertex, groups in sorted(answer.bound.subjects.items())
         ],
+        "surroundings": _surroundings(answer),
+        "contexts": situations(answer.vocabulary, contexts),
+        "look_at": pointers(answer.vocabulary, analysis.emitted, contexts),
         "sanitizers": _sanitizers(analysis),
         "derivations": _derivations(analysis),
         "unreached": _unreached(analysis),
@@ -213,7 +220,23 @@ def _enclaves(graph: FlowGraph) -> list[EnclaveEntry]:
     return [{"enclave": enclave, "nodes": sorted(inside)} for enclave, inside in sorted(nodes.items())]
 
 
-def _category(category: Category, hierarchy: Hierarchy) -> CategoryEntry:
+def _surroundings(answer: Answer) -> list[SurroundingsEntry]:
+    """Where the elements that bring data in work, as people state it of them or of their system."""
+    analysis, bound = answer.shown, answer.bound
+    elements = analysis.graph.elements
+    sources = {element for element, said in analysis.roles.items() if any("source" in of for of in said.values())}
+    return [
+        {
+            "element": element_dict(elements[vertex]),
+            "contexts": list(where.contexts),
+            **({"country": where.country} if where.country else {}),
+        }
+        for vertex, where in sorted(bound.surroundings.items())
+        if elements[vertex] in sources
+    ]
+
+
+def _category(category: Category, hierarchy: Hierarchy, contexts: frozenset[str]) -> CategoryEntry:
     return {
         "name": category.name,
         "iri": category.iri,
@@ -222,9 +245,11 @@ def _category(category: Category, hierarchy: Hierarchy) -> CategoryEntry:
         "definition": category.definition,
         "data_types": list(category.data_types),
         "gdpr": category.gdpr,
-        "article9": category.article9,
+        "article9": article9_in(category, contexts),
         "reason": category.reason,
         "law": [_legal(legal) for legal in category.law],
+        "in_context": [{**_legal(legal), "context": legal.context} for legal in revealed(category, contexts)],
+        "look_at": list(category.look_at),
         "translations": _translations(category.translations),
     }
 
@@ -235,9 +260,9 @@ def _translations(texts: Mapping[str, Mapping[str, str]]) -> Texts:
     return {language: said[language] for language in sorted(said) if said[language]}
 
 
-def _law(category: Category) -> list[LawEntry]:
+def _law(law: Iterable[Legal]) -> list[LawEntry]:
     """Return what a person has to look up about a finding's data: no verdict on the system."""
-    return [{"provision": legal.name, "verdict": legal.verdict, "condition": legal.condition} for legal in category.law]
+    return [{"provision": legal.name, "verdict": legal.verdict, "condition": legal.condition} for legal in law]
 
 
 def _legal(legal: Legal) -> ProvisionEntry:
@@ -283,8 +308,9 @@ def _question(question: OpenQuestion, behind: Behind, infrastructure: Collection
     return shown
 
 
-def _finding(finding: Finding, categories: Mapping[str, Category]) -> FindingEntry:
+def _finding(finding: Finding, answer: Answer) -> FindingEntry:
     """A finding; its data became a special category at ``special_from``, where that was none before."""
+    categories = answer.vocabulary.categories
     category, turned = categories[finding.category], turned_special(finding, categories)
     reason: FindingMore = {"reason": finding.reason} if finding.reason else {}
     beside: FindingMore = {"beside_pseudonymised": True} if finding.beside else {}
@@ -300,9 +326,14 @@ def _finding(finding: Finding, categories: Mapping[str, Category]) -> FindingEnt
         "disjoint_paths": finding.disjoint_paths,
         "through": [element_dict(element) for element in finding.through],
         "dismissed": finding.dismissed,
-        "article9": category.article9,
+        "article9": answer.article9(finding),
         "special_from": element_dict(turned) if turned else None,
-        "law": _law(category),
+        "law": _law(category.law),
+        "in_context": [
+            {"context": legal.context, **said}
+            for legal in answer.in_context(finding)
+            for said in _law((legal,))
+        ],
         **reason,
         "accepted": finding.accepted,
         **beside,

@@ -1,4 +1,4 @@
-"""The report for people: one HTML page, Markdown, the record of Article 30; in English and German.
+"""The report for people: one HTML page, Markdown, the record of Article 30; in English, German and French.
 
 In: a JSON document of the contract (``report/document/analysis.py``). Out: text. ``outline.py`` says what is told.
 """

@@ -22,15 +22,15 @@ from rosprivacy.report.page.index import Index
 from rosprivacy.report.page.kinds import provision
 from rosprivacy.report.page.non_ros import STORAGE, kept
 from rosprivacy.report.page.tables import OUTSIDE, can_come_from
-from rosprivacy.report.page.words import Words
 from rosprivacy.report.spreadsheet import as_csv
+from rosprivacy.report.words.words import Words
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from rosprivacy.report.naming import Key
 
-SEPARATORS = {"en": ",", "de": ";"}  # as spreadsheets in that language expect
+SEPARATORS = {"en": ",", "de": ";", "fr": ";"}  # as spreadsheets in that language expect
 BOM = "\ufeff"  # without it Excel takes UTF-8 for something else
 ABROAD = (PARTLY, THIRD)  # areas to which a transfer needs a basis of its own, chapter V
 

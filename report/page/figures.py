@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.report.page.outline import Outline
-    from rosprivacy.report.page.words import Words
     from rosprivacy.report.pictures.picture import Key
+    from rosprivacy.report.words.words import Words
 
 ROOM = 5 * 2**20  # bytes of all pictures together
 

@@ -21,7 +21,7 @@ from rosprivacy.report.pictures.looks import INK
 
 if TYPE_CHECKING:
     from rosprivacy.report.page.outline import Outline
-    from rosprivacy.report.page.words import Words
+    from rosprivacy.report.words.words import Words
 
 
 class _Escaped:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from rosprivacy.report.naming import Key
-    from rosprivacy.report.page.words import Words
+    from rosprivacy.report.words.words import Words
 
 REVEALS = (MAY_REVEAL, "unknown")
 

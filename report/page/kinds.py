@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.text import fit, printable
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import text
+from rosprivacy.report.words.typography import spaced
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -126,7 +127,7 @@ def provision(legal: Mapping[str, Any], of: str, index: Index) -> Provision:
         verdict=legal["verdict"],
         condition=condition,
         meaning=text(legal, "meaning", language),
-        sources=printable(sources or "; ".join(legal["sources"])),
+        sources=spaced(printable(sources or "; ".join(legal["sources"])), language),
         stated="" if legal["stated_of"] in ("", of) else _stated(legal["stated_of"], index),
         as_of=index.words.date(legal["as_of"]),
     )

@@ -26,7 +26,7 @@ from rosprivacy.report.page.index import REVEALS, Index, strength
 from rosprivacy.report.page.kinds import Kind, kinds
 from rosprivacy.report.page.non_ros import Outside, outside
 from rosprivacy.report.page.review import Group, review, unknown_ends
-from rosprivacy.report.page.words import Words
+from rosprivacy.report.words.words import Words
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -1,7 +1,7 @@
 """The formats in which an answer is written: one table of name, suffix and function.
 
-In: an ``Answer``, which holds all facts. Out: text. What reports may not ask for themselves is found here: the root of
-the repository, the date. A new format is a folder in ``report/`` and a row here.
+In: an ``Answer``, which holds all facts. Out: text, or the bytes of a Word document. What reports may not ask for
+themselves is found here: the root of the repository, the date. A new format is a folder in ``report/`` and a row here.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 from rosprivacy.analysis.errors import InputError, shown
 from rosprivacy.clock import source_date, today
@@ -23,6 +23,9 @@ if TYPE_CHECKING:
     from rosprivacy.report.pictures.picture import Key
 
     Aliases = Mapping[Key, tuple[str, str]]
+
+# What is text; the table below has one row for each, and 'docx'.
+TextFormat = Literal["text", "json", "sarif", "cnil-pia", "turtle", "json-ld", "html", "markdown", "article30"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,11 +59,17 @@ class Format:
 
     name: str
     suffix: str
-    write: Callable[[Answer, Style], str]
+    write: Callable[[Answer, Style], str | bytes]
 
 
-def written(answer: Answer, name: str, style: Style | None = None) -> str:
-    """Return an answer in one of ``FORMATS``.
+@overload
+def written(answer: Answer, name: Literal["docx"], style: Style | None = None) -> bytes: ...
+@overload
+def written(answer: Answer, name: TextFormat, style: Style | None = None) -> str: ...
+@overload
+def written(answer: Answer, name: str, style: Style | None = None) -> str | bytes: ...
+def written(answer: Answer, name: str, style: Style | None = None) -> str | bytes:
+    """Return an answer in one of ``FORMATS``: text, but for ``docx``.
 
     Raises
     ------
@@ -135,6 +144,15 @@ def _markdown(answer: Answer, style: Style) -> str:
     return markdown(_outline(answer, style)[0])
 
 
+def _docx(answer: Answer, style: Style) -> bytes:
+    """Without ``SOURCE_DATE_EPOCH`` the document says that it was made today (rule S14)."""
+    from rosprivacy.report.docx.document import word_document
+    from rosprivacy.report.page.markdown import markdown
+
+    told = _outline(answer, style)[0]
+    return word_document(markdown(told), told.title, style.language, today(os.environ))
+
+
 def _html(answer: Answer, style: Style) -> str:
     from rosprivacy.report.page.figures import figures
     from rosprivacy.report.page.html import html
@@ -180,6 +198,7 @@ FORMATS = {
         Format("json-ld", ".jsonld", _linked_data("json-ld")),
         Format("html", ".html", _html),
         Format("markdown", ".md", _markdown),
+        Format("docx", ".docx", _docx),
         Format("article30", ".csv", _article30),
     )
 }

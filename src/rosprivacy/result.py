@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, TypedDict, overload
 
 from rosprivacy.analysis.errors import InputError
 from rosprivacy.analysis.findings.findings import Options
 from rosprivacy.explanation import explained
 from rosprivacy.finding_table import Findings
-from rosprivacy.formats import Style, written
+from rosprivacy.formats import Style, TextFormat, written
 from rosprivacy.ingest.labels.replaced import with_entry
 from rosprivacy.report.answer import Answer
 from rosprivacy.report.document.whole import document
@@ -17,12 +17,24 @@ from rosprivacy.report.terminal.analysis import verdict_line
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from typing import Unpack
 
     import networkx as nx
 
     from rosprivacy.analysis.findings.why_not import WhyNot
     from rosprivacy.analysis.model import Element, Policy
     from rosprivacy.ingest.labels.label_file import Labels
+
+
+class Shown(TypedDict, total=False):
+    """How an answer is shown to a person; see ``Result.to``."""
+
+    verbose: bool
+    quiet: bool
+    language: str
+    title: str
+    since: str | None
+    redact: bool
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -68,6 +80,12 @@ class Result(Answer):
         """Return the JSON document of the contract."""
         return dict(document(self))
 
+    @overload
+    def to(self, format: Literal["docx"], **how: Unpack[Shown]) -> bytes: ...
+    @overload
+    def to(self, format: TextFormat, **how: Unpack[Shown]) -> str: ...
+    @overload
+    def to(self, format: str, **how: Unpack[Shown]) -> str | bytes: ...
     def to(
         self,
         format: str,  # noqa: A002 - the option's name
@@ -78,13 +96,13 @@ class Result(Answer):
         title: str = "",
         since: str | None = None,
         redact: bool = False,
-    ) -> str:
-        """Return the answer in a format, as the command line writes it.
+    ) -> str | bytes:
+        """Return the answer in a format, as the command line writes it: text, and of ``docx`` bytes.
 
         Parameters
         ----------
         format
-            A name of ``rosprivacy.formats.FORMATS``: ``text``, ``json``, ``sarif``, ``html``, ``turtle``, …
+            A name of ``rosprivacy.formats.FORMATS``: ``text``, ``json``, ``sarif``, ``html``, ``docx``, …
         verbose, quiet
             Of text: every open element and notice, or the verdict only.
         language, title, redact

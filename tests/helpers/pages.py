@@ -11,12 +11,13 @@ from rosprivacy.report.compare.earlier import Earlier
 from rosprivacy.report.page.html import html
 from rosprivacy.report.page.markdown import markdown
 from rosprivacy.report.page.outline import Outline, outline
+from rosprivacy.report.words.typography import NARROW, WIDE
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
 
-LANGUAGES = ["en", "de"]
+LANGUAGES = ["en", "de", "fr"]
 
 
 def told(document: dict[str, Any], language: str = "en", **options: Any) -> Outline:
@@ -28,10 +29,10 @@ def page(document: dict[str, Any], language: str = "en", **options: Any) -> Any:
 
 
 def texts(document: dict[str, Any], language: str = "en", **options: Any) -> Iterator[str]:
-    """The report in both forms, as text without marks."""
+    """The report in both forms, as text without marks, with plain spaces."""
     report = told(document, language, **options)
-    yield lxml_html.document_fromstring(html(report)).text_content()
-    yield re.sub(r"\\(.)", r"\1", markdown(report))
+    for text in (lxml_html.document_fromstring(html(report)).text_content(), re.sub(r"\\(.)", r"\1", markdown(report))):
+        yield text.replace(WIDE, " ").replace(NARROW, " ")
 
 
 def earlier(document: dict[str, Any]) -> Earlier:

@@ -15,8 +15,9 @@ import pytest
 import rosprivacy
 from rosprivacy.formats import FORMATS, Style, written
 from rosprivacy.private_neo4j import connection
-from rosprivacy.report.page.words import Words
+from rosprivacy.report.words.words import Words
 from tests.helpers.paths import ROOT
+from tests.helpers.word import text_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -104,7 +105,7 @@ def no_retention(document: Document) -> list[str]:
     return [f["category"] for f in kept if f.get("reason", "").startswith("no retention")]
 
 
-PAGE = ("html", "markdown")
+PAGE = ("html", "markdown", "docx")
 RDF = ("turtle", "json-ld")
 DECIDED = dict.fromkeys(("text", "sarif", "cnil-pia", *RDF, *PAGE), same)
 MEASURE = {  # where a sanitizer states no method
@@ -179,6 +180,8 @@ def places(value: Any) -> Iterable[str]:
 def read_as(result: Result, name: str) -> str:
     """What a reader of a format sees."""
     text = written(result, name, Style(verbose=True))
+    if isinstance(text, bytes):
+        return text_of(text)
     if name == "cnil-pia":
         return "\n".join(strings(json.loads(text)))
     if name == "sarif":

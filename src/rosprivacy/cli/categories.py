@@ -2,22 +2,13 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
 from typing import Annotated
 
 import typer
 
 from rosprivacy.analysis.errors import InputErrors, OntologyError, shown
-from rosprivacy.cli.options import Ontologies, Output, complete_category
+from rosprivacy.cli.options import Language, Ontologies, Output, complete_category
 from rosprivacy.cli.output import emit
-
-
-class Language(StrEnum):
-    """Of names and texts."""
-
-    en = "en"
-    de = "de"
-    fr = "fr"
 
 
 def categories(

@@ -7,9 +7,8 @@ from typing import Annotated
 
 import typer
 
-from rosprivacy.cli.categories import Language
 from rosprivacy.cli.exit_code import UNDETERMINED
-from rosprivacy.cli.options import Output
+from rosprivacy.cli.options import Language, Output
 from rosprivacy.cli.output import emit
 
 

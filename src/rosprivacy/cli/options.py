@@ -30,6 +30,14 @@ class TextOrJson(StrEnum):
     json = "json"
 
 
+class Language(StrEnum):
+    """Of names and texts."""
+
+    en = "en"
+    de = "de"
+    fr = "fr"
+
+
 class Engine(StrEnum):
     """What carries data through a fleet."""
 

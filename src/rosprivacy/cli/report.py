@@ -1,4 +1,4 @@
-"""``rosprivacy report``: what was found, for the people who assess it: HTML, Markdown, the record of Article 30."""
+"""``rosprivacy report``: what was found, for the people who assess it: a page, Word, the record of Article 30."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from rosprivacy.cli.inputs import Inputs, reads_system
-from rosprivacy.cli.options import Output
+from rosprivacy.cli.options import Language, Output
 from rosprivacy.cli.output import emit, not_for_a_terminal
 
 
@@ -18,14 +18,8 @@ class ReportFormat(StrEnum):
 
     html = "html"
     markdown = "markdown"
+    docx = "docx"
     article30 = "article30"
-
-
-class ReportLanguage(StrEnum):
-    """Of the report."""
-
-    en = "en"
-    de = "de"
 
 
 @reads_system()
@@ -33,10 +27,14 @@ def report(
     inputs: Inputs,
     format: Annotated[  # noqa: A002 - the option's name
         ReportFormat,
-        typer.Option("--format", "-f", help="A page, a text, or rows for the record of processing (Article 30 GDPR)."),
+        typer.Option(
+            "--format",
+            "-f",
+            help="A page, a text, a Word document, or rows for the record of processing (Article 30 GDPR).",
+        ),
     ] = ReportFormat.html,
     output: Output = None,
-    lang: Annotated[ReportLanguage, typer.Option(help="Language of the report.")] = ReportLanguage.en,
+    lang: Annotated[Language, typer.Option(help="Language of the report.")] = Language.en,
     title: Annotated[
         str, typer.Option(metavar="TEXT", show_default=False, help="Name of the system; by default its policy files.")
     ] = "",
@@ -53,7 +51,7 @@ def report(
         typer.Option("--redact", help="Replace names of elements, files, robots and persons, to show it to others."),
     ] = False,
 ) -> None:
-    """Write a report for people: a page that needs no network, a text, or rows for the record of processing.
+    """Write a report for people: a page that needs no network, a text, a Word document, or rows for the record.
 
     It ends with 0 when the report is written, whatever that says; a gate in CI is 'analyze'.
     """
@@ -61,6 +59,9 @@ def report(
 
     if format is ReportFormat.html:
         not_for_a_terminal("a page", output)
+    if format is ReportFormat.docx:
+        not_for_a_terminal("a Word document", output)
     result = inputs.result(inputs.settings)
     style = Style(language=lang.value, title=title, since=str(since) if since else None, redact=redact)
-    emit(written(result, format.value, style).encode(), output)  # it says of itself that it is UTF-8
+    report = written(result, format.value, style)
+    emit(report.encode() if isinstance(report, str) else report, output)  # it says of itself that it is UTF-8

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from rosprivacy.report.page.words import TABLES
+from rosprivacy.report.words.words import TABLES
 from tests.helpers.pages import LANGUAGES, texts, told
 from tests.helpers.paths import ROOT
 from tests.helpers.reports import care, run
@@ -16,7 +16,8 @@ from tests.helpers.reports import care, run
 # what a report never says: verdicts of law, promises
 FORBIDDEN = re.compile(
     r"\b(violat\w*|illegal\w*|unlawful\w*|breach\w*|complian\w*|comply|safe|harmless|"
-    r"versto\w*|verletz\w*|illegal\w*|rechtswidrig\w*|unzulässig\w*|\w*konform\w*|sicher|unbedenklich|datenpanne)\b",
+    r"versto\w*|verletz\w*|illegal\w*|rechtswidrig\w*|unzulässig\w*|\w*konform\w*|sicher|unbedenklich|datenpanne|"
+    r"viol\w*|enfrein\w*|illégal\w*|illicit\w*|conform\w*|infraction\w*|manquement\w*|sans danger|fuites?)\b",
     re.IGNORECASE,
 )
 
@@ -26,13 +27,14 @@ def test_every_language_has_the_same_words_with_the_same_places() -> None:
         return {name for _, name, _, _ in string.Formatter().parse(text) if name}
 
     tables = [{key: places(text) for key, text in table.items()} for table in TABLES.values()]
-    assert tables[0] == tables[1]
+    assert all(table == tables[0] for table in tables)
 
 
 def test_every_word_is_used_and_every_use_has_a_word() -> None:
     page = ROOT / "report" / "page"
-    files = [*page.glob("*.py"), *(page / "templates").glob("*.j2"), ROOT / "analysis" / "durations.py"]  # its units
-    source = "\n".join(file.read_text("utf-8") for file in files if not file.name.startswith("words_"))
+    others = [ROOT / "report" / "words" / "words.py", ROOT / "analysis" / "durations.py"]  # the latter has the units
+    files = [*page.glob("*.py"), *(page / "templates").glob("*.j2"), *others]
+    source = "\n".join(file.read_text("utf-8") for file in files)
     used = set(re.findall(r"[\"']([a-z0-9-]+(?:\.[a-z0-9_-]+)+)[\"']", source))
     ends = {".one", ".many"}
     families = set(re.findall(r"f?[\"']([a-z0-9.-]+\.)(?:[\"'] ~|\{)", source))

@@ -33,7 +33,7 @@ SYSTEM = ["examples/care-home/care-home.policy.xml", "-l", "examples/care-home/c
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("form", ["html", "markdown", "article30"])
+@pytest.mark.parametrize("form", ["html", "markdown", "docx", "article30"])
 def test_the_bytes_are_the_same_in_every_process(form: str) -> None:
     done = [command(*SYSTEM, "-f", form, "--lang", "de", PYTHONHASHSEED=seed) for seed in ("0", "4711")]
     assert [run.returncode for run in done] == [0, 0]

@@ -89,9 +89,9 @@ def problems(graph: Graph) -> str:
     return "" if conforms else str(text)
 
 
-def strict(text: str, form: str) -> Graph:
+def strict(text: str | bytes, form: str) -> Graph:
     """Read by a parser that allows nothing that the standard does not."""
-    triples = pyoxigraph.parse(text.encode(), SYNTAX[form])
+    triples = pyoxigraph.parse(text.encode() if isinstance(text, str) else text, SYNTAX[form])
     lines = "".join(f"{q.triple} .\n" for q in triples)
     return Graph().parse(data=lines, format="nt")
 

@@ -1,7 +1,7 @@
 """The words of a report in a language: sentences with places for names and numbers.
 
-In: a key and values. Out: plain text; whoever writes a format escapes it. The tables are ``words_en.py`` and
-``words_de.py``; a test holds that both have the same keys and places.
+In: a key and values. Out: plain text; whoever writes a format escapes it. The tables are ``words_en.py``,
+``words_de.py`` and ``words_fr.py``; a test holds that all have the same keys and places.
 """
 
 from __future__ import annotations
@@ -10,14 +10,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.durations import parts
-from rosprivacy.report.page.words_de import WORDS as GERMAN
-from rosprivacy.report.page.words_en import WORDS as ENGLISH
+from rosprivacy.report.words.words_de import WORDS as GERMAN
+from rosprivacy.report.words.words_en import WORDS as ENGLISH
+from rosprivacy.report.words.words_fr import WORDS as FRENCH
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
 DATE = 3  # parts of one
-TABLES = {"en": ENGLISH, "de": GERMAN}
+TABLES = {"en": ENGLISH, "de": GERMAN, "fr": FRENCH}
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,12 +62,13 @@ class Words:
         return self.row(self.count(number, unit) for unit, number in parts(text)) or text
 
     def count(self, number: int, thing: str) -> str:
-        """Return how many of a thing there are; its key ends in ``.one`` or ``.many``.
+        """Return how many of a thing there are; its key ends in ``.one`` or ``.many``. In French, none is as one.
 
-        >>> Words("en").count(1, "robot"), Words("de").count(2, "robot")
-        ('1 robot', '2 Roboter')
+        >>> Words("en").count(1, "robot"), Words("de").count(2, "robot"), Words("fr").count(0, "robot")
+        ('1 robot', '2 Roboter', '0 robot')
         """
-        return self(f"{thing}.{'one' if number == 1 else 'many'}", n=number)
+        one = number == 1 or (number == 0 and self.language == "fr")
+        return self(f"{thing}.{'one' if one else 'many'}", n=number)
 
     def row(self, texts: Iterable[str]) -> str:
         """Return texts in a row."""
