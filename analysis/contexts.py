@@ -6,7 +6,7 @@ reveal there, with the provision that says so. A context never weakens what is s
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import ARTICLE_9_VERDICTS, MAY_REVEAL, SPECIAL
@@ -14,8 +14,9 @@ from rosprivacy.analysis.model import ARTICLE_9_VERDICTS, MAY_REVEAL, SPECIAL
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
 
+    from rosprivacy.analysis.answer import Finding
     from rosprivacy.analysis.hierarchy import Hierarchy
-    from rosprivacy.analysis.model import Category, Legal
+    from rosprivacy.analysis.model import Bound, Category, FlowGraph, Legal
 
 _WEAKER = ARTICLE_9_VERDICTS[ARTICLE_9_VERDICTS.index(MAY_REVEAL) :]
 
@@ -78,3 +79,62 @@ def article9_in(category: Category, contexts: Collection[str]) -> str:
     if category.article9 in _WEAKER and any(legal.special for legal in revealed(category, contexts)):
         return MAY_REVEAL
     return category.article9
+
+
+@dataclass(frozen=True, slots=True)
+class Contexts:
+    """The contexts of a system's sources.
+
+    Attributes
+    ----------
+    by_source
+        (kind, name) -> contexts; where several robots have an element of one name, those of all: a finding of a fleet
+        stands for all of these.
+    """
+
+    by_source: Mapping[tuple[str, str], frozenset[str]]
+    categories: Mapping[str, Category]
+
+    @classmethod
+    def of(cls, graph: FlowGraph, bound: Bound, categories: Mapping[str, Category]) -> Contexts:
+        """Take what labels state.
+
+        >>> from rosprivacy.analysis.example import CATEGORIES, factory
+        >>> Contexts.of(*factory()[:2], CATEGORIES).everywhere
+        frozenset()
+        """
+        found: dict[tuple[str, str], frozenset[str]] = {}
+        for vertex, where in bound.surroundings.items():
+            key = graph.elements[vertex].kind, graph.elements[vertex].name
+            found[key] = found.get(key, frozenset()).union(where.contexts)
+        return cls(found, categories)
+
+    @property
+    def everywhere(self) -> frozenset[str]:
+        """Those of all sources."""
+        return frozenset[str]().union(*self.by_source.values())
+
+    def revealed(self, finding: Finding) -> tuple[Legal, ...]:
+        """Return what the data of a finding may reveal where they are brought in, beside what holds everywhere.
+
+        >>> from rosprivacy.analysis.example import CATEGORIES, factory
+        >>> from rosprivacy.analysis.findings.findings import analyse
+        >>> faces, *_ = analyse(*factory()).findings
+        >>> Contexts({}, CATEGORIES).revealed(faces)
+        ()
+        """
+        return revealed(self.categories[finding.category], self._at(finding))
+
+    def article9(self, finding: Finding) -> str:
+        """Return the strongest verdict under Article 9(1) on the data of a finding, where they are brought in.
+
+        >>> from rosprivacy.analysis.example import CATEGORIES, factory
+        >>> from rosprivacy.analysis.findings.findings import analyse
+        >>> faces, *_ = analyse(*factory()).findings
+        >>> Contexts({}, CATEGORIES).article9(faces)
+        'conditional'
+        """
+        return article9_in(self.categories[finding.category], self._at(finding))
+
+    def _at(self, finding: Finding) -> frozenset[str]:
+        return self.by_source.get((finding.source.kind, finding.source.name), frozenset())

@@ -45,9 +45,7 @@ def get(folder: Path, key: str) -> Kept | None:
         return None
 
 
-def keep(
-    folder: Path, key: str, categories: tuple[Category, ...], respelt: dict[str, str], pointed: Pointed
-) -> None:
+def keep(folder: Path, key: str, categories: tuple[Category, ...], respelt: dict[str, str], pointed: Pointed) -> None:
     """Write them, whole or not at all; a folder that cannot be written is no error."""
     facts = json.loads(json.dumps([asdict(category) for category in categories]))
     parts = dict(zip(PARTS, (facts, respelt, json.loads(json.dumps(asdict(pointed)))), strict=True))

@@ -187,9 +187,7 @@ def pointed_of(graph: Graph) -> Pointed:
     provisions = sorted(set(graph.objects(None, RP.lookAt)), key=lambda one: _identifier(graph, one))
     situations = {*graph.subjects(RDF.type, RP.Context), *graph.subjects(RDF.type, RP.Situation)}
     found = (_situation(graph, one) for one in situations)
-    return Pointed(
-        tuple(_pointer(graph, one) for one in provisions), tuple(sorted(found, key=lambda one: one.name))
-    )
+    return Pointed(tuple(_pointer(graph, one) for one in provisions), tuple(sorted(found, key=lambda one: one.name)))
 
 
 def _pointer(graph: Graph, provision: Node) -> Pointer:

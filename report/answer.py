@@ -8,22 +8,22 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.contexts import Contexts
 from rosprivacy.analysis.findings.globs import GlobUse, globs
 from rosprivacy.analysis.findings.ledger import ledger
 from rosprivacy.analysis.findings.review_order import Behind, review_order
 from rosprivacy.analysis.fleet.counts import Counts, counted
-from rosprivacy.analysis.contexts import article9_in, revealed
 from rosprivacy.analysis.non_ros import retention_of
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator
 
-    from rosprivacy.analysis.answer import Analysis, Finding
+    from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.decisions import Decided, Decision
     from rosprivacy.analysis.durations import Duration
     from rosprivacy.analysis.findings.ledger import TakenAway
     from rosprivacy.analysis.fleet.patterns import FleetView
-    from rosprivacy.analysis.model import Bound, Diagnostic, Element, Legal, NonRosFacts
+    from rosprivacy.analysis.model import Bound, Diagnostic, Element, NonRosFacts
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 
@@ -105,25 +105,10 @@ class Answer:
         elements = self.analysis.graph.elements
         return {elements[vertex].identity: groups for vertex, groups in self.bound.subjects.items()}
 
-    @cached_property
-    def contexts(self) -> dict[tuple[str, str], frozenset[str]]:
-        """Where sources work: (kind, name) -> contexts; of robots that have an element of one name, those of all."""
-        found: dict[tuple[str, str], frozenset[str]] = {}
-        elements = self.analysis.graph.elements
-        for vertex, where in self.bound.surroundings.items():
-            key = elements[vertex].kind, elements[vertex].name
-            found[key] = found.get(key, frozenset()).union(where.contexts)
-        return found
-
-    def in_context(self, finding: Finding) -> tuple[Legal, ...]:
-        """Return what the data of a finding may reveal where they are brought in, beside what holds everywhere."""
-        contexts = self.contexts.get((finding.source.kind, finding.source.name), frozenset())
-        return revealed(self.vocabulary.categories[finding.category], contexts)
-
-    def article9(self, finding: Finding) -> str:
-        """Return the strongest verdict under Article 9(1) on the data of a finding, where they are brought in."""
-        contexts = self.contexts.get((finding.source.kind, finding.source.name), frozenset())
-        return article9_in(self.vocabulary.categories[finding.category], contexts)
+    @property
+    def contexts(self) -> Contexts:
+        """Where sources work, and what data may reveal there."""
+        return Contexts.of(self.analysis.graph, self.bound, self.vocabulary.categories)
 
     def retention(self, element: Element, category: str) -> str:
         """Return how long an element keeps a category, with its backups; empty where nobody states it (rule S9)."""

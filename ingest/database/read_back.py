@@ -195,7 +195,9 @@ class _Reader:
             try:
                 surroundings_of(properties, ros="node" in kinds)
             except TypeError as error:
-                self.problems.append(_problem(f"{shown(name)!r}: {error}", "SET n.context = ['care'], n.country = 'DE'"))
+                self.problems.append(
+                    _problem(f"{shown(name)!r}: {error}", "SET n.context = ['care'], n.country = 'DE'")
+                )
                 continue
             parts = {key: str(properties.get(key) or "") for key in ("leg", "side")}
             shown_robot = "" if self._alone and robot else robot

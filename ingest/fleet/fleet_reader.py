@@ -28,8 +28,19 @@ ID_HINT = "use letters, digits and _ . -, at most 200"
 NAMESPACE = re.compile(r"(/[A-Za-z_*][A-Za-z0-9_*]*)+")
 SPEC = ("policies", "labels", "domain", "namespace", *SURROUNDINGS)
 ROBOT_KEYS, GROUP_KEYS = ("model", *SPEC, "note"), ("robots", "id", "model", *SPEC, "note")
-SECTIONS = ("name", "include", "models", "infrastructure", "robots", "groups", "elements", "limits", "flows", *SURROUNDINGS,
-            "note")
+SECTIONS = (
+    "name",
+    "include",
+    "models",
+    "infrastructure",
+    "robots",
+    "groups",
+    "elements",
+    "limits",
+    "flows",
+    *SURROUNDINGS,
+    "note",
+)
 
 
 @dataclass

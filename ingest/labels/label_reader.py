@@ -106,7 +106,9 @@ class LabelReader(NameReader):
         if stated.kind == "device" and all(key in SAYS_NOTHING for key, *_ in labels.entries):
             self.problem(line, f"device {shown(name)!r} does nothing", "say what comes from it: source: [Voice]")
         self.elements.append(stated)
-        self.entries.append(Entry((stated.kind,), name, stated.place, statements, self._subjects(labels), self._contexts(labels)))
+        self.entries.append(
+            Entry((stated.kind,), name, stated.place, statements, self._subjects(labels), self._contexts(labels))
+        )
 
     def _section(self, section: str, line: int, value: Value) -> None:
         if value.kind == "empty":

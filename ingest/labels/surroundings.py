@@ -89,9 +89,7 @@ def joined(several: Iterable[Surroundings]) -> Surroundings:
     return Surroundings(tuple(sorted(contexts)), next((one.country for one in reversed(found) if one.country), ""))
 
 
-def everywhere(
-    graph: FlowGraph, own: Mapping[int, Surroundings], system: Surroundings
-) -> dict[int, Surroundings]:
+def everywhere(graph: FlowGraph, own: Mapping[int, Surroundings], system: Surroundings) -> dict[int, Surroundings]:
     """Return the surroundings of each element that can bring data in: its own, with those of its system."""
     found = {}
     for vertex, element in enumerate(graph.elements):

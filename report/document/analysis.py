@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
 
     from rosprivacy.analysis.answer import Analysis, Finding, OpenQuestion, Step
+    from rosprivacy.analysis.contexts import Contexts
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.kernel.overruled import Overruled
     from rosprivacy.analysis.model import Category, Diagnostic, Element, Flow, FlowGraph, Grant, Legal
@@ -60,13 +61,14 @@ def analysis_document(answer: Answer) -> AnalysisDocument:
     """Return the analysis as one JSON object; decisions and a fleet's keys are added in ``whole.py``."""
     analysis, taken = answer.shown, answer.taken_away
     categories, hierarchy, graph = answer.vocabulary.categories, answer.vocabulary.hierarchy, analysis.graph
-    contexts = frozenset[str]().union(*answer.contexts.values())
+    at_sources = answer.contexts
+    contexts = at_sources.everywhere
     return {
         "format": FORMAT,
         "verdict": str(analysis.verdict),
         "view": graph.view,
         "categories": [_category(categories[name], hierarchy, contexts) for name in analysis.emitted],
-        "findings": [_finding(finding, answer) for finding in analysis.findings],
+        "findings": [_finding(finding, at_sources) for finding in analysis.findings],
         "open": _open(answer, analysis.open),
         "unknown_ends": [
             {
@@ -308,9 +310,9 @@ def _question(question: OpenQuestion, behind: Behind, infrastructure: Collection
     return shown
 
 
-def _finding(finding: Finding, answer: Answer) -> FindingEntry:
+def _finding(finding: Finding, contexts: Contexts) -> FindingEntry:
     """A finding; its data became a special category at ``special_from``, where that was none before."""
-    categories = answer.vocabulary.categories
+    categories = contexts.categories
     category, turned = categories[finding.category], turned_special(finding, categories)
     reason: FindingMore = {"reason": finding.reason} if finding.reason else {}
     beside: FindingMore = {"beside_pseudonymised": True} if finding.beside else {}
@@ -326,13 +328,11 @@ def _finding(finding: Finding, answer: Answer) -> FindingEntry:
         "disjoint_paths": finding.disjoint_paths,
         "through": [element_dict(element) for element in finding.through],
         "dismissed": finding.dismissed,
-        "article9": answer.article9(finding),
+        "article9": contexts.article9(finding),
         "special_from": element_dict(turned) if turned else None,
         "law": _law(category.law),
         "in_context": [
-            {"context": legal.context, **said}
-            for legal in answer.in_context(finding)
-            for said in _law((legal,))
+            {"context": legal.context, **said} for legal in contexts.revealed(finding) for said in _law((legal,))
         ],
         **reason,
         "accepted": finding.accepted,
