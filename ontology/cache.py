@@ -81,4 +81,5 @@ def _legal(facts: dict[str, Any]) -> Legal:
 
 def _pointed(facts: dict[str, Any]) -> Pointed:
     situations = (Situation(**{**said, "look_at": tuple(said["look_at"])}) for said in facts["situations"])
-    return Pointed(tuple(Pointer(**said) for said in facts["provisions"]), tuple(situations))
+    at_stake = tuple((kind, tuple(names)) for kind, names in facts["at_stake"])
+    return Pointed(tuple(Pointer(**said) for said in facts["provisions"]), tuple(situations), at_stake)

@@ -26,10 +26,18 @@ class Pointed:
         By name, sorted.
     situations
         By name, sorted: every system, and each context.
+    at_stake
+        (kind of finding, names of the provisions that are at stake), sorted.
     """
 
     provisions: tuple[Pointer, ...] = ()
     situations: tuple[Situation, ...] = ()
+    at_stake: tuple[tuple[str, tuple[str, ...]], ...] = ()
+
+    def of_finding(self, kind: str) -> tuple[Pointer, ...]:
+        """Return the provisions that a kind of finding is about, whatever the data."""
+        names = dict(self.at_stake).get(kind, ())
+        return tuple(one for one in self.provisions if one.name in names)
 
     def rows(
         self, categories: Iterable[Category], contexts: Iterable[str]

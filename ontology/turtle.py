@@ -184,10 +184,19 @@ def _legal(graph: Graph, link: Node, own: str) -> Legal | None:
 
 def pointed_of(graph: Graph) -> Pointed:
     """Return the provisions that anything is pointed at (rp:lookAt), and what points at them beside categories."""
-    provisions = sorted(set(graph.objects(None, RP.lookAt)), key=lambda one: _identifier(graph, one))
+    kinds = sorted(set(graph.subjects(RDF.type, RP.FindingKind)), key=str)
+    at_stake = {kind: sorted(graph.objects(kind, RP.provision), key=str) for kind in kinds}
+    named = {*graph.objects(None, RP.lookAt), *(one for several in at_stake.values() for one in several)}
     situations = {*graph.subjects(RDF.type, RP.Context), *graph.subjects(RDF.type, RP.Situation)}
-    found = (_situation(graph, one) for one in situations)
-    return Pointed(tuple(_pointer(graph, one) for one in provisions), tuple(sorted(found, key=lambda one: one.name)))
+    stakes = (
+        (str(graph.value(kind, SKOS.notation)), tuple(sorted(_identifier(graph, one) for one in several)))
+        for kind, several in at_stake.items()
+    )
+    return Pointed(
+        tuple(_pointer(graph, one) for one in sorted(named, key=lambda one: _identifier(graph, one))),
+        tuple(sorted((_situation(graph, one) for one in situations), key=lambda one: one.name)),
+        tuple(sorted(stakes)),
+    )
 
 
 def _pointer(graph: Graph, provision: Node) -> Pointer:

@@ -8,12 +8,14 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.contexts import Contexts
 from rosprivacy.analysis.findings.findings import Options, analyse
 from rosprivacy.analysis.fleet.patterns import FleetView
 from rosprivacy.analysis.fleet.patterns_of_pairs import Groups
 from rosprivacy.analysis.model import unread
 from rosprivacy.assumptions import assumptions_of
 from rosprivacy.decided import accepts, joined_to
+from rosprivacy.question import in_contexts
 from rosprivacy.ingest.labels.shipped import infrastructure_of
 from rosprivacy.result import Result
 
@@ -35,6 +37,8 @@ def answer(system: System, question: Question) -> Result:
     InputErrors
         If labels contradict each other.
     """
+    at_sources = Contexts.of(system.graph, system.bound, system.vocabulary.categories)
+    question = in_contexts(question, at_sources.everywhere)
     groups = Groups(system.likeness) if system.is_fleet and not question.every_finding else None
     options = Options(
         categories=question.asked,
@@ -68,7 +72,10 @@ def concluded(
     counts
         As of ``Answer``.
     """
-    joined = joined_to(question.decisions, analysis, system.vocabulary, question.asked, system.likeness)
+    joined = joined_to(
+        question.decisions, analysis, system.vocabulary, question.asked, system.likeness,
+        Contexts.of(system.graph, system.bound, system.vocabulary.categories),
+    )  # fmt: skip
     return Result(
         analysis,
         system.bound,

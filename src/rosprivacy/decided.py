@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection
 
     from rosprivacy.analysis.answer import Analysis, Finding
+    from rosprivacy.analysis.contexts import Contexts
     from rosprivacy.analysis.decisions import Decided, Decisions
     from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.ontology.vocabulary import Vocabulary
@@ -48,14 +49,21 @@ def joined_to(
     vocabulary: Vocabulary,
     asked: Collection[str] | None,
     likeness: Likeness = NO_ROBOTS,
+    contexts: Contexts | None = None,
 ) -> Decided | None:
-    """Join decisions to findings; where only some categories were asked for, none is called orphaned."""
+    """Join decisions to findings; where only some categories were asked for, none is called orphaned.
+
+    Parameters
+    ----------
+    contexts
+        Of the sources: what data may reveal there needs a ground as what they may reveal anywhere.
+    """
     if decisions is None:
         return None
-    law = {
-        name: tuple((legal.name, legal.verdict) for legal in vocabulary.categories[name].law)
-        for name in analysis.emitted
-    }
+    said = {name: list(vocabulary.categories[name].law) for name in analysis.emitted}
+    for finding in analysis.findings if contexts else ():
+        said[finding.category] += contexts.revealed(finding) if contexts else ()
+    law = {name: tuple(dict.fromkeys((one.name, one.verdict) for one in several)) for name, several in said.items()}
 
     def case_of(finding: Finding) -> Case:
         return in_fleet(Case.of(finding), likeness)
