@@ -1,0 +1,258 @@
+"""What is where, told apart by where it comes from: one lane of bits for each source, all followed at once (rule S8).
+
+In: a ``Spread``, before or after its fixpoint. Out: a ``Flood``. A flood can be taken further where some elements or
+flows let more pass: only what is new is followed, so a small change costs what it adds, not the whole graph again.
+"""
+
+from __future__ import annotations
+
+from collections import ChainMap, defaultdict
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, MutableMapping, Sequence
+
+    from rosprivacy.analysis.kernel.spread import Spread
+
+
+@dataclass(frozen=True, slots=True)
+class Lanes:
+    """How the bits of several sources stand side by side in one number.
+
+    Attributes
+    ----------
+    number
+        Vertex of a source -> number of its lane.
+    width
+        Bits of a lane.
+    unit
+        The lowest bit of each lane: times some bits, these are in every lane.
+
+    Examples
+    --------
+    >>> lanes = Lanes.of([7, 9], 4)
+    >>> bin(lanes.every(0b11)), bin(lanes.own(9, 0b1)), lanes.merged(0b0001_0100)
+    ('0b110011', '0b10000', 5)
+    """
+
+    number: Mapping[int, int]
+    width: int
+    unit: int
+
+    @classmethod
+    def of(cls, sources: Sequence[int], width: int) -> Lanes:
+        """Number the lanes."""
+        return cls({v: i for i, v in enumerate(sources)}, width, sum(1 << width * i for i in range(len(sources))))
+
+    def every(self, bits: int) -> int:
+        """Return some bits in every lane."""
+        return self.unit * bits
+
+    def own(self, source: int, bits: int) -> int:
+        """Return some bits in the lane of a source, if it has one here."""
+        return bits << self.width * self.number[source] if source in self.number else 0
+
+    def merged(self, laned: int) -> int:
+        """Return the bits that are in any lane."""
+        bits, mask = 0, (1 << self.width) - 1
+        while laned:
+            bits |= laned & mask
+            laned >>= self.width
+        return bits
+
+    def apart(self, laned: int) -> Iterator[tuple[int, int]]:
+        """Yield (source, bits of its lane) where there are any."""
+        for source, number in self.number.items():
+            if bits := laned >> self.width * number & (1 << self.width) - 1:
+                yield source, bits
+
+
+@dataclass(frozen=True, slots=True)
+class Doing:
+    """What elements and flows do with what comes, in lanes; made for elements without a word of their own too.
+
+    Attributes
+    ----------
+    moves, into
+        Vertex -> (flow, its target); flow's target -> (flow, its source).
+    keeps, flow_keeps
+        Vertex or flow -> what passes as it is; all where absent.
+    derives
+        Vertex -> (bit that arrives, bit that leaves for it).
+    emits, flow_emits
+        Vertex or flow -> what begins there, each in the lane of its source.
+    stop
+        Vertex -> what is not followed on from there.
+    allowed
+        What is followed at all.
+    """
+
+    lanes: Lanes
+    moves: Mapping[int, list[tuple[int, int]]]
+    keeps: MutableMapping[int, int]
+    derives: MutableMapping[int, tuple[tuple[int, int], ...]]
+    flow_keeps: MutableMapping[int, int]
+    emits: Mapping[int, int]
+    flow_emits: Mapping[int, int]
+    allowed: int
+    stop: Mapping[int, int] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, spread: Spread, sources: Sequence[int]) -> Doing:
+        """Return what a spread says, with a lane for each of some sources."""
+        lanes = Lanes.of(sources, spread.all_bits.bit_length())
+        moves: dict[int, list[tuple[int, int]]] = defaultdict(list)
+        for index, flow in enumerate(spread.graph.flows):
+            moves[flow.source].append((index, flow.target))
+        flows = spread.graph.flows
+        begun = {index: lanes.own(flows[index].source, bits) for index, bits in spread.flow_emits.items()}
+        return cls(
+            lanes,
+            moves,
+            {v: lanes.every(bits) for v, bits in spread.keeps.items() if bits != spread.all_bits},
+            {v: pairs for v, pairs in spread.derives.items() if pairs},
+            {index: lanes.every(bits) for index, bits in spread.flow_keeps.items()},
+            {v: lanes.own(v, spread.emits.get(v, 0)) for v in sources},
+            {index: bits for index, bits in begun.items() if bits},
+            lanes.every(spread.all_bits),
+        )
+
+    def stopped(self, stop: Mapping[int, int], allowed: int) -> Doing:
+        """Return the same for some bits, some of which are not followed on from some elements; both in lanes."""
+        return replace(self, stop={v: bits & allowed for v, bits in stop.items() if bits & allowed}, allowed=allowed)
+
+    def changed(self, spread: Spread) -> Doing:
+        """Return the same with what another spread says of the elements and flows that it is about."""
+        every = self.lanes.every
+        return replace(
+            self,
+            keeps=ChainMap({v: every(bits) for v, bits in spread.keeps.items()}, self.keeps),
+            derives=ChainMap(dict(spread.derives), self.derives),
+            flow_keeps=ChainMap({i: every(bits) for i, bits in spread.flow_keeps.items()}, self.flow_keeps),
+        )
+
+    def made(self, vertex: int, bits: int) -> int:
+        """Return what an element makes of what arrives, in the same lanes."""
+        result, unit = 0, self.lanes.unit
+        for before, after in self.derives.get(vertex, ()):
+            result |= (bits >> before & unit) << after
+        return result & self.allowed
+
+    def onward(self, vertex: int, bits: int) -> int:
+        """Return what leaves an element when something arrives."""
+        stop = self.stop.get(vertex, 0)
+        bits &= ~stop
+        return (bits & self.keeps.get(vertex, self.allowed) | self.made(vertex, bits)) & self.allowed & ~stop
+
+
+@dataclass(slots=True)
+class Flood:
+    """What arrives and what leaves, in lanes; of one that was taken further only what is more.
+
+    Attributes
+    ----------
+    arrives, leaves
+        Vertex -> bits. What a source sends along single flows only is not in ``leaves``.
+    before
+        What it was taken further from.
+    """
+
+    doing: Doing
+    before: Flood | None = None
+    arrives: dict[int, int] = field(default_factory=dict)
+    leaves: dict[int, int] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, doing: Doing) -> Flood:
+        """Follow what begins to where it gets.
+
+        >>> from rosprivacy.analysis.example import ARCHIVE, CAMERA, factory
+        >>> from rosprivacy.analysis.kernel.spreading import spread
+        >>> carried = spread(*factory())
+        >>> flood = Flood.of(Doing.of(carried, [CAMERA]))
+        >>> carried.planes(flood.arrived(ARCHIVE))  # as they are, pseudonymised
+        (('FaceTemplate',), ('Video',))
+        """
+        flood = cls(doing)
+        pending = {v: bits & doing.allowed for v, bits in doing.emits.items() if bits & doing.allowed}
+        flood.leaves.update(pending)
+        for moves in doing.moves.values() if doing.flow_emits else ():
+            for index, target in moves:
+                if bits := doing.flow_emits.get(index, 0) & doing.flow_keeps.get(index, doing.allowed) & doing.allowed:
+                    flood._arrive(target, bits, pending)
+        flood._follow(pending)
+        return flood
+
+    def arrived(self, vertex: int) -> int:
+        """Return what arrives at an element."""
+        if self.before is None:
+            return self.arrives.get(vertex, 0)
+        return self.arrives[vertex] if vertex in self.arrives else self.before.arrived(vertex)
+
+    def left(self, vertex: int) -> int:
+        """Return what leaves an element along all of its flows."""
+        if self.before is None:
+            return self.leaves.get(vertex, 0)
+        return self.leaves[vertex] if vertex in self.leaves else self.before.left(vertex)
+
+    def present(self, vertex: int, begun: int) -> int:
+        """Return what arrives at an element, begins there or is made there; ``begun`` is what begins, in lanes."""
+        arrived = self.arrived(vertex)
+        stop = self.doing.stop.get(vertex, 0)
+        return (arrived | begun | self.doing.made(vertex, arrived & ~stop)) & self.doing.allowed
+
+    def further(self, doing: Doing, vertices: Iterable[int], flows: Iterable[tuple[int, int, int]]) -> Flood:
+        """Take it further where some elements and flows do more than before, and none does less.
+
+        Parameters
+        ----------
+        doing
+            What is done now.
+        vertices, flows
+            Those that do more; flows as (index, source, target).
+
+        Examples
+        --------
+        >>> from rosprivacy.analysis.example import ARCHIVE, CAMERA, FILTER, factory
+        >>> from rosprivacy.analysis.kernel.spreading import meaning, spread
+        >>> from rosprivacy.analysis.model import Bound
+        >>> graph, bound, hierarchy = factory()
+        >>> carried = spread(graph, bound, hierarchy)
+        >>> flood = Flood.of(Doing.of(carried, [CAMERA]))
+        >>> unlabelled = meaning(graph, Bound({FILTER: ()}), hierarchy, carried.categories)
+        >>> more = flood.further(flood.doing.changed(unlabelled), [FILTER], [])
+        >>> carried.planes(more.arrived(ARCHIVE))
+        (('FaceTemplate', 'Video'), ('Video',))
+        """
+        more = Flood(doing, self)
+        pending: dict[int, int] = {}
+        for vertex in vertices:
+            more._leave(vertex, doing.onward(vertex, self.arrived(vertex)), pending)
+        for index, source, target in flows:
+            bits = self.left(source) | doing.flow_emits.get(index, 0)
+            more._arrive(target, bits & doing.flow_keeps.get(index, doing.allowed) & doing.allowed, pending)
+        more._follow(pending)
+        return more
+
+    def _follow(self, pending: dict[int, int]) -> None:
+        """First in, first out: what comes to one element along several flows goes on together."""
+        moves, flow_keeps = self.doing.moves, self.doing.flow_keeps
+        while pending:
+            vertex = next(iter(pending))
+            bits = pending.pop(vertex)
+            for index, target in moves.get(vertex, ()):
+                passing = flow_keeps.get(index)
+                self._arrive(target, bits if passing is None else bits & passing, pending)
+
+    def _arrive(self, target: int, bits: int, pending: dict[int, int]) -> None:
+        known = self.arrived(target)
+        if new := bits & ~known:
+            self.arrives[target] = known | new
+            self._leave(target, self.doing.onward(target, new), pending)
+
+    def _leave(self, vertex: int, bits: int, pending: dict[int, int]) -> None:
+        known = self.left(vertex)
+        if new := bits & ~known:
+            self.leaves[vertex] = known | new
+            pending[vertex] = pending.get(vertex, 0) | new

@@ -1,0 +1,143 @@
+"""What the answer hangs on (rules S7, S8, S10, S11): each row is what the analysis says without that statement."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+from unittest.mock import patch
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rosprivacy.analysis.errors import InputErrors
+from rosprivacy.analysis.example import ARCHIVE, CAMERA, DISK, FACES, FILTER, FILTERED, ROSOUT, factory
+from rosprivacy.analysis.findings import reliance
+from rosprivacy.analysis.findings.findings import Options, analyse
+from rosprivacy.analysis.findings.reliance import BRINGS_IN, Opening, reliances
+from rosprivacy.analysis.model import GLOB, NOWHERE, Place, Statement
+from tests.helpers.lined_systems import stated
+from tests.helpers.more_systems import ranked, wildcards
+from tests.helpers.systems import systems
+
+if TYPE_CHECKING:
+    from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.analysis.decisions import Case
+    from rosprivacy.analysis.model import Bound
+
+Found = dict[tuple[str, ...], tuple[bool, bool]]
+
+
+def answered(analysis: Analysis) -> tuple[Found, set[tuple[Any, str]]]:
+    """Finding that nobody accepted -> (it stands, plain data is in it), with what stands beside it; open questions."""
+    found: dict[Any, tuple[bool, bool]] = {}
+    beside = {f.id: f for f in analysis.findings if f.beside}
+    also = {(f.kind, f.category, f.source, f.leak) for f in beside.values()}
+    for f in analysis.findings:
+        key = (f.kind, f.category, f.source, f.leak)
+        if not f.beside and not f.accepted:
+            found[key] = (f.stands, not f.pseudonymised or key in also)
+    return found, {(q.element.shown_as, c) for q in analysis.open for c in q.categories}
+
+
+def without(bound: Bound, statement: Statement) -> Bound:
+    return replace(
+        bound,
+        elements={v: tuple(s for s in said if s != statement) for v, said in bound.elements.items()},
+        flows={i: tuple(s for s in said if s != statement) for i, said in bound.flows.items()},
+    )
+
+
+def by_brute_force(graph: Any, bound: Bound, hierarchy: Any, options: Options) -> dict[Statement, Any]:
+    """Statement -> what comes about without it; None where the labels contradict each other then."""
+    before, asked = answered(analyse(graph, bound, hierarchy, options))
+    result: dict[Statement, Any] = {}
+    for said in (*bound.elements.values(), *bound.flows.values()):
+        for statement in said:
+            if statement.role in BRINGS_IN or statement.place == NOWHERE:
+                continue
+            try:
+                after, questions = answered(analyse(graph, without(bound, statement), hierarchy, options))
+            except InputErrors:
+                result[statement] = None
+                continue
+            worse = {
+                key: state
+                for key, state in after.items()
+                if key not in before or any(now and not then for now, then in zip(state, before[key], strict=True))
+            }
+            result[statement] = (worse, questions - asked)
+    return result
+
+
+def compared(system: Any, options: Options) -> int:
+    """Compare both; return how many statements anything hangs on."""
+    graph, bound, hierarchy = system.graph(), system.bound(), getattr(system, "system", system).hierarchy
+    try:
+        analysis = analyse(graph, bound, hierarchy, options)
+    except InputErrors:
+        return 0
+    rows = {row.statement: row for row in reliances(analysis, bound, hierarchy, options.accepts)}
+    for statement, expected in by_brute_force(graph, bound, hierarchy, options).items():
+        row = rows.get(statement)
+        if expected is None:
+            assert row is None or row.refused, statement  # where no data is, nobody is told
+            continue
+        found = {
+            (f.kind, f.category, f.source, f.leak): (not f.dismissed, not f.pseudonymised)
+            for f in (row.findings if row else ())
+        }
+        asked = {(e.shown_as, c) for e, names in (row.questions if row else ()) for c in names}
+        assert (found, asked) == expected, statement
+        assert row is None or not (row.refused or row.perhaps)
+    return len(rows)
+
+
+@given(st.one_of(systems(), ranked(), wildcards(), stated()), st.integers(1, 3))
+def test_equals_the_analysis_without_the_statement(system: Any, together: int) -> None:
+    """However many sources are followed at once."""
+    with patch.object(reliance, "TOGETHER", together):
+        compared(system, Options())
+
+
+def test_of_the_example() -> None:
+    """Without the filter, raw video gets to the archive; without the limit, video gets past the filter."""
+    graph, bound, hierarchy = factory()
+    rows = reliances(analyse(graph, bound, hierarchy), bound, hierarchy)
+    cleaning, limit, standard = ((row.findings, row.questions) for row in rows)
+    archive, disk = (graph.elements[v] for v in (ARCHIVE, DISK))
+    as_it_is = [
+        Opening(kind, "Video", graph.elements[CAMERA], end, dismissed=False, pseudonymised=False, new=False)
+        for kind, end in (("disclosure", archive), ("storage-limitation", disk))
+    ]
+    assert cleaning == (tuple(as_it_is), ((graph.elements[FILTER], ("Video",)),))
+    assert limit == (tuple(as_it_is), ((graph.elements[FACES], ("FaceTemplate", "Video")),))
+    assert standard == ((), ((graph.elements[ROSOUT], ("Video",)),))
+
+
+def test_what_was_not_worked_out_is_said() -> None:
+    """A name above a glob that says mundane: more is lost than won without it, so the whole is analysed again."""
+    graph, bound, hierarchy = factory()
+    name, glob = ((1, 9), (1, 1))
+    said = Statement("sensitive", (), name, Place("labels.yaml", 9))
+    below = Statement("mundane", (), glob, Place("labels.yaml", 8), naming=GLOB)
+    bound = replace(bound, elements={**bound.elements, FILTERED: (said, below)})
+    analysis = analyse(graph, bound, hierarchy)
+    assert said not in {row.statement for row in reliances(analysis, bound, hierarchy)}  # nothing hangs on it
+    with patch.object(reliance, "ROUNDS", 0):
+        (row,) = (row for row in reliances(analysis, bound, hierarchy) if row.statement == said)
+    assert (row.perhaps, row.findings, row.questions) == (True, (), ())
+
+
+@given(systems(), st.integers(0, 7))
+def test_with_decisions(system: Any, number: int) -> None:
+    """S10: what is accepted hides nothing behind it, and does not open."""
+
+    def accepts(case: Case) -> bool:
+        return sum(map(ord, case.leak.name + case.category + case.source.name)) % 8 <= number - case.pseudonymised * 3
+
+    compared(system, Options(accepts=accepts))
+
+
+@given(systems(), st.sets(st.sampled_from(["Bio", "Loc", "Face"])))
+def test_of_some_categories(system: Any, asked: set[str]) -> None:
+    compared(system, Options(categories=asked))
