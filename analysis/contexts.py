@@ -88,26 +88,38 @@ class Contexts:
     Attributes
     ----------
     by_source
-        (kind, name) -> contexts; where several robots have an element of one name, those of all: a finding of a fleet
-        stands for all of these.
+        (robot, kind, name) -> contexts.
     """
 
-    by_source: Mapping[tuple[str, str], frozenset[str]]
+    by_source: Mapping[tuple[str, str, str], frozenset[str]]
     categories: Mapping[str, Category]
 
     @classmethod
-    def of(cls, graph: FlowGraph, bound: Bound, categories: Mapping[str, Category]) -> Contexts:
+    def of(
+        cls, graph: FlowGraph, bound: Bound, categories: Mapping[str, Category], *, together: bool = False
+    ) -> Contexts:
         """Take what labels state.
 
+        Parameters
+        ----------
+        together
+            Where several robots have an element of one name, its contexts are those of all: a finding of a fleet
+            stands for all of them.
+
+        Examples
+        --------
         >>> from rosprivacy.analysis.example import CATEGORIES, factory
         >>> Contexts.of(*factory()[:2], CATEGORIES).everywhere
         frozenset()
         """
-        found: dict[tuple[str, str], frozenset[str]] = {}
-        for vertex, where in bound.surroundings.items():
-            key = graph.elements[vertex].kind, graph.elements[vertex].name
-            found[key] = found.get(key, frozenset()).union(where.contexts)
-        return cls(found, categories)
+        own = {graph.elements[vertex].identity: where.contexts for vertex, where in bound.surroundings.items()}
+        of_name: dict[tuple[str, ...], frozenset[str]] = {}
+        for (robot, *name), contexts in own.items():
+            key = ("" if together else robot, *name)
+            of_name[key] = of_name.get(key, frozenset()).union(contexts)
+        elements = (element.identity for element in graph.elements if not element.is_channel) if own else ()
+        keys = {one: of_name.get(("" if together else one[0], *one[1:]), frozenset()) for one in elements}
+        return cls(keys, categories)
 
     @property
     def everywhere(self) -> frozenset[str]:
@@ -137,4 +149,4 @@ class Contexts:
         return article9_in(self.categories[finding.category], self._at(finding))
 
     def _at(self, finding: Finding) -> frozenset[str]:
-        return self.by_source.get((finding.source.kind, finding.source.name), frozenset())
+        return self.by_source.get(finding.source.identity, frozenset())

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.durations import Duration
     from rosprivacy.analysis.findings.ledger import TakenAway
     from rosprivacy.analysis.fleet.patterns import FleetView
-    from rosprivacy.analysis.model import Bound, Diagnostic, Element, NonRosFacts
+    from rosprivacy.analysis.model import Bound, Diagnostic, Element, NonRosFacts, Surroundings
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 
@@ -106,9 +106,15 @@ class Answer:
         return {elements[vertex].identity: groups for vertex, groups in self.bound.subjects.items()}
 
     @property
+    def surroundings(self) -> dict[tuple[str, str, str], Surroundings]:
+        """Where elements work, as people state it of them or of their system: by (robot, kind, name)."""
+        elements = self.analysis.graph.elements
+        return {elements[vertex].identity: where for vertex, where in self.bound.surroundings.items()}
+
+    @property
     def contexts(self) -> Contexts:
         """Where sources work, and what data may reveal there."""
-        return Contexts.of(self.analysis.graph, self.bound, self.vocabulary.categories)
+        return Contexts.of(self.analysis.graph, self.bound, self.vocabulary.categories, together=self.fleet is not None)
 
     def retention(self, element: Element, category: str) -> str:
         """Return how long an element keeps a category, with its backups; empty where nobody states it (rule S9)."""

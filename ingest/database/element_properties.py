@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.contexts import Contexts
 from rosprivacy.analysis.errors import LabelError
 from rosprivacy.analysis.findings.derived_from import origins
 from rosprivacy.analysis.fleet.likeness import NO_ROBOTS, pattern_id
@@ -188,6 +189,7 @@ def origin_properties(analysis: Analysis, origin: Origin, robot: str) -> Row:
 
 def finding_rows(
     analysis: Analysis,
+    bound: Bound,
     vocabulary: Vocabulary,
     ids: Mapping[Element, str],
     robots: Mapping[Element, str],
@@ -201,15 +203,21 @@ def finding_rows(
         Which names are those of robots.
     """
     rows, across = [], []
+    contexts = Contexts.of(analysis.graph, bound, vocabulary.categories)
     for finding in analysis.findings:
-        row, steps = finding_row(finding, pattern_id(finding, likeness), vocabulary, ids, robots)
+        row, steps = finding_row(finding, pattern_id(finding, likeness), vocabulary, ids, robots, contexts)
         rows.append(row)
         across += steps
     return rows, across
 
 
 def finding_row(
-    finding: Finding, pattern: str, vocabulary: Vocabulary, ids: Mapping[Element, str], robots: Mapping[Element, str]
+    finding: Finding,
+    pattern: str,
+    vocabulary: Vocabulary,
+    ids: Mapping[Element, str],
+    robots: Mapping[Element, str],
+    contexts: Contexts,
 ) -> tuple[Row, list[Row]]:
     """Return the row of a finding, and those of the elements that it goes across."""
     robot = robots[finding.source]
@@ -230,6 +238,8 @@ def finding_row(
             "pseudonymised": finding.pseudonymised,
             "dismissed": finding.dismissed,
             "disjoint_paths": finding.disjoint_paths,
+            "article9": contexts.article9(finding),
+            "in_context": [f"{legal.context}: {legal.name}" for legal in contexts.revealed(finding)] or None,
             "special_from": turned.name if (turned := turned_special(finding, vocabulary.categories)) else None,
         },
     }

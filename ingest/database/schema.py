@@ -184,6 +184,8 @@ PROVISION = NodeKind(
         Property("name", STRING, "short, such as GDPR Art. 9(1) health"),
         Property("title", STRING, "its meaning in one sentence, in our words"),
         Property("as_of", STRING, "date of the law"),
+        Property("applies_from", STRING, "day from which it applies, or will; absent where it simply applies"),
+        Property("country", STRING, "ISO 3166-1 code of the country whose law it is; absent for law of the Union"),
     ),
 )
 FINDING = NodeKind(
@@ -206,6 +208,8 @@ FINDING = NodeKind(
         Property("pseudonymised", BOOLEAN, "it arrives in pseudonymised form only"),
         Property("dismissed", BOOLEAN, "every path goes through another leak of the category"),
         Property("disjoint_paths", INTEGER, "paths that share no flow"),
+        Property("article9", STRING, "strongest verdict under Art. 9(1) where its source works"),
+        Property("in_context", STRINGS, "what the data may reveal where its source works, `care: GDPR Art. 9(1) …`"),
         Property("special_from", STRING, "element that makes a special category of other data; absent if none does"),
     ),
 )
@@ -325,6 +329,12 @@ FALLS_UNDER = RelationshipKind(
         Property("sources", STRINGS, "what the verdict rests on"),
     ),
 )
+LOOK_AT = RelationshipKind(
+    "LOOK_AT",
+    "DataCategory",
+    "LegalProvision",
+    "A provision to look at beside those that data of the category fall under; no verdict, and not followed into paths.",
+)
 ACROSS = RelationshipKind(
     "ACROSS",
     "Finding",
@@ -347,6 +357,7 @@ RELATIONSHIPS = (
     IN_ENCLAVE,
     RelationshipKind("BROADER", "DataCategory", "DataCategory", "The second is broader (skos:broader)."),
     FALLS_UNDER,
+    LOOK_AT,
     RelationshipKind("OF_CATEGORY", "Finding", "DataCategory", "What arrives."),
     RelationshipKind("FROM", "Finding", "Element", "The source."),
     RelationshipKind("TO", "Finding", "Element", "The leak."),

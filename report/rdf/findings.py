@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from rdflib.term import Node
 
     from rosprivacy.analysis.answer import Analysis, Finding
+    from rosprivacy.analysis.contexts import Contexts
     from rosprivacy.analysis.fleet.patterns import FleetView
     from rosprivacy.analysis.model import Element, NonRosFacts
     from rosprivacy.report.answer import Answer
@@ -79,7 +80,9 @@ def rdf_graph(answer: Answer, when: datetime | None = None) -> Graph:
     Takes time linear in the hops of all witnesses and paths.
     """
     analysis, told = answer.shown, document(answer)
-    things = Things(answer.vocabulary, by_path(told["assumptions"]), answer.stated, answer.subjects)
+    things = Things(
+        answer.vocabulary, by_path(told["assumptions"]), answer.stated, answer.subjects, answer.surroundings
+    )
     findings = _Findings.of(answer, analysis, things)
     graph = Graph(bind_namespaces="none")
     for prefix, namespace in PREFIXES.items():
@@ -128,13 +131,16 @@ class _Findings:
     emitted: Mapping[Element, set[str]]
     unstated: frozenset[tuple[object, str]]
     unreviewed: frozenset[tuple[object, str]]
+    contexts: Contexts
 
     @classmethod
     def of(cls, answer: Answer, analysis: Analysis, things: Things) -> _Findings:
         unstated = frozenset((element.shown_as, category) for element, category in analysis.unstated)
         unreviewed = frozenset((q.element.shown_as, category) for q in analysis.open for category in q.categories)
         emitted = emitted_by(analysis)
-        return cls(answer, analysis, things, answer.stated, answer.accepted, emitted, unstated, unreviewed)
+        return cls(
+            answer, analysis, things, answer.stated, answer.accepted, emitted, unstated, unreviewed, answer.contexts
+        )
 
     def triples(self, finding: Finding) -> Iterator[Triple]:
         """Everything about a finding."""
@@ -166,6 +172,7 @@ class _Findings:
         yield from self._persons(iri, finding)
         yield from self._leak(iri, finding)
         yield from self._law(iri, finding)
+        yield from self._contexts(iri, finding)
         yield from self._witness(iri, finding)
         yield from self._paths(iri, finding)
 
@@ -276,6 +283,19 @@ class _Findings:
                 (RP.verdict, [text(legal.verdict)]),
                 (RP.condition, [text(legal.condition, "en")] if legal.condition else []),
                 (RP.statedOf, self.things.categories(names)),
+            )
+
+    def _contexts(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:
+        """What the data may reveal where their source works: a fact about the place, no verdict."""
+        for number, legal in enumerate(self.contexts.revealed(finding), 1):
+            link = below(iri, "context", number)
+            yield iri, RP.inContext, link
+            yield from about(
+                link,
+                (RP.context, [text(legal.context)]),
+                (RP.provision, [self.things.provision(legal)]),
+                (RP.verdict, [text(legal.verdict)]),
+                (RP.condition, [text(legal.condition, "en")]),
             )
 
     def _witness(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:

@@ -12,6 +12,7 @@ from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.text import blanked, counted
 from rosprivacy.report.document.decisions import decision_lines
 from rosprivacy.report.finding_order import in_order
+from rosprivacy.report.looked_at import looked_at, of_every_system
 from rosprivacy.report.naming import key, kind_of, shown_name
 from rosprivacy.report.terminal.fleet import on_robots, robots_of
 from rosprivacy.report.terminal.restriction import may_be_asked
@@ -81,7 +82,9 @@ def details(report: Mapping[str, Any], findings: Sequence[Mapping[str, Any]]) ->
 
 def law_lines(report: Mapping[str, Any], findings: Iterable[Mapping[str, Any]]) -> Iterator[Line]:
     """Return what a person has to look up about each kind of data that arrives somewhere, once for each kind."""
-    by_kind = {finding["category"]: finding for finding in in_order(findings)}
+    told = in_order(findings)
+    by_kind = {finding["category"]: finding for finding in told}
+    findings_of = {kind: [finding for finding in told if finding["category"] == kind] for kind in by_kind}
     if not by_kind:
         return
     reasons = {category["name"]: category["reason"] for category in report["categories"]}
@@ -91,10 +94,38 @@ def law_lines(report: Mapping[str, Any], findings: Iterable[Mapping[str, Any]]) 
         for legal in finding["law"]:
             condition = f": {blanked(legal['condition'])}" if legal["condition"] else ""
             yield f"   {category}: {shown(legal['provision'])}, {MAY[legal['verdict']]}{condition}", "magenta"
+        yield from _context_lines(category, findings_of[category])
+        if pointed := [one["provision"] for one in looked_at(report) if category in one["categories"]]:
+            yield f"   {category}: look at {', '.join(map(shown, pointed))} too", "dim"
         if finding["article9"] == "unknown":
             yield f"   {category}: the ontology does not say whether Article 9 GDPR applies to such data", "yellow"
         if finding["article9"] == "no":
             yield f"   {category}: not Article 9 GDPR by itself: {blanked(reasons.get(category, ''))}", "dim"
+    yield from _further_law(report)
+
+
+def _context_lines(category: str, findings: Iterable[Mapping[str, Any]]) -> Iterator[Line]:
+    """What data may reveal where they are brought in, once for each context, provision and source."""
+    rows: dict[tuple[str, str, str], dict[str, None]] = {}
+    for finding in findings:
+        for said in finding.get("in_context", ()):
+            of_source = rows.setdefault((said["context"], said["provision"], said["condition"]), {})
+            of_source[shown_name(finding["source"])] = None
+    for (context, provision, condition), sources in rows.items():
+        who = f"{category} of {', '.join(sources)}"
+        yield f"   {who}: may reveal in this context ({context}): {shown(provision)}: {blanked(condition)}", "magenta"
+
+
+def _further_law(report: Mapping[str, Any]) -> Iterator[Line]:
+    """Provisions that a context or every system calls for; no verdict."""
+    rows = looked_at(report)
+    for context in report.get("contexts", ()):
+        names = [row["provision"] for row in rows if context["name"] in row["contexts"]]
+        if names:
+            yield f"   in this context ({context['name']}): look at {', '.join(map(shown, names))} too", "dim"
+    names = [row["provision"] for row in of_every_system(rows)]
+    if names:
+        yield f"   of every system: look at {', '.join(map(shown, names))} too", "dim"
 
 
 def policies_in(report: Mapping[str, Any]) -> str:

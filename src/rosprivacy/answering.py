@@ -15,8 +15,8 @@ from rosprivacy.analysis.fleet.patterns_of_pairs import Groups
 from rosprivacy.analysis.model import unread
 from rosprivacy.assumptions import assumptions_of
 from rosprivacy.decided import accepts, joined_to
-from rosprivacy.question import in_contexts
 from rosprivacy.ingest.labels.shipped import infrastructure_of
+from rosprivacy.question import in_contexts
 from rosprivacy.result import Result
 
 if TYPE_CHECKING:

@@ -86,9 +86,7 @@ def in_contexts(question: Question, contexts: Collection[str]) -> Question:
     return replace(question, asked=asked, contexts=frozenset(contexts))
 
 
-def asked_for(
-    vocabulary: Vocabulary, settings: Settings, contexts: Collection[str] = ()
-) -> frozenset[str] | None:
+def asked_for(vocabulary: Vocabulary, settings: Settings, contexts: Collection[str] = ()) -> frozenset[str] | None:
     """Return the categories that the answer is about; None for all.
 
     These are what the filters name, narrower kinds, and what is broader than one of them (so all kinds that overlap
