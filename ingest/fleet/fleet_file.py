@@ -272,6 +272,7 @@ class _Fleet:
             return
         own = bool(spec.strip or spec.add)
         namespace = (spec.strip, spec.add) if own else (model.strip, model.add)
+        strip, add = (text.replace(STAR, name) for text in namespace)
         robot = Robot(
             name,
             spec.place,
@@ -280,7 +281,8 @@ class _Fleet:
             model.labels,
             spec.labels,
             spec.domain or model.domain,
-            *(text.replace(STAR, name) for text in namespace),
+            strip,
+            add,
             joined((self._everywhere(), model.surroundings, spec.surroundings)),
         )
         (self._infrastructure if shared else self._robots)[name] = robot

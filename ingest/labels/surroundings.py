@@ -7,7 +7,7 @@ problem for what is neither (rule S11).
 from __future__ import annotations
 
 from difflib import get_close_matches
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import CONTEXTS, Surroundings
@@ -17,13 +17,19 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from rosprivacy.analysis.model import FlowGraph
-    from rosprivacy.ingest.reading.format_reader import FileReader
     from rosprivacy.ingest.reading.yaml_values import Value
 
 NEAREST, LIKE = 3, 0.5
 
 
-def read_contexts(reader: FileReader, value: Value) -> tuple[str, ...]:
+class Problems(Protocol):
+    """What notes a problem at a line: a reader of any of our formats."""
+
+    def problem(self, line: int, problem: str, hint: str) -> None:
+        """Note a problem."""
+
+
+def read_contexts(reader: Problems, value: Value) -> tuple[str, ...]:
     """Return the contexts of a list, or of one name; what is none of them is a problem, with the nearest names."""
     items = (value,) if value.kind == "text" else value.items
     if not items:
@@ -38,7 +44,7 @@ def read_contexts(reader: FileReader, value: Value) -> tuple[str, ...]:
     return tuple(sorted(found))
 
 
-def read_country(reader: FileReader, value: Value) -> str:
+def read_country(reader: Problems, value: Value) -> str:
     """Return the country code that a value states; empty where it states none, which is a problem."""
     if value.text in countries().areas:  # YAML takes NO for 'no', so the text counts
         return value.text

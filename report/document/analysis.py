@@ -227,15 +227,13 @@ def _surroundings(answer: Answer) -> list[SurroundingsEntry]:
     analysis, bound = answer.shown, answer.bound
     elements = analysis.graph.elements
     sources = {element for element, said in analysis.roles.items() if any("source" in of for of in said.values())}
-    return [
-        {
-            "element": element_dict(elements[vertex]),
-            "contexts": list(where.contexts),
-            **({"country": where.country} if where.country else {}),
-        }
-        for vertex, where in sorted(bound.surroundings.items())
-        if elements[vertex] in sources
-    ]
+    rows: list[SurroundingsEntry] = []
+    for vertex, where in sorted(bound.surroundings.items()):
+        if elements[vertex] in sources:
+            rows.append({"element": element_dict(elements[vertex]), "contexts": list(where.contexts)})
+            if where.country:
+                rows[-1]["country"] = where.country
+    return rows
 
 
 def _category(category: Category, hierarchy: Hierarchy, contexts: frozenset[str]) -> CategoryEntry:

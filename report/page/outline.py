@@ -24,6 +24,7 @@ from rosprivacy.report.page.finding_entries import Entry, finding_entries
 from rosprivacy.report.page.fleet_section import Fleet, fleet_told
 from rosprivacy.report.page.index import REVEALS, Index, strength
 from rosprivacy.report.page.kinds import Kind, kinds
+from rosprivacy.report.page.look_at import LookAt, further
 from rosprivacy.report.page.non_ros import Outside, outside
 from rosprivacy.report.page.review import Group, review, unknown_ends
 from rosprivacy.report.words.words import Words
@@ -111,6 +112,7 @@ class Outline:
     kinds: tuple[Kind, ...]
     entries: tuple[Entry, ...]
     orphans: tuple[Decision, ...]
+    look_at: tuple[tuple[str, tuple[LookAt, ...]], ...]
     outside: tuple[Outside, ...]
     cleanings: tuple[sanitizers.Cleaning, ...]
     makings: tuple[sanitizers.Making, ...]
@@ -184,6 +186,7 @@ def outline(
         kinds=kinds(index, entries),
         entries=entries,
         orphans=orphans(index),
+        look_at=further(index),
         outside=outside(index),
         cleanings=sanitizers.cleanings(index, entries),
         makings=sanitizers.makings(index),

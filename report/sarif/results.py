@@ -113,7 +113,8 @@ class Results:
         }
         if related := self._related(finding, place):
             result["relatedLocations"] = related
-        distinct = {one.iri: one for one in (*law, *self.pointed.of_finding(finding.kind))}.values()
+        at_stake: list[Legal | Pointer] = [*law, *self.pointed.of_finding(finding.kind)]
+        distinct = {one.iri: one for one in at_stake}.values()
         if distinct:
             result["taxa"] = [reference(legal, self.taxa[legal.iri]) for legal in distinct]
         if finding.id in self.accepted:
