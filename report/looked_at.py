@@ -1,4 +1,4 @@
-"""Which of the provisions that a document points at a reader sees: law of the Union, and national law that is called for.
+"""Which provisions that a document points at a reader sees: law of the Union, and national law that is called for.
 
 In: a JSON document and a language. Out: its rows of ``look_at``. National law is called for by the country of the
 system, of a storage or recipient, or by the language in which a report is asked for.

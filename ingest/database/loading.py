@@ -263,12 +263,9 @@ def _write_vocabulary(transaction: ManagedTransaction, vocabulary: Vocabulary) -
         for iri, legal in law
     ]
     run(transaction, cypher.create_relationships(FALLS_UNDER), rows=under)
-    at = [
-        {"source": c.iri, "target": pointed[name].iri, "properties": {}}
-        for c in categories.values()
-        for name in c.look_at
-    ]
-    run(transaction, cypher.create_relationships(LOOK_AT), rows=at)
+    at = [(c.iri, pointed[name].iri) for c in categories.values() for name in c.look_at]
+    links = [{"source": source, "target": target, "properties": {}} for source, target in at]
+    run(transaction, cypher.create_relationships(LOOK_AT), rows=links)
 
 
 def _write_robots(transaction: ManagedTransaction, robots: list[RobotRows], labels: list[str]) -> None:

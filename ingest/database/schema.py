@@ -333,7 +333,7 @@ LOOK_AT = RelationshipKind(
     "LOOK_AT",
     "DataCategory",
     "LegalProvision",
-    "A provision to look at beside those that data of the category fall under; no verdict, and not followed into paths.",
+    "A provision to look at beside those that data of the category fall under; it is not followed into paths.",
 )
 ACROSS = RelationshipKind(
     "ACROSS",

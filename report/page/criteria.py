@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import SPECIAL
+from rosprivacy.report.finding_order import REVEALS, strength
 from rosprivacy.report.page.entries_of_robots import weight
-from rosprivacy.report.page.index import REVEALS, strength
 
 if TYPE_CHECKING:
     from rosprivacy.report.page.index import Index

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from rosprivacy.report.page.index import Index
 
 LINES = 4  # policy lines shown of one step
+NAMED = 3  # robots of one form that are named beside their number
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +76,7 @@ class Entry:
     robots
         That it is the same on, the first included; empty where there is one.
     spread
-        On how many robots it is, in a sentence; empty where there is one.
+        On how many robots it is, in sentences; empty where there is one.
     where
         The same robots by how the finding stands there, in words, with their names: of those that are alike on a fleet
         the one that is shown.
@@ -109,7 +110,7 @@ class Entry:
     paths: tuple[str, ...]
     decision: Decision | None
     mark: str = ""
-    spread: str = ""
+    spread: tuple[str, ...] = ()
     pattern: str = ""
     where: tuple[tuple[str, tuple[str, ...]], ...] = ()
 
@@ -136,7 +137,7 @@ def finding_entries(index: Index, marks: Mapping[str, str] | None = None) -> tup
         return finding_pattern(finding), marks.get(finding["id"]), decided[finding["id"]]
 
     fleet = index.patterns  # there each finding is one of its pattern
-    findings = in_order(index.findings)
+    findings = in_order(index.findings, index.document.get("fleet"))
     groups = [[finding] for finding in findings] if fleet else grouped(findings, pattern)
     return tuple(_entry(number, group, index, decided, marks) for number, group in enumerate(groups, 1))
 
@@ -173,7 +174,7 @@ def _entry(
         paths=tuple(" → ".join(map(name, path)) for path in finding.get("paths", ())),
         decision=decision,
         mark=marks.get(finding["id"], ""),
-        spread=_spread(finding, robots, index),
+        spread=tuple(_spread(finding, robots, index)),
         pattern=index.patterns.get(finding["id"], {}).get("id", ""),
         where=tuple(_where(finding, robots, index)),
     )
@@ -185,16 +186,22 @@ def _robots(group: list[Mapping[str, Any]], index: Index) -> tuple[str, ...]:
     return tuple(fit(finding["source"]["robot"]) for finding in group) if len(group) > 1 else ()
 
 
-def _spread(finding: Mapping[str, Any], robots: tuple[str, ...], index: Index) -> str:
+def _spread(finding: Mapping[str, Any], robots: tuple[str, ...], index: Index) -> Iterator[str]:
+    """On which robots it is, a sentence for each form; robots that are few are named."""
     words, pattern = index.words, index.patterns.get(finding["id"])
     if not pattern:
-        return words("f.robots", robots=words.count(len(robots), "robot")) if robots else ""
+        if robots:
+            yield words("f.robots", robots=words.count(len(robots), "robot"))
+        return
     if not robots:
-        return words("f.fleet.none")
-    said = [words("f.fleet", n=len(robots), all=words.count(len(index.robots()), "ofrobots"))]
-    said += [words("f.fleet.across", n=pattern["findings"])] if pattern["across"] else []
-    said += [f"{words.count(len(some), 'robot')}: {form}." for some, form in _forms(pattern, index)]
-    return " ".join(said)
+        yield words("f.fleet.none")
+        return
+    yield words("f.fleet", n=len(robots), all=words.count(len(index.robots()), "ofrobots"))
+    if pattern["across"]:
+        yield words("f.fleet.across", n=pattern["findings"])
+    for some, form in _forms(pattern, index):
+        names = f" ({words.row(map(fit, some))})" if len(some) <= NAMED else ""
+        yield f"{words.count(len(some), 'robot')}{names}: {form}."
 
 
 def _forms(pattern: Mapping[str, Any], index: Index) -> list[tuple[Sequence[str], str]]:

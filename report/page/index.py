@@ -10,7 +10,6 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.model import MAY_REVEAL, SPECIAL
 from rosprivacy.analysis.text import fit
 from rosprivacy.report.naming import key, text
 from rosprivacy.report.page.entries_of_robots import names_of
@@ -20,8 +19,6 @@ if TYPE_CHECKING:
 
     from rosprivacy.report.naming import Key
     from rosprivacy.report.words.words import Words
-
-REVEALS = (MAY_REVEAL, "unknown")
 
 
 @dataclass(frozen=True)
@@ -81,6 +78,11 @@ class Index:
         return list(self.document["findings"])
 
     @cached_property
+    def by_id(self) -> dict[str, Mapping[str, Any]]:
+        """Findings by their id."""
+        return {finding["id"]: finding for finding in self.document["findings"]}
+
+    @cached_property
     def to_assess(self) -> list[Mapping[str, Any]]:
         """Findings that are neither dismissed nor accepted."""
         return [finding for finding in self.findings if state(finding) == "open"]
@@ -120,15 +122,6 @@ class Index:
     def names(self, elements: Iterable[Mapping[str, Any]]) -> tuple[str, ...]:
         """Return the names of elements, each once; one that several robots have, with their number."""
         return names_of(elements, self.words, self.alike)
-
-
-def strength(row: Mapping[str, Any]) -> tuple[str, ...]:
-    """Return how far data of a finding or a category can be special, under Article 9 or 10.
-
-    ``SPECIAL``, or else ``REVEALS``, or neither.
-    """
-    verdicts = {legal["verdict"] for legal in row["law"]} | {row["article9"]}
-    return next((some for some in (SPECIAL, REVEALS) if verdicts.intersection(some)), ())
 
 
 def state(finding: Mapping[str, Any]) -> str:

@@ -1,6 +1,6 @@
 """Law that is pointed at beside what is followed into paths, and what data may reveal in a context, in words.
 
-In: an ``Index``. Out: rows for the law box of a kind, for an entry, and for the list at the end of the paths. No verdict.
+In: an ``Index``. Out: rows for the law box of a kind, for an entry, for the list at the end of the paths. No verdict.
 """
 
 from __future__ import annotations

@@ -58,7 +58,6 @@ def outside(index: Index) -> tuple[Outside, ...]:
 
 def _outside(row: Mapping[str, Any], index: Index) -> Outside:
     words, element = index.words, row["element"]
-    area = words(f"area.{row['area']}") if row.get("area") else ""
     warnings = [words(f"missing.{what}") for what in row.get("missing", ())]
     if row.get("without_limit"):
         warnings.append(words("o.unlimited", data=index.all_data(row["without_limit"])))
@@ -70,13 +69,19 @@ def _outside(row: Mapping[str, Any], index: Index) -> Outside:
         retention=retention(row, index),
         backups=_backups(row.get("backups"), index),
         encrypted="" if "encrypted" not in row else words("yes" if row["encrypted"] else "no"),
-        country=fit(row.get("country", "")) + (f" ({area})" if area else ""),
+        country=country(row, index),
         operator=fit(row.get("operator", "")),
         recipient=words.known(f"recipient.{row['recipient']}", row["recipient"]) if row.get("recipient") else "",
         transfer=words.known(f"transfer.{row['transfer']}", row["transfer"]) if row.get("transfer") else "",
         warnings=tuple(warnings),
         place=f"{fit(row['file'])}:{row['line']}" if row.get("file") else "",
     )
+
+
+def country(row: Mapping[str, Any], index: Index) -> str:
+    """Return where an element lies, and what holds there; empty if it is not stated."""
+    area = index.words(f"area.{row['area']}") if row.get("area") else ""
+    return fit(row.get("country", "")) + (f" ({area})" if area else "")
 
 
 def retention(row: Mapping[str, Any], index: Index) -> str:

@@ -15,6 +15,7 @@ from rosprivacy.analysis.text import fit
 from rosprivacy.report.compare.changes import ASKED, Changes, changes
 from rosprivacy.report.document.analysis import files_not_read, lacking
 from rosprivacy.report.element_counts import count_rows
+from rosprivacy.report.finding_order import REVEALS, strength
 from rosprivacy.report.naming import name
 from rosprivacy.report.page import assumed, elements, sanitizers, tables
 from rosprivacy.report.page.closed import Closed, closed
@@ -22,10 +23,11 @@ from rosprivacy.report.page.criteria import Criterion, criteria
 from rosprivacy.report.page.decision_texts import Decision, orphans
 from rosprivacy.report.page.finding_entries import Entry, finding_entries
 from rosprivacy.report.page.fleet_section import Fleet, fleet_told
-from rosprivacy.report.page.index import REVEALS, Index, strength
+from rosprivacy.report.page.index import Index, state
 from rosprivacy.report.page.kinds import Kind, kinds
 from rosprivacy.report.page.look_at import LookAt, further
 from rosprivacy.report.page.non_ros import Outside, outside
+from rosprivacy.report.page.opening import Opening, opening
 from rosprivacy.report.page.review import Group, review, unknown_ends
 from rosprivacy.report.words.words import Words
 
@@ -34,9 +36,10 @@ if TYPE_CHECKING:
 
     from rosprivacy.report.compare.earlier import Earlier
 
+DECIDE = "decide"  # its heading is what there is to decide
 SECTIONS = (
-    "summary", "fleet", "assumptions", "changes", "tables", "findings", "outside", "sanitizers", "questions",
-    "criteria", "inventory", "method", "sign",
+    DECIDE, "changes", "fleet", "findings", "questions", "tables", "outside", "sanitizers", "criteria", "sign",
+    "kinds", "assumptions", "inventory", "method",
 )  # fmt: skip
 PARAGRAPHS = 10  # of the method note
 SIGNED = (  # what Article 35(7) asks for, 35(2), 35(9), 36, and who answers for it
@@ -85,6 +88,8 @@ class Outline:
         (anchor, heading), in order.
     verdict
         Of the contract; ``nothing`` if no data was followed.
+    opening
+        What it begins with: what is to be decided.
     numbers
         (number, what it counts).
     """
@@ -98,6 +103,7 @@ class Outline:
     sections: tuple[tuple[str, str], ...]
     code: str
     verdict: str
+    opening: Opening
     means: tuple[str, ...]
     numbers: tuple[tuple[int, str], ...]
     assumptions: tuple[str, ...]
@@ -158,6 +164,8 @@ def outline(
     words = index.words
     differ = changes(earlier.document, document) if earlier else None
     entries = finding_entries(index, differ.marks() if differ else None)
+    verdict = _verdict(index)
+    begins = opening(index, entries, words(f"verdict.{verdict}"), _told_of(verdict, index))
     links = tables.Links(entries)
     subjects, silent = tables.subjects(index, links)
     there = {"changes": bool(differ), "fleet": bool(index.alike)}
@@ -169,9 +177,10 @@ def outline(
         version=document["assumptions"]["rosprivacy"],
         law=_law(document["assumptions"], words),
         redacted=redacted,
-        sections=tuple((anchor, words(f"h.{anchor}")) for anchor in names),
+        sections=tuple((anchor, begins.headline if anchor == DECIDE else words(f"h.{anchor}")) for anchor in names),
         code=document["verdict"],
-        verdict=_verdict(index),
+        verdict=verdict,
+        opening=begins,
         means=tuple(_means(index, names)),
         numbers=tuple(_numbers(index)),
         assumptions=tuple(assumed.assumed(index)),
@@ -232,10 +241,20 @@ def _verdict(index: Index) -> str:
     return verdict if followed else lacking(index.document) or "nothing"
 
 
-def _means(index: Index, sections: list[str]) -> Iterator[str]:
+def _told_of(verdict: str, index: Index) -> str:
+    """What a verdict means."""
     words = index.words
-    open_elements = words.count(count_rows(index.document["open"]).elements, "element")
-    yield words(f"verdict.{_verdict(index)}.means", open=open_elements)
+    return words(f"verdict.{verdict}.means", open=words.count(count_rows(index.document["open"]).elements, "element"))
+
+
+def _means(index: Index, sections: list[str]) -> Iterator[str]:
+    """What else is to be known of the result: what to ask of each path, and which are not to be decided now."""
+    words = index.words
+    if index.to_assess:
+        yield words("b.each")
+    dismissed = sum(state(finding) == "dismissed" for finding in index.findings)
+    if dismissed:
+        yield words("b.dismissed", ways=words.count(dismissed, "way"))
     accepted = sum(bool(finding.get("accepted")) for finding in index.findings)
     if accepted:
         yield words("verdict.accepted", ways=words.count(accepted, "way"), section=sections.index("findings") + 1)

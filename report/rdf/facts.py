@@ -8,6 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.errors import shown
+
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
 
@@ -39,6 +41,11 @@ class Change:
     def pseudonymises(self) -> bool:
         """Whether it is here that the data become pseudonymised."""
         return self.after[1] and not self.before[1]
+
+
+def label_of(finding: Finding) -> str:
+    """Return what a finding is called: kind of data, from where, to where."""
+    return shown(f"{finding.category}: {finding.source.name} -> {finding.leak.name}")
 
 
 def kinds_along(finding: Finding) -> list[tuple[str, bool]]:

@@ -14,7 +14,8 @@ from rdflib import RDF, RDFS, Literal
 from rdflib.namespace import PROV
 
 from rosprivacy.report.element_counts import count_elements
-from rosprivacy.report.rdf.terms import RP, Triple, about, below, file_iri, finding_iri, named, text
+from rosprivacy.report.rdf.individuals import below, entries_of, files_read
+from rosprivacy.report.rdf.terms import RP, Triple, about, text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -23,32 +24,22 @@ if TYPE_CHECKING:
     from rdflib import URIRef
 
     from rosprivacy.analysis.answer import Analysis, OpenQuestion
+    from rosprivacy.report.rdf.individuals import Names
     from rosprivacy.report.rdf.things import Things
 
 NO_VERDICT = "Labels are a person's word, and a path can be lawful. This is no legal verdict."
 
 
-def files_read(assumptions: Mapping[str, Any]) -> list[tuple[str, str, str]]:
-    """Return (assumption, file, SHA-256) of every file that an assumption names, sorted."""
-    entries = ((name, entry) for name, value in assumptions.items() for entry in _entries(value))
-    return sorted((name, entry["file"], entry["sha256"]) for name, entry in entries)
-
-
-def _entries(value: Any) -> list[Mapping[str, Any]]:
-    found = value if isinstance(value, list) else [value]
-    return [entry for entry in found if isinstance(entry, dict) and {"file", "sha256"} <= entry.keys()]
-
-
-def by_path(assumptions: Mapping[str, Any]) -> dict[str, tuple[URIRef, ...]]:
+def by_path(assumptions: Mapping[str, Any], names: Names) -> dict[str, tuple[URIRef, ...]]:
     """Return path -> IRIs of what was read there; several where robots were loaded at different times."""
     found: dict[str, dict[URIRef, None]] = {}
     for _, file, sha256 in files_read(assumptions):
-        found.setdefault(file, {})[file_iri(file, sha256)] = None
+        found.setdefault(file, {})[names.file(file, sha256)] = None
     return {file: tuple(iris) for file, iris in found.items()}
 
 
 def provenance(
-    analysis: Analysis, document: Mapping[str, Any], things: Things, when: datetime | None
+    analysis: Analysis, document: Mapping[str, Any], names: Names, things: Things, when: datetime | None
 ) -> Iterator[Triple]:
     """Say what the run was, what it rests on and what it concluded.
 
@@ -60,7 +51,7 @@ def provenance(
         The time to tell, or None.
     """
     digest = hashlib.sha256(json.dumps(document, sort_keys=True).encode()).hexdigest()[:16]
-    run, answer, assumptions = named("run", digest), named("analysis", digest), document["assumptions"]
+    run, answer, assumptions = names.of("run", digest), names.of("analysis", digest), document["assumptions"]
     read = files_read(assumptions)
     moment = [Literal(when)] if when else []
     yield from about(
@@ -70,7 +61,7 @@ def provenance(
         (RP.outcome, [text(document["verdict"])]),
         (RP.view, [text(document["view"])]),
         (RP.followed, things.categories(analysis.emitted)),
-        (RP.found, [finding_iri(finding) for finding in analysis.findings]),
+        (RP.found, [names.finding(finding) for finding in analysis.findings]),
         (RP.lookAt, things.pointed(one["provision"] for one in document["look_at"] if not one["categories"])),
         (RP.openElements, [Literal(count_elements(q.element for q in analysis.open).elements)]),
         (PROV.wasGeneratedBy, [run]),
@@ -79,20 +70,20 @@ def provenance(
     yield from about(
         run,
         (RDF.type, [PROV.Activity]),
-        (PROV.used, {file_iri(file, sha256) for _, file, sha256 in read}),
+        (PROV.used, {names.file(file, sha256) for _, file, sha256 in read}),
         (PROV.endedAtTime, moment),
     )
-    yield from _tool(run, assumptions)
+    yield from _tool(run, assumptions, names)
     for kind, file, sha256 in read:
         yield from about(
-            file_iri(file, sha256),
+            names.file(file, sha256),
             (RDF.type, [PROV.Entity, RP.SourceFile]),
             (RP.file, [text(file)]),
             (RP.sha256, [Literal(sha256)]),
             (RP.readAs, [Literal(kind)]),
         )
     for finding in analysis.findings:
-        yield finding_iri(finding), PROV.wasGeneratedBy, run
+        yield names.finding(finding), PROV.wasGeneratedBy, run
     yield from _assumptions(answer, assumptions)
     for number, diagnostic in enumerate(document["diagnostics"], 1):
         yield from _diagnostic(answer, number, diagnostic)
@@ -100,9 +91,9 @@ def provenance(
         yield from _open(answer, number, question, things)
 
 
-def _tool(run: URIRef, assumptions: Mapping[str, Any]) -> Iterator[Triple]:
+def _tool(run: URIRef, assumptions: Mapping[str, Any], names: Names) -> Iterator[Triple]:
     version = assumptions["rosprivacy"]
-    tool = named("tool", version)
+    tool = names.of("tool", version)
     yield from about(run, (PROV.wasAssociatedWith, [tool]))
     yield from about(
         tool,
@@ -115,7 +106,7 @@ def _tool(run: URIRef, assumptions: Mapping[str, Any]) -> Iterator[Triple]:
 def _assumptions(answer: URIRef, assumptions: Mapping[str, Any]) -> Iterator[Triple]:
     """Every assumption of the document but lists of files; what is not text stands there as JSON."""
     for name, value in sorted(assumptions.items()):
-        if isinstance(value, list) and _entries(value):
+        if isinstance(value, list) and any(entries_of(value)):
             continue
         iri = below(answer, "assumption", name)
         shown = value if isinstance(value, str) else json.dumps(value, ensure_ascii=False, sort_keys=True)

@@ -15,7 +15,7 @@ from rdflib import RDF, XSD, Literal, URIRef
 from rdflib.plugins.serializers.turtle import TurtleSerializer
 
 from rosprivacy.report.json_text import as_text
-from rosprivacy.report.rdf.terms import RP
+from rosprivacy.report.rdf.terms import DPV, RP
 
 if TYPE_CHECKING:
     from rdflib import Graph
@@ -33,8 +33,8 @@ class _Turtle(TurtleSerializer):
     """
 
     def orderSubjects(self) -> list[Node]:  # noqa: N802 - rdflib's name
-        """The answer first, then findings, then what they consist of, by IRI."""
-        first = [set(self.store.subjects(RDF.type, kind)) for kind in (RP.Analysis, RP.Finding)]
+        """The answer first, then findings, what they are about, and what they consist of, by IRI."""
+        first = [set(self.store.subjects(RDF.type, kind)) for kind in (RP.Analysis, RP.Finding, DPV.Process)]
         named = [subject for subject in self._subjects if isinstance(subject, URIRef)]
         return sorted(named, key=lambda subject: (*(subject not in kind for kind in first), str(subject)))
 

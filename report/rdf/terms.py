@@ -1,16 +1,14 @@
-"""The words of linked data: namespaces, the DPV 2.3 terms that are used, names made into IRIs and texts into literals.
+"""The words of linked data: namespaces, the DPV 2.3 terms that are used, texts made into literals.
 
-In: what people wrote. Out: IRIs and literals that any RDF parser takes, whatever a name holds.
+In: what people wrote. Out: terms and literals that any RDF parser takes, whatever a text holds.
 """
 
 from __future__ import annotations
 
-import hashlib
 import re
 from typing import TYPE_CHECKING
-from urllib.parse import quote
 
-from rdflib import RDF, XSD, BNode, Literal, Namespace, URIRef
+from rdflib import RDF, XSD, BNode, Literal, Namespace
 from rdflib.namespace import ClosedNamespace
 
 from rosprivacy.analysis.text import utf8
@@ -18,10 +16,8 @@ from rosprivacy.analysis.text import utf8
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
+    from rdflib import URIRef
     from rdflib.term import Node
-
-    from rosprivacy.analysis.answer import Finding
-    from rosprivacy.analysis.model import Element, Grant
 
 Triple = tuple["Node", "Node", "Node"]
 
@@ -29,6 +25,7 @@ OWN = "urn:x-rosprivacy:"
 RP = Namespace(OWN)
 
 DPV_CLASSES = (
+    "ActivityStatus",
     "Country",
     "CrossBorderTransfer",
     "DataController",
@@ -38,17 +35,20 @@ DPV_CLASSES = (
     "Derive",
     "Disclose",
     "JointDataControllers",
+    "PersonalData",
     "Process",
     "Pseudonymisation",
     "PseudonymisedData",
     "Recipient",
     "Store",
+    "SpecialCategoryPersonalData",
     "StorageDuration",
     "ThirdCountry",
     "ThirdParty",
     "Transfer",
 )
 DPV_PROPERTIES = (
+    "hasActivityStatus",
     "hasCountry",
     "hasDataSource",
     "hasDataSubject",
@@ -75,53 +75,12 @@ DPV = ClosedNamespace("https://w3id.org/dpv#", [*DPV_CLASSES, *DPV_PROPERTIES])
 EU_GDPR = ClosedNamespace("https://w3id.org/dpv/legal/eu/gdpr#", list(BASES))
 RISK = ClosedNamespace("https://w3id.org/dpv/risk#", list(RISKS))
 
-LONGEST = 500  # characters of a name in an IRI; a longer one stands there as its hash; `=` is never left in a name
 _DURATION = re.compile(r"-?P(?=.)(\d+Y)?(\d+M)?(\d+D)?(T(?=.)(\d+H)?(\d+M)?(\d+(\.\d+)?S)?)?", re.ASCII)
-_NOT_IN_IRIS = re.compile(r'[\x00-\x20<>"{}|\\^`\x7f-\x9f]')
-
-
-def named(kind: str, *parts: object) -> URIRef:
-    """Return the IRI of a thing of ours: percent-encoded, so that no name can leave it, the same for no two.
-
-    >>> named("element", "", "node", "/a> . <b")
-    rdflib.term.URIRef('urn:x-rosprivacy:element::node:/a%3E%20.%20%3Cb')
-    """
-    return URIRef(OWN + ":".join([kind, *(_encoded(str(part)) for part in parts)]))
-
-
-def below(parent: URIRef, *parts: object) -> URIRef:
-    """Return the IRI of a part of a thing of ours."""
-    return URIRef(":".join([str(parent), *(_encoded(str(part)) for part in parts)]))
-
-
-def foreign(iri: str) -> URIRef:
-    """Return an IRI that an ontology names; what may not stand in one is percent-encoded."""
-    return URIRef(_NOT_IN_IRIS.sub(lambda match: quote(match[0]), iri))
 
 
 def text(value: str, language: str | None = None) -> Literal:
     """Return a literal; what UTF-8 cannot say (a file name that is none) is escaped."""
     return Literal(utf8(value), lang=language)
-
-
-def element_iri(element: Element) -> URIRef:
-    """Return the IRI of an element as a reader sees it: the two sides of a wildcard are one."""
-    return named("element", *element.identity, *([element.leg] if element.leg else []))
-
-
-def finding_iri(finding: Finding) -> URIRef:
-    """Return the IRI of a finding, made from its stable id (rule S10)."""
-    return named("finding", finding.id)
-
-
-def line_iri(grant: Grant) -> URIRef:
-    """Return the IRI of a policy line as it applies to a profile."""
-    return named("line", grant.place.file, grant.place.line, grant.enclave, grant.node)
-
-
-def file_iri(file: str, sha256: str) -> URIRef:
-    """Return the IRI of a file that was read; another content is another file."""
-    return named("file", sha256, file)
 
 
 def legal_basis(article: str) -> list[URIRef]:
@@ -151,9 +110,3 @@ def listed(items: Sequence[Node]) -> tuple[Node, list[Triple]]:
     for cell, item, rest in zip(cells, items, cells[1:], strict=False):
         triples += [(cell, RDF.first, item), (cell, RDF.rest, rest)]
     return cells[0], triples
-
-
-def _encoded(name: str) -> str:
-    data = name.encode("utf-8", "surrogatepass")
-    encoded = quote(data, safe="/")
-    return encoded if len(encoded) <= LONGEST else f"sha256={hashlib.sha256(data).hexdigest()}"

@@ -9,9 +9,11 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from rdflib import RDF, SKOS, XSD, Literal
+from rdflib.namespace import PROV
 
 from rosprivacy.analysis.model import Pointer
-from rosprivacy.report.rdf.terms import RP, Triple, about, element_iri, foreign, line_iri, text
+from rosprivacy.report.rdf.individuals import foreign
+from rosprivacy.report.rdf.terms import DPV, RP, Triple, about, text
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.model import Category, Element, Grant, Legal, Surroundings
     from rosprivacy.ontology.vocabulary import Vocabulary
+    from rosprivacy.report.rdf.individuals import Names
 
 CLASSES = {
     "node": RP.RosNode, "topic": RP.Topic, "service": RP.Service, "action": RP.Action, "storage": RP.Storage,
@@ -40,6 +43,8 @@ class Things:
 
     Parameters
     ----------
+    names
+        Of the individuals.
     files
         Path -> IRIs of the files that were read there.
     stated
@@ -53,6 +58,7 @@ class Things:
     def __init__(
         self,
         vocabulary: Vocabulary,
+        names: Names,
         files: Mapping[str, tuple[URIRef, ...]],
         stated: Stated,
         subjects: Mapping[tuple[str, str, str], tuple[str, ...]],
@@ -60,6 +66,7 @@ class Things:
     ) -> None:
         self._categories = vocabulary.categories
         self._ancestors = vocabulary.hierarchy.ancestors
+        self._names = names
         self._files = files
         self._stated = stated
         self._subjects = subjects
@@ -72,7 +79,7 @@ class Things:
 
     def element(self, element: Element) -> URIRef:
         """Return the IRI of an element."""
-        iri = element_iri(element)
+        iri = self._names.element(element)
         self._elements.setdefault(iri, element)
         return iri
 
@@ -82,7 +89,7 @@ class Things:
 
     def line(self, grant: Grant) -> URIRef:
         """Return the IRI of the policy line of a grant."""
-        iri = line_iri(grant)
+        iri = self._names.line(grant)
         self._lines.setdefault(iri, grant)
         return iri
 
@@ -140,7 +147,7 @@ def _element(iri: URIRef, element: Element) -> list[Triple]:
 def _line(iri: URIRef, grant: Grant, files: Iterable[URIRef]) -> list[Triple]:
     return about(
         iri,
-        (RDF.type, [RP.PolicyLine]),
+        (RDF.type, [RP.PolicyLine, PROV.Entity]),
         (RP.file, [text(grant.place.file)]),
         (RP.line, [Literal(grant.place.line)]),
         (RP.enclave, [text(grant.enclave)]),
@@ -165,9 +172,10 @@ def _provision(iri: URIRef, legal: Legal | Pointer) -> list[Triple]:
 def _category(category: Category, broader: list[URIRef]) -> list[Triple]:
     return about(
         foreign(category.iri),
-        (RDF.type, [SKOS.Concept]),
+        (RDF.type, [SKOS.Concept, *([DPV.SpecialCategoryPersonalData] if category.article9 == "always" else [])]),
         (SKOS.prefLabel, [text(category.title, "en")]),
         (SKOS.definition, [text(category.definition, "en")]),
-        (SKOS.broader, [*broader, *(foreign(iri) for iri in category.within)]),
-        (SKOS.exactMatch, [foreign(iri) for iri in category.same_as]),
+        (SKOS.broader, broader),
+        (SKOS.broadMatch, map(foreign, category.within)),
+        (SKOS.exactMatch, map(foreign, category.same_as)),
     )

@@ -50,7 +50,7 @@ def overview(report: Mapping[str, Any]) -> Iterator[Line]:
     unreviewed = _unreviewed(report)
     yield "", ""
     yield f"Findings: {len(report['findings'])}", "bold"
-    for number, finding in enumerate(in_order(report["findings"]), 1):
+    for number, finding in enumerate(in_order(report["findings"], report.get("fleet")), 1):
         hops = counted(len(finding["steps"]), "hop")
         met = {key(e) for e in finding["witness"]} & {element for element, _ in unreviewed}
         parts = [hops, *([f"{len(met)} not reviewed"] if met else []), *on_robots(report, finding), *_states(finding)]
@@ -63,7 +63,7 @@ def details(report: Mapping[str, Any], findings: Sequence[Mapping[str, Any]]) ->
     unreviewed, folder = _unreviewed(report), policies_in(report)
     if folder and any(finding["steps"] for finding in findings):
         yield f"lines are those of files in {shown(folder)}", "dim"
-    for number, finding in enumerate(in_order(findings), 1):
+    for number, finding in enumerate(in_order(findings, report.get("fleet")), 1):
         yield "", ""
         yield f"{number}. {_title(report, finding)}   [{finding['id']}]", _style(finding)
         yield from robots_of(report, finding)

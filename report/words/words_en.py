@@ -87,7 +87,7 @@ WORDS = {
     "policy.of": "enclave {enclave}, profile {profile}",
     "policy.none": "no policy line: the wildcard covers the name",
     # --- sections
-    "h.summary": "Result",
+    "h.kinds": "Kinds of personal data",
     "h.assumptions": "What the result rests on",
     "h.changes": "What changed since the earlier report",
     "h.tables": "Whose data, and who can get them",
@@ -104,7 +104,7 @@ WORDS = {
     "verdict.undetermined": "Not determined: what data can pass is not reviewed in full",
     "verdict.no-leak-found": "No path to a recipient was found under the labels given",
     "verdict.nothing": "Not determined: no source was named, so no data was followed",
-    "verdict.code": "Verdict of the program",
+    "verdict.code": "Code of this answer for programs",
     "verdict.leak.means": (
         "At least one kind of personal data can get from where it is brought in to an element that lets it out of the "
         "system, keeps it too long or without a stated end, or lies in a third country. Such a path can be lawful and intended. A person has to "
@@ -152,6 +152,38 @@ WORDS = {
     "c.places": "Places reached",
     "c.open": "Not reviewed",
     "made.by": "makes it of {data}",
+    # --- what a report begins with
+    "b.decide.one": "You have to decide 1 thing",
+    "b.decide.many": "You have to decide {n} things",
+    "b.decided.one": "{n} more is decided and not yet carried out.",
+    "b.decided.many": "{n} more are decided and not yet carried out.",
+    "b.carry.one": "{n} thing is decided and not yet carried out",
+    "b.carry.many": "{n} things are decided and not yet carried out",
+    "b.can": "{data} can get to {leak}",
+    "b.places.one": "and other data to {n} more place",
+    "b.places.many": "and other data to {n} more places",
+    "b.open": "Not reviewed, though personal data can get there: {open}. So there may be more to decide.",
+    "b.review": "Review first: {names}.",
+    "b.more": "{n} more are listed below, among the paths to assess.",
+    "b.each": (
+        "Such a path can be lawful and intended. Say for each: is it wanted, on which legal basis, and who is the recipient?"
+    ),
+    "b.whose": "Whose data",
+    "b.law": "Provisions",
+    "b.law.disclosure": "Article 6",
+    "b.law.storage-limitation": "Article 5(1)(e)",
+    "b.law.third-country-transfer": "chapter V (Articles 44 to 49)",
+    "b.basis": "Legal basis",
+    "b.basis.none": "none recorded",
+    "b.recipient": "Recipient",
+    "b.owner": "Who decides",
+    "b.owner.none": "nobody is named",
+    "b.only": "{decided}, for {robot} only",
+    "b.see": "In full",
+    "b.dismissed": "{ways} lead only through one of these places; they stand below, at the end of their kind.",
+    "code.leak": "data can get to a point of exit",
+    "code.undetermined": "not known",
+    "code.no-leak-found": "none found under the labels given",
     # --- Article 9
     "article9.short": "Article 9(1)",
     "article9.always": "applies to such data",

@@ -42,6 +42,8 @@ class Style:
         Document of an earlier analysis, to tell what changed; of a page and of Markdown.
     redact
         Whether names of elements, files, robots and persons are replaced; of a report.
+    base
+        What the IRIs of linked data begin with; by default a UUID of the system.
     """
 
     verbose: bool = False
@@ -51,6 +53,7 @@ class Style:
     title: str = ""
     since: str | None = None
     redact: bool = False
+    base: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,11 +108,11 @@ def _json(answer: Answer, _: Style) -> str:
 
 
 def _linked_data(form: str) -> Callable[[Answer, Style], str]:
-    def write(answer: Answer, _: Style) -> str:
+    def write(answer: Answer, style: Style) -> str:
         from rosprivacy.report.rdf.findings import rdf_graph
         from rosprivacy.report.rdf.serialise import SERIALISERS
 
-        return SERIALISERS[form](rdf_graph(answer, source_date(os.environ)))
+        return SERIALISERS[form](rdf_graph(answer, source_date(os.environ), style.base))
 
     return write
 

@@ -35,6 +35,7 @@ class Shown(TypedDict, total=False):
     title: str
     since: str | None
     redact: bool
+    base: str | None
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -96,6 +97,7 @@ class Result(Answer):
         title: str = "",
         since: str | None = None,
         redact: bool = False,
+        base: str | None = None,
     ) -> str | bytes:
         """Return the answer in a format, as the command line writes it: text, and of ``docx`` bytes.
 
@@ -109,11 +111,13 @@ class Result(Answer):
             Of a report: ``en`` or ``de``; name of the system; replace names of elements, files, robots and persons.
         since
             File of an earlier analysis, to tell what changed.
+        base
+            Of linked data: what the IRIs of elements and findings begin with; by default a UUID of the system.
 
         Raises
         ------
         InputError
-            If there is no such format, or the earlier file cannot be read.
+            If there is no such format, the earlier file cannot be read, or the base is no IRI.
 
         Examples
         --------
@@ -122,7 +126,9 @@ class Result(Answer):
         >>> print(result.to("text", quiet=True), end="")
         no-leak-found: no way to a leak, everything on the way is reviewed
         """
-        style = Style(verbose=verbose, quiet=quiet, language=language, title=title, since=since, redact=redact)
+        style = Style(
+            verbose=verbose, quiet=quiet, language=language, title=title, since=since, redact=redact, base=base
+        )
         return written(self, format, style)
 
     def to_networkx(self) -> nx.MultiDiGraph[Element]:

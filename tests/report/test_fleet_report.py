@@ -80,10 +80,11 @@ def test_each_way_says_on_how_many_robots_it_is_and_lists_them() -> None:
     patterns = {pattern["finding"]: pattern for pattern in document()["fleet"]["patterns"]}
     for entry in told().entries:
         assert list(entry.robots) == patterns[entry.id]["robots"]
-        assert entry.spread.startswith(f"On {len(entry.robots)} of 40 robots.")
-        assert ("From one robot to another; 468 such paths" in entry.spread) == patterns[entry.id]["across"]
+        assert entry.spread[0] == f"On {len(entry.robots)} of 40 robots."
+        across = "From one robot to another; 468 such paths in the fleet."
+        assert (across in entry.spread) == patterns[entry.id]["across"]
     (video,) = (entry for entry in told().entries if entry.leak == "base:reviewer")
-    assert video.spread == "On 24 of 40 robots. 1 robot: unfiltered. 23 robots: pseudonymised."
+    assert video.spread == ("On 24 of 40 robots.", "1 robot (carrier_lent): unfiltered.", "23 robots: pseudonymised.")
     assert video.where == (
         ("1 robot, unfiltered", ("carrier_lent",)),
         ("23 robots, pseudonymised", ("carrier_01 (23 robots)",)),  # they are named once, in the table of the fleet
@@ -219,7 +220,7 @@ def test_a_decision_about_one_robot_says_so(cli: Cli, tmp_path: Path) -> None:
         "utf-8",
     )
     text = cli("report", "--fleet", FLEET, "--decisions", str(file), "--format", "markdown").stdout
-    assert "39 robots: not accepted. 1 robot: accepted by a decision." in text
+    assert "39 robots: not accepted. 1 robot (carrier\\_07): accepted by a decision." in text
     assert "data begins there, accepted by a decision, not pseudonymised" in text
 
 

@@ -1,5 +1,12 @@
 "use strict";
 (() => {
+  const contents = document.querySelector("#contents details");
+  const wide = matchMedia("(min-width: 68rem)");
+  const unfold = () => { contents.open = wide.matches; };
+  wide.addEventListener("change", unfold);
+  addEventListener("beforeprint", () => { contents.open = true; });
+  addEventListener("afterprint", unfold);
+  unfold();
   const form = document.getElementById("filters");
   const ways = [...document.querySelectorAll("article.way")].map((way) => ({
     way, text: way.textContent.toLowerCase(), ...way.dataset,

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from rosprivacy.result import Result
     from rosprivacy.settings import Settings
 
+LINKED_DATA = (Format.turtle, Format.json_ld)
 SPARK = "Where it is computed"  # a panel of help
 
 
@@ -59,6 +60,15 @@ def analyze(
     ] = None,
     format: Annotated[Format, typer.Option("--format", "-f", help="Of the report.")] = Format.text,  # noqa: A002 - the option's name
     output: Output = None,
+    base: Annotated[
+        str | None,
+        typer.Option(
+            metavar="IRI",
+            show_default=False,
+            help="Of Turtle and JSON-LD: what the IRIs of elements and findings begin with; by default a UUID of the "
+            "system.",
+        ),
+    ] = None,
     article9: Annotated[
         bool,
         typer.Option(
@@ -108,7 +118,9 @@ def analyze(
         max_paths=max_paths,
     )
     _check(inputs, engine, save_graph=bool(save_graph), per_policy=per_policy, of_spark=bool(master or results))
-    style = Style(verbose=verbose, quiet=quiet, colour=output is None)
+    if base is not None and format not in LINKED_DATA:
+        raise typer.BadParameter("--base is for --format turtle and json-ld")
+    style = Style(verbose=verbose, quiet=quiet, colour=output is None, base=base)
     if per_policy:
         raise typer.Exit(_each_alone(inputs, settings, format, style, output, fail_on))
     if results and output:

@@ -102,7 +102,7 @@ def test_each_assumption_is_told() -> None:
 @pytest.mark.parametrize(
     ("change", "verdict"),
     [
-        ({}, "Personal data can reach a place that a person has to assess"),
+        ({}, "You have to decide 3 things"),
         (
             {"verdict": "undetermined", "findings": [], "open": "some"},
             "Not determined: what data can pass is not reviewed",

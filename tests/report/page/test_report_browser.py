@@ -114,6 +114,17 @@ def test_nothing_is_wider_than_the_screen(
     )
 
 
+@pytest.mark.parametrize(("width", "height"), [(DESKTOP, 900), (PHONE, 844)])
+@pytest.mark.parametrize("name", ["care-en", "care-de", "all-en", "hospital-de"])
+def test_the_first_decision_lies_within_the_first_screen(
+    browser: WebDriver, pages: dict[str, Path], name: str, width: int, height: int
+) -> None:
+    """What is to be decided, about what and whose data, can be read without moving the page (users.md, B1)."""
+    chrome.open_page(browser, pages[name].as_uri(), width=width)
+    first = browser.execute_script("return document.querySelector('ol.decide > li').getBoundingClientRect().toJSON()")
+    assert 0 < first["top"] < first["bottom"] <= height
+
+
 @pytest.mark.parametrize("name", ["care-en", "all-en", "open-de", "hospital-de", "hostile-en"])
 def test_every_link_leads_to_what_can_be_seen(browser: WebDriver, pages: dict[str, Path], name: str) -> None:
     address = pages[name].as_uri()

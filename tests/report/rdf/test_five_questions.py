@@ -20,8 +20,8 @@ PREFIXES = """
 PREFIX dpv: <https://w3id.org/dpv#> PREFIX rdfs: <http://www.w3.org/2000/01/rdf-schema#>
 PREFIX rp: <urn:x-rosprivacy:> PREFIX skos: <http://www.w3.org/2004/02/skos/core#>
 """
-KIND = "?f a rp:Finding ; rp:category/skos:prefLabel ?kind ."
-RECEIVES = "?r a dpv:Recipient ; rdfs:label ?who . ?f dpv:hasRecipient ?r ."
+KIND = "?f a rp:Finding ; rp:category/skos:prefLabel ?kind ; rp:concerns ?p ."
+RECEIVES = "?r a dpv:Recipient ; rdfs:label ?who . ?p dpv:hasRecipient ?r ."
 
 
 @pytest.fixture(scope="module")
@@ -54,7 +54,7 @@ def test_which_transfers_leave_the_eea_and_on_what(fleet: Graph) -> None:
 
 def test_how_long_it_is_kept_where(fleet: Graph) -> None:
     """Article 30(1)(f): the storage's time, and that of its backups after it."""
-    where = "?f dpv:hasStorageCondition ?s . ?s rp:at/rp:name ?at ; dpv:hasDuration ?time ."
+    where = "?p dpv:hasStorageCondition ?s . ?s rp:at/rp:name ?at ; dpv:hasDuration ?time ."
     assert asked(fleet, "?kind ?at ?time (DATATYPE(?time) AS ?type)", where) == {
         ("video of persons", "footage bucket", time, "http://www.w3.org/2001/XMLSchema#duration")
         for time in ("P30D", "P7D")
@@ -63,7 +63,7 @@ def test_how_long_it_is_kept_where(fleet: Graph) -> None:
 
 def test_whose_data_they_are() -> None:
     """Article 30(1)(c): as the labels of the sources name them."""
-    told = asked(rdf_graph(care_home()), "?kind ?persons", "?f dpv:hasDataSubject/rdfs:label ?persons .")
+    told = asked(rdf_graph(care_home()), "?kind ?persons", "?p dpv:hasDataSubject/rdfs:label ?persons .")
     assert {kind for kind, _ in told} == {"face template", "video of persons", "voice"}
     assert {persons for _, persons in told} == {"residents", "staff", "visitors"}
 

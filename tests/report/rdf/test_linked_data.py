@@ -170,7 +170,7 @@ def test_cypher_finds_the_same_under_article_9(graph: Graph, neo4j_server: Conne
 def test_the_words_of_the_page_are_those_of_the_shapes() -> None:
     """Every class and property of ours has a meaning there, and nothing else has."""
     shapes = (ROOT / "report" / "rdf" / "findings.shapes.ttl").read_text("utf-8")
-    used = set(re.findall(r"sh:path rp:(\w+)|sh:class rp:(\w+)|sh:targetClass rp:(\w+)", shapes))
+    used = set(re.findall(r"sh:path rp:(\w+)|sh:class rp:(\w+)|sh:hasValue rp:(\w+)|sh:targetClass rp:(\w+)", shapes))
     own = {name for names in used for name in names if name}
     told = set(re.findall(r"`rp:(\w+)`", PAGE.read_text("utf-8").split("## Our own words")[1]))
     kinds = {"RosNode", "Topic", "Service", "Action", "ExternalSystem", "SharedMemory", "SideChannel", "Device"}

@@ -27,6 +27,7 @@ from rosprivacy.formats import written
 from rosprivacy.ontology.vocabulary import Vocabulary
 from rosprivacy.report.rdf.facts import legal_of
 from rosprivacy.report.rdf.findings import rdf_graph
+from rosprivacy.report.rdf.individuals import Names
 from rosprivacy.report.rdf.serialise import as_turtle
 from rosprivacy.report.rdf.terms import (
     BASES,
@@ -37,12 +38,11 @@ from rosprivacy.report.rdf.terms import (
     RISK,
     RISKS,
     RP,
-    element_iri,
-    named,
 )
 from rosprivacy.report.rdf.things import STATED
 from tests.helpers.answers import accepting, answer_of
 from tests.helpers.cases import CASES
+from tests.helpers.ontologies import ontology
 from tests.helpers.paths import ROOT
 from tests.helpers.systems import PARENTS, System, analysed, statement, systems
 
@@ -61,6 +61,8 @@ CARE_HOME = ("examples/care-home/care-home.policy.xml", "-l", "examples/care-hom
 SYNTAX = {"turtle": pyoxigraph.RdfFormat.TURTLE, "json-ld": pyoxigraph.RdfFormat.JSON_LD}
 VOCABULARY = Vocabulary.of(Category(n, f"urn:test:{n}", n, n, f"{n}.", up) for n, up in PARENTS.items())
 REST: dict[str, Any] = {"rosprivacy": "1.2.3"}
+BASE = "urn:test:"
+NAMES = Names(BASE)
 
 
 def result_of(case: Path, **options: Any) -> Result:
@@ -70,7 +72,7 @@ def result_of(case: Path, **options: Any) -> Result:
 
 
 def graph_of_analysis(analysis: Analysis, outside: Mapping[Element, NonRosFacts] | None = None) -> Graph:
-    return rdf_graph(answer_of(analysis, VOCABULARY, REST, outside=outside))
+    return rdf_graph(answer_of(analysis, VOCABULARY, REST, outside=outside), base=BASE)
 
 
 @pytest.fixture(scope="module")
@@ -284,36 +286,68 @@ class TestInTheWordsOfDpv:
         (found,) = graph.subjects(RP.category, RP[category])
         return found
 
+    def process(self, graph: Graph, category: str) -> Node:
+        (found,) = graph.objects(self.finding(graph, category), RP.concerns)
+        return found
+
+    def data(self, graph: Graph, category: str) -> set[Node]:
+        """What the data are, all of one thing."""
+        (data,) = graph.objects(self.process(graph, category), DPV.hasPersonalData)
+        return set(graph.objects(data, RDF.type)) - {DPV.PersonalData}
+
+    def test_a_finding_is_about_a_process_of_which_nobody_says_that_it_takes_place(self, graph: Graph) -> None:
+        """A record of processing that the file is put beside does not record what never happens."""
+        findings, processes = (set(graph.subjects(RDF.type, kind)) for kind in (RP.Finding, DPV.Process))
+        assert findings <= set(graph.subjects(RDF.type, PROV.Entity)) - processes
+        assert {graph.value(finding, RP.concerns) for finding in findings} == processes
+        assert {graph.value(process, DPV.hasActivityStatus) for process in processes} == {RP.PossibleActivity}
+        assert (RP.PossibleActivity, RDF.type, DPV.ActivityStatus) in ontology()
+
+    def test_a_finding_is_derived_from_the_lines_that_allow_its_way(self, graph: Graph) -> None:
+        for finding in graph.subjects(RDF.type, RP.Finding):
+            hops = Collection(graph, graph.value(finding, RP.witness))  # type: ignore[arg-type]
+            lines = {line for hop in hops for line in graph.objects(hop, RP.allowedBy)}
+            assert set(graph.objects(finding, PROV.wasDerivedFrom)) == lines
+            assert lines <= set(graph.subjects(RDF.type, PROV.Entity))
+
     def test_the_data_is_our_category_and_its_terms_in_dpv(self, graph: Graph) -> None:
-        data = set(graph.objects(self.finding(graph, "FaceTemplate"), DPV.hasPersonalData))
-        assert data == {RP.FaceTemplate, URIRef("https://w3id.org/dpv/pd#FacialPrint")}
+        assert self.data(graph, "FaceTemplate") == {RP.FaceTemplate, URIRef("https://w3id.org/dpv/pd#FacialPrint")}
 
     def test_a_category_without_terms_takes_those_of_its_nearest_broader_one(self, care_home: Result) -> None:
         findings = [f for f in care_home.analysis.findings if f.category == "FaceTemplate"]
         changed = replace(care_home.analysis, findings=tuple(replace(f, category="VoicePrint") for f in findings))
         graph = rdf_graph(replace(care_home, analysis=changed))
-        data = set(graph.objects(self.finding(graph, "VoicePrint"), DPV.hasPersonalData))
-        assert data == {RP.VoicePrint, URIRef("https://w3id.org/dpv/pd#Biometric")}
+        assert self.data(graph, "VoicePrint") == {RP.VoicePrint, URIRef("https://w3id.org/dpv/pd#Biometric")}
+
+    def test_what_is_always_special_is_so_for_a_reader_of_dpv(self, care_home: Result) -> None:
+        findings = [f for f in care_home.analysis.findings if f.category == "FaceTemplate"]
+        for name, special in (("Ethnicity", True), ("Belief", True), ("FaceTemplate", False)):
+            changed = replace(care_home.analysis, findings=tuple(replace(f, category=name) for f in findings))
+            graph = rdf_graph(replace(care_home, analysis=changed))
+            assert (DPV.SpecialCategoryPersonalData in self.data(graph, name)) is special
+            assert ((RP[name], RDF.type, DPV.SpecialCategoryPersonalData) in graph) is special
+            assert problems(graph) == ""
 
     def test_a_derivation_on_the_way(self, graph: Graph) -> None:
-        derived = self.finding(graph, "FaceTemplate")
-        assert set(graph.objects(derived, DPV.hasProcessing)) == {DPV.Disclose, DPV.Derive}
+        derived, process = self.finding(graph, "FaceTemplate"), self.process(graph, "FaceTemplate")
+        assert set(graph.objects(process, DPV.hasProcessing)) == {DPV.Disclose, DPV.Derive}
         assert value(graph, derived, RP.derivedAt, RP.name) == "/face_recognizer"
-        assert set(graph.objects(self.finding(graph, "Voice"), DPV.hasProcessing)) == {DPV.Disclose}
+        assert set(graph.objects(self.process(graph, "Voice"), DPV.hasProcessing)) == {DPV.Disclose}
 
     def test_pseudonymised_data_is_personal_data_still(self, graph: Graph) -> None:
         """Recital 26: it goes on, marked, with the measure and with the risk that is left."""
-        video = self.finding(graph, "Video")
-        assert DPV.PseudonymisedData in set(graph.objects(video, DPV.hasPersonalData))
+        video = self.process(graph, "Video")
+        picture = URIRef("https://w3id.org/dpv/pd#Picture")
+        assert self.data(graph, "Video") == {RP.Video, picture, DPV.PseudonymisedData}  # a pseudonymised picture
         assert set(graph.objects(video, DPV.hasRisk)) == {RISK.UnwantedDisclosureData, RISK.Reidentification}
         (measure,) = graph.objects(video, DPV.hasTechnicalMeasure)
         assert value(graph, measure, RP.at, RP.name) == "/blur"
         assert value(graph, measure, RP.stated) is True
-        others = {self.finding(graph, name) for name in ("FaceTemplate", "Voice")}
+        others = {self.process(graph, name) for name in ("FaceTemplate", "Voice")}
         assert not any(list(graph.objects(other, DPV.hasTechnicalMeasure)) for other in others)
 
     def test_source_and_recipient(self, graph: Graph) -> None:
-        voice = self.finding(graph, "Voice")
+        voice = self.process(graph, "Voice")
         assert value(graph, voice, DPV.hasDataSource, RP.name) == "/microphone"
         assert value(graph, voice, DPV.hasRecipient, RP.at, RP.name) == "/uplink"
         (recipient,) = graph.objects(voice, DPV.hasRecipient)
@@ -378,16 +412,16 @@ def test_random_systems_keep_to_the_shapes_and_change_data_where_labels_say_so(s
         return
     graph = graph_of_analysis(without_policy(analysis))
     assert problems(graph) == ""
-    number = {element_iri(element): i for i, element in enumerate(analysis.graph.elements)}
+    number = {NAMES.element(element): i for i, element in enumerate(analysis.graph.elements)}
     said = {iri: system.said[i] for iri, i in number.items()}
     for finding in analysis.findings:
-        iri = named("finding", finding.id)
-        own = [s for s in said[element_iri(finding.source)] if s.role == "source"]
+        iri, process = NAMES.finding(finding), NAMES.process(finding)
+        own = [s for s in said[NAMES.element(finding.source)] if s.role == "source"]
         derived = {(node, to) for node in graph.objects(iri, RP.derivedAt) for to in ["derivation"]}
         if not any(finding.category in s.categories for s in own):
             assert derived
         assert all(any(s.role == to for s in said[node]) for node, to in derived)  # type: ignore[index]
-        measures = list(graph.objects(iri, DPV.hasTechnicalMeasure))
+        measures = list(graph.objects(process, DPV.hasTechnicalMeasure))
         assert len(measures) == finding.pseudonymised
         for measure in measures:
             at = graph.value(measure, RP.at)
@@ -407,8 +441,8 @@ class TestShapesCanFail:
             if not problems(changed):
                 accepted.append(re.split("[:#]", str(predicate))[-1])
         assert sorted(accepted) == [  # what a finding, a hop, a category can be without
-            "broader", "conduitOf", "derivationOf", "diagnostic", "exactMatch", "fallsUnder", "followed", "inFile",
-            "leakOf", "leg", "path", "sanitizerOf", "sourceOf", "used",
+            "broadMatch", "broader", "conduitOf", "derivationOf", "diagnostic", "exactMatch", "fallsUnder", "followed",
+            "inFile", "leakOf", "leg", "path", "sanitizerOf", "sourceOf", "used", "wasDerivedFrom",
         ]  # fmt: skip
 
     @pytest.mark.parametrize(
@@ -457,8 +491,10 @@ class TestOutsideRos:
         return analyse(FlowGraph(elements, flows, (), ()), Bound(said), VOCABULARY.hierarchy)
 
     def at(self, graph: Graph, element: Element) -> Node:
-        (found,) = graph.subjects(RP.leak, element_iri(element))
-        return found
+        """The process that ends there."""
+        (found,) = graph.subjects(RP.leak, NAMES.element(element))
+        (process,) = graph.objects(found, RP.concerns)
+        return process
 
     def of_kind(self, analysis: Analysis, kind: str) -> Analysis:
         return replace(analysis, findings=tuple(replace(finding, kind=kind) for finding in analysis.findings))
@@ -491,7 +527,9 @@ class TestOutsideRos:
         assert kept == Literal("P30D", datatype=XSD.duration)
         assert value(graph, bucket, DPV.hasStorageCondition, RP.stated) is True
         assert value(graph, cloud, DPV.hasRecipient, RDFS.label) == "Cloud Ltd"
-        told = {what: value(graph, cloud, RP.leak, STATED[what]) for what in ("operator", "role", "country", "basis")}
+        told = {
+            what: value(graph, NAMES.element(CLOUD), STATED[what]) for what in ("operator", "role", "country", "basis")
+        }
         assert told == {
             "operator": "Cloud Ltd", "role": "processor", "country": "US", "basis": "standard-clauses",
         }  # fmt: skip
@@ -538,8 +576,8 @@ class TestOutsideRos:
 
     def test_what_a_person_accepted(self, analysis: Analysis) -> None:
         finding = analysis.findings[0]
-        graph = rdf_graph(accepting(answer_of(analysis, VOCABULARY, REST), {finding.id: "a contract"}))
-        assert set(graph.subject_objects(RP.accepted)) == {(named("finding", finding.id), Literal("a contract"))}
+        graph = rdf_graph(accepting(answer_of(analysis, VOCABULARY, REST), {finding.id: "a contract"}), base=BASE)
+        assert set(graph.subject_objects(RP.accepted)) == {(NAMES.finding(finding), Literal("a contract"))}
         assert problems(graph) == ""
 
 

@@ -33,8 +33,9 @@ from rosprivacy.analysis.model import (
 from rosprivacy.clock import source_date
 from rosprivacy.ontology.vocabulary import Vocabulary
 from rosprivacy.report.rdf.findings import rdf_graph
+from rosprivacy.report.rdf.individuals import Names
 from rosprivacy.report.rdf.serialise import SERIALISERS
-from rosprivacy.report.rdf.terms import RP, element_iri, named
+from rosprivacy.report.rdf.terms import RP
 from tests.helpers.answers import accepting, answer_of
 from tests.helpers.daily import one_in
 from tests.helpers.paths import ROOT
@@ -55,6 +56,7 @@ HOSTILE = [
     "\r", "\t", "\x00", "\x7f", "\x85", "\u2028", "\ufeff", TURNED, "ÄÖ 한국 🤖", "x" * 4000, "🤖" * 1000, "{", "}",
     "%3E", "%", "a b", "@en", "^^<urn:x>", "urn:x-rosprivacy:", "rp:Finding", "_:b0", "'''", "</script>", "a.", "-",
 ]  # fmt: skip
+NAMES = Names("urn:test:")
 FORMS = pytest.mark.parametrize("form", SERIALISERS)
 
 
@@ -105,7 +107,9 @@ def holds(graph: Graph, name: str) -> None:
     assert values(graph, RP.SourceFile, RP.file) == values(graph, RP.Finding, RP.accepted) == {name}
     assert name in values(graph, RP.Assumption, RP.value)
     assert len(graph) == triples_of_a_tame_name()
-    assert all(str(node).startswith(("urn:x-rosprivacy:", "urn:test:Kind", "http")) for node in uris(graph))
+    assert all(
+        str(node).startswith(("urn:x-rosprivacy:", "urn:uuid:", "urn:test:Kind", "http")) for node in uris(graph)
+    )
 
 
 @FORMS
@@ -143,20 +147,22 @@ def test_rdflib_reads_the_same(form: str) -> None:
 
 @given(st.text(), st.text(), st.text(), st.text())
 def test_different_names_have_different_iris(a: str, b: str, c: str, d: str) -> None:
-    assert (named("x", a, b) == named("x", c, d)) == ((a, b) == (c, d))
+    assert (NAMES.of("x", a, b) == NAMES.of("x", c, d)) == ((a, b) == (c, d))
 
 
 def test_a_long_name_has_a_short_iri_that_no_other_name_has() -> None:
-    long = named("x", "y" * 4000)
+    long = NAMES.of("x", "y" * 4000)
     assert len(long) < 600
-    assert long != named("x", "y" * 4001)
-    assert named("x", str(long).removeprefix("urn:x-rosprivacy:x:")) != long
+    assert long != NAMES.of("x", "y" * 4001)
+    assert NAMES.of("x", str(long).removeprefix("urn:test:x:")) != long
 
 
 def test_the_two_sides_of_a_wildcard_are_one_element() -> None:
-    assert element_iri(Element("topic", "/*", side="read")) == element_iri(Element("topic", "/*", side="write"))
-    assert element_iri(Element("service", "/s", leg="request")) != element_iri(Element("service", "/s", leg="response"))
-    assert element_iri(Element("node", "/a")) != element_iri(Element("topic", "/a"))
+    assert NAMES.element(Element("topic", "/*", side="read")) == NAMES.element(Element("topic", "/*", side="write"))
+    assert NAMES.element(Element("service", "/s", leg="request")) != NAMES.element(
+        Element("service", "/s", leg="response")
+    )
+    assert NAMES.element(Element("node", "/a")) != NAMES.element(Element("topic", "/a"))
 
 
 @FORMS

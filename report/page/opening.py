@@ -1,0 +1,229 @@
+"""What a report begins with: what a person has to decide, the worst first; one flow is decided once.
+
+In: an ``Index`` and the entries of the report, in the order of ``finding_order``. Out: ``Opening``, in plain
+texts. What nobody has reviewed is told beside it: that little is listed never means that little can happen (rule S11).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import islice
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.text import fit, printable
+from rosprivacy.report.element_counts import count_rows
+from rosprivacy.report.naming import key, name, text
+from rosprivacy.report.page.entries_of_robots import grouped
+from rosprivacy.report.page.non_ros import country
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+    from rosprivacy.report.page.finding_entries import Entry
+    from rosprivacy.report.page.index import Index
+
+MOST = 12  # rows; the others are told by their number
+PLACES = 3  # groups of places that the first sentence names
+NAMED = 3  # elements in one row
+VALID = "valid"
+
+
+@dataclass(frozen=True, slots=True)
+class ToDecide:
+    """One flow to decide: a kind of data, from where, to whom.
+
+    Attributes
+    ----------
+    waits
+        Whether nobody has decided yet, or the decision no longer holds.
+    kinds
+        Of the findings, in words.
+    entries
+        The entries of the report that it is; several where one flow is several findings.
+    spread
+        On which robots, in sentences; empty where there is one.
+    facts
+        (what, value): whose data, provisions, legal basis, recipient, owner, state.
+    """
+
+    waits: bool
+    data: str
+    source: str
+    leak: str
+    article9: str
+    kinds: tuple[str, ...]
+    spread: tuple[str, ...]
+    facts: tuple[tuple[str, str], ...]
+    entries: tuple[Entry, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Opening:
+    """The beginning of a report.
+
+    Attributes
+    ----------
+    headline
+        How many things wait for a decision; without any, the verdict.
+    said
+        What is there, by name, and what is not known.
+    rows
+        The first of them; ``more`` tells how many others there are.
+    """
+
+    headline: str
+    said: tuple[str, ...]
+    rows: tuple[ToDecide, ...]
+    more: str
+
+
+def opening(index: Index, entries: Iterable[Entry], verdict: str, means: str) -> Opening:
+    """Return what a report begins with.
+
+    Parameters
+    ----------
+    verdict, means
+        Its verdict, and what that means, in words: of a report without anything to decide.
+
+    Complexity: O(entries).
+    """
+    words = index.words
+    to_decide = [entry for entry in entries if entry.state in ("open", "decided")]
+    rows = [_row(group, index) for group in grouped(to_decide, _flow)]
+    rows.sort(key=lambda row: not row.waits)
+    waiting = sum(row.waits for row in rows)
+    if not rows:
+        return Opening(verdict, (means, *_first_to_review(index)), (), "")
+    headline = words.count(waiting, "b.decide") if waiting else words.count(len(rows), "b.carry")
+    said = [_can(rows, index), *([words.count(len(rows) - waiting, "b.decided")] if 0 < waiting < len(rows) else [])]
+    more = words("b.more", n=len(rows) - MOST) if len(rows) > MOST else ""
+    return Opening(headline, (*said, *_unreviewed(index)), tuple(rows[:MOST]), more)
+
+
+def _flow(entry: Entry) -> Any:
+    return entry.category, entry.source, entry.leak, entry.robots, entry.pseudonymised, entry.mark
+
+
+def _can(rows: Sequence[ToDecide], index: Index) -> str:
+    """What is there: which data can get to whom."""
+    words = index.words
+    data: dict[str, dict[str, None]] = {}
+    for row in rows:
+        data.setdefault(row.leak, {})[row.data] = None
+    places: dict[str, list[str]] = {}
+    for leak, kinds in data.items():
+        places.setdefault(words.row(kinds), []).append(leak)
+    first = islice(places.items(), PLACES)
+    said = [words("b.can", data=kinds, leak=_some(leaks, index)) for kinds, leaks in first]
+    rest = sum(len(leaks) for leaks in islice(places.values(), PLACES, None))
+    said += [words.count(rest, "b.places")] if rest else []
+    sentence = "; ".join(said)
+    return f"{sentence[:1].upper()}{sentence[1:]}."
+
+
+def _unreviewed(index: Index) -> Iterator[str]:
+    if index.document["open"]:
+        count = count_rows(index.document["open"]).elements
+        yield index.words("b.open", open=index.words.count(count, "element"))
+
+
+def _first_to_review(index: Index) -> Iterator[str]:
+    first = [row["element"] for row in index.document["open"] if row["frontier"]]
+    if first:
+        yield index.words("b.review", names=_some(index.names(first), index))
+
+
+def _some(names: Sequence[str], index: Index) -> str:
+    more = [index.words("more", n=len(names) - NAMED)] if len(names) > NAMED else []
+    return index.words.row([*names[:NAMED], *more])
+
+
+def _row(group: Sequence[Entry], index: Index) -> ToDecide:
+    findings = [index.by_id[entry.id] for entry in group]
+    first, entry = findings[0], group[0]
+    many = len(entry.robots) > 1
+    return ToDecide(
+        waits=any(_waits(finding, index) for finding in findings),
+        data=entry.data,
+        source=_name(first["source"], index, many=many),
+        leak=_name(first["leak"], index, many=many),
+        article9=entry.article9,
+        kinds=tuple(index.words(f"finding.{finding['kind']}") for finding in findings),
+        spread=entry.spread,
+        facts=tuple(_facts(findings, index)),
+        entries=tuple(group),
+    )
+
+
+def _name(element: Mapping[str, Any], index: Index, *, many: bool) -> str:
+    """A name; without its robot where it stands for several."""
+    return fit(element["name"]) if many and element["robot"] in index.alike else name(element)
+
+
+def _waits(finding: Mapping[str, Any], index: Index) -> bool:
+    """Whether nobody has decided about it, or the decision is over, or is about some of its robots only."""
+    said = finding.get("decision")
+    return not said or said["state"] != VALID or bool(_only(finding, index))
+
+
+def _only(finding: Mapping[str, Any], index: Index) -> str:
+    """Return the robot that a decision names, where the finding stands for several."""
+    said = finding.get("decision")
+    if not said or len(index.patterns.get(finding["id"], {}).get("robots", ())) <= 1:
+        return ""
+    place = said["file"], said["line"]
+    decisions = index.document.get("decisions", ())
+    return next((d["target"].get("robot", "") for d in decisions if (d["file"], d["line"]) == place), "")
+
+
+def _facts(findings: Sequence[Mapping[str, Any]], index: Index) -> Iterator[tuple[str, str]]:
+    words, first = index.words, findings[0]
+    subjects = index.subjects.get(key(first["source"]))
+    yield words("b.whose"), words.row(subjects) if subjects else words("not.stated")
+    yield words("b.law"), "; ".join(dict.fromkeys(_provisions(findings, index)))
+    yield words("b.basis"), words.row(_bases(findings)) or words("b.basis.none")
+    yield words("b.recipient"), _recipient(first["leak"], index)
+    yield words("b.owner"), words.row(_owners(findings)) or words("b.owner.none")
+    yield words("d.state"), words.row(dict.fromkeys(_state(finding, index) for finding in findings))
+
+
+def _provisions(findings: Iterable[Mapping[str, Any]], index: Index) -> Iterator[str]:
+    for finding in findings:
+        yield index.words(f"b.law.{finding['kind']}")
+        for legal in finding["law"]:
+            yield text(legal, "provision", index.words.language)
+
+
+def _bases(findings: Iterable[Mapping[str, Any]]) -> list[str]:
+    bases = (basis for finding in findings for basis in _decided(finding, "legal_basis"))
+    return [printable(basis) for basis in dict.fromkeys(bases)]
+
+
+def _owners(findings: Iterable[Mapping[str, Any]]) -> list[str]:
+    owners = (_decided(finding, "owner") for finding in findings)
+    return [printable(owner) for owner in dict.fromkeys(owners) if owner]
+
+
+def _decided(finding: Mapping[str, Any], what: str) -> Any:
+    return (finding.get("decision") or {}).get(what) or ""
+
+
+def _state(finding: Mapping[str, Any], index: Index) -> str:
+    """What was decided, and whether it still holds."""
+    words, said = index.words, finding.get("decision")
+    if not said:
+        return words("state.open")
+    decided = words.known(f"d.{said['choice']}", printable(said["choice"]))
+    if only := _only(finding, index):
+        decided = words("b.only", decided=decided, robot=fit(only))
+    state = words.known(f"d.state.{said['state']}", printable(said["state"]))
+    return decided if said["state"] == VALID else f"{decided}; {state}"
+
+
+def _recipient(leak: Mapping[str, Any], index: Index) -> str:
+    """Who stands behind the place that data get to, as far as it is stated."""
+    words, row = index.words, index.outside.get(key(leak), {})
+    said = [printable(row["operator"])] if row.get("operator") else []
+    said += [words.known(f"recipient.{row['recipient']}", row["recipient"])] if row.get("recipient") else []
+    said += [country(row, index)] if row.get("country") else []
+    return words.row(said) or words("not.stated")

@@ -1,0 +1,187 @@
+"""The process that a finding is about, in the words of DPV 2.3: whose data, from where, to whom, kept for how long.
+
+In: a finding and what people stated. Out: triples of a ``dpv:Process`` that is possible. Nobody says that it takes
+place, so that a file put beside a record of processing activities does not record what never happens.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rdflib import RDF, RDFS, Literal
+
+from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.non_ros import EVERY, INSIDE, retention_of
+from rosprivacy.report.rdf.facts import foreign_terms, label_of
+from rosprivacy.report.rdf.individuals import below, foreign
+from rosprivacy.report.rdf.terms import DPV, RISK, RP, Triple, about, duration, legal_basis, text
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rdflib import URIRef
+
+    from rosprivacy.analysis.answer import Finding
+    from rosprivacy.analysis.model import Element, NonRosFacts
+    from rosprivacy.report.answer import Answer
+    from rosprivacy.report.rdf.facts import Change
+    from rosprivacy.report.rdf.individuals import Names
+    from rosprivacy.report.rdf.things import Stated, Things
+
+ALWAYS = "always"
+STORED = "storage-limitation"
+OF_KIND = {"disclosure": DPV.Disclose, STORED: DPV.Store, "third-country-transfer": DPV.CrossBorderTransfer}
+PARTIES = {
+    "controller": DPV.DataController, "joint-controller": DPV.JointDataControllers, "processor": DPV.DataProcessor,
+    "third-party": DPV.ThirdParty,
+}  # fmt: skip
+AT_LEAK = {"storage": DPV.Store, "external-system": DPV.Transfer}
+
+
+@dataclass(frozen=True, slots=True)
+class Processes:
+    """What is needed to write the process of any finding.
+
+    Attributes
+    ----------
+    stated
+        Of the answer, worked out once.
+    unstated
+        (element as shown, category) where a method is not stated.
+    """
+
+    answer: Answer
+    names: Names
+    things: Things
+    stated: Stated
+    unstated: frozenset[tuple[object, str]]
+
+    def triples(self, finding: Finding, changed: list[Change]) -> Iterator[Triple]:
+        """Everything about the process of a finding."""
+        iri, source = self.names.process(finding), self.things.element(finding.source)
+        yield from about(
+            iri,
+            (RDF.type, [DPV.Process]),
+            (RDFS.label, [text(f"possible: {label_of(finding)}")]),
+            (DPV.hasActivityStatus, [RP.PossibleActivity]),
+            (DPV.hasDataSource, [source]),
+            (DPV.hasLegalBasis, self._bases(finding)),
+        )
+        yield RP.PossibleActivity, RDF.type, DPV.ActivityStatus
+        yield source, RDF.type, DPV.DataSource
+        yield from self._data(iri, finding)
+        yield from self._doing(iri, finding, derived=any(change.derives for change in changed))
+        for number, change in enumerate((change for change in changed if change.pseudonymises), 1):
+            yield from self._measure(iri, below(iri, "measure", number), change)
+        yield from self._persons(iri, finding)
+        yield from self._leak(iri, finding)
+
+    def _data(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:
+        """The data as one thing that is of our kind, of DPV's, and pseudonymised: not several kinds side by side."""
+        data, category = below(iri, "data"), self.answer.vocabulary.categories[finding.category]
+        form = "pseudonymised: " if finding.pseudonymised else ""
+        yield iri, DPV.hasPersonalData, data
+        yield from about(
+            data,
+            (RDF.type, [DPV.PersonalData, *self.things.categories([finding.category])]),
+            (RDF.type, map(foreign, foreign_terms(finding.category, self.answer.vocabulary))),
+            (RDF.type, [DPV.PseudonymisedData] if finding.pseudonymised else []),
+            (RDF.type, [DPV.SpecialCategoryPersonalData] if category.article9 == ALWAYS else []),
+            (RDFS.label, [text(form + shown(category.title), "en")]),
+        )
+
+    def _bases(self, finding: Finding) -> list[URIRef]:
+        """The legal bases that a valid decision to accept the finding records; no word of whether they fit."""
+        decision = self.answer.decided.valid(finding) if self.answer.decided and finding.accepted else None
+        return [term for basis in (decision.legal_basis if decision else ()) for term in legal_basis(basis)]
+
+    def _persons(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:
+        """Whose data they are, as labels of the source name them (GDPR, Article 30(1)(c))."""
+        for group in self.things.subjects(finding.source):
+            persons = self.names.of("subject", group)
+            yield iri, DPV.hasDataSubject, persons
+            yield from about(persons, (RDF.type, [DPV.DataSubject]), (RDFS.label, [text(shown(group))]))
+
+    def _doing(self, iri: URIRef, finding: Finding, *, derived: bool) -> list[Triple]:
+        """What is done with the data, and what could come of it."""
+        doing = {OF_KIND[finding.kind], AT_LEAK.get(finding.leak.kind, OF_KIND[finding.kind])}
+        if DPV.CrossBorderTransfer in doing:
+            doing -= {DPV.Transfer}
+        risk = RISK.DataRisk if finding.kind == STORED else RISK.UnwantedDisclosureData
+        return about(
+            iri,
+            (DPV.hasProcessing, [*doing, *([DPV.Derive] if derived else [])]),
+            (DPV.hasRisk, [risk, *([RISK.Reidentification] if finding.pseudonymised else [])]),
+        )
+
+    def _measure(self, iri: URIRef, measure: URIRef, change: Change) -> Iterator[Triple]:
+        names = {name for name, _ in (change.before, change.after) if name}
+        unstated = any((change.element.shown_as, name) in self.unstated for name in names)
+        yield iri, DPV.hasTechnicalMeasure, measure
+        yield from about(
+            measure,
+            (RDF.type, [DPV.Pseudonymisation]),
+            (RDFS.label, [text(f"pseudonymisation at {shown(change.element.name)}", "en")]),
+            (RP.at, [self.things.element(change.element)]),
+            (RP.cleans, self.things.categories(names)),
+            (RP.stated, [Literal(not unstated)]),
+        )
+
+    def _leak(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:
+        """Who receives the data, and how they are kept: whoever stands behind a leak, as software receives nothing."""
+        leak = finding.leak
+        known, name, at = self.stated.get(leak.identity, {}), shown(leak.name), self.things.element(leak)
+        if finding.kind != STORED:
+            recipient = self.names.of("recipient", *leak.identity)
+            label = shown(known["operator"]) if "operator" in known else f"whoever receives what {name} lets out"
+            yield iri, DPV.hasRecipient, recipient
+            role = PARTIES.get(known.get("role", ""))
+            yield from about(recipient, (RDF.type, [DPV.Recipient, *([role] if role else [])]))
+            yield from about(recipient, (RDFS.label, [text(label)]), (RP.at, [at]))
+            yield from self._country(recipient, leak)
+        if leak.kind == "storage":
+            yield from self._kept(iri, finding)
+
+    def _kept(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:
+        """How long a storage keeps the category, and its backups after that: a condition of its own (rule S9)."""
+        leak, facts = finding.leak, self.answer.shown.outside.get(finding.leak)
+        of = () if facts is None or _alike_for_all(facts) else (finding.category,)
+        name, what = shown(leak.name), shown(finding.category) if of else "data"
+        kept = retention_of(facts, finding.category, self.answer.vocabulary.hierarchy) if facts else []
+        whole = self.names.of("storage-duration", *leak.identity, *of)
+        yield from self._condition(iri, whole, finding, f"{name} keeps {what}", [str(one) for one in kept])
+        if kept and facts and facts.backups:
+            more = [] if facts.backups is True else [str(facts.backups)]
+            yield from self._condition(
+                iri, below(whole, "backups"), finding, f"{name} then keeps {what} in backups", more
+            )
+
+    def _condition(
+        self, iri: URIRef, condition: URIRef, finding: Finding, what: str, durations: list[str]
+    ) -> Iterator[Triple]:
+        label = f"{what} for {shown(', '.join(durations))}" if durations else f"{what}; for how long is not stated"
+        yield iri, DPV.hasStorageCondition, condition
+        yield from about(
+            condition,
+            (RDF.type, [DPV.StorageDuration]),
+            (RDFS.label, [text(label)]),
+            (RP.at, [self.things.element(finding.leak)]),
+            (RP.stated, [Literal(bool(durations))]),
+            (DPV.hasDuration, [duration(one) for one in durations]),
+        )
+
+    def _country(self, recipient: URIRef, leak: Element) -> Iterator[Triple]:
+        """Where a recipient is, and whether that is a third country (GDPR, chapter V)."""
+        facts = self.answer.shown.outside.get(leak)
+        if facts is None or not facts.country:
+            return
+        country = self.names.of("country", facts.country)
+        third = [DPV.ThirdCountry] if facts.area != INSIDE else []
+        yield recipient, DPV.hasCountry, country
+        yield from about(country, (RDF.type, [DPV.Country, *third]), (RP.country, [text(facts.country)]))
+
+
+def _alike_for_all(facts: NonRosFacts) -> bool:
+    """Whether one retention, or none, is stated for all categories."""
+    return all(category == EVERY for category, _ in facts.retention)

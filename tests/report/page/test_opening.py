@@ -1,0 +1,135 @@
+"""What a report begins with: what there is to decide, the worst first, each flow once (users.md, B1, B2)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tests.helpers.graphs import hospital
+from tests.helpers.pages import page, texts, told
+from tests.helpers.reports import care, decide, fleet, run, with_decisions, with_outside
+
+if TYPE_CHECKING:
+    from rosprivacy.report.page.opening import ToDecide
+
+FACTS = ["Whose data", "Provisions", "Legal basis", "Recipient", "Who decides", "State"]
+
+
+def flow(row: ToDecide) -> tuple[str, str, str]:
+    return row.data, row.source, row.leak
+
+
+def test_the_report_begins_with_what_is_to_be_decided_the_worst_first() -> None:
+    opening = told(care()).opening
+    assert told(care()).sections[0] == ("decide", opening.headline)
+    assert opening.headline == "You have to decide 3 things"
+    assert [flow(row) for row in opening.rows] == [
+        ("face template", "/camera", "/uplink"),
+        ("voice", "/microphone", "/uplink"),
+        ("video of persons (pseudonymised)", "/camera", "/recorder"),
+    ]
+    assert opening.said == (
+        "Face template, voice can get to /uplink; video of persons (pseudonymised) can get to /recorder.",
+    )
+    first = dict(opening.rows[0].facts)
+    assert list(first) == FACTS
+    assert first["Whose data"] == "residents, staff, visitors"
+    assert first["Provisions"] == "Article 6; GDPR Art. 9(1) biometric data"
+    assert first["Legal basis"] == "none recorded"
+    assert first["Who decides"] == "nobody is named"
+    assert first["State"] == "to assess"
+
+
+def test_a_page_links_each_row_to_its_paths() -> None:
+    root = page(care())
+    (first, *_) = root.xpath("//main/section")
+    assert first.get("id") == "decide"
+    rows = first.xpath(".//ol[@class='decide']/li")
+    assert [row.xpath(".//a/@href") for row in rows] == [
+        [f"#{entry.anchor}" for entry in row.entries] for row in told(care()).opening.rows
+    ]
+
+
+def test_one_flow_that_is_two_findings_is_decided_once() -> None:
+    report = told(hospital().document())
+    cloud = [row for row in report.opening.rows if row.leak == "hospital:fleet cloud"]
+    assert len(cloud) == 1
+    assert cloud[0].kinds == ("disclosure", "transfer to a third country")
+    assert len(cloud[0].entries) == 2
+    assert dict(cloud[0].facts)["Provisions"] == "Article 6; GDPR Art. 9(1); chapter V (Articles 44 to 49)"
+    assert report.opening.headline == "You have to decide 3 things"
+
+
+def test_of_a_fleet_the_robot_whose_filter_is_off_stands_first_and_robots_are_counted() -> None:
+    first = told(hospital().document()).opening.rows[0]
+    assert flow(first) == ("video of persons", "/camera_driver", "base:reviewer")
+    assert first.spread == ("On 24 of 40 robots.", "1 robot (carrier_lent): unfiltered.", "23 robots: pseudonymised.")
+
+
+def test_every_finding_that_is_neither_accepted_nor_dismissed_is_in_a_row() -> None:
+    for document in (care(), with_outside(care()), with_decisions(care()), hospital().document(), run(2)):
+        report = told(dict(document))
+        there = {finding for row in report.opening.rows for e in row.entries for finding in (e.id, *e.others)}
+        waiting = {f["id"] for f in document["findings"] if not f["dismissed"] and not f.get("accepted")}
+        assert there == waiting
+        assert not report.opening.more
+
+
+def test_what_is_decided_stands_last_and_is_not_counted_as_waiting() -> None:
+    report = told(with_decisions(care()))
+    assert report.opening.headline == "You have to decide 1 thing"
+    assert report.opening.said[1] == "1 more is decided and not yet carried out."
+    assert [(row.data, row.waits) for row in report.opening.rows] == [
+        ("voice", True), ("video of persons (pseudonymised)", False),
+    ]  # fmt: skip
+    facts = dict(report.opening.rows[1].facts)
+    assert (facts["State"], facts["Who decides"]) == ("to be mitigated", "robot team")
+
+
+def test_a_decision_that_is_over_is_to_be_made_again() -> None:
+    document = care()
+    decide(document, 0, owner="somebody", legal_basis=["6(1)(c)"], expires="2020-01-01", state="expired")
+    row = told(document).opening.rows[0]
+    assert row.waits
+    assert dict(row.facts)["State"] == "accepted; expired: it no longer counts"
+
+
+def test_a_decision_about_one_robot_does_not_decide_for_its_likes() -> None:
+    document = {**hospital().document()}
+    pattern = next(p for p in document["fleet"]["patterns"] if len(p["robots"]) == 40 and not p["dismissed"])
+    number = next(i for i, f in enumerate(document["findings"]) if f["id"] == pattern["finding"])
+    document["findings"] = [dict(finding) for finding in document["findings"]]
+    decide(document, number, choice="mitigate", owner="me")
+    document["decisions"][0]["target"] = {"robot": "carrier_01", "leak": "fleet cloud"}
+    row = next(row for row in told(document).opening.rows if row.leak == "hospital:fleet cloud")
+    assert row.waits
+    assert dict(row.facts)["State"] == "to be mitigated, for carrier_01 only, to assess"
+
+
+def test_what_nobody_reviewed_is_told_beside_it() -> None:  # S11
+    document = run(2)
+    assert document["open"]
+    report = told(document)
+    assert report.opening.said[-1].startswith("Not reviewed, though personal data can get there: 4 elements.")
+    for text in texts(document):
+        assert report.opening.said[-1] in text
+
+
+def test_without_a_finding_it_says_what_is_not_known_and_never_that_there_is_nothing_to_decide() -> None:  # S12
+    document = run(2) | {"findings": [], "verdict": "undetermined"}
+    opening = told(document).opening
+    assert opening.headline.startswith("Not determined")
+    assert opening.said[-1].startswith("Review first: /")
+    for text in texts(document):
+        assert "You have to decide" not in text
+
+
+def test_many_are_counted_and_those_below_told() -> None:
+    document = fleet(care(), ["a"])
+    for number in range(20):
+        more = fleet(care(), [f"r{number}"])["findings"][0]
+        document["findings"].append(more | {"id": f"{number:016x}", "leak": {**more["leak"], "name": f"/to{number}"}})
+    opening = told(document).opening
+    assert opening.headline == "You have to decide 23 things"
+    assert len(opening.rows) == 12
+    assert opening.more == "11 more are listed below, among the paths to assess."
+    assert "face template can get to r0:/to0, r1:/to1, r2:/to2, and 17 more;" in opening.said[0]
