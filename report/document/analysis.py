@@ -16,8 +16,8 @@ from rosprivacy.analysis.legal import turned_special
 from rosprivacy.analysis.model import GOES_NOWHERE, NO_LEAK_NAMED, UNREAD_FILE
 from rosprivacy.analysis.written_names import literal
 from rosprivacy.report.document import ledger
-from rosprivacy.report.document.look_at import pointers, situations
 from rosprivacy.report.document.non_ros import inventory, taken_by_kind, without_backups
+from rosprivacy.report.document.pointers import pointers, situations
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping

@@ -75,5 +75,5 @@ def _told(rows: Iterable[Mapping[str, Any]], index: Index) -> Iterator[LookAt]:
         dates = [words("law.as.of", date=words.date(row["as_of"]))]
         if row["applies_from"]:
             dates.append(words("look.applies", date=words.date(row["applies_from"])))
-        said = (text(row, what, language) for what in ("provision", "title", "meaning"))
-        yield LookAt(*said, "; ".join(dates))
+        provision, title, meaning = (text(row, what, language) for what in ("provision", "title", "meaning"))
+        yield LookAt(provision, title, meaning, "; ".join(dates))

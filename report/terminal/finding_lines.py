@@ -12,7 +12,7 @@ from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.text import blanked, counted
 from rosprivacy.report.document.decisions import decision_lines
 from rosprivacy.report.finding_order import in_order
-from rosprivacy.report.looked_at import looked_at, of_every_system
+from rosprivacy.report.looked_at import looked_at
 from rosprivacy.report.naming import key, kind_of, shown_name
 from rosprivacy.report.terminal.fleet import on_robots, robots_of
 from rosprivacy.report.terminal.restriction import may_be_asked
@@ -117,15 +117,12 @@ def _context_lines(category: str, findings: Iterable[Mapping[str, Any]]) -> Iter
 
 
 def _further_law(report: Mapping[str, Any]) -> Iterator[Line]:
-    """Provisions that a context or every system calls for; no verdict."""
+    """Provisions that a context calls for; no verdict."""
     rows = looked_at(report)
     for context in report.get("contexts", ()):
         names = [row["provision"] for row in rows if context["name"] in row["contexts"]]
         if names:
             yield f"   in this context ({context['name']}): look at {', '.join(map(shown, names))} too", "dim"
-    names = [row["provision"] for row in of_every_system(rows)]
-    if names:
-        yield f"   of every system: look at {', '.join(map(shown, names))} too", "dim"
 
 
 def policies_in(report: Mapping[str, Any]) -> str:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from hypothesis import strategies as st
 
+from rosprivacy.analysis.model import CONTEXTS
 from tests.helpers.fleet_files import policy
 
 if TYPE_CHECKING:
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 NODES = tuple(f"/n{i}" for i in range(5))
 TOPICS = ("/a", "/b", "/c", "/a*", "/parameter_events")
 ROLES = (
-    "{source: [Video]}", "{source: [Voice], leak: [Video]}", "{leak: [Biometric]}", "{leak: [Video, Voice]}",
+    "{source: [Video]}", "{source: [Voice], leak: [Video]}", "{source: [OperatorInput], context: [school, union]}", "{leak: [Biometric]}", "{leak: [Video, Voice]}",
     "{sanitizer: {Video: pseudonymise}}", "{sanitizer: {Voice: drop}}", "conduit",
     "{derives: [{from: Video, to: FaceTemplate}]}",
 )  # fmt: skip
@@ -57,7 +58,10 @@ def written(draw: st.DrawFn) -> Written:
     channels = {name: draw(st.sampled_from(CHANNEL)) for name in used if draw(st.booleans())}
     behind = draw(st.sampled_from(NODES))
     country = draw(st.sampled_from(("DE", "US")))
-    lines = ["labels: 1", "nodes:", *(f"  {name}: {said}" for name, said in sorted(roles.items()))]
+    contexts = draw(st.lists(st.sampled_from(CONTEXTS), max_size=2, unique=True))
+    top = [f"context: [{', '.join(contexts)}]"] if contexts else []
+    top += [f"country: {country}"] if draw(st.booleans()) else []
+    lines = ["labels: 1", *top, "nodes:", *(f"  {name}: {said}" for name, said in sorted(roles.items()))]
     lines += ["channels:", *(f"  {name}: {said}" for name, said in channels.items())] if channels else []
     lines += ["elements:", f"  disk: {{kind: storage, country: {country}, retention: P3D}}"]
     lines += ["flows:", f"  - {{from: {behind}, to: disk}}"]
