@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping
 
     from rosprivacy.analysis.kernel.spread import Spread
-    from rosprivacy.analysis.model import Diagnostic, Element, FlowGraph, Grant, NonRosFacts, UnknownEnd
+    from rosprivacy.analysis.model import Diagnostic, Element, FlowGraph, Grant, NonRosFacts, Reason, UnknownEnd
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +60,7 @@ class Finding:
         Further paths if asked for, each source first.
     bounded
         Whether ``paths`` was cut at the bound that the user set.
-    reason
+    why
         Of other kinds than disclosure: what is wrong there.
     """
 
@@ -77,9 +77,14 @@ class Finding:
     dismissed: bool = False
     paths: tuple[tuple[Element, ...], ...] = ()
     bounded: bool = False
-    reason: str = ""
+    why: Reason | None = None
     accepted: bool = False
     beside: bool = False
+
+    @property
+    def reason(self) -> str:
+        """``why`` in English; empty for a disclosure."""
+        return str(self.why) if self.why else ""
 
     @property
     def stands(self) -> bool:

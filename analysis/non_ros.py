@@ -9,11 +9,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.model import (
-    NOWHERE,
-    NonRosFacts,
-    Statement,
-)
+from rosprivacy.analysis.model import NOWHERE, NonRosFacts, Reason, Statement
+from rosprivacy.analysis.model import reason as why
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -70,32 +67,34 @@ def country_unknown(element: Element, facts: NonRosFacts) -> bool:
     return element.kind in PLACED and not facts.country and not facts.transfer
 
 
-def kept_too_long(facts: NonRosFacts, category: str, hierarchy: Hierarchy) -> str:
-    """Return why a storage keeps a category too long; empty if it does not.
+def kept_too_long(facts: NonRosFacts, category: str, hierarchy: Hierarchy) -> Reason | None:
+    """Return why a storage keeps a category too long; None if it does not.
 
     The data may be of any narrower kind (rule S7), so each of these is held against the limit nearest to it.
 
     >>> from rosprivacy.analysis.durations import parse
     >>> from rosprivacy.analysis.example import factory
     >>> facts = NonRosFacts(retention=((EVERY, parse("P6M")),), limits=(("Video", parse("P1M")),))
-    >>> kept_too_long(facts, "Video", factory()[2]), kept_too_long(facts, "FaceTemplate", factory()[2])
-    ('kept for P6M, which can be longer than the P1M that Video may be kept', '')
+    >>> str(kept_too_long(facts, "Video", factory()[2])), kept_too_long(facts, "FaceTemplate", factory()[2])
+    ('kept for P6M, which can be longer than the P1M that Video may be kept', None)
     """
     if facts.backups is True:
-        return "it has backups, and nothing says for how long"
+        return Reason(why.ENDLESS_BACKUPS)
     for kind in sorted(hierarchy.ancestors, key=lambda kind: (kind != category, kind)):
         if category not in hierarchy.ancestors[kind]:
             continue
         kept = retention_of(facts, kind, hierarchy)
         if not kept:
-            return f"no retention is stated for {kind}" if facts.retention else "no retention is stated"
+            return Reason.of(why.NO_RETENTION_FOR, category=kind) if facts.retention else Reason(why.NO_RETENTION)
         for duration in kept:
             whole = duration + facts.backups if facts.backups else duration
             for limit in _nearest(facts.limits, kind, hierarchy):
                 if whole.can_be_longer(limit):
-                    how = f"{duration} and in backups {facts.backups} more" if facts.backups else duration
-                    return f"kept for {how}, which can be longer than the {limit} that {kind} may be kept"
-    return ""
+                    said = {"kept": duration, "limit": limit, "category": kind}
+                    if facts.backups:
+                        return Reason.of(why.KEPT_LONGER_IN_BACKUPS, **said, backups=facts.backups)
+                    return Reason.of(why.KEPT_LONGER, **said)
+    return None
 
 
 def limited(facts: NonRosFacts, category: str, hierarchy: Hierarchy) -> bool:
@@ -144,19 +143,23 @@ def on_day(outside: Mapping[int, NonRosFacts], today: str) -> dict[int, NonRosFa
     }
 
 
-def transferred(facts: NonRosFacts) -> str:
-    """Return why data there has left the EEA without a stated basis; empty if it has not.
+def transferred(facts: NonRosFacts) -> Reason | None:
+    """Return why data there has left the EEA without a stated basis; None if it has not.
 
-    >>> transferred(NonRosFacts(country="CN", area=THIRD))
+    >>> str(transferred(NonRosFacts(country="CN", area=THIRD)))
     'in CN, for which no adequacy decision is known; no basis for the transfer is stated'
-    >>> transferred(NonRosFacts(country="CN", area=THIRD, transfer="standard-clauses"))
-    ''
+    >>> transferred(NonRosFacts(country="CN", area=THIRD, transfer="standard-clauses")) is None
+    True
     """
     if facts.area not in (PARTLY, THIRD) or (facts.transfer and (facts.area, facts.transfer) != (THIRD, ADEQUACY)):
-        return ""
-    ended = f"the adequacy decision ended on {facts.until}" if facts.until else ""
-    if facts.transfer:
-        return f"in {facts.country}; the basis stated is adequacy, and {ended or 'no such decision is known'}"
-    partly = f"whose adequacy decision covers {facts.adequacy}"
-    what = f"for which {ended or 'no adequacy decision is known'}" if facts.area == THIRD else partly
-    return f"in {facts.country}, {what}; no basis for the transfer is stated"
+        return None
+    if facts.area == PARTLY:
+        return Reason.of(why.PARTLY_ADEQUATE, country=facts.country, recipients=facts.adequacy)
+    ended, never = (
+        (why.STATED_NO_LONGER_ADEQUATE, why.STATED_NOT_ADEQUATE)
+        if facts.transfer
+        else (why.NO_LONGER_ADEQUATE, why.NOT_ADEQUATE)
+    )
+    if facts.until:
+        return Reason.of(ended, country=facts.country, until=facts.until)
+    return Reason.of(never, country=facts.country)

@@ -18,9 +18,9 @@ from typing import Any
 from rosprivacy.analysis.model import Category, Legal, Pointer, Situation
 from rosprivacy.ontology.pointed import Pointed
 
-FORMAT = 7  # one more when what is kept, or what is refused, changes
+FORMAT = 8  # one more when what is kept, or what is refused, changes
 PARTS = ("categories", "respelt", "pointed")
-_TUPLES = ("broader", "synonyms", "data_types", "same_as", "within", "stated_of", "look_at")
+_TUPLES = ("broader", "synonyms", "data_types", "identity_factors", "same_as", "within", "stated_of", "look_at")
 
 
 def default_folder() -> Path:

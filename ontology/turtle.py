@@ -130,6 +130,7 @@ def _category(graph: Graph, subject: Node, ours: set[Node], same: dict[Node, str
         law=tuple(sorted(_law(graph, subject, own), key=lambda legal: (legal.name, legal.verdict))),
         reason=reason.get(ENGLISH, ""),
         data_types=tuple(sorted(str(value) for value in graph.objects(subject, RP.dataType))),
+        identity_factors=tuple(sorted(str(value) for value in graph.objects(subject, RP.identityFactor))),
         gdpr="" if gdpr is None else _identifier(graph, gdpr),
         same_as=tuple(sorted(str(other) for other in graph.objects(subject, SKOS.exactMatch))),
         within=tuple(sorted({str(up) for up in (parents | set(graph.objects(subject, SKOS.broadMatch))) - ours})),

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.kernel.spread import Spread
-    from rosprivacy.analysis.model import Bound
+    from rosprivacy.analysis.model import Bound, Reason
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,7 +22,7 @@ class Concern:
 
     kind: str
     bits: Mapping[int, int]
-    reasons: Mapping[tuple[int, str], str]
+    reasons: Mapping[tuple[int, str], Reason]
 
 
 def concerns(spread: Spread, bound: Bound, hierarchy: Hierarchy) -> Iterator[Concern]:
@@ -32,7 +32,7 @@ def concerns(spread: Spread, bound: Bound, hierarchy: Hierarchy) -> Iterator[Con
     >>> from rosprivacy.analysis.kernel.spreading import spread
     >>> graph, bound, hierarchy = factory()
     >>> kinds = list(concerns(spread(graph, bound, hierarchy), bound, hierarchy))
-    >>> [(concern.kind, concern.reasons.get((DISK, "Video"), "")) for concern in kinds]
+    >>> [(concern.kind, str(concern.reasons.get((DISK, "Video"), ""))) for concern in kinds]
     [('disclosure', ''), ('storage-limitation', 'no retention is stated'), ('third-country-transfer', '')]
     """
     yield Concern(DISCLOSURE, spread.leaks, {})

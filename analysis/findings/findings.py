@@ -301,7 +301,7 @@ def _finding(
         disjoint_paths=1,
         through=tuple(elements[v] for v in dict.fromkeys(through)) if dismissed else (),
         dismissed=dismissed,
-        reason=concern.reasons.get((leak, category), ""),
+        why=concern.reasons.get((leak, category)),
         accepted=bool(accepted.get(leak, 0) >> bit & 1),
     )
 

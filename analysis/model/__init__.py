@@ -46,6 +46,7 @@ from rosprivacy.analysis.model.element import (
 )
 from rosprivacy.analysis.model.flow import Flow, FlowGraph
 from rosprivacy.analysis.model.policy import Grant, Policy, Profile
+from rosprivacy.analysis.model.reason import REASONS, Reason
 from rosprivacy.analysis.model.statement import (
     CHANGED,
     CLEANS,
@@ -90,6 +91,7 @@ __all__ = [
     "NO_LEAK_NAMED",
     "NO_SOURCE",
     "PATHS_NOT_COUNTED",
+    "REASONS",
     "REFUSED_NAME",
     "SEGMENT",
     "SHARED_ENCLAVE",
@@ -113,6 +115,7 @@ __all__ = [
     "Pointer",
     "Policy",
     "Profile",
+    "Reason",
     "Severity",
     "Situation",
     "Statement",

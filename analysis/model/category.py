@@ -144,6 +144,9 @@ class Category:
         Names of the categories that ``law`` and ``reason`` are stated of; empty as read from the ontology.
     data_types
         How it is represented: image, audio, position, …, sorted.
+    identity_factors
+        What of a person's identity it tells of, as Article 4(1) GDPR names it: name, location, economic, …, sorted;
+        empty where the ontology does not say it.
     gdpr
         Name of the provision that defines its GDPR category.
     same_as, within
@@ -169,6 +172,7 @@ class Category:
     reason: str = ""
     stated_of: tuple[str, ...] = ()
     data_types: tuple[str, ...] = ()
+    identity_factors: tuple[str, ...] = ()
     gdpr: str = ""
     same_as: tuple[str, ...] = ()
     within: tuple[str, ...] = ()

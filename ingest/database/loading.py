@@ -221,6 +221,7 @@ def _write_vocabulary(transaction: ManagedTransaction, vocabulary: Vocabulary) -
                 "definition": c.definition,
                 "article9": c.article9,
                 "data_types": list(c.data_types),
+                "identity_factors": list(c.identity_factors),
                 "gdpr": c.gdpr or None,
             },
         }

@@ -172,6 +172,7 @@ CATEGORY = NodeKind(
         Property("definition", STRING, "one sentence"),
         Property("article9", STRING, "strongest verdict under Art. 9(1): always, conditional, may-reveal, no, unknown"),
         Property("data_types", STRINGS, "how it is represented, such as video"),
+        Property("identity_factors", STRINGS, "of Art. 4(1), such as economic; empty where it is not stated"),
         Property("gdpr", STRING, "short name of the provision that defines its GDPR category"),
     ),
 )

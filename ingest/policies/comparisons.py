@@ -6,7 +6,6 @@ quarter of a microsecond or so; pairs times their length grow faster than the po
 
 from __future__ import annotations
 
-from bisect import bisect_left
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
@@ -14,13 +13,14 @@ from rosprivacy.analysis.bounds import Tally
 from rosprivacy.analysis.errors import PolicyError
 from rosprivacy.analysis.model import CAREFUL_DENY, Diagnostic, Place, Severity
 from rosprivacy.ingest.policies.common_names import name_left
-from rosprivacy.ingest.policies.names import covers, is_pattern, literal_prefix, matcher, overlaps
+from rosprivacy.ingest.policies.names import covers, is_pattern, matcher, overlaps
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterable, Iterator
 
     from rosprivacy.analysis.bounds import Bounds
     from rosprivacy.analysis.model import Element, Grant
+    from rosprivacy.ingest.policies.name_index import PlainNames
 
 STEPS_OF_A_PAIR = 4  # beside those for its length
 CELLS_OF_A_STEP = 512  # of a name beside an expression that are read in one step
@@ -52,16 +52,13 @@ class Comparisons:
         self._steps.add(STEPS_OF_A_PAIR + len(ours), self.at)
         return covers(ours, theirs)
 
-    def covered(self, expression: str, plain: Sequence[tuple[str, Element]]) -> Iterator[tuple[str, Element]]:
-        """Those of the channels, sorted by their DDS names, that an expression covers."""
-        prefix, matches = literal_prefix(expression), matcher(expression)
-        at = bisect_left(plain, prefix, key=lambda pair: pair[0])
-        while at < len(plain) and plain[at][0].startswith(prefix):
-            dds = plain[at][0]
+    def covered(self, expression: str, plain: PlainNames) -> Iterator[tuple[str, Element]]:
+        """Those of the channels, each with its DDS name, that an expression covers."""
+        matches = matcher(expression)
+        for dds, channel in plain.near(expression):
             self._steps.add(STEPS_OF_A_PAIR + len(expression) * len(dds) // CELLS_OF_A_STEP, self.at)
             if matches(dds):
-                yield plain[at]
-            at += 1
+                yield dds, channel
 
     def name_left(self, wanted: tuple[str, ...], rules: Iterable[tuple[str, Grant]]) -> bool:
         """Whether a name is left that all of some expressions match and no rule takes out."""
@@ -71,29 +68,6 @@ class Comparisons:
         if found.careful:
             self.careful.update(line.place for _, line in rules)
         return found.left
-
-
-class ByBeginning:
-    """Expressions by what they begin with: those whose beginnings differ have no name in common."""
-
-    def __init__(self, expressions: Iterable[tuple[str, Element]]) -> None:
-        self._of: dict[str, list[Element]] = defaultdict(list)
-        for expression, element in expressions:
-            self._of[literal_prefix(expression)].append(element)
-        self._beginnings = sorted(self._of)
-        self._lengths = sorted({len(beginning) for beginning in self._of})
-
-    def near(self, expression: str) -> Iterator[Element]:
-        """Return those whose beginning is one of this expression's, or goes on from it."""
-        begin = literal_prefix(expression)
-        for length in self._lengths:
-            if length >= len(begin):
-                break
-            yield from self._of.get(begin[:length], ())
-        at = bisect_left(self._beginnings, begin)
-        while at < len(self._beginnings) and self._beginnings[at].startswith(begin):
-            yield from self._of[self._beginnings[at]]
-            at += 1
 
 
 def apart(rules: Iterable[tuple[str, Grant]]) -> tuple[dict[str, list[Grant]], list[tuple[str, Grant]]]:

@@ -15,7 +15,8 @@ from rosprivacy.analysis.bounds import BOUNDS, Tally
 from rosprivacy.analysis.errors import PolicyError
 from rosprivacy.analysis.model import KINDS, Element, Flow, FlowGraph, Grant, Profile
 from rosprivacy.analysis.modes import View
-from rosprivacy.ingest.policies.comparisons import ByBeginning, Comparisons, apart
+from rosprivacy.ingest.policies.comparisons import Comparisons, apart
+from rosprivacy.ingest.policies.name_index import Expressions, PlainNames
 from rosprivacy.ingest.policies.names import dds_names, endpoints, is_pattern
 
 if TYPE_CHECKING:
@@ -42,8 +43,8 @@ def build(policies: Iterable[Policy], view: str = View.declared, bounds: Bounds 
 
     Notes
     -----
-    Linear in the grants; with wildcards also in the channels that share their literal beginning, and quadratic in
-    the number of distinct wildcard names that begin alike. Bounded by ``flows`` and ``comparisons``.
+    Linear in the grants; with wildcards also in the pairs of names whose literal beginnings, or whose literal ends,
+    go together: the fewer of both. Bounded by ``flows`` and ``comparisons``.
     """
     policies = tuple(policies)
     profiles = tuple(sorted({p for policy in policies for p in policy.profiles}, key=_profile_key))
@@ -169,10 +170,10 @@ class _Drafts:
 
     def join(self) -> None:
         """Join each wildcard to the names that it matches and the wildcards that it can meet (rule S4)."""
-        plain = sorted((dds, e) for e in self.elements if not e.is_node and not e.pattern for dds in self.dds[e])
+        plain = PlainNames((dds, e) for e in self.elements if not e.is_node and not e.pattern for dds in self.dds[e])
         patterns = sorted((e for e in self.elements if e.pattern), key=Element.sort_key)
         self.ordered = {e: sorted(self.dds[e]) for e in patterns}
-        readers = ByBeginning((dds, e) for e in patterns if e.side == "read" for dds in self.ordered[e])
+        readers = Expressions((dds, e) for e in patterns if e.side == "read" for dds in self.ordered[e])
         gone = self._denied_whole()
         for pattern in patterns:
             self.work.at = self.said[pattern]
@@ -203,7 +204,7 @@ class _Drafts:
             self.count.add(1, self.work.at)
             self.flows[source, target, "matches"] = _MATCH
 
-    def _covered(self, pattern: Element, plain: list[tuple[str, Element]]) -> Iterator[tuple[Element, set[Grant]]]:
+    def _covered(self, pattern: Element, plain: PlainNames) -> Iterator[tuple[Element, set[Grant]]]:
         """The channels that a pattern covers; with each the lines that take it out, none if it is covered."""
         free: set[Element] = set()
         taken: dict[Element, set[Grant]] = defaultdict(set)

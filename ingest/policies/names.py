@@ -143,6 +143,21 @@ def literal_prefix(pattern: str) -> str:
     return re.split(r"[*?\[]", pattern, maxsplit=1)[0]
 
 
+@lru_cache(maxsize=65536)
+def literal_suffix(pattern: str) -> str:
+    """Return what every name that a pattern covers ends with.
+
+    >>> literal_suffix("rt/robot/*/image"), literal_suffix("rt/cam[0-9]"), literal_suffix("rt/scan")
+    ('/image', '', 'rt/scan')
+    """
+    ending = []
+    for token in reversed(tokens(pattern)):
+        if token is None or len(token) != 1 or token[0][0] != token[0][1]:
+            break
+        ending.append(chr(token[0][0]))
+    return "".join(reversed(ending))
+
+
 def covers(pattern: str, name: str) -> bool:
     """Return whether an expression grants a name, or everything that another expression grants.
 
@@ -187,6 +202,9 @@ def overlaps(a: str, b: str) -> bool:
 
 
 def _apart(a: str, b: str) -> bool:
-    """Whether two expressions begin with characters that differ."""
+    """Whether two expressions begin or end with characters that differ."""
     ours, theirs = literal_prefix(a), literal_prefix(b)
-    return not (ours.startswith(theirs) or theirs.startswith(ours))
+    if not (ours.startswith(theirs) or theirs.startswith(ours)):
+        return True
+    ours, theirs = literal_suffix(a), literal_suffix(b)
+    return not (ours.endswith(theirs) or theirs.endswith(ours))

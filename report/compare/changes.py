@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from rosprivacy.report.compare.matching import Key
 
 ASKED = (
-    "view", "categories_asked", "data_types_asked", "article9_only", "article9_level", "standard_channels",
-    "ontologies", "law_as_of", "rosprivacy",
+    "view", "categories_asked", "data_types_asked", "identity_factors_asked", "article9_only", "article9_level",
+    "standard_channels", "ontologies", "law_as_of", "rosprivacy",
 )  # fmt: skip
 READ = ("fleet", "policies", "labels")
 COMPARED = ("pseudonymised", "dismissed", "accepted", "disjoint_paths", "article9", "reason")

@@ -82,6 +82,7 @@ class Given(TypedDict):
     article9_only: bool
     article9_level: NotRequired[str]
     data_types_asked: str | list[str]
+    identity_factors_asked: NotRequired[list[str]]
     may_be_asked: NotRequired[dict[str, list[str]]]
     paths: str
     max_paths: int

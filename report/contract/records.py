@@ -81,12 +81,20 @@ class ContextLaw(LawEntry):
     context: str
 
 
+class WhyEntry(TypedDict):
+    """A reason as a key and values, for words of any language."""
+
+    key: str
+    values: dict[str, str]
+
+
 class FindingMore(TypedDict, total=False):
     """What only some findings have."""
 
     in_context: list[ContextLaw]  # absent in earlier versions
 
     reason: str
+    because: WhyEntry
     beside_pseudonymised: bool
     paths: list[list[ElementEntry]]
     paths_bounded: bool

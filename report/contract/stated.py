@@ -71,6 +71,7 @@ class CategoryEntry(TypedDict):
     title: str
     definition: str
     data_types: list[str]
+    identity_factors: NotRequired[list[str]]  # not in documents of earlier versions
     gdpr: str
     article9: str
     reason: str

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.contexts import Contexts
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.kernel.overruled import Overruled
-    from rosprivacy.analysis.model import Category, Diagnostic, Element, Flow, FlowGraph, Grant, Legal
+    from rosprivacy.analysis.model import Category, Diagnostic, Element, Flow, FlowGraph, Grant, Legal, Reason
     from rosprivacy.report.answer import Answer
     from rosprivacy.report.contract.analysis import AnalysisDocument, Given
     from rosprivacy.report.contract.records import (
@@ -41,6 +41,7 @@ if TYPE_CHECKING:
         LawEntry,
         OpenEntry,
         StepEntry,
+        WhyEntry,
     )
     from rosprivacy.report.contract.stated import (
         CategoryEntry,
@@ -244,6 +245,7 @@ def _category(category: Category, hierarchy: Hierarchy, contexts: frozenset[str]
         "title": category.title,
         "definition": category.definition,
         "data_types": list(category.data_types),
+        "identity_factors": list(category.identity_factors),
         "gdpr": category.gdpr,
         "article9": article9_in(category, contexts),
         "reason": category.reason,
@@ -308,11 +310,15 @@ def _question(question: OpenQuestion, behind: Behind, infrastructure: Collection
     return shown
 
 
+def _why(why: Reason) -> WhyEntry:
+    return {"key": why.key, "values": dict(why.values)}
+
+
 def _finding(finding: Finding, contexts: Contexts) -> FindingEntry:
     """A finding; its data became a special category at ``special_from``, where that was none before."""
     categories = contexts.categories
     category, turned = categories[finding.category], turned_special(finding, categories)
-    reason: FindingMore = {"reason": finding.reason} if finding.reason else {}
+    reason: FindingMore = {"reason": finding.reason, "because": _why(finding.why)} if finding.why else {}
     beside: FindingMore = {"beside_pseudonymised": True} if finding.beside else {}
     shown: FindingEntry = {
         "id": finding.id,

@@ -121,14 +121,14 @@ def _entry(category: str, group: Sequence[Mapping[str, Any]], facts: _Facts) -> 
         "purpose": "",
         "category": index.data(category),
         "article9": words(f"article9.{known['article9']}"),
-        "provisions": "; ".join(f"{p.name}: {p.condition}" if p.condition else p.name for p in law),
+        "provisions": "; ".join(words.pair(p.name, p.condition) if p.condition else p.name for p in law),
         "subjects": words.row(facts.sources(category)),
         "exit": words.row(index.names(group)) if group else words("r.norecipient"),
         "recipient": _told(stated, _recipient, index),
         "country": _told(stated, _country, index),
         "form": _form(findings, stated, index),
         "transfer": _told(stated, _transfer, index),
-        "basis": "; ".join(_bases(findings)),
+        "basis": "; ".join(map(words.basis, _bases(findings))),
         "retention": _kept(category, facts),
         "measures": "; ".join(_measures(category, facts)),
         "findings": words.row(finding["id"] for finding in findings),
@@ -166,7 +166,7 @@ def _transfer(row: Mapping[str, Any], index: Index) -> str:
         return basis if not area else ""
     if area in ABROAD and not basis:
         return words(f"r.unbased.{area}", country=fit(row["country"]))
-    return f"{fit(row['country'])}: {basis or words('transfer.adequacy')}"
+    return words.pair(fit(row["country"]), basis or words("transfer.adequacy"))
 
 
 def _transfer_unknown(row: Mapping[str, Any]) -> bool:

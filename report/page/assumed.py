@@ -50,6 +50,8 @@ def assumed(index: Index) -> Iterator[str]:
         yield words("a.categories", names=words.row(map(fit, said["categories_asked"])))
     if said.get("data_types_asked", ALL) != ALL:
         yield words("a.types", names=words.row(_type(kind, index) for kind in said["data_types_asked"]))
+    if factors := said.get("identity_factors_asked"):
+        yield words("a.factors", names=words.row(words.known(f"factor.{factor}", fit(factor)) for factor in factors))
     if said.get("article9_only"):
         yield words(f"a.article9.{said.get('article9_level', MAY_REVEAL)}")
     if taken := said.get("backups_taken_as_none"):

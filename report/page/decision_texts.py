@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.legal_bases import gaps
-from rosprivacy.analysis.text import fit, printable
+from rosprivacy.analysis.text import printable
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from rosprivacy.report.page.index import Index
 
 FIELDS = ("reason", "owner", "legal_basis", "date", "expires", "ticket", "state")
+DATES = ("date", "expires")
 ACCEPT, ORPHANED = "accept", "orphaned"
 
 
@@ -60,9 +61,12 @@ def _decision(said: Mapping[str, Any], findings: Iterable[Mapping[str, Any]], in
 
 
 def _value(value: Any, key: str, index: Index) -> str:
+    words, text = index.words, printable(str(value))
     if key == "state":
-        return index.words.known(f"d.state.{value}", printable(str(value)))
-    return index.words.row(printable(str(part)) for part in (value if isinstance(value, list) else [value]))
+        return words.known(f"d.state.{value}", text)
+    if key == "legal_basis":
+        return "; ".join(words.basis(printable(str(part))) for part in value)
+    return words.date(text) if key in DATES else text
 
 
 def _flags(said: Mapping[str, Any], findings: Iterable[Mapping[str, Any]], index: Index) -> Iterator[str]:
@@ -70,7 +74,8 @@ def _flags(said: Mapping[str, Any], findings: Iterable[Mapping[str, Any]], index
     held = list(findings)
     law = {f["category"]: tuple(_provisions(f["category"], held)) for f in held}
     for gap in gaps(said["legal_basis"], [(f["kind"], f["category"]) for f in held], law):
-        yield index.words(f"d.gap.{gap.lack.name.lower()}", data=index.data(gap.category), provision=fit(gap.provision))
+        provision = index.provision(gap.category, gap.provision)
+        yield index.words(f"d.gap.{gap.lack.name.lower()}", data=index.data(gap.category), provision=provision)
 
 
 def _provisions(category: str, findings: Iterable[Mapping[str, Any]]) -> Iterator[tuple[str, str]]:

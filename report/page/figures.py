@@ -8,12 +8,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.text import printable
 from rosprivacy.report.page.inline import Inline, Wishes, pictures_of
 from rosprivacy.report.page.redacted_pictures import renamed
 from rosprivacy.report.pictures.graphviz import available
 from rosprivacy.report.pictures.looks import INK, LINE_LOOKS, ROLE_LOOKS, SHORTEST, WAY, Look
 from rosprivacy.report.pictures.phrases import TEXTS, Phrases
+from rosprivacy.report.words.typography import plain
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -63,8 +63,8 @@ def figures(
     entries = [entry for entry in report.entries if entry.id in findings]
     words = report.words
     titles = {kind.name: kind.title for kind in report.kinds}
-    say = Phrases({name: words.places(f"p.{name}") for name in TEXTS}, titles)
-    labels = {entry.id: printable(words("f.picture", way=entry.brief)) for entry in entries}
+    say = Phrases({name: plain(words.places(f"p.{name}")) for name in TEXTS}, titles)
+    labels = {entry.id: words("f.picture", way=entry.brief) for entry in entries}
     wishes = Wishes(say=say, labels=labels)
     if aliases is not None:
         wishes = replace(wishes, change=lambda picture: renamed(picture, aliases))

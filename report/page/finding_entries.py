@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.text import fit, printable
+from rosprivacy.analysis.text import fit
 from rosprivacy.report.finding_order import in_order
 from rosprivacy.report.naming import key, line, name
 from rosprivacy.report.page.decision_texts import Decision, decision_of
@@ -16,6 +16,7 @@ from rosprivacy.report.page.entries_of_robots import finding_pattern, grouped
 from rosprivacy.report.page.index import anchor, state
 from rosprivacy.report.page.look_at import revealed
 from rosprivacy.report.robots import forms_in_words
+from rosprivacy.report.words.reasons import reason_told
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -201,7 +202,7 @@ def _spread(finding: Mapping[str, Any], robots: tuple[str, ...], index: Index) -
         yield words("f.fleet.across", n=pattern["findings"])
     for some, form in _forms(pattern, index):
         names = f" ({words.row(map(fit, some))})" if len(some) <= NAMED else ""
-        yield f"{words.count(len(some), 'robot')}{names}: {form}."
+        yield words.pair(f"{words.count(len(some), 'robot')}{names}", f"{form}.")
 
 
 def _forms(pattern: Mapping[str, Any], index: Index) -> list[tuple[Sequence[str], str]]:
@@ -248,8 +249,8 @@ def _sentence(finding: Mapping[str, Any], index: Index) -> str:
 
 def _notes(finding: Mapping[str, Any], index: Index) -> Iterator[str]:
     words = index.words
-    if finding.get("reason"):
-        yield f"{words('f.reason')}: {printable(finding['reason'])}"
+    if reason := reason_told(finding, words, index.data):
+        yield words("f.because", reason=reason)
     yield from revealed(finding, index)
     if finding["dismissed"]:
         yield words("f.dismissed", names=words.row(map(name, finding["through"])))

@@ -12,11 +12,12 @@ import hashlib
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
+from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup, escape
 
 from rosprivacy.report.page.figures import Figures, page_legend
 from rosprivacy.report.page.outline import PARAGRAPHS, SIGNED
+from rosprivacy.report.page.spaced_templates import SpacedTemplates
 from rosprivacy.report.pictures.looks import INK
 
 if TYPE_CHECKING:
@@ -46,7 +47,7 @@ def html(report: Outline, drawn: Figures | None = None) -> str:
 
     Complexity: O(size of the outline and the pictures).
     """
-    environment, css, js = _environment()
+    environment, css, js = _environment(report.words.language)
     page = environment.get_template("report.html.j2").render(
         r=report,
         t=_Escaped(report.words),
@@ -65,9 +66,9 @@ def html(report: Outline, drawn: Figures | None = None) -> str:
 
 
 @cache
-def _environment() -> tuple[Environment, str, str]:
+def _environment(language: str) -> tuple[Environment, str, str]:
     """The templates, the style, the script."""
-    loader = PackageLoader("rosprivacy.report.page")
+    loader = SpacedTemplates(language)
     environment = Environment(
         loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )

@@ -93,6 +93,12 @@ class Index:
         title = (known and text(known, "title", self.words.language)) or fit(category)
         return self.words("f.data", data=title) if pseudonymised else title
 
+    def provision(self, category: str, named: str) -> str:
+        """Return what a provision that is stated of a kind of data is called; its name where it is not known."""
+        stated = self.categories[category]["law"] if category in self.categories else ()
+        legal = next((legal for legal in stated if legal["provision"] == named), None)
+        return text(legal, "provision", self.words.language) if legal else fit(named)
+
     def upwards(self, category: str) -> list[str]:
         """Return a kind of data and all broader ones, the nearest first."""
         return [category, *self.categories[category]["broader"]] if category in self.categories else [category]

@@ -50,6 +50,8 @@ class Kind:
 
     Attributes
     ----------
+    factors
+        What of a person's identity it tells of, by Article 4(1).
     reason
         Why it is no special category by itself, where the ontology says so.
     origins
@@ -69,6 +71,7 @@ class Kind:
     iri: str
     definition: str
     types: tuple[str, ...]
+    factors: tuple[str, ...]
     gdpr: str
     article9: str
     reason: str
@@ -111,6 +114,9 @@ def _kind(category: Mapping[str, Any], index: Index, entries: tuple[Entry, ...])
         iri=fit(category["iri"]),
         definition=text(category, "definition", language),
         types=tuple(index.words.known(f"type.{kind}", fit(kind)) for kind in category["data_types"]),
+        factors=tuple(
+            index.words.known(f"factor.{factor}", fit(factor)) for factor in category.get("identity_factors", ())
+        ),
         gdpr=text(category, "gdpr", language),
         article9=category["article9"],
         reason=text(category, "reason", language),

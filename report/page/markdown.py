@@ -10,23 +10,26 @@ import re
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
+from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 
 from rosprivacy.report.page.outline import PARAGRAPHS, SIGNED
+from rosprivacy.report.page.spaced_templates import SpacedTemplates
+from rosprivacy.report.words.typography import NARROW, WIDE
 
 if TYPE_CHECKING:
     from rosprivacy.report.page.outline import Outline
 
 _SPECIAL = re.compile(r"([\\`*_{}\[\]#+!|~$@]|(?<=:)//|(?<=www)\.)", re.IGNORECASE)
 _HTML = {"&": "&amp;", "<": "&lt;", ">": "&gt;"}
+_BREAKS = re.compile(rf"[^\S{WIDE}{NARROW}]+")  # what is no space that keeps to its word
 _LEADING = re.compile(r"^(\s*)(-|=|\d+(?=[.)]))")
 
 
 def markdown(report: Outline) -> str:
     """Return the text. Complexity: O(size of the outline)."""
     text = (
-        _environment()
+        _environment(report.words.language)
         .get_template("report.md.j2")
         .render(r=report, t=report.words, paragraphs=PARAGRAPHS, signed=SIGNED)
     )
@@ -43,7 +46,7 @@ def escaped(value: Any) -> str:
     """
     if isinstance(value, Markup):
         return str(value)
-    line = " ".join(str(value).split())
+    line = _BREAKS.sub(" ", str(value)).strip()
     line = _SPECIAL.sub(r"\\\1", "".join(_HTML.get(c, c) for c in line))
     return _LEADING.sub(r"\1\\\2", line)
 
@@ -61,9 +64,9 @@ def code(value: str) -> Markup:
 
 
 @cache
-def _environment() -> Environment:
+def _environment(language: str) -> Environment:
     environment = Environment(
-        loader=PackageLoader("rosprivacy.report.page"),
+        loader=SpacedTemplates(language),
         autoescape=False,  # noqa: S701 - it is not HTML; ``finalize`` escapes every value for Markdown
         finalize=escaped,
         undefined=StrictUndefined,

@@ -88,9 +88,9 @@ def retention(row: Mapping[str, Any], index: Index) -> str:
     """Return how long a storage keeps what."""
     words = index.words
     return "; ".join(
-        words("o.every", duration=fit(words.duration(duration)))
+        words("o.every", duration=words.duration(fit(duration)))
         if category == EVERY
-        else words("o.of", data=index.data(category), duration=fit(words.duration(duration)))
+        else words("o.of", data=index.data(category), duration=words.duration(fit(duration)))
         for category, duration in row.get("retention", {}).items()
     )
 
@@ -99,7 +99,7 @@ def kept(row: Mapping[str, Any], category: str, index: Index) -> str:
     """Return how long a storage keeps one kind of data, as stated of it or of the nearest broader one; with backups."""
     words, stated = index.words, row["retention"]
     nearest = next((kind for kind in index.upwards(category) if kind in stated), EVERY)
-    duration = fit(words.duration(stated[nearest])) if nearest in stated else words("o.notstated")
+    duration = words.duration(fit(stated[nearest])) if nearest in stated else words("o.notstated")
     backups = row.get("backups")
     if backups is True:
         return words("o.kept.backups.unknown", duration=duration)
@@ -111,4 +111,4 @@ def _backups(value: Any, index: Index) -> str:
         return ""
     if isinstance(value, bool):
         return index.words("o.backups.unknown" if value else "no")
-    return fit(index.words.duration(str(value)))
+    return index.words.duration(fit(str(value)))

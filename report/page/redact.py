@@ -18,15 +18,17 @@ OURS = "rosprivacy:"  # files that come with the program
 PATHS = ("node", "topic", "service", "action")
 AS_IT_IS = ("categories",)  # of the ontology: kinds of data and the law
 KEPT = {
+    "because",
     "area", "article9", "backups", "beside", "by", "carries", "categories", "categories_asked", "category", "condition",
     "countries_as_of", "country", "data_types_asked", "decision", "expires", "finding", "findings", "format", "from",
-    "holds", "id", "kind", "law_as_of", "leaves", "leaves_pseudonymised", "legal_basis", "method", "missing", "paths",
+    "holds", "id", "identity_factors_asked", "kind",
+    "law_as_of", "leaves", "leaves_pseudonymised", "legal_basis", "method", "missing", "paths",
     "pattern", "provision", "pseudonymised", "recipient", "retention", "role", "roles", "rosprivacy", "severity",
     "sha256", "special_basis", "state", "taken_as", "taken_by_kind", "to", "transfer", "unlabelled_channel",
     "unknown", "unlabelled_node",
     "verdict", "view", "without_limit",
 }  # fmt: skip
-MAPS = ("retention", "taken_away_by", "taken_by_kind")  # of kinds of data and kinds of elements, values as they are
+MAPS = ("because", "retention", "taken_away_by", "taken_by_kind")  # values as they are: durations, kinds, countries
 NAMED = {
     "robot": "robot", "robots": "robot", "model": "model", "file": "file", "enclave": "enclave",
     "operator": "operator", "profile": "node", "nodes": "node",

@@ -175,6 +175,7 @@ def _category(category: Category, broader: list[URIRef]) -> list[Triple]:
         (RDF.type, [SKOS.Concept, *([DPV.SpecialCategoryPersonalData] if category.article9 == "always" else [])]),
         (SKOS.prefLabel, [text(category.title, "en")]),
         (SKOS.definition, [text(category.definition, "en")]),
+        (RP.identityFactor, map(text, category.identity_factors)),
         (SKOS.broader, broader),
         (SKOS.broadMatch, map(foreign, category.within)),
         (SKOS.exactMatch, map(foreign, category.same_as)),

@@ -22,7 +22,8 @@ LANGUAGES = ("en", "de", "fr")
 WORDS = {
     "en": {
         "definition": "Definition", "names": "Also", "broader": "Broader", "narrower": "Narrower",
-        "label": "Neo4j label", "data": "Data types", "gdpr": "GDPR", "article9": "Article 9(1)",
+        "label": "Neo4j label", "data": "Data types", "factors": "Identity factors",
+        "gdpr": "GDPR", "article9": "Article 9(1)",
         "article10": "Article 10", "law": "Law", "because": "because", "source": "source",
         "stated": "stated for", "as of": "law as of", "same": "Same as",
         "within": "Part of",
@@ -32,7 +33,7 @@ WORDS = {
     },
     "de": {
         "definition": "Definition", "names": "Auch", "broader": "Weiter", "narrower": "Enger", "label": "Neo4j-Label",
-        "data": "Datentypen", "gdpr": "DSGVO", "article9": "Artikel 9 Absatz 1",
+        "data": "Datentypen", "factors": "Identitätsmerkmale", "gdpr": "DSGVO", "article9": "Artikel 9 Absatz 1",
         "article10": "Artikel 10", "law": "Recht", "because": "denn", "source": "Quelle",
         "stated": "angegeben für", "as of": "Rechtsstand", "same": "Dasselbe wie",
         "within": "Teil von", "note": "Hinweis", "above": "siehe oben", "iri": "IRI",
@@ -41,7 +42,8 @@ WORDS = {
     },
     "fr": {
         "definition": "Définition", "names": "Aussi", "broader": "Plus large", "narrower": "Plus étroit",
-        "label": "Label Neo4j", "data": "Types de données", "gdpr": "RGPD", "article9": "article 9, paragraphe 1",
+        "label": "Label Neo4j", "data": "Types de données", "factors": "Éléments d'identité", "gdpr": "RGPD",
+        "article9": "article 9, paragraphe 1",
         "article10": "article 10", "law": "Droit", "because": "car", "source": "source", "stated": "indiqué pour",
         "as of": "état du droit", "same": "Identique à", "within": "Partie de", "note": "Remarque",
         "above": "voir plus haut", "iri": "IRI",
@@ -52,7 +54,7 @@ WORDS = {
 
 
 def tree(vocabulary: Vocabulary, top: str, language: str = "en") -> str:
-    """Return a category with all narrower ones, each with its name, its title, and Article 9(1) where it can apply.
+    """Return a category with all narrower ones, each with its name, its title, identity factors, and Article 9(1).
 
     A category below two others is shown below both, with what is narrower only once.
     """
@@ -78,7 +80,8 @@ def _entry(category: Category, language: str, *, again: bool) -> str:
     words = WORDS[language]
     verdicts = [(words["article9"], category.article9)] if category.article9 != "no" else []
     verdicts += [(words["article10"], legal.verdict) for legal in category.law if legal.name == ARTICLE_10]
-    said = "".join(f"  [{article}: {words[verdict]}]" for article, verdict in verdicts)
+    factors = f"  [{', '.join(category.identity_factors)}]" if category.identity_factors else ""
+    said = factors + "".join(f"  [{article}: {words[verdict]}]" for article, verdict in verdicts)
     return f"{category.name}  {shown(category.text('title', language))}{said}" + (
         f"  ({words['above']})" if again else ""
     )
@@ -99,6 +102,7 @@ def details(vocabulary: Vocabulary, category: Category, language: str = "en") ->
         *(("law", _legal(legal, category, language)) for legal in category.law),
         ("gdpr", category.text("gdpr", language)),
         ("data", ", ".join(category.data_types)),
+        ("factors", ", ".join(category.identity_factors)),
         ("label", category.label),
         ("iri", category.iri),
         ("same", ", ".join(category.same_as)),

@@ -31,9 +31,15 @@ def asked_at_verdict(report: Mapping[str, Any]) -> str:
         parts.append(named(said["categories_asked"]))
     if said["data_types_asked"] != ALL:
         parts.append(f"data that is {' or '.join(map(shown, said['data_types_asked']))}")
+    if "identity_factors_asked" in said:
+        parts.append(_factors(said))
     if said["article9_only"]:
         parts.append(LEVELS[said.get("article9_level", MAY_REVEAL)])
     return f"; only {' and '.join(parts)} was asked for" if parts else ""
+
+
+def _factors(said: Mapping[str, Any]) -> str:
+    return f"data with the identity factor {' or '.join(map(shown, said['identity_factors_asked']))}"
 
 
 def may_be_asked(report: Mapping[str, Any], category: str) -> str:
@@ -49,6 +55,8 @@ def asked_lines(report: Mapping[str, Any]) -> Iterator[Line]:
         yield f"   only {', '.join(map(shown, said['categories_asked']))} and narrower categories", ""
     if said["data_types_asked"] != ALL:
         yield f"   only data that is {' or '.join(map(shown, said['data_types_asked']))}", ""
+    if "identity_factors_asked" in said:
+        yield f"   only {_factors(said)}, or of which that is not stated", ""
     if said["article9_only"]:
         yield f"   only {LEVELS[said.get('article9_level', MAY_REVEAL)]}, or of which that is not known", ""
     for category, kinds in said.get("may_be_asked", {}).items():

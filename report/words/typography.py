@@ -22,3 +22,8 @@ def spaced(text: str, language: str) -> str:
     for mark, space in _FRENCH if language == "fr" else ():
         text = mark.sub(space, text)
     return text
+
+
+def plain(text: str) -> str:
+    """Return a text with plain spaces, for a picture: it breaks its lines itself, and shows other spaces escaped."""
+    return text.replace(WIDE, " ").replace(NARROW, " ")

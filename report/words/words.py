@@ -6,6 +6,7 @@ In: a key and values. Out: plain text; whoever writes a format escapes it. The t
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
 DATE = 3  # parts of one
+_ARTICLE = re.compile(r"(?P<article>\d+)(?:\((?P<paragraph>\d+)\))?(?:\((?P<point>[a-z])\))?")
 TABLES = {"en": ENGLISH, "de": GERMAN, "fr": FRENCH}
 
 
@@ -61,6 +63,18 @@ class Words:
         """
         return self.row(self.count(number, unit) for unit, number in parts(text)) or text
 
+    def basis(self, article: str) -> str:
+        """Return an Article of the GDPR, written as in ``6(1)(f)``, as the language cites it; what is none as it is.
+
+        >>> Words("en").basis("6(1)(f)"), Words("de").basis("6(1)(f)"), Words("fr").basis("9(2)(h)")
+        ('6(1)(f)', 'Art. 6 Abs. 1 Buchst. f DSGVO', 'art. 9, par. 2, point h), du RGPD')
+        """
+        cited = _ARTICLE.fullmatch(article)
+        if not cited:
+            return article
+        places = {name: part for name, part in cited.groupdict().items() if part}
+        return self(f"cite.{list(places)[-1]}", **places)
+
     def count(self, number: int, thing: str) -> str:
         """Return how many of a thing there are; its key ends in ``.one`` or ``.many``. In French, none is as one.
 
@@ -69,6 +83,14 @@ class Words:
         """
         one = number == 1 or (number == 0 and self.language == "fr")
         return self(f"{thing}.{'one' if one else 'many'}", n=number)
+
+    def pair(self, what: str, said: str) -> str:
+        """Return what something is, after its name.
+
+        >>> Words("en").pair("name", "value")
+        'name: value'
+        """
+        return self("pair", what=what, said=said)
 
     def row(self, texts: Iterable[str]) -> str:
         """Return texts in a row."""

@@ -1,5 +1,7 @@
 """The words of reports in English. Paths to assess, recipients, conditions: no verdict of law, no promise."""
 
+from rosprivacy.analysis.model import REASONS
+
 WORDS = {
     "thousands": ",",
     "date": "{year}-{month}-{day}",
@@ -10,6 +12,7 @@ WORDS = {
     "made.undated": "Made with rosprivacy {version}",
     "law.date": "Law as of {date}",
     "law.countries": "adequacy decisions as of {date}",
+    "pair": "{what}: {said}",
     "skip": "Skip to the content",
     "contents": "Contents",
     "top": "Back to the contents",
@@ -148,6 +151,7 @@ WORDS = {
     "c.kind": "Kind of data",
     "c.article9": "Article 9(1) GDPR",
     "c.sources": "Brought in or made by",
+    "c.factors": "Identity factors",
     "c.ways": "Paths to assess",
     "c.places": "Places reached",
     "c.open": "Not reviewed",
@@ -242,6 +246,10 @@ WORDS = {
     "a.overruled.source": "{elements}: no source of {data}, since the label at {by} takes away that at {lost}.",
     "a.overruled.leak": "{elements}: no leak of {data}, since the label at {by} takes away that at {lost}.",
     "a.categories": "The answer is only about these kinds of data and narrower ones: {names}. Others were not looked at.",
+    "a.factors": (
+        "The answer is only about data that tell of these factors of a person's identity, or of which that is not stated: "
+        "{names}. Others were not looked at."
+    ),
     "a.types": "The answer is only about data of these types: {names}. Others were not looked at.",
     "a.article9.always": "The answer is only about data that always fall under Article 9(1) GDPR, or of which that is not known. Other personal data were not looked at.",
     "a.article9.conditional": "The answer is only about data that fall under Article 9(1) GDPR always or on a condition, or of which that is not known. Other personal data were not looked at.",
@@ -309,6 +317,7 @@ WORDS = {
     "ch.scope": ("The two reports were not made in the same way. A path that is new or gone can come from that alone:"),
     "ch.scope.view": "view: '{before}', now '{now}'",
     "ch.scope.categories_asked": "kinds asked for: {before}, now {now}",
+    "ch.scope.identity_factors_asked": "identity factors asked for: {before}, now {now}",
     "ch.scope.data_types_asked": "types of data asked for: {before}, now {now}",
     "ch.scope.article9_only": "only what can fall under Article 9: {before}, now {now}",
     "ch.scope.article9_level": "level of Article 9: {before}, now {now}",
@@ -397,7 +406,9 @@ WORDS = {
     "f.paths": "Further paths",
     "f.bounded": "There are more paths than the {n} that are listed.",
     "f.robots": "The same on {robots}. The policy lines are those of the first.",
-    "f.reason": "Reason",
+    "f.because": "Reason: {reason}",
+    # --- why data may not be where they get to
+    **{f"reason.{key}": text for key, text in REASONS.items()},
     "f.id": "id",
     "f.way": "Shortest path",
     "f.picture": "Picture of the path: {way}",
@@ -475,6 +486,10 @@ WORDS = {
     "robotkind.one": "{n} kind of robot",
     "robotkind.many": "{n} kinds of robots",
     "file.fleet": "fleet",
+    # --- Articles of the GDPR
+    "cite.article": "{article}",
+    "cite.paragraph": "{article}({paragraph})",
+    "cite.point": "{article}({paragraph})({point})",
     # --- decisions
     "d.decision": "Decision",
     "d.accept": "accepted",
@@ -707,6 +722,18 @@ WORDS = {
     ),
     "redacted.mark": "redacted copy",
     # --- data types of the ontology
+    "factors": "Identity factors, Article 4(1)",
+    "factor.name": "name",
+    "factor.number": "identification number",
+    "factor.location": "location data",
+    "factor.online-identifier": "online identifier",
+    "factor.physical": "physical",
+    "factor.physiological": "physiological",
+    "factor.genetic": "genetic",
+    "factor.mental": "mental",
+    "factor.economic": "economic",
+    "factor.cultural": "cultural",
+    "factor.social": "social",
     "types": "Types of data",
     "type.image": "image",
     "type.video": "video",

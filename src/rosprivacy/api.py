@@ -37,6 +37,7 @@ def analyze(
     article9: bool = False,
     article9_level: Article9Level | Literal["always", "conditional", "may-reveal"] | None = None,
     data_types: Names = (),
+    identity_factors: Names = (),
     ontologies: Paths = (),
     category: str = TOP,
     standard_channels: Path | None = STANDARD,
@@ -70,6 +71,9 @@ def analyze(
         The same up to a level: ``always``, ``conditional`` (that too), ``may-reveal`` (as ``article9`` alone).
     data_types
         Answer only for data that are represented so, such as ``video``; empty for all.
+    identity_factors
+        Answer only for data that tell of these factors of a person's identity (Article 4(1)), such as ``economic``;
+        empty for all.
     ontologies
         Turtle files with more categories, beside those that come with the program.
     category
@@ -119,6 +123,7 @@ def analyze(
         article9=article9,
         article9_level=article9_level,
         data_types=_several(data_types),
+        identity_factors=_several(identity_factors),
         ontologies=_paths(ontologies),
         category=category,
         standard_channels=_path(standard_channels),
@@ -142,6 +147,7 @@ def analyze_fleet(
     article9: bool = False,
     article9_level: Article9Level | Literal["always", "conditional", "may-reveal"] | None = None,
     data_types: Names = (),
+    identity_factors: Names = (),
     ontologies: Paths = (),
     category: str = TOP,
     standard_channels: Path | None = STANDARD,
@@ -160,8 +166,8 @@ def analyze_fleet(
     ----------
     file
         Fleet file, YAML or JSON; it names policies and labels.
-    view, categories, article9, article9_level, data_types, ontologies, category, standard_channels, paths, max_paths,
-    decisions, today
+    view, categories, article9, article9_level, data_types, identity_factors, ontologies, category, standard_channels,
+    paths, max_paths, decisions, today
         As in ``analyze``.
     include_root, max_bytes, bounds, progress
         As in ``analyze``.
@@ -189,6 +195,7 @@ def analyze_fleet(
         article9=article9,
         article9_level=article9_level,
         data_types=_several(data_types),
+        identity_factors=_several(identity_factors),
         ontologies=_paths(ontologies),
         category=category,
         standard_channels=_path(standard_channels),

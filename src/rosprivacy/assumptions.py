@@ -60,6 +60,7 @@ def _of_question(analysis: Analysis, question: Question) -> dict[str, Any]:
         "article9_only": settings.article9,
         **({"article9_level": settings.article9_level or MAY_REVEAL} if settings.article9 else {}),
         "data_types_asked": list(settings.data_types) or "all",
+        **({"identity_factors_asked": list(settings.identity_factors)} if settings.identity_factors else {}),
         **({"may_be_asked": broader} if broader else {}),
         "paths": settings.paths,
         "max_paths": settings.max_paths,

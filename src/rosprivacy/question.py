@@ -17,7 +17,7 @@ from rosprivacy.decided import decisions_of
 from rosprivacy.ontology.vocabulary import load
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable
+    from collections.abc import Collection, Iterable, Iterator
 
     from rosprivacy.analysis.decisions import Decisions
     from rosprivacy.analysis.model import Category
@@ -114,7 +114,7 @@ def may_be(
 
 def _named(vocabulary: Vocabulary, settings: Settings, contexts: Collection[str]) -> set[str] | None:
     """What the filters name, with narrower kinds; None where there is no filter."""
-    if not (settings.categories or settings.article9 or settings.data_types):
+    if not (settings.categories or settings.article9 or settings.data_types or settings.identity_factors):
         return None
     asked = set(vocabulary.categories)
     problems = []
@@ -127,20 +127,35 @@ def _named(vocabulary: Vocabulary, settings: Settings, contexts: Collection[str]
                 problems.append(OntologyError("--categories", 0, what, vocabulary.hint(name)))
             else:
                 asked |= vocabulary.with_narrower(category.name)
-    known = sorted({kind for category in vocabulary.categories.values() for kind in category.data_types})
-    for kind in settings.data_types:
-        if kind not in known:
-            hint = f"it is one of: {', '.join(known)}"
-            problems.append(OntologyError("--data-type", 0, f"unknown data type {shown(kind)!r}", hint))
+    kinds = vocabulary.categories.values()
+    types = {name for kind in kinds for name in kind.data_types}
+    factors = {name for kind in kinds for name in kind.identity_factors}
+    problems += _unknown(settings.data_types, types, "--data-type", "data type")
+    problems += _unknown(settings.identity_factors, factors, "--identity-factor", "identity factor")
     if problems:
         raise InputErrors(problems)
     return {name for name in asked if _chosen(vocabulary.categories[name], settings, contexts)}
 
 
+def _unknown(named: Iterable[str], known: set[str], option: str, what: str) -> Iterator[OntologyError]:
+    """What a filter names that no category has."""
+    for name in named:
+        if name not in known:
+            hint = f"it is one of: {', '.join(sorted(known))}"
+            yield OntologyError(option, 0, f"unknown {what} {shown(name)!r}", hint)
+
+
 def _chosen(category: Category, settings: Settings, contexts: Collection[str]) -> bool:
     """Whether the filters keep a category; what is not known of it is kept, since silence would look like an answer."""
-    types = not settings.data_types or not category.data_types or set(category.data_types) & set(settings.data_types)
-    return bool(types) and (not settings.article9 or article9_in(category, contexts) in _levels(settings))
+    return (
+        _meets(category.data_types, settings.data_types)
+        and _meets(category.identity_factors, settings.identity_factors)
+        and (not settings.article9 or article9_in(category, contexts) in _levels(settings))
+    )
+
+
+def _meets(stated: tuple[str, ...], asked: tuple[str, ...]) -> bool:
+    return not asked or not stated or not set(stated).isdisjoint(asked)
 
 
 def _levels(settings: Settings) -> tuple[str, ...]:

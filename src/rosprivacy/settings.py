@@ -34,6 +34,8 @@ class Settings:
         How far they have to: ``always``, ``conditional`` or ``may-reveal``; a level implies ``article9``.
     data_types
         Answer only for kinds that are represented so, such as video. Empty for all.
+    identity_factors
+        Answer only for kinds that tell of these factors of Article 4(1), such as economic. Empty for all.
     ontologies
         Users' own, beside the shipped one.
     category
@@ -60,6 +62,7 @@ class Settings:
     article9: bool = False
     article9_level: str | None = None
     data_types: tuple[str, ...] = ()
+    identity_factors: tuple[str, ...] = ()
     ontologies: tuple[str, ...] = ()
     category: str = TOP
     standard_channels: str | None = STANDARD
@@ -79,6 +82,6 @@ class Settings:
         if self.article9_level is not None:
             Article9Level(self.article9_level)
             object.__setattr__(self, "article9", True)
-        for name in ("add", "categories", "data_types", "ontologies"):
+        for name in ("add", "categories", "data_types", "identity_factors", "ontologies"):
             if isinstance(getattr(self, name), str):
                 object.__setattr__(self, name, (getattr(self, name),))

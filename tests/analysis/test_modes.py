@@ -44,7 +44,7 @@ def test_a_word_that_is_no_mode_is_an_error_with_the_nearest(word: str) -> None:
 
 def test_one_name_in_settings_made_by_hand_is_a_list_of_one() -> None:
     """It was read letter by letter."""
-    for name in ("add", "categories", "data_types", "ontologies"):
+    for name in ("add", "categories", "data_types", "identity_factors", "ontologies"):
         one: dict[str, Any] = {name: "Video"}
         assert getattr(Settings(**one), name) == ("Video",)
 

@@ -11,7 +11,7 @@ from rosprivacy.report.compare.earlier import Earlier
 from rosprivacy.report.page.html import html
 from rosprivacy.report.page.markdown import markdown
 from rosprivacy.report.page.outline import Outline, outline
-from rosprivacy.report.words.typography import NARROW, WIDE
+from rosprivacy.report.words.typography import plain
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -32,7 +32,7 @@ def texts(document: dict[str, Any], language: str = "en", **options: Any) -> Ite
     """The report in both forms, as text without marks, with plain spaces."""
     report = told(document, language, **options)
     for text in (lxml_html.document_fromstring(html(report)).text_content(), re.sub(r"\\(.)", r"\1", markdown(report))):
-        yield text.replace(WIDE, " ").replace(NARROW, " ")
+        yield plain(text)
 
 
 def earlier(document: dict[str, Any]) -> Earlier:

@@ -158,6 +158,7 @@ def with_outside(document: dict[str, Any]) -> dict[str, Any]:
     document["assumptions"] |= {"taken_by_kind": {"storage": "conduit"}, "countries_as_of": "2026-06-30"}
     kept = copy.deepcopy(document["findings"][1])
     kept |= {"id": "f" * 16, "kind": "storage-limitation", "reason": "no retention is stated", "pseudonymised": False}
+    kept["because"] = {"key": "no-retention", "values": {}}
     kept["leak"] = kept["witness"][-1] = OUTSIDE[1]["element"]
     document["findings"].append(kept)
     return document

@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 NODES = tuple(f"/n{i}" for i in range(5))
 TOPICS = ("/a", "/b", "/c", "/a*", "/parameter_events")
 ROLES = (
-    "{source: [Video]}", "{source: [Voice], leak: [Video]}", "{source: [OperatorInput], context: [school, union]}", "{leak: [Biometric]}", "{leak: [Video, Voice]}",
+    "{source: [Video]}", "{source: [Voice], leak: [Video]}", "{source: [OperatorInput], context: [school, union]}",
+    "{leak: [Biometric]}", "{leak: [Video, Voice]}",
     "{sanitizer: {Video: pseudonymise}}", "{sanitizer: {Voice: drop}}", "conduit",
     "{derives: [{from: Video, to: FaceTemplate}]}",
 )  # fmt: skip

@@ -105,6 +105,7 @@ class TestCategories:
         gdpr = graph.value(category, RP.gdprCategory, any=False)
         assert (gdpr, RDF.type, RP.LegalProvision) in graph
         assert list(graph.objects(category, RP.dataType))
+        assert list(graph.objects(category, RP.identityFactor))
         assert bool(article9(category)) != ((category, RP.article9, Literal("no")) in graph)
 
     def test_no_two_can_be_taken_for_each_other(self) -> None:
@@ -144,13 +145,48 @@ class TestCategories:
         assert {c for c in categories() if "always" in article9(c)} == typed
         assert {RP.Ethnicity, RP.Belief} <= typed  # of which DPV does not say so
 
-    def test_the_data_types_are_a_closed_list_and_each_is_used(self) -> None:
+    @pytest.mark.parametrize(
+        ("kind", "said"), [(RP.DataType, RP.dataType), (RP.IdentityFactor, RP.identityFactor)], ids=named
+    )
+    def test_data_types_and_identity_factors_are_closed_lists_and_each_is_used(self, kind: Node, said: Node) -> None:
         graph = ontology()
-        listed = {str(graph.value(t, SKOS.notation)) for t in graph.subjects(RDF.type, RP.DataType)}
-        in_shapes = [shape for shape in shapes().subjects(SH.path, RP.dataType) if allowed(shape)]
+        listed = {str(graph.value(t, SKOS.notation)) for t in graph.subjects(RDF.type, kind)}
+        in_shapes = [shape for shape in shapes().subjects(SH.path, said) if allowed(shape)]
         narrow = set(categories()) - {RP.PersonalData}
         assert [set(allowed(shape)) for shape in in_shapes] == [listed]
-        assert {str(t) for c in narrow for t in graph.objects(c, RP.dataType)} == listed
+        assert {str(t) for c in narrow for t in graph.objects(c, said)} == listed
+        assert {str(t) for t in graph.objects(RP.PersonalData, said)} == listed  # it may be any of them
+
+    def test_the_identity_factors_are_those_of_article_4(self) -> None:
+        """Article 4(1): 'a name, an identification number, location data, an online identifier or … factors'."""
+        graph = ontology()
+        factors = {str(graph.value(f, SKOS.notation)): f for f in graph.subjects(RDF.type, RP.IdentityFactor)}
+        assert set(factors) == {
+            "name", "number", "location", "online-identifier",
+            "physical", "physiological", "genetic", "mental", "economic", "cultural", "social",
+        }  # fmt: skip
+        assert {graph.value(factor, RP.provision) for factor in factors.values()} == {RP["GDPR-4-1"]}
+
+    @pytest.mark.parametrize(
+        ("category", "factors"),
+        [
+            ("PersonName", {"name"}),
+            ("PersonIdentifier", {"number"}),
+            ("GnssPosition", {"location"}),
+            ("MacAddress", {"online-identifier"}),
+            ("Video", {"physical"}),
+            ("VitalSign", {"physiological"}),
+            ("DnaSequence", {"genetic"}),
+            ("EmotionEstimate", {"mental"}),
+            ("DeliveryOrder", {"economic"}),
+            ("StaffPerformance", {"economic"}),
+            ("Religion", {"cultural"}),
+            ("CommunicationMetadata", {"social"}),
+            ("HouseholdMembers", {"social"}),
+        ],
+    )
+    def test_identity_factors(self, category: str, factors: set[str]) -> None:
+        assert {str(factor) for factor in ontology().objects(RP[category], RP.identityFactor)} == factors
 
 
 class TestVerdicts:

@@ -80,7 +80,7 @@ MINE = """\
     rp:label "PulseCurve" ; skos:broader rp:Health ;
     skos:prefLabel "pulse curve"@en , "Pulskurve"@de ;
     skos:definition "The pulse of a patient over time."@en ;
-    rp:dataType "number" .
+    rp:dataType "number" ; rp:identityFactor "physiological" .
 :WardBadge a skos:Concept ;
     rp:label "WardBadge" ; skos:broader rp:PersonalData , pd:OfficialID ;
     skos:prefLabel "ward badge"@en ;
@@ -108,6 +108,12 @@ class TestOwnOntology:
         found = load(tmp_path / "cache", [str(mine)]).categories
         assert (found["PulseCurve"].article9, found["PulseCurve"].stated_of) == ("always", ("Health",))
         assert (found["WardBadge"].article9, found["WardBadge"].law) == ("no", ())
+
+    def test_the_identity_factor_is_what_the_file_says_and_is_not_inherited(self, mine: Path, tmp_path: Path) -> None:
+        """As the data type: a narrower kind can tell of something else, so what is not said is not known."""
+        found = load(tmp_path / "cache", [str(mine)]).categories
+        assert found["PulseCurve"].identity_factors == ("physiological",)
+        assert found["WardBadge"].identity_factors == ()
 
     def test_a_second_reading_needs_no_rdflib_and_gives_the_same(self, mine: Path, tmp_path: Path) -> None:
         code = (
@@ -154,6 +160,11 @@ class TestOwnOntology:
             ('rp:label "PulseCurve"', 'rp:label "X`) DETACH DELETE n //"', "label"),
             ('rp:label "PulseCurve" ;', "", "label"),
             ('rp:dataType "number"', 'rp:dataType "numbre"', "data type"),
+            (
+                '"physiological"',
+                '"physiologic"',
+                "PulseCurve> has an unknown identity factor; write one of name, number",
+            ),
             ('rp:article9 "no" ; rp:reason "it says who works here, nothing else"@en', 'rp:article9 "no"', "reason"),
             ('rp:article9 "no"', 'rp:article9 "never"', "article9"),
             (

@@ -17,9 +17,20 @@ from tests.helpers.graphs import care_home, rows_of
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from rosprivacy.private_neo4j.connection import Connection
 
 CARE = ROOT / "examples" / "care-home"
+GRANTS = """<policy version="0.2.0"><enclaves><enclave path="/e"><profiles>
+<profile ns="/" node="cam"><topics publish="ALLOW"><topic>image</topic></topics></profile>
+<profile ns="/" node="net"><topics subscribe="ALLOW"><topic>image</topic></topics></profile>
+</profiles></enclave></enclaves></policy>
+"""
+ODD = """@prefix rp: <urn:x-rosprivacy:> . @prefix skos: <http://www.w3.org/2004/02/skos/core#> .
+<urn:example:Odd> a skos:Concept ; rp:label "Odd" ; skos:broader rp:PersonalData ;
+    skos:prefLabel "odd data"@en ; skos:definition "Data of which little is said."@en .
+"""
 Key = tuple[str, str, str, str]  # provision, verdict, category, leak
 
 
@@ -85,6 +96,37 @@ class TestFilters:
     def test_a_data_type_only(self) -> None:
         assert found(document(data_types=("video",))) == {("Video", "/recorder")}
         assert found(document(data_types=("video", "audio"))) == {("Video", "/recorder"), ("Voice", "/uplink")}
+
+    def test_an_identity_factor_only(self) -> None:
+        assert found(document(identity_factors=("physiological",))) == {("Voice", "/uplink")}
+        assert found(document(identity_factors=["physical", "genetic"])) == {
+            ("FaceTemplate", "/uplink"),
+            ("Video", "/recorder"),
+        }
+        nothing = document(identity_factors="economic")
+        assert (nothing["findings"], nothing["verdict"]) == ([], "undetermined")  # nothing of the kind is brought in
+        assert nothing["assumptions"]["identity_factors_asked"] == ["economic"]
+
+    def test_a_kind_of_which_no_factor_is_stated_is_kept(self, tmp_path: Path) -> None:
+        """What is not known of a kind may be what is asked for."""
+        policy, labels, mine = tmp_path / "p.xml", tmp_path / "l.yaml", tmp_path / "mine.ttl"
+        policy.write_text(GRANTS, "utf-8")
+        labels.write_text("labels: 1\nnodes: {/cam: {source: [Odd]}, /net: {leak: [PersonalData]}}\n", "utf-8")
+        mine.write_text(ODD, "utf-8")
+
+        def asked(ontology: str) -> set[tuple[str, str]]:
+            mine.write_text(ontology, "utf-8")
+            result = rosprivacy.analyze(policy, labels, ontologies=mine, identity_factors="economic")
+            return found(result.document())
+
+        assert asked(ODD) == {("Odd", "/net")}
+        assert asked(ODD.replace("@en .\n", '@en ; rp:identityFactor "economic" .\n')) == {("Odd", "/net")}
+        assert asked(ODD.replace("@en .\n", '@en ; rp:identityFactor "social" .\n')) == set()
+
+    def test_an_unknown_identity_factor_is_an_error(self) -> None:
+        said = r"--identity-factor: unknown identity factor 'economical'; it is one of: cultural, economic, .*social"
+        with pytest.raises(InputErrors, match=said):
+            document(identity_factors=("economical",))
 
     def test_a_category_with_narrower_ones_only(self) -> None:
         assert found(document(categories=("Biometrie",))) == {("FaceTemplate", "/uplink")}  # the German name

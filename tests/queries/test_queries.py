@@ -57,6 +57,7 @@ PARENTS = {
 }
 
 
+FACTORS = {"Video": ("physical",), "FaceTemplate": ("physical", "physiological")}  # Voice: not stated
 TYPES = {"Video": ("video",), "Voice": ("audio",), "FaceTemplate": ("template",), "Location": ("position",)}
 
 
@@ -71,7 +72,17 @@ LAW = {
     "Video": under("GDPR Art. 90", "always"),
 }
 VOCABULARY = Vocabulary.of(
-    Category(name, f"urn:test:{name}", name, name, name, up, law=LAW.get(name, ()), data_types=TYPES.get(name, ()))
+    Category(
+        name,
+        f"urn:test:{name}",
+        name,
+        name,
+        name,
+        up,
+        law=LAW.get(name, ()),
+        data_types=TYPES.get(name, ()),
+        identity_factors=FACTORS.get(name, ()),
+    )
     for name, up in PARENTS.items()
 )
 

@@ -92,6 +92,15 @@ def analyze(
             rich_help_panel=ASKED,
         ),
     ] = None,
+    identity_factor: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="FACTOR",
+            show_default=False,
+            help="Answer for data that tell of this factor of Article 4(1) GDPR only: economic, …; may be repeated.",
+            rich_help_panel=ASKED,
+        ),
+    ] = None,
     paths: Annotated[Paths, typer.Option(help="Ways to list for each finding.", rich_help_panel=ASKED)] = Paths.witness,
     max_paths: Annotated[
         int, typer.Option(min=1, metavar="N", help="Bound on the listed ways of a finding.", rich_help_panel=ASKED)
@@ -114,6 +123,7 @@ def analyze(
         article9=article9,
         article9_level=article9_level and article9_level.value,
         data_types=tuple(data_type or ()),
+        identity_factors=tuple(identity_factor or ()),
         paths=paths.value,
         max_paths=max_paths,
     )

@@ -116,7 +116,7 @@ def _check_whole(task: Task) -> None:
     problems: list[InputError] = []
     if task.asked is not None:
         what = "results are about all categories"
-        hint = "leave out --categories, --article9 and --data-type, or --results"
+        hint = "leave out --categories, --article9, --data-type and --identity-factor, or --results"
         problems.append(FleetError("--results", 0, what, hint))
     for line in sorted(crossing_lines(task.fleet)):
         place = task.fleet.flows[line].place

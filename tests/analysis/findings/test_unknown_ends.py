@@ -191,6 +191,7 @@ class TestRestrictions:
         [
             (("-c", "Location", "-c", "Voice"), "Location, Voice"),
             (("--data-type", "image"), "data that is image"),
+            (("--identity-factor", "physical"), "data with the identity factor physical"),
             (("--article9",), "what can fall under Article 9(1) GDPR"),
             (("-c", "Voice", "--article9"), "Voice and what can fall under Article 9(1) GDPR"),
         ],

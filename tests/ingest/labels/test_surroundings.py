@@ -85,7 +85,8 @@ def test_a_fleet_file_states_it_of_all_of_a_model_and_of_a_robot(tmp_path: Path)
     told(tmp_path)
     (tmp_path / "f.yaml").write_text(
         "fleet: 1\ncontext: workplace\ncountry: FR\nmodels:\n  m: {policies: p.xml, labels: l.yaml, context: [care]}\n"
-        "robots:\n  a: {model: m}\n  b: {model: m, context: school, country: DE}\n  c: {policies: p.xml, labels: l.yaml}\n"
+        "robots:\n  a: {model: m}\n  b: {model: m, context: school, country: DE}\n"
+        "  c: {policies: p.xml, labels: l.yaml}\n"
         "elements:\n  mic: {kind: device, source: [Voice], subjects: [guests], context: [worship]}\n"
         "flows:\n  - {from: mic, to: 'a:/sink'}\n",
         "utf-8",
@@ -100,9 +101,6 @@ def test_a_fleet_file_states_it_of_all_of_a_model_and_of_a_robot(tmp_path: Path)
     assert found["c", "/cam"] == (["workplace"], "FR")
     assert found["shared", "mic"] == (["workplace", "worship"], None)
     assert [row["subjects"] for row in document["subjects"]] == [["guests"]]
-    (video,) = {
-        tuple(sorted(one["context"] for one in f["in_context"]))
-        for f in document["findings"]
-        if f["category"] == "Video"
-    }
+    videos = [f for f in document["findings"] if f["category"] == "Video"]
+    (video,) = {tuple(sorted(one["context"] for one in f["in_context"])) for f in videos}
     assert video == ("care", "school", "workplace")  # of the robots that the pattern stands for

@@ -107,8 +107,8 @@ def row(graph: Graph, finding: Node, law: Node) -> tuple[str, ...]:
     )
 
 
-def test_there_are_five_questions_and_each_has_an_answer(graph: Graph) -> None:
-    assert len(questions()) == 5
+def test_there_are_six_questions_and_each_has_an_answer(graph: Graph) -> None:
+    assert len(questions()) == 6
     assert all(answered(graph, query) for query in questions())
 
 

@@ -1,0 +1,71 @@
+"""How the flow graph of a policy grows with its wildcards: twice the names, at most 3 times the time, in one run.
+
+    python benchmarks/wildcards.py [--quick]
+
+Four shapes of names, as many written as read, 10,000 of each (4,000 with --quick) beside half of them. Ends with 1 if
+a bound is missed.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING
+
+from measure import compared, print_header, print_line, side_by_side
+
+from rosprivacy.analysis.bounds import Bounds
+from rosprivacy.ingest.policies.flow_graph import build
+from rosprivacy.ingest.policies.policy_xml import read_policy
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rosprivacy.analysis.model import Policy
+
+BOUND = 3.0  # a step for each pair would take 4
+BOUNDS = Bounds(comparisons=10**9, flows=10**7)
+SHAPES: dict[str, tuple[Callable[[int], str], Callable[[int], str]]] = {
+    "/ns7/part/* on both sides": (lambda i: f"/ns{i}/part/*", lambda i: f"/ns{i}/part/*"),
+    "/robot*/part7/image on both sides": (lambda i: f"/robot*/part{i}/image", lambda i: f"/robot*/part{i}/image"),
+    "*/part7/image on both sides": (lambda i: f"*/part{i}/image", lambda i: f"*/part{i}/image"),
+    "plain names, read as /robot*/image7": (lambda i: f"/robot/part/image{i}", lambda i: f"/robot*/image{i}"),
+}
+
+
+def policy(names: int, shape: str, folder: Path) -> Policy:
+    """Return a policy of two nodes: one writes so many names of a shape, one reads as many."""
+    written, read = SHAPES[shape]
+    profiles = [
+        f'<profile ns="/" node="{node}"><topics {role}="ALLOW">'
+        + "".join(f"<topic>{name(number)}</topic>" for number in range(names))
+        + "</topics></profile>"
+        for node, role, name in (("writer", "publish", written), ("reader", "subscribe", read))
+    ]
+    file = folder / "policy.xml"
+    opening = '<policy version="0.2.0"><enclaves><enclave path="/e"><profiles>'
+    file.write_text(f"{opening}{''.join(profiles)}</profiles></enclave></enclaves></policy>", "utf-8")
+    return read_policy(str(file))
+
+
+def main() -> int:
+    """Print the table; return the exit code."""
+    most = 4_000 if "--quick" in sys.argv else 10_000
+    print_header()
+    missed = 0
+    with TemporaryDirectory() as folder:
+        for shape in SHAPES:
+            large, small = (policy(names, shape, Path(folder)) for names in (most, most // 2))
+            seconds = side_by_side(
+                3,
+                lambda large=large: build([large], bounds=BOUNDS),  # type: ignore[misc]  # mypy infers no lambda with a default
+                lambda small=small: build([small], bounds=BOUNDS),  # type: ignore[misc]  # mypy infers no lambda with a default
+            )
+            line = compared(f"{most:,} / {most // 2:,} names: {shape}", seconds, bound=BOUND)
+            missed += not print_line(line).met
+    return 1 if missed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

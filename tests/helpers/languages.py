@@ -1,0 +1,48 @@
+"""English in a text of another language: words that German and French have not, and sentences of the English table."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from typing import TYPE_CHECKING
+
+from rosprivacy.report.words.typography import plain
+from rosprivacy.report.words.words import TABLES
+
+if TYPE_CHECKING:
+    from collections.abc import Collection
+
+OTHERS = ("de", "fr")
+_FUNCTION_WORDS = re.compile(
+    r"(?<![\w/.-])(the|of|is|are|which|and|with|for|from|by|not|that|this|be|been|kept|to|it|its|has|as|who|what|"
+    r"no basis|can|gets|reaches|without|review(?:ed)?|find(?:s|ings?)|path)(?![\w/-])",
+    re.IGNORECASE,
+)
+_PLACE = re.compile(r"\{\w+\}")
+LONG = 10  # letters of a part of a sentence that can be told from chance
+OURS = ("Data Privacy Vocabulary", "Code of conduct", "no-leak-found", "the law")  # names and codes
+
+
+@cache
+def _english(language: str) -> frozenset[str]:
+    """Parts of sentences of the English table that the other language has nowhere."""
+    others = plain("\n".join(TABLES[language].values()))
+    parts = {part.strip(" .,;:'") for text in TABLES["en"].values() for part in _PLACE.split(text)}
+    return frozenset(part for part in parts if len(part) > LONG and " " in part and part not in others)
+
+
+def english_in(text: str, language: str, names: Collection[str] = ()) -> list[str]:
+    """Return what is English in a text.
+
+    Parameters
+    ----------
+    names
+        Texts of users, which stay as they are.
+    """
+    left = " ".join(plain(text).split())
+    for name in sorted(names, key=len, reverse=True):
+        left = left.replace(" ".join(name.split()), "…")
+    for name in OURS:
+        left = left.replace(name, "…")
+    words = [left[max(0, found.start() - 30) : found.end() + 30] for found in _FUNCTION_WORDS.finditer(left)]
+    return [*words, *(part for part in _english(language) if part in left)]
