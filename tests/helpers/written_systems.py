@@ -19,8 +19,7 @@ if TYPE_CHECKING:
 NODES = tuple(f"/n{i}" for i in range(5))
 TOPICS = ("/a", "/b", "/c", "/a*", "/parameter_events")
 ROLES = (
-    "{source: [Video]}", "{source: [Voice], leak: [Video]}", "{source: [OperatorInput], context: [school, union]}",
-    "{leak: [Biometric]}", "{leak: [Video, Voice]}",
+    "{source: [Video]}", "{source: [Voice], leak: [Video]}", "{leak: [Biometric]}", "{leak: [Video, Voice]}",
     "{sanitizer: {Video: pseudonymise}}", "{sanitizer: {Voice: drop}}", "conduit",
     "{derives: [{from: Video, to: FaceTemplate}]}",
 )  # fmt: skip
@@ -49,6 +48,15 @@ class Written:
 
 
 @st.composite
+def surroundings(draw: st.DrawFn) -> list[str]:
+    """Lines at the top of a label file: where the system works."""
+    contexts = draw(st.lists(st.sampled_from(CONTEXTS), max_size=2, unique=True))
+    country = draw(st.sampled_from(("", "DE", "FR")))
+    top = [f"context: [{', '.join(contexts)}]"] if contexts else []
+    return [*top, *([f"country: {country}"] if country else [])]
+
+
+@st.composite
 def written(draw: st.DrawFn) -> Written:
     """A storage behind a node, DENYs, a wildcard, a standard channel."""
     names = st.sets(st.sampled_from((*TOPICS, "!/b")), max_size=3).map(lambda some: ",".join(sorted(some)))
@@ -59,14 +67,14 @@ def written(draw: st.DrawFn) -> Written:
     channels = {name: draw(st.sampled_from(CHANNEL)) for name in used if draw(st.booleans())}
     behind = draw(st.sampled_from(NODES))
     country = draw(st.sampled_from(("DE", "US")))
-    contexts = draw(st.lists(st.sampled_from(CONTEXTS), max_size=2, unique=True))
-    top = [f"context: [{', '.join(contexts)}]"] if contexts else []
-    top += [f"country: {country}"] if draw(st.booleans()) else []
-    lines = ["labels: 1", *top, "nodes:", *(f"  {name}: {said}" for name, said in sorted(roles.items()))]
+    lines = ["labels: 1", "nodes:", *(f"  {name}: {said}" for name, said in sorted(roles.items()))]
     lines += ["channels:", *(f"  {name}: {said}" for name, said in channels.items())] if channels else []
     lines += ["elements:", f"  disk: {{kind: storage, country: {country}, retention: P3D}}"]
     lines += ["flows:", f"  - {{from: {behind}, to: disk}}"]
     accepted = draw(st.sets(st.sampled_from((*NODES, "disk")), min_size=2, max_size=4))
+    lines[1:1] = draw(surroundings())
+    if draw(st.booleans()):
+        lines = [line.replace("  /n0: {", "  /n0: {context: school, ") for line in lines]
     return Written(policy(*profiles.values()), "\n".join([*lines, ""]), tuple(sorted(accepted)))
 
 
