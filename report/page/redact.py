@@ -16,11 +16,11 @@ if TYPE_CHECKING:
 LEFT_OUT = "[…]"
 OURS = "rosprivacy:"  # files that come with the program
 PATHS = ("node", "topic", "service", "action")
-AS_IT_IS = ("categories",)  # of the ontology: kinds of data and the law
+AS_IT_IS = ("categories", "contexts", "look_at")  # of the ontology: kinds of data and the law
 KEPT = {
     "because",
     "area", "article9", "backups", "beside", "by", "carries", "categories", "categories_asked", "category", "condition",
-    "countries_as_of", "country", "data_types_asked", "decision", "expires", "finding", "findings", "format", "from",
+    "context", "contexts",    "countries_as_of", "country", "data_types_asked", "decision", "expires", "finding", "findings", "format", "from",
     "holds", "id", "identity_factors_asked", "kind",
     "law_as_of", "leaves", "leaves_pseudonymised", "legal_basis", "method", "missing", "paths",
     "pattern", "provision", "pseudonymised", "recipient", "retention", "role", "roles", "rosprivacy", "severity",

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 from hypothesis import strategies as st
 
-from rosprivacy.analysis.model import CONTEXTS
 from tests.helpers.fleet_files import policy
 
 if TYPE_CHECKING:
@@ -24,6 +23,12 @@ ROLES = (
     "{derives: [{from: Video, to: FaceTemplate}]}",
 )  # fmt: skip
 CHANNEL = ("mundane", "sensitive", "{only: [Video]}", "{never: [Voice]}")
+
+
+SURROUNDINGS = (  # of the system, of one source
+    ([], ""), (["context: [care]"], ""), (["context: [union, care]", "country: FR"], "context: school, "),
+    (["country: DE"], "context: [worship, workplace], "), ([], "context: public-space, "),
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -48,15 +53,6 @@ class Written:
 
 
 @st.composite
-def surroundings(draw: st.DrawFn) -> list[str]:
-    """Lines at the top of a label file: where the system works."""
-    contexts = draw(st.lists(st.sampled_from(CONTEXTS), max_size=2, unique=True))
-    country = draw(st.sampled_from(("", "DE", "FR")))
-    top = [f"context: [{', '.join(contexts)}]"] if contexts else []
-    return [*top, *([f"country: {country}"] if country else [])]
-
-
-@st.composite
 def written(draw: st.DrawFn) -> Written:
     """A storage behind a node, DENYs, a wildcard, a standard channel."""
     names = st.sets(st.sampled_from((*TOPICS, "!/b")), max_size=3).map(lambda some: ",".join(sorted(some)))
@@ -72,9 +68,8 @@ def written(draw: st.DrawFn) -> Written:
     lines += ["elements:", f"  disk: {{kind: storage, country: {country}, retention: P3D}}"]
     lines += ["flows:", f"  - {{from: {behind}, to: disk}}"]
     accepted = draw(st.sets(st.sampled_from((*NODES, "disk")), min_size=2, max_size=4))
-    lines[1:1] = draw(surroundings())
-    if draw(st.booleans()):
-        lines = [line.replace("  /n0: {", "  /n0: {context: school, ") for line in lines]
+    where, own = draw(st.sampled_from(SURROUNDINGS))
+    lines = [lines[0], *where, *(line.replace("  /n0: {", f"  /n0: {{{own}") for line in lines[1:])]
     return Written(policy(*profiles.values()), "\n".join([*lines, ""]), tuple(sorted(accepted)))
 
 
