@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+import rosprivacy
 from tests.helpers.house import ROOMS, parsed
 from tests.helpers.paths import ROOT
 
@@ -106,7 +107,7 @@ def test_the_rooms_ship_under_the_package() -> None:
         (["--version"], ["lxml", "numpy", "networkx", "rdflib", "yaml", "rich.console", "neo4j", "psutil"]),
         (
             ["analyze", "examples/factory/after.policy.xml", "-l", "examples/factory/run5.labels.yaml"],
-            ["networkx", "neo4j"],
+            ["networkx", "neo4j", "pydantic"],
         ),
     ],
 )
@@ -118,6 +119,13 @@ def test_what_is_not_needed_is_not_imported(arguments: list[str], absent: list[s
     )
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[-1] == "[]"
+
+
+def test_the_version_is_told_before_typer_is_imported() -> None:
+    start = "import sys; sys.argv[1:] = ['--version']; from rosprivacy.cli import main; main()"
+    code = f"{start}; print('typer' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines() == [f"rosprivacy {rosprivacy.__version__}", "False"]
 
 
 def test_rdflib_is_not_imported_once_the_ontology_is_cached(tmp_path: Path) -> None:

@@ -11,10 +11,10 @@ What is public stands in ``__all__``, and is imported when it is used. ``docs/py
 from __future__ import annotations
 
 from importlib import import_module
-from typing import TYPE_CHECKING
 
 from rosprivacy.version import __version__
 
+TYPE_CHECKING = False  # as type checkers know it; to import ``typing`` takes as long as Python's own start
 if TYPE_CHECKING:
     from typing import Any
 

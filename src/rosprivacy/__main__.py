@@ -1,5 +1,5 @@
 """``python -m rosprivacy``."""
 
-from rosprivacy.cli.app import main
+from rosprivacy.cli import main
 
 main()
