@@ -7,7 +7,7 @@ expired decision decides nothing, and nor does what it outranks: a person has to
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
@@ -15,6 +15,7 @@ from rosprivacy.analysis.errors import DecisionError
 from rosprivacy.analysis.expressions import regex
 from rosprivacy.analysis.legal_bases import gaps
 from rosprivacy.analysis.model import Diagnostic, Place, Severity
+from rosprivacy.analysis.remembered import changes, told
 from rosprivacy.analysis.written_names import is_glob, meant
 
 if TYPE_CHECKING:
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.legal_bases import Verdicts
     from rosprivacy.analysis.model import Element
+    from rosprivacy.analysis.remembered import About, Change
 
 FARTHEST = 1_000_000
 
@@ -108,6 +110,8 @@ class Decision:
         Such as ``6(1)(f)`` and ``9(2)(h)``, in order.
     date, expires
         ISO dates, or empty; it is valid to the end of the day on which it expires.
+    made_about
+        What was there when it was made; None where nobody wrote it down. It is about no robot that was not there.
     """
 
     choice: Choice
@@ -126,6 +130,7 @@ class Decision:
     date: str = ""
     expires: str = ""
     ticket: str = ""
+    made_about: About | None = None
 
     def about(self, case: Case, hierarchy: Hierarchy) -> bool:
         """Whether it is about a case.
@@ -138,6 +143,7 @@ class Decision:
             and (alone or _covers(self.robot, case.leak.robot))
             and _covers(self.from_robot, case.source.robot)
             and not (self.robot and case.across and not self.from_robot)
+            and (self.made_about is None or self.made_about.knew(case.robots))
         )
 
     def was_about(self, case: Case, hierarchy: Hierarchy) -> bool:
@@ -209,7 +215,8 @@ class Decisions:
     def told_apart(self, robot: str) -> tuple[bool, ...]:
         """Return which entries that name robots mean this one: robots are alike only if all do so alike."""
         names = (name for entry in self.entries for name in (entry.robot, entry.from_robot) if name)
-        return tuple(_covers(name, robot) for name in names)
+        there = (entry.made_about.robots for entry in self.entries if entry.made_about)
+        return (*(_covers(name, robot) for name in names), *(robot in robots for robots in there if robots))
 
     def accepts(self, case: Case) -> bool:
         """Whether a valid decision accepts a case (rule S10)."""
@@ -229,6 +236,8 @@ class Decided:
         By entry: the ids of the findings that it is about, sorted.
     states
         By entry.
+    changed
+        Of entries of which something is not as it was when they were made: what.
     """
 
     decisions: Decisions
@@ -236,6 +245,7 @@ class Decided:
     about: tuple[tuple[str, ...], ...]
     states: tuple[State, ...]
     diagnostics: tuple[Diagnostic, ...]
+    changed: Mapping[Decision, tuple[Change, ...]] = field(default_factory=dict)
 
     def valid(self, finding: Finding) -> Decision | None:
         """The decision about a finding, if it is valid."""
@@ -250,6 +260,7 @@ def decided(
     *,
     everything: bool,
     case_of: Callable[[Finding], Case] = Case.of,
+    now: Mapping[str, About] | None = None,
 ) -> Decided:
     """Join decisions to findings.
 
@@ -261,6 +272,8 @@ def decided(
         Whether the findings are all there are: else no decision is called orphaned.
     case_of
         What a decision can be about, of a finding.
+    now
+        Id of a finding or pattern -> what a decision about it would be made about today.
 
     Raises
     ------
@@ -296,9 +309,10 @@ def decided(
         State.ORPHANED if everything and not ids else decisions.state(entry)
         for entry, ids in zip(decisions.entries, about, strict=True)
     )
-    result = Decided(decisions, on, about, states, ())
+    changed = {entry: changes(entry.made_about, (now or {}).get(entry.id)) for entry in decisions.entries}
+    result = Decided(decisions, on, about, states, (), {entry: found for entry, found in changed.items() if found})
     said = tuple(_diagnostics(result, {finding.id: finding for finding, _ in cases}, law, list(_former(result, cases))))
-    return Decided(decisions, on, about, states, said)
+    return replace(result, diagnostics=said)
 
 
 def _former(joined: Decided, cases: Iterable[tuple[Finding, Case]]) -> Iterator[int]:
@@ -325,6 +339,9 @@ def _diagnostics(
             yield Diagnostic(entry.place, Severity.WARNING, message)
         elif state is State.ORPHANED:
             yield Diagnostic(entry.place, Severity.WARNING, f"{what} is about no finding: it is orphaned; remove it")
+        if changed := joined.changed.get(entry):
+            message = f"changed since {what} was made: {told(changed)}; decide anew"
+            yield Diagnostic(entry.place, Severity.WARNING, message)
         if joined.decisions.state(entry) is State.EXPIRED:
             message = f"{what} expired on {entry.expires} and no longer counts; decide anew"
             yield Diagnostic(entry.place, Severity.WARNING, message)

@@ -16,6 +16,19 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 CHAPTER_V = ("45", "46", "47", "49")
+GROUPS = (("6",), ("9",), ("10",), CHAPTER_V)
+TRANSFER_OF = {  # article -> the basis of a transfer as labels call it (``non_ros.TRANSFERS``)
+    "45": "adequacy",
+    "46(2)(a)": "public-instrument",
+    "46(2)(b)": "binding-corporate-rules",
+    "47": "binding-corporate-rules",
+    "46(2)(c)": "standard-clauses",
+    "46(2)(d)": "standard-clauses",
+    "46(2)(e)": "code-of-conduct",
+    "46(2)(f)": "certification",
+    "46(3)": "authorised-clauses",
+    "49": "derogation",
+}
 Verdicts = tuple[tuple[str, str], ...]  # (provision, verdict)
 
 
@@ -82,6 +95,24 @@ def gaps(stated: Sequence[str], accepted: Iterable[tuple[str, str]], law: Mappin
         yield from (Gap(Lack.ARTICLE_10, category) for category in kinds if _article10(law.get(category, ())))
     if any(kind == THIRD_COUNTRY for kind, _ in held) and not _any(stated, *CHAPTER_V):
         yield Gap(Lack.CHAPTER_V)
+
+
+def transfer_of(basis: str) -> str:
+    """Return the basis of a transfer that an article is, as labels call it; empty if it is none of chapter V.
+
+    >>> transfer_of("46(2)(c)"), transfer_of("49(1)(a)"), transfer_of("6(1)(f)")
+    ('standard-clauses', 'derogation', '')
+    """
+    return TRANSFER_OF.get(basis) or TRANSFER_OF.get(basis.partition("(")[0], "")
+
+
+def group_of(basis: str) -> tuple[str, ...]:
+    """Return the articles that are looked up together with a legal basis: one of ``GROUPS``.
+
+    >>> group_of("9(3)"), group_of("46(2)(c)") == CHAPTER_V
+    (('9',), True)
+    """
+    return next((group for group in GROUPS if _any([basis], *group)), ())
 
 
 def _any(stated: Sequence[str], *articles: str) -> bool:

@@ -7,7 +7,7 @@ nobody stated about an element is taken by its kind: data passes what only holds
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from rosprivacy.analysis.model import NOWHERE, NonRosFacts, Reason, Statement
 from rosprivacy.analysis.model import reason as why
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.model import Element
 
+T = TypeVar("T")
 INSIDE, ADEQUATE, PARTLY, THIRD = "eea", "adequate", "partly", "third"  # where a country lies, GDPR chapter V
 ADEQUACY = "adequacy"
 TRANSFERS = (  # bases of a transfer: GDPR Article 45, 46(2)(a) to (f), 46(3), 49
@@ -88,7 +89,7 @@ def kept_too_long(facts: NonRosFacts, category: str, hierarchy: Hierarchy) -> Re
             return Reason.of(why.NO_RETENTION_FOR, category=kind) if facts.retention else Reason(why.NO_RETENTION)
         for duration in kept:
             whole = duration + facts.backups if facts.backups else duration
-            for limit in _nearest(facts.limits, kind, hierarchy):
+            for limit in nearest(facts.limits, kind, hierarchy):
                 if whole.can_be_longer(limit):
                     said = {"kept": duration, "limit": limit, "category": kind}
                     if facts.backups:
@@ -106,7 +107,7 @@ def limited(facts: NonRosFacts, category: str, hierarchy: Hierarchy) -> bool:
     >>> limited(facts, "FaceTemplate", factory()[2]), limited(facts, "Video", factory()[2])
     (True, False)
     """
-    return bool(_nearest(facts.limits, category, hierarchy))
+    return bool(nearest(facts.limits, category, hierarchy))
 
 
 def retention_of(facts: NonRosFacts, category: str, hierarchy: Hierarchy) -> list[Duration]:
@@ -118,16 +119,21 @@ def retention_of(facts: NonRosFacts, category: str, hierarchy: Hierarchy) -> lis
     >>> [str(*retention_of(facts, name, factory()[2])) for name in ("FaceTemplate", "Video")]
     ['P1D', 'P6M']
     """
-    return _nearest(facts.retention, category, hierarchy)
+    return nearest(facts.retention, category, hierarchy)
 
 
-def _nearest(stated: Iterable[tuple[str, Duration]], category: str, hierarchy: Hierarchy) -> list[Duration]:
-    """The durations stated for the category, or for the nearest broader one."""
+def nearest(stated: Iterable[tuple[str, T]], category: str, hierarchy: Hierarchy) -> list[T]:
+    """Return what is stated of a category, or of the nearest broader one, ``EVERY`` above all.
+
+    >>> from rosprivacy.analysis.example import factory
+    >>> [nearest([(EVERY, 1), ("Biometric", 2)], name, factory()[2]) for name in ("FaceTemplate", "Video")]
+    [[2], [1]]
+    """
     above = hierarchy.ancestors[category]
     everything = {**above, EVERY: len(hierarchy.ancestors)}
-    known = [(everything[name], duration) for name, duration in stated if name in everything]
-    nearest = min((steps for steps, _ in known), default=0)
-    return [duration for steps, duration in known if steps == nearest]
+    known = [(everything[name], value) for name, value in stated if name in everything]
+    fewest = min((steps for steps, _ in known), default=0)
+    return [value for steps, value in known if steps == fewest]
 
 
 def on_day(outside: Mapping[int, NonRosFacts], today: str) -> dict[int, NonRosFacts]:

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.contexts import Contexts
 from rosprivacy.analysis.findings.globs import GlobUse, globs
 from rosprivacy.analysis.findings.ledger import ledger
+from rosprivacy.analysis.findings.processed import processed
 from rosprivacy.analysis.findings.review_order import Behind, review_order
 from rosprivacy.analysis.fleet.counts import Counts, counted
-from rosprivacy.analysis.non_ros import retention_of
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator
@@ -22,8 +22,9 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.decisions import Decided, Decision
     from rosprivacy.analysis.durations import Duration
     from rosprivacy.analysis.findings.ledger import TakenAway
+    from rosprivacy.analysis.findings.processed import Processed
     from rosprivacy.analysis.fleet.patterns import FleetView
-    from rosprivacy.analysis.model import Bound, Diagnostic, Element, NonRosFacts, Surroundings
+    from rosprivacy.analysis.model import Bound, Diagnostic, NonRosFacts, Surroundings
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 
@@ -94,8 +95,8 @@ class Answer:
     def stated(self) -> dict[tuple[str, str, str], dict[str, str]]:
         """What people stated of what lies outside ROS, as texts (rule S9).
 
-        (robot, kind, name) -> ``retention``, ``country``, ``encrypted``, ``operator``, ``role``, ``basis``, whichever
-        are known.
+        (robot, kind, name) -> ``retention``, ``country``, ``encrypted``, ``operator``, ``role``, ``basis``,
+        ``contract``, whichever are known.
         """
         return {element.identity: dict(_stated(facts)) for element, facts in self.analysis.outside.items()}
 
@@ -116,11 +117,11 @@ class Answer:
         """Where sources work, and what data may reveal there."""
         return Contexts.of(self.analysis.graph, self.bound, self.vocabulary.categories, together=self.fleet is not None)
 
-    def retention(self, element: Element, category: str) -> str:
-        """Return how long an element keeps a category, with its backups; empty where nobody states it (rule S9)."""
-        facts = self.analysis.outside.get(element)
-        kept = retention_of(facts, category, self.vocabulary.hierarchy) if facts else []
-        return _with_backups(map(str, kept), facts.backups) if facts and kept else ""
+    @property
+    def processed(self) -> tuple[Processed, ...]:
+        """What is stated of purposes and legal bases where data begin and end, by kind; of robots alike of one."""
+        rows = processed(self.shown, self.bound, self.vocabulary.hierarchy)
+        return tuple(row for row in rows if row.element.robot not in self._beside)
 
     def fleet_counts(self, view: FleetView) -> Counts:
         """Return how many elements, flows and standard channels the fleet has, not its graph."""
@@ -142,6 +143,7 @@ def _stated(facts: NonRosFacts) -> Iterator[tuple[str, str]]:
         "operator": facts.operator,
         "role": facts.recipient,
         "basis": facts.transfer,
+        "contract": facts.contract,
     }
     yield from ((what, value) for what, value in said.items() if value)
 

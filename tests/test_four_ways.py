@@ -34,9 +34,10 @@ DECISIONS = "decisions.yaml"
 def first_way(system: Written) -> Result:
     """The files of one robot, in the folder of now."""
     system.write(Path(), "p")
-    Path(DECISIONS).write_text(system.decisions, "utf-8")
     Path("f.yaml").write_text(FLEET, "utf-8")
     try:
+        found = rosprivacy.analyze("p.xml", "p.yaml").analysis.findings
+        Path(DECISIONS).write_text(system.decisions(found), "utf-8")
         return rosprivacy.analyze("p.xml", "p.yaml", decisions=DECISIONS)
     except rosprivacy.InputErrors:
         with pytest.raises(rosprivacy.InputErrors):
@@ -88,6 +89,8 @@ def test_most_of_them_have_a_finding_and_many_an_accepted_one() -> None:
     findings = [[f for f in result.analysis.findings if not f.dismissed] for result in results]
     assert sum(map(bool, findings)) > len(results) / 3
     assert sum(any(f.accepted for f in some) for some in findings) > len(results) / 10
+    changed = [change.what for r in results if r.decided for some in r.decided.changed.values() for change in some]
+    assert set(changed) == {"view", "path", "disjoint_paths"}
 
 
 @pytest.mark.database

@@ -11,6 +11,8 @@ from collections import defaultdict, deque
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.kernel.dominators import immediate_dominators
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
@@ -51,7 +53,7 @@ def review_order(analysis: Analysis) -> dict[Shown, Behind]:
 
     Notes
     -----
-    networkx's immediate dominators, on the flows that carry data.
+    Immediate dominators, on the flows that carry data.
 
     Examples
     --------
@@ -135,17 +137,14 @@ def _reaching(following: Following, wanted: Iterable[int]) -> set[int]:
 
 def _below(following: Following, questions: Iterable[int], leaks: Iterable[int]) -> Mapping[int, tuple[int, int]]:
     """Vertex -> how many of the questions, and of the leaks, data gets to past it only; without itself."""
-    edges = [(here, there) for here, targets in following.items() for there in targets]
-    if not 0 < len(edges) <= MOST:
+    if not 0 < sum(map(len, following.values())) <= MOST:
         return {}
-    import networkx as nx  # noqa: PLC0415 - heavy
-
-    parents = nx.immediate_dominators(nx.DiGraph(edges), START)
+    parents = immediate_dominators(following, START)
     asked, leaking = set(questions), set(leaks)
     below: dict[int, tuple[int, int]] = defaultdict(lambda: (0, 0))
     for vertex in asked | leaking:
-        above = parents.get(vertex)
-        while above not in (None, START):
+        above = parents.get(vertex, START)
+        while above != START:
             closes, ends = below[above]
             below[above] = (closes + (vertex in asked), ends + (vertex in leaking))
             above = parents[above]

@@ -19,6 +19,7 @@ MERGED = "merged"  # policies that make one graph, and may not have been meant t
 FALLBACK_TAKEN = "fallback-taken"
 EMPTY_GROUP = "empty-group"
 REFUSED_NAME = "refused-name"
+LEGAL_BASIS = "legal-basis"  # one that is stated lacks something that the law asks for
 NO_SOURCE = "no-source"  # what 'no leak found' lacks, so that it says nothing (rules S11, S12)
 GOES_NOWHERE = "goes-nowhere"
 NO_LEAK_NAMED = "no-leak-named"

@@ -126,6 +126,8 @@ class NonRosFacts:
         One of ``RECIPIENTS``.
     transfer
         Basis of a transfer out of the EEA, one of ``TRANSFERS``, as a person states it.
+    contract
+        On what it is operated for the controller, such as a contract under Article 28, in a person's words.
     place
         Where it is stated.
     """
@@ -141,6 +143,7 @@ class NonRosFacts:
     operator: str = ""
     recipient: str = ""
     transfer: str = ""
+    contract: str = ""
     place: Place = NOWHERE
 
 
@@ -167,6 +170,41 @@ class Surroundings:
         return bool(self.contexts or self.country)
 
 
+ByCategory = tuple[tuple[str, tuple[str, ...]], ...]  # (category, or ``EVERY``; what is stated of it), sorted
+
+
+@dataclass(frozen=True, slots=True)
+class Processing:
+    """Who is responsible for processing, what it is for and on which legal basis, as people state it.
+
+    It changes no flow, no finding and no verdict. Source: GDPR, Articles 5(1)(b), 6, 9(2), 30(1)(a) and (b).
+
+    Attributes
+    ----------
+    controller, dpo
+        Of a robot or a system; empty of an element.
+    purposes
+        In a person's words.
+    bases
+        Such as ``6(1)(f)`` and ``9(2)(h)``.
+    place
+        Where it is stated.
+    """
+
+    controller: str = ""
+    dpo: str = ""
+    purposes: ByCategory = ()
+    bases: ByCategory = ()
+    place: Place = NOWHERE
+
+    def __bool__(self) -> bool:
+        """Whether anything is stated."""
+        return bool(self.controller or self.dpo or self.purposes or self.bases)
+
+
+UNSTATED = Processing()
+
+
 @dataclass(frozen=True, slots=True)
 class Bound:
     """Statements joined to a graph.
@@ -185,6 +223,10 @@ class Bound:
         By vertex: whom the data of a source are about, sorted. It changes no flow.
     surroundings
         By vertex: where an element works, its own with those of its system. It changes no flow.
+    processing
+        By vertex: what the data there are processed for, and on which basis.
+    of_robots
+        By robot: the same of all that is on it; with who is responsible.
     """
 
     elements: Mapping[int, tuple[Statement, ...]]
@@ -193,6 +235,8 @@ class Bound:
     outside: Mapping[int, NonRosFacts] = field(default_factory=dict)
     subjects: Mapping[int, tuple[str, ...]] = field(default_factory=dict)
     surroundings: Mapping[int, Surroundings] = field(default_factory=dict)
+    processing: Mapping[int, Processing] = field(default_factory=dict)
+    of_robots: Mapping[str, Processing] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

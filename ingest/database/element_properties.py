@@ -14,7 +14,9 @@ from rosprivacy.analysis.findings.derived_from import origins
 from rosprivacy.analysis.fleet.likeness import NO_ROBOTS, pattern_id
 from rosprivacy.analysis.kernel.roles import facts
 from rosprivacy.analysis.legal import turned_special
+from rosprivacy.analysis.model import UNSTATED
 from rosprivacy.ingest.database.carrying import moving
+from rosprivacy.ingest.database.processing_properties import processing_properties
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -23,7 +25,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.findings.derived_from import Origin
     from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.analysis.kernel.spread import Spread
-    from rosprivacy.analysis.model import Bound, Element, Statement, Surroundings
+    from rosprivacy.analysis.model import Bound, Element, Processing, Statement, Surroundings
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 Row = dict[str, Any]
@@ -125,6 +127,7 @@ def element_results(analysis: Analysis, bound: Bound, names: Names, roles: Roles
             "stops": names.exact(_stopped(found, found.keeps.get(vertex, found.all_bits))),
             "subjects": list(bound.subjects.get(vertex, ())),
             **_surroundings(bound.surroundings.get(vertex), element),
+            **_of_element(bound.processing.get(vertex, UNSTATED)),
             "open": list(question.categories) if question else [],
             "frontier": question.frontier if question else None,
             "distance": question.distance if question else None,
@@ -141,6 +144,11 @@ def _surroundings(where: Surroundings | None, element: Element) -> Row:
     """Where it works; the country of an element outside ROS is a fact of its own."""
     of_system = {"country": where.country} if where and where.country and element.is_node else {}
     return {"context": list(where.contexts) or None if where else None, **of_system}
+
+
+def _of_element(said: Processing) -> Row:
+    """Only a robot has a controller and an officer."""
+    return {key: value for key, value in processing_properties(said).items() if key not in ("controller", "dpo")}
 
 
 def _stopped(found: Spread, kept: int) -> int:

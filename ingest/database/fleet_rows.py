@@ -34,6 +34,7 @@ from rosprivacy.ingest.database.rows import (
     flow_row,
     intake_row,
     rows_of,
+    stated_of_robot,
 )
 
 if TYPE_CHECKING:
@@ -158,6 +159,7 @@ class FleetRows:
             "view": self._graph.view,
             "model": model or None,
             "shared": None if self._likeness.is_robot(owner) else True,
+            **stated_of_robot(self._placed.bound, owner),
             **self._more.get(owner, {}),
         }
         return rows_of(name, {key: value for key, value in properties.items() if value is not None}, parts)

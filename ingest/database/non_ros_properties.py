@@ -30,6 +30,7 @@ def properties_of(facts: NonRosFacts) -> dict[str, Any]:
         "operator": facts.operator or None,
         "recipient": facts.recipient or None,
         "transfer": facts.transfer or None,
+        "contract": facts.contract or None,
         "file": facts.place.file or None,
         "line": facts.place.line or None,
     }
@@ -61,6 +62,7 @@ def facts_of(said: Mapping[str, Any], categories: Collection[str]) -> NonRosFact
         operator=_text(said, "operator"),
         recipient=recipient,
         transfer="" if transfer == "none" else transfer,
+        contract=_text(said, "contract"),
         place=Place(_text(said, "file"), int(said.get("line") or 0)),
         **(countries().place(country) if country else {}),
     )

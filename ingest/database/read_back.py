@@ -27,6 +27,7 @@ from rosprivacy.analysis.non_ros import by_kind
 from rosprivacy.ingest.database.flow_statements import DATABASE, names_of, statements_of
 from rosprivacy.ingest.database.non_ros_properties import facts_of
 from rosprivacy.ingest.database.other_schemas import HINT, of_other_schemas
+from rosprivacy.ingest.database.processing_properties import processing_of
 from rosprivacy.ingest.database.robot_notices import unreadable
 from rosprivacy.ingest.database.row_facts import (
     ADDED,
@@ -46,7 +47,7 @@ if TYPE_CHECKING:
 
     from neo4j import Driver, ManagedTransaction, Record
 
-    from rosprivacy.analysis.model import NonRosFacts
+    from rosprivacy.analysis.model import NonRosFacts, Processing
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 _FLOW_ROLES = {"publish", "subscribe", "request", "reply", "call", "execute", MATCHES}
@@ -135,6 +136,7 @@ def _read(transaction: ManagedTransaction, vocabulary: Vocabulary) -> Stored:
     reader.flows(transaction.run(FLOWS))
     reader.said(transaction.run(SAID))
     reader.profiles(transaction.run(PROFILES))
+    reader.robots(robots)
     for name, robot in sorted(robots.items()):
         if damaged := unreadable(robot):
             reader.problems.append(
@@ -173,6 +175,8 @@ class _Reader:
         self._said: dict[str, list[tuple[str, str, Mapping[str, Any]]]] = defaultdict(list)
         self._profiles: list[Profile] = []
         self._outside: dict[Element, NonRosFacts] = {}
+        self._processing: dict[str, Processing] = {}
+        self._of_robots: dict[str, Processing] = {}
 
     def elements(self, records: Iterable[Record]) -> None:
         for record in records:
@@ -195,9 +199,14 @@ class _Reader:
             try:
                 surroundings_of(properties, ros="node" in kinds)
             except TypeError as error:
-                self.problems.append(
-                    _problem(f"{shown(name)!r}: {error}", "SET n.context = ['care'], n.country = 'DE'")
-                )
+                hint = "SET n.context = ['care'], n.country = 'DE'"
+                self.problems.append(_problem(f"{shown(name)!r}: {error}", hint))
+                continue
+            try:
+                self._processing[record["key"]] = processing_of(properties, self._vocabulary.categories)
+            except ValueError as error:
+                what = f"{shown(name)!r} cannot be understood: {shown(str(error))}"
+                self.problems.append(_problem(what, "see docs/database.md for what it has"))
                 continue
             parts = {key: str(properties.get(key) or "") for key in ("leg", "side")}
             shown_robot = "" if self._alone and robot else robot
@@ -252,6 +261,18 @@ class _Reader:
             place = Place(str(record["file"] or DATABASE), int(record["line"] or 0))
             self._profiles.append(Profile(str(record["enclave"]), str(record["node"]), place))
 
+    def robots(self, robots: Mapping[str, Mapping[str, Any]]) -> None:
+        """Read who is responsible for each robot, what for and on which basis."""
+        for name, robot in sorted(robots.items()):
+            try:
+                said = processing_of(robot, self._vocabulary.categories)
+            except ValueError as error:
+                what = f"robot {shown(name)!r} cannot be understood: {shown(str(error))}"
+                self.problems.append(_problem(what, "see docs/database.md for what it has"))
+                continue
+            if said:
+                self._of_robots["" if self._alone else name] = said
+
     def stored(self, robots: Mapping[str, Mapping[str, Any]], view: str) -> Stored:
         """Number everything, sorted (rule S14)."""
         elements = tuple(sorted(self._vertices, key=Element.sort_key))
@@ -289,6 +310,8 @@ class _Reader:
                     if (where := surroundings_of(vertex.properties, ros=elements[v].is_node))
                 },
                 subjects={v: groups for v, vertex in enumerate(vertices) if (groups := subjects_of(vertex.properties))},
+                processing={v: one for v, vertex in enumerate(vertices) if (one := self._processing[vertex.key])},
+                of_robots=self._of_robots,
             ),
             robots,
             tuple(vertex.key for vertex in vertices),

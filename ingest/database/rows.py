@@ -11,6 +11,7 @@ import json
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.model import UNSTATED
 from rosprivacy.analysis.non_ros import BY_KIND
 from rosprivacy.ingest.database.carrying import Carrying
 from rosprivacy.ingest.database.element_properties import (
@@ -24,6 +25,7 @@ from rosprivacy.ingest.database.element_properties import (
 from rosprivacy.ingest.database.flow_statements import as_properties
 from rosprivacy.ingest.database.ids import category_labels, element_id, enclave_id, intake_id
 from rosprivacy.ingest.database.non_ros_properties import properties_of
+from rosprivacy.ingest.database.processing_properties import processing_properties
 from rosprivacy.ingest.database.schema import INTAKE, KIND_LABELS, LEG, SCHEMA, WILDCARD
 
 if TYPE_CHECKING:
@@ -142,9 +144,16 @@ def robot_rows(
     properties: Row = {
         "verdict": str(analysis.verdict),
         "view": graph.view,
+        **stated_of_robot(bound, ""),
         **(more or {}),
     }
     return rows_of(robot, properties, parts)
+
+
+def stated_of_robot(bound: Bound, robot: str) -> Row:
+    """Return who is responsible for a robot, what for and on which basis, as far as it is stated."""
+    said = processing_properties(bound.of_robots.get(robot, UNSTATED))
+    return {key: value for key, value in said.items() if value is not None}
 
 
 def rows_of(robot: str, properties: Row, parts: Mapping[str, Any]) -> RobotRows:

@@ -86,6 +86,12 @@ _PLACE = (
     Property("every", BOOLEAN, "the label names no category: it holds for every one"),
     _OURS,
 )
+_PROCESSING = (
+    Property("purposes", STRINGS, "what data are processed for, as stated; `Video: …` of one kind"),
+    Property("legal_bases", STRINGS, "on which legal basis, as stated: `6(1)(f)`, or `Video: 6(1)(f)` of one kind"),
+    Property("stated_in", STRING, "file that states purposes and legal bases"),
+    Property("stated_at", INTEGER, "line there"),
+)
 _BROAD = "; broader kinds are named too"
 
 ELEMENT = NodeKind(
@@ -105,6 +111,7 @@ ELEMENT = NodeKind(
         Property("begins", STRINGS, "kinds that it brings in"),
         Property("subjects", STRINGS, "of a source: whom its data are about"),
         Property("context", STRINGS, f"where it works, with its system: some of {', '.join(CONTEXTS)}"),
+        *_PROCESSING,
         Property("leaks", STRINGS, "kinds that it lets out, if they come"),
         Property("sanitizes", STRINGS, "kinds that it cleans, if they come"),
         Property("stops", STRINGS, "kinds that some source brings in and that do not go on from here"),
@@ -118,6 +125,7 @@ ELEMENT = NodeKind(
         Property("country", STRING, "ISO 3166-1 code; of a node that of its system, where it is stated"),
         Property("operator", STRING, "outside ROS: who runs it"),
         Property("recipient", STRING, "outside ROS: controller, joint-controller, processor or third-party"),
+        Property("contract", STRING, "outside ROS: on what it is operated, such as a contract under Article 28"),
         Property("transfer", STRING, "outside ROS: basis of a transfer out of the EEA"),
         Property("file", STRING, "outside ROS: where it is stated"),
         Property("line", INTEGER, "outside ROS: where it is stated"),
@@ -146,6 +154,9 @@ ROBOT = NodeKind(
         Property("flows", INTEGER, "how many were loaded"),
         Property("roles", INTEGER, "how many relationships of labels were loaded"),
         Property("carried", INTEGER, "how many `CARRIES_…` were loaded"),
+        Property("controller", STRING, "who is responsible, as stated"),
+        Property("dpo", STRING, "the data-protection officer, as stated"),
+        *_PROCESSING,
         Property("assumptions", STRING, "JSON: what the answer rests on"),
         Property("diagnostics", STRING, "JSON: what its policies and labels were read with"),
     ),

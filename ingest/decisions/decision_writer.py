@@ -82,6 +82,8 @@ def _written(text: str, entry: Mapping[str, Any], remark: str) -> tuple[str, int
     """The new text, and the number of the entry in it."""
     places: list[int] = []
 
+    entry = {key: _on_one_line(value) if key == "made_about" else value for key, value in entry.items()}
+
     def change(top: Any) -> None:
         entries = _entries(top)
         place = next((i for i, there in enumerate(entries) if _same_target(there, entry)), len(entries))
@@ -94,6 +96,16 @@ def _written(text: str, entry: Mapping[str, Any], remark: str) -> tuple[str, int
             _change(entries[place], entry)
 
     return changed(text, change), places[0]
+
+
+def _on_one_line(about: Mapping[str, Any]) -> CommentedMap:
+    """Lists of names in [ ], or those of a large fleet would be the most of the file."""
+    made = CommentedMap(about)
+    for key, value in made.items():
+        if isinstance(value, list):
+            made[key] = CommentedSeq(value)
+            made[key].fa.set_flow_style()
+    return made
 
 
 def _change(there: Any, entry: Mapping[str, Any]) -> None:

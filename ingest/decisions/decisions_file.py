@@ -17,8 +17,10 @@ from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.decisions import Choice, Decision, Decisions
 from rosprivacy.analysis.errors import DecisionError, InputError, InputErrors, shown
 from rosprivacy.analysis.model import Place
+from rosprivacy.analysis.remembered import About
 from rosprivacy.ingest.reading import yaml_values
 from rosprivacy.ingest.reading.format_reader import FileReader
+from rosprivacy.ingest.reading.legal_basis import read_bases
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -30,15 +32,12 @@ if TYPE_CHECKING:
 TOP = ("decisions", "findings", "note")
 TARGET = ("id", "category", "source", "leak", "robot", "from_robot", "kind", "pseudonymised")
 TEXTS = ("reason", "owner", "ticket")
-KEYS = (*TARGET, "decision", *TEXTS, "legal_basis", "date", "expires", "note", "history")
+KEYS = (*TARGET, "decision", *TEXTS, "legal_basis", "date", "expires", "note", "history", "made_about")
+REMEMBERED = ("view", "path", "disjoint_paths", "robots")
 LONGEST = 10_000  # characters of a text
 _ID = re.compile(r"[0-9a-f]{16}")
 _DATE = re.compile(r"\d{4}-\d\d-\d\d", re.ASCII)
-_ARTICLES = (  # legal bases: 6 and 9 of the processing, 10, chapter V of a transfer
-    r"6\(1\)\([a-f]\)|6\(4\)|9\(2\)\([a-j]\)|9\(3\)|10|45|46\(2\)\([a-f]\)|46\(3\)|47|49\(1\)\([a-g]\)"
-)
-_BASIS = re.compile(rf"(?:art(?:icle|\.)?\s*)?({_ARTICLES})(?:\s*gdpr)?", re.IGNORECASE)
-_DPV = re.compile(r"(?:eu-gdpr:)?A(\d+)-(\d)-([a-j])")
+_COUNT = re.compile(r"[1-9]\d{0,8}", re.ASCII)
 
 
 def read_decisions(file: str, vocabulary: Vocabulary, day: str, bounds: Bounds = BOUNDS) -> Decisions:
@@ -80,17 +79,6 @@ def _decisions(file: str, top: Value, data: bytes, vocabulary: Vocabulary, day: 
     if reader.problems:
         raise InputErrors(reader.problems)
     return Decisions(file, hashlib.sha256(data).hexdigest(), day, entries, vocabulary.hierarchy)
-
-
-def legal_basis(written: str) -> str | None:
-    """Return a legal basis as ``6(1)(f)`` or ``9(2)(h)``, however it is written; None if it is none.
-
-    >>> legal_basis("Article 6(1)(f)"), legal_basis("eu-gdpr:A9-2-h"), legal_basis("consent")
-    ('6(1)(f)', '9(2)(h)', None)
-    """
-    dpv = _DPV.fullmatch(written.strip())
-    found = _BASIS.fullmatch(f"{dpv[1]}({dpv[2]})({dpv[3]})" if dpv else written.strip())
-    return found[1].lower() if found else None
 
 
 def is_id(written: str) -> bool:
@@ -144,8 +132,35 @@ class _Reader(FileReader):
         for earlier in said["history"].items if "history" in said else ():
             if earlier.kind != "map":
                 self.problem(earlier.line, f"what was decided before is a map, not a {earlier.kind}", "remove it")
-        basis = tuple(self._basis(said["legal_basis"])) if "legal_basis" in said else ()
-        return Decision(choice, Place(self.file, item.line), legal_basis=basis, **texts)
+        basis = tuple(read_bases(self, said["legal_basis"])) if "legal_basis" in said else ()
+        about = self._made_about(said) if "made_about" in said else None
+        return Decision(choice, Place(self.file, item.line), legal_basis=basis, made_about=about, **texts)
+
+    def _made_about(self, said: dict[str, Value]) -> About | None:
+        """What was there when it was decided; ``rosprivacy decide --report`` writes it."""
+        value = said["made_about"]
+        if "id" not in said:
+            self.problem(value.line, "made_about without an id", "remove it: names and globs are about what there is")
+        elif value.kind != "map":
+            self.problem(value.line, f"made_about is a map, not a {value.kind}", "remove it, or decide anew")
+        else:
+            known = {key: inner for key, _, inner in self.entries_of(value, REMEMBERED)}
+            lists = {key: tuple(self._names(known[key], key)) for key in ("path", "robots") if key in known}
+            view = self._text(known["view"], "view") if "view" in known else ""
+            count = self._count(known["disjoint_paths"]) if "disjoint_paths" in known else 0
+            return About(view, lists.get("path", ()), count, frozenset(lists.get("robots", ())))
+        return None
+
+    def _names(self, value: Value, key: str) -> Iterator[str]:
+        yield from (self._text(item, key) for item in self.list_of(value, key, "decide anew"))
+        if not value.items:
+            self.problem(value.line, f"{key} of a decision names nothing", "remove it, or decide anew")
+
+    def _count(self, value: Value) -> int:
+        if value.kind != "number" or not _COUNT.fullmatch(value.text):
+            self.problem(value.line, f"disjoint_paths takes a number, not {_a(value)}", "remove it, or decide anew")
+            return 0
+        return int(value.text)
 
     def _choice(self, item: Value, value: Value | None) -> Choice:
         choices = ", ".join(Choice)
@@ -201,17 +216,6 @@ class _Reader(FileReader):
         if value.text.lower() not in ("true", "false"):
             self.problem(value.line, f"pseudonymised takes true or false, not {_a(value)}", "write one of the two")
         return value.text.lower() == "true"
-
-    def _basis(self, value: Value) -> Iterator[str]:
-        for item in value.items if value.kind == "list" else (value,):
-            found = legal_basis(item.text)
-            if found:
-                yield found
-            else:
-                what = f"legal basis {shown(item.text or item.kind)!r}"
-                self.problem(
-                    item.line, what, "write such as 6(1)(f), 9(2)(h) for special categories, 46(2)(c) for a transfer"
-                )
 
 
 def _a(value: Value) -> str:

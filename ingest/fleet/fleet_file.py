@@ -16,11 +16,12 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import FleetError, InputError, InputErrors, shown
-from rosprivacy.analysis.model import Surroundings
+from rosprivacy.analysis.model import UNSTATED, Surroundings
 from rosprivacy.ingest.fleet.fleet_reader import GROUP_KEYS, ID, ID_HINT, ROBOT_KEYS, SECTIONS, SPEC, FleetReader, Spec
 from rosprivacy.ingest.labels.entries import OWN
 from rosprivacy.ingest.labels.label_file import OURS
 from rosprivacy.ingest.labels.label_reader import SURROUNDINGS
+from rosprivacy.ingest.labels.stated_processing import OF_SYSTEM, two_of_one, united
 from rosprivacy.ingest.labels.surroundings import joined
 from rosprivacy.ingest.reading import yaml_values
 from rosprivacy.ingest.reading.confined import WIDEN, leaves, what_leaves
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from rosprivacy.analysis.bounds import Bounds
-    from rosprivacy.analysis.model import Place
+    from rosprivacy.analysis.model import Place, Processing
     from rosprivacy.ingest.labels.entries import Entry, FlowEntry
     from rosprivacy.ingest.labels.non_ros_reader import Limit, Stated
     from rosprivacy.ingest.reading.yaml_values import Value
@@ -85,6 +86,8 @@ class Fleet:
         By id, sorted.
     elements, entries, limits, flows
         As in ``Labels``; the ends of flows name robots too (``ROBOTS:/name``).
+    processing
+        Who is responsible for all robots, what for, on which basis; a label file of a robot may say another.
     root
         The folder that the files which it names do not leave.
     bounds
@@ -104,6 +107,7 @@ class Fleet:
     root: str
     bounds: Bounds = BOUNDS
     surroundings: Surroundings = Surroundings()  # noqa: RUF009 - it is frozen
+    processing: Processing = UNSTATED
 
 
 def read_fleet(
@@ -174,7 +178,8 @@ class _Fleet:
         )
         self._parts.append(part)
         part.version(top, "fleet", "fleet")
-        for key, line, value in part.entries_of(top, ("fleet", *SECTIONS)) if top.kind == "map" else ():
+        part.system(top)
+        for key, line, value in part.entries_of(top, ("fleet", *OF_SYSTEM, *SECTIONS)) if top.kind == "map" else ():
             self._section(part, key, line, value, (*within, path))
 
     def _section(self, part: FleetReader, key: str, line: int, value: Value, within: tuple[str, ...]) -> None:
@@ -251,11 +256,15 @@ class _Fleet:
             self._root,
             self._bounds,
             self._everywhere(),
+            united((((0, 0), part.processing) for part in self._parts), self._differ),
         )
 
     def _everywhere(self) -> Surroundings:
         """Where the whole fleet works; what an including file says counts before what it includes."""
         return joined(part.surroundings for part in reversed(self._parts))
+
+    def _differ(self, what: str, first: Processing, other: Processing) -> None:
+        self.problems.append(two_of_one(what, first, other, FleetError))
 
     def _add(self, name: str, spec: Spec, *, shared: bool) -> None:
         known = self._robots.get(name) or self._infrastructure.get(name)

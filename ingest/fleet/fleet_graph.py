@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.durations import ordered
 from rosprivacy.analysis.errors import FleetError, InputError, InputErrors, shown
 from rosprivacy.analysis.fleet.likeness import Likeness
-from rosprivacy.analysis.model import Element, Surroundings
+from rosprivacy.analysis.model import UNSTATED, Element, Surroundings
 from rosprivacy.analysis.non_ros import by_kind
 from rosprivacy.analysis.written_names import meant
 from rosprivacy.ingest.fleet.alike_robots import COLON, chosen, known_to_flows
@@ -22,12 +22,13 @@ from rosprivacy.ingest.fleet.dds_domains import alone, pseudo_robot, shared
 from rosprivacy.ingest.fleet.mergeable_graph import Part, numbered, together
 from rosprivacy.ingest.labels.add_non_ros import FLOW, Ends, ambiguous, line_of, merged, missing, two_meanings
 from rosprivacy.ingest.labels.entries import End
+from rosprivacy.ingest.labels.stated_processing import over, united
 from rosprivacy.ingest.labels.surroundings import joined
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-    from rosprivacy.analysis.model import Bound, FlowGraph, NonRosFacts, Place, Profile, Statement
+    from rosprivacy.analysis.model import Bound, FlowGraph, NonRosFacts, Place, Processing, Profile, Statement
     from rosprivacy.ingest.fleet.alike_robots import Alike
     from rosprivacy.ingest.fleet.dds_domains import Member
     from rosprivacy.ingest.fleet.fleet_file import Fleet
@@ -215,6 +216,7 @@ class _Placing:
             self._ends[pseudo_robot(domain)] = Ends(_of(parts[-1], pseudo_robot(domain)))
         parts.append(self._own())
         whole = together(parts)
+        whole.of_robots = self._responsible(whole)
         whole.outside = {element: self._limited(element, facts) for element, facts in whole.outside.items()}
         self._add_flows(whole)
         return whole, {member.robot.id: member.profiles for member in self._members}
@@ -232,13 +234,22 @@ class _Placing:
             part.elements[element] = (*dict.fromkeys(said[name]), *by_kind(element))
             part.outside[element] = one.outside
             about = [entry for entry in fleet.entries if entry.name == name]
-            if groups := {group for entry in about for group in entry.subjects}:
-                part.subjects[element] = tuple(sorted(groups))
+            part.subjects[element] = tuple(g for entry in about for g in entry.subjects)
+            part.processing[element] = united((entry.rank, entry.processing) for entry in about)
             own = (Surroundings(entry.contexts) for entry in about)
-            if where := joined((Surroundings(fleet.surroundings.contexts), *own)):
-                part.surroundings[element] = where
+            part.surroundings[element] = joined((Surroundings(fleet.surroundings.contexts), *own))
+        part.subjects = {element: groups for element, groups in part.subjects.items() if groups}
+        part.processing = {element: said for element, said in part.processing.items() if said}
+        part.surroundings = {element: where for element, where in part.surroundings.items() if where}
         self._ends[""] = Ends(part.elements)
         return part
+
+    def _responsible(self, whole: Part) -> dict[str, Processing]:
+        """What is said of each robot, and of what is shared: where its label files say nothing, what the fleet says."""
+        own = {member.robot.id: member.part.of_robots.get("", UNSTATED) for member in self._members}
+        owners = sorted({element.robot for element in whole.elements})
+        said = {owner: over(own.get(owner, UNSTATED), self._fleet.processing) for owner in owners}
+        return {owner: one for owner, one in said.items() if one}
 
     def _limited(self, element: Element, facts: NonRosFacts) -> NonRosFacts:
         """The facts with the limits that hold there: for what is shared, those of every robot."""

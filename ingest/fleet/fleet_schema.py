@@ -8,7 +8,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.ingest.fleet.fleet_reader import ID, NAMESPACE
-from rosprivacy.ingest.labels.label_schema import END, END_OF_KIND, SURROUNDINGS, label_schema, non_ros_sections
+from rosprivacy.ingest.labels.label_schema import (
+    END,
+    END_OF_KIND,
+    SURROUNDINGS,
+    label_schema,
+    non_ros_sections,
+    processing_of_system,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -47,6 +54,7 @@ def fleet_schema(categories: Iterable[Category]) -> dict[str, Any]:
             "robots": _section("robot", "Robots by id; what they name is added to their model's."),
             "infrastructure": _section("robot", "What has policies and is not a robot, such as a base station."),
             "groups": {"type": ["array", "null"], "items": {"$ref": "#/$defs/group"}},
+            **processing_of_system(),
             **non_ros_sections(),
             **SURROUNDINGS,
             "note": {"type": "string"},

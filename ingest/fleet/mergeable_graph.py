@@ -5,7 +5,7 @@ In: graphs and bound statements. Out: ``Part``, which can be renamed and put tog
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from operator import itemgetter
 from typing import TYPE_CHECKING, TypeVar
 
@@ -14,7 +14,7 @@ from rosprivacy.analysis.model import Bound, Element, Flow, FlowGraph
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
-    from rosprivacy.analysis.model import Grant, NonRosFacts, Profile, Statement, Surroundings
+    from rosprivacy.analysis.model import Grant, NonRosFacts, Processing, Profile, Statement, Surroundings
 
 K = TypeVar("K")
 V = TypeVar("V")
@@ -39,8 +39,10 @@ class Part:
         (source, name expressions) -> the flows that these mean.
     outside
         What is stated about elements outside ROS.
-    subjects, surroundings
-        Whom the data of a source are about; where an element works.
+    subjects, surroundings, processing
+        Whom data of elements are about; where they work; what data there are processed for, and on which basis.
+    of_robots
+        By robot: who is responsible, what for, on which basis.
     """
 
     elements: dict[Element, tuple[Statement, ...]] = field(default_factory=dict)
@@ -51,6 +53,8 @@ class Part:
     outside: dict[Element, NonRosFacts] = field(default_factory=dict)
     subjects: dict[Element, tuple[str, ...]] = field(default_factory=dict)
     surroundings: dict[Element, Surroundings] = field(default_factory=dict)
+    processing: dict[Element, Processing] = field(default_factory=dict)
+    of_robots: dict[str, Processing] = field(default_factory=dict)
 
     @classmethod
     def of(cls, graph: FlowGraph, bound: Bound) -> Part:
@@ -66,10 +70,12 @@ class Part:
             {elements[vertex]: facts for vertex, facts in bound.outside.items()},
             {elements[vertex]: groups for vertex, groups in bound.subjects.items()},
             {elements[vertex]: where for vertex, where in bound.surroundings.items()},
+            {elements[vertex]: said for vertex, said in bound.processing.items()},
+            dict(bound.of_robots),
         )
 
     def renamed(self, name: Callable[[Element], Element]) -> Part:
-        """Return the part with other names; two elements may become one."""
+        """Return the part with other names, without what is said of robots; two elements may become one."""
         new = {element: name(element) for element in self.elements}
 
         def key_of(key: Key) -> Key:
@@ -84,6 +90,7 @@ class Part:
             {new[element]: facts for element, facts in self.outside.items()},
             _joined((new[element], groups) for element, groups in self.subjects.items()),
             {new[element]: where for element, where in self.surroundings.items()},
+            {new[element]: said for element, said in self.processing.items()},
         )
 
 
@@ -99,6 +106,8 @@ def together(parts: Iterable[Part]) -> Part:
         {element: facts for part in parts for element, facts in part.outside.items()},
         _joined(pair for part in parts for pair in part.subjects.items()),
         {element: where for part in parts for element, where in part.surroundings.items()},
+        {element: said for part in parts for element, said in part.processing.items()},
+        {robot: said for part in parts for robot, said in part.of_robots.items()},
     )
 
 
@@ -131,22 +140,17 @@ def numbered(part: Part, profiles: Mapping[str, tuple[Profile, ...]], view: str)
         {number[element]: said for element, said in part.elements.items() if said},
         {index[key]: said for key, said in part.said.items() if said},
         {(number[v], names): tuple(sorted(map(index.__getitem__, keys))) for (v, names), keys in part.through.items()},
-        {number[element]: facts for element, facts in part.outside.items()},
-        {number[element]: tuple(sorted(groups)) for element, groups in part.subjects.items()},
-        {number[element]: where for element, where in part.surroundings.items()},
+        _by_number(number, part.outside),
+        _by_number(number, {element: tuple(sorted(groups)) for element, groups in part.subjects.items()}),
+        _by_number(number, part.surroundings),
+        _by_number(number, part.processing),
+        dict(sorted(part.of_robots.items())),
     )
-    return graph, _sorted(bound)
+    return graph, replace(bound, elements=dict(sorted(bound.elements.items())), flows=dict(sorted(bound.flows.items())))
 
 
-def _sorted(bound: Bound) -> Bound:
-    return Bound(
-        dict(sorted(bound.elements.items())),
-        dict(sorted(bound.flows.items())),
-        bound.through,
-        dict(sorted(bound.outside.items())),
-        dict(sorted(bound.subjects.items())),
-        dict(sorted(bound.surroundings.items())),
-    )
+def _by_number(number: Mapping[Element, int], said: Mapping[Element, V]) -> dict[int, V]:
+    return dict(sorted(((number[element], one) for element, one in said.items()), key=itemgetter(0)))
 
 
 def _joined(pairs: Iterable[tuple[K, tuple[V, ...]]]) -> dict[K, tuple[V, ...]]:

@@ -78,7 +78,7 @@ def merged(
 
 def _facts(entry: Stated) -> tuple[object, ...]:
     said = entry.outside
-    more = (said.encrypted, said.country, said.operator, said.recipient, said.transfer)
+    more = (said.encrypted, said.country, said.operator, said.recipient, said.transfer, said.contract)
     return (entry.kind, said.retention, said.backups, *more, entry.between)
 
 

@@ -19,6 +19,7 @@ from rosprivacy.analysis.non_ros import by_kind
 from rosprivacy.analysis.text import counted
 from rosprivacy.analysis.written_names import is_glob, literal, meant
 from rosprivacy.ingest.labels.label_file import OURS
+from rosprivacy.ingest.labels.stated_processing import two_of_one, united
 from rosprivacy.ingest.labels.surroundings import everywhere, joined
 from rosprivacy.ingest.policies.names import covered
 
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.bounds import Bounds
-    from rosprivacy.analysis.model import FlowGraph, NonRosFacts, Place, Statement
+    from rosprivacy.analysis.model import FlowGraph, NonRosFacts, Place, Processing, Statement
     from rosprivacy.ingest.labels.entries import Entry, FlowEntry
     from rosprivacy.ingest.labels.label_file import Labels
 
@@ -69,6 +70,7 @@ def join(
     through: dict[tuple[int, tuple[str, ...]], tuple[int, ...]] = {}
     subjects: dict[int, set[str]] = defaultdict(set)
     own: dict[int, Surroundings] = {}
+    processing: dict[int, list[tuple[tuple[int, int], Processing]]] = defaultdict(list)
     leaving = _leaving(graph)
     problems: list[InputError] = []
     for file in labels:
@@ -82,6 +84,8 @@ def join(
                     subjects[vertex].update(entry.subjects)
                 if entry.contexts:
                     own[vertex] = joined((own.get(vertex, NOT_STATED), Surroundings(entry.contexts)))
+                if entry.processing:
+                    processing[vertex].append((entry.rank, entry.processing))
             problems += _through(graph, leaving, entry, vertices, through)
         for flow in file.flows:
             indices = _flows(graph, leaving, names, flow)
@@ -99,8 +103,19 @@ def join(
         outside,
         subjects={vertex: tuple(sorted(groups)) for vertex, groups in sorted(subjects.items())},
         surroundings=everywhere(graph, own, joined((system, *(file.surroundings for file in labels)))),
+        processing={vertex: united(said) for vertex, said in sorted(processing.items())},
+        of_robots={"": whole} if (whole := _of_system(labels, problems)) else {},
     )
     return bound, problems
+
+
+def _of_system(labels: Iterable[Labels], problems: list[InputError]) -> Processing:
+    """What the tops of label files say; two of one rank that name different controllers are a problem."""
+
+    def differ(what: str, first: Processing, other: Processing) -> None:
+        problems.append(two_of_one(what, first, other, LabelError))
+
+    return united((((int(file.own), 0), file.processing) for file in labels), differ)
 
 
 def _check_work(names: _Names, labels: Iterable[Labels], bounds: Bounds) -> None:

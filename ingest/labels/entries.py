@@ -8,12 +8,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.model import GLOB, NAME, SEGMENT, STANDARD
+from rosprivacy.analysis.model import GLOB, NAME, SEGMENT, STANDARD, UNSTATED
 from rosprivacy.analysis.written_names import is_glob
 from rosprivacy.ingest.policies.names import literals
 
 if TYPE_CHECKING:
-    from rosprivacy.analysis.model import Place, Statement
+    from rosprivacy.analysis.model import Place, Processing, Statement
 
 EXACT = 1_000_000  # a name outranks every glob
 PROPOSED, SHIPPED, OWN = -1, STANDARD, 1  # tiers: infrastructure, standard channels, a person's own word (rule S13)
@@ -31,6 +31,10 @@ class Entry:
         Of a source: whom its data are about, in a person's words.
     contexts
         Of a source: where it works, some of ``CONTEXTS``.
+    processing
+        What the data there are processed for, and on which basis.
+    rank
+        Of the name, as of the statements.
     """
 
     kinds: tuple[str, ...]
@@ -38,6 +42,8 @@ class Entry:
     place: Place
     statements: tuple[Statement, ...]
     subjects: tuple[str, ...] = ()
+    processing: Processing = UNSTATED
+    rank: tuple[int, int] = (0, 0)
     contexts: tuple[str, ...] = ()
 
 

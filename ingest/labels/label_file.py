@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, shown
-from rosprivacy.analysis.model import Place, Surroundings
+from rosprivacy.analysis.model import UNSTATED, Place, Surroundings
 from rosprivacy.analysis.non_ros import EVERY
 from rosprivacy.ingest.labels.entries import OWN, PROPOSED, ROBOT, SHIPPED
 from rosprivacy.ingest.labels.label_reader import LabelReader, check_mundane
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from rosprivacy.analysis.bounds import Bounds
-    from rosprivacy.analysis.model import Diagnostic
+    from rosprivacy.analysis.model import Diagnostic, Processing
     from rosprivacy.ingest.labels.entries import Entry, FlowEntry
     from rosprivacy.ingest.labels.non_ros_reader import Limit, Stated
     from rosprivacy.ingest.reading.yaml_values import Value
@@ -55,6 +55,8 @@ class Labels:
         Whether it is about one robot of a fleet, and outranks its model's.
     surroundings
         Where the system works, as the top of the file states it.
+    processing
+        Who is responsible for the whole system, what it is for, on which basis.
     """
 
     file: str
@@ -67,6 +69,7 @@ class Labels:
     limits: tuple[Limit, ...] = ()
     own: bool = False
     surroundings: Surroundings = Surroundings()  # noqa: RUF009 - it is frozen
+    processing: Processing = UNSTATED
 
 
 def read_labels(
@@ -153,6 +156,7 @@ def _labels(reader: LabelReader, top: Value, data: bytes, *, shipped: bool = Fal
         tuple(reader.limits),
         own,
         reader.surroundings,
+        reader.processing,
     )
 
 
@@ -163,6 +167,8 @@ def unknown_categories(labels: Labels, vocabulary: Vocabulary) -> Iterator[Label
     named = {(name, said.place) for said in statements for name in (*said.categories, said.to)}
     named |= {(name, stated.place) for stated in labels.elements for name, _ in stated.outside.retention}
     named |= {(name, Place(labels.file, 0)) for name, _ in labels.limits}
+    processing = [labels.processing, *(entry.processing for entry in labels.entries)]
+    named |= {(name, one.place) for one in processing for name, _ in (*one.purposes, *one.bases)}
     for name, place in named:
         if name != EVERY and name not in vocabulary.categories:
             hint = "give parse_labels the ontologies that analyze gets"

@@ -13,10 +13,29 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.kernel.ranks import NONE_OF
-from rosprivacy.analysis.model import CLEANS, GLOB, NAME, Diagnostic, Method, Place, Severity, Statement, Surroundings
+from rosprivacy.analysis.model import (
+    CLEANS,
+    GLOB,
+    NAME,
+    UNSTATED,
+    Diagnostic,
+    Method,
+    Place,
+    Processing,
+    Severity,
+    Statement,
+    Surroundings,
+)
 from rosprivacy.ingest.labels.entries import EXACT, SHIPPED, Entry, FlowEntry, naming, specificity
 from rosprivacy.ingest.labels.name_reader import NameReader
 from rosprivacy.ingest.labels.non_ros_reader import is_non_ros, read_element, read_limits
+from rosprivacy.ingest.labels.stated_processing import (
+    OF_ELEMENT,
+    OF_SYSTEM,
+    read_processing,
+    read_system,
+    with_transfer,
+)
 from rosprivacy.ingest.labels.surroundings import read_contexts, read_country
 
 if TYPE_CHECKING:
@@ -33,12 +52,13 @@ SECTIONS = {
     "actions": ("action",),
 }
 SIX_LISTS = ("source", "leak", "conduit", "sanitizer", "sensitive", "mundane")
-NODE_KEYS = ("source", "leak", "sanitizer", "conduit", "derives", "subjects", "context", "absent", "note")
-SAYS_NOTHING = ("subjects", "context", "note")  # of what data does
+NODE_KEYS = ("source", "leak", "sanitizer", "conduit", "derives", "subjects", "context", *OF_ELEMENT, "absent", "note")
+SAYS_NOTHING = ("subjects", "context", *OF_ELEMENT, "note")  # of what data does
 CHANNEL_KEYS = ("only", "never", "note")
 FLOW_KEYS = ("from", "to", "only", "never", "note")
 OUTSIDE = ("elements", "limits")
 SURROUNDINGS = ("context", "country")  # of a system
+SYSTEM = (*OF_SYSTEM, *SURROUNDINGS)
 NONE = "none"  # in place of categories: takes back what labels of lower rank say (rule S7)
 LONGEST_GROUP = 100  # characters of a group of persons
 
@@ -55,6 +75,7 @@ class LabelReader(NameReader):
     elements: list[Stated] = field(default_factory=list)
     limits: list[Limit] = field(default_factory=list)
     surroundings: Surroundings = field(default_factory=Surroundings)
+    processing: Processing = UNSTATED
 
     def rank(self, specific: int) -> tuple[int, int]:
         """Return the rank of a statement."""
@@ -71,7 +92,8 @@ class LabelReader(NameReader):
 
     def _labels(self, top: Value) -> None:
         self.version(top, "labels", "label")
-        for key, line, value in self.entries_of(top, ("labels", *SURROUNDINGS, *SECTIONS, *OUTSIDE, "flows")):
+        self.system(top)
+        for key, line, value in self.entries_of(top, ("labels", *SYSTEM, *SECTIONS, *OUTSIDE, "flows")):
             if key in SURROUNDINGS:
                 self.surroundings = self.surrounded(self.surroundings, key, value)
             elif key in ("flows", *OUTSIDE):
@@ -84,6 +106,12 @@ class LabelReader(NameReader):
         if key == "context":
             return replace(known, contexts=read_contexts(self, value))
         return replace(known, country=read_country(self, value))
+
+    def system(self, top: Value) -> None:
+        """Read what the top says of the whole system; fleet files say it too."""
+        lines = [line for key, line, _ in top.entries if key in OF_SYSTEM]
+        if lines:
+            self.processing = read_system(self, top, Place(self.file, lines[0]))
 
     def outside(self, section: str, line: int, value: Value) -> None:
         """Read a section that fleet files have too."""
@@ -105,10 +133,11 @@ class LabelReader(NameReader):
         statements = tuple(self._node(labels, stated.place, self.rank(EXACT)))
         if stated.kind == "device" and all(key in SAYS_NOTHING for key, *_ in labels.entries):
             self.problem(line, f"device {shown(name)!r} does nothing", "say what comes from it: source: [Voice]")
-        self.elements.append(stated)
-        self.entries.append(
-            Entry((stated.kind,), name, stated.place, statements, self._subjects(labels), self._contexts(labels))
-        )
+        processing = self._processing(labels, stated.place)
+        facts = with_transfer(self, value, stated.outside, processing.bases)
+        self.elements.append(replace(stated, outside=facts))
+        about = self._subjects(labels), processing, self.rank(EXACT), self._contexts(labels)
+        self.entries.append(Entry((stated.kind,), name, stated.place, statements, *about))
 
     def _section(self, section: str, line: int, value: Value) -> None:
         if value.kind == "empty":
@@ -125,8 +154,11 @@ class LabelReader(NameReader):
             rank = self.rank(specificity(name))
             read = self._node if section == "nodes" else self._channel
             statements = tuple(replace(s, naming=naming(name)) for s in read(label, Place(self.file, at), rank))
-            about = (self._subjects(label), self._contexts(label)) if section == "nodes" else ()
-            self.entries.append(Entry(SECTIONS[section], name, Place(self.file, at), statements, *about))
+            place, of_node = Place(self.file, at), section == "nodes"
+            subjects = self._subjects(label) if of_node else ()
+            processing = self._processing(label, place) if of_node else UNSTATED
+            contexts = self._contexts(label) if of_node else ()
+            self.entries.append(Entry(SECTIONS[section], name, place, statements, subjects, processing, rank, contexts))
 
     def _node(self, label: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
         if label.kind == "empty":  # a line of --init that nobody has filled in yet
@@ -228,6 +260,10 @@ class LabelReader(NameReader):
         value = label.get("context")
         return () if value is None else read_contexts(self, value)
 
+    def _processing(self, label: Value, place: Place) -> Processing:
+        """What data there are processed for, and on which basis."""
+        return read_processing(self, label.entries, place, OF_ELEMENT)
+
     def _channel(self, label: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
         if label.kind == "empty":
             return
@@ -298,7 +334,7 @@ def check_mundane(reader: LabelReader, top: Value) -> None:
     """Refuse what a file of standard channels says beside that channels are mundane (rule S13)."""
     hint = "write channels: {/name: mundane} only; other labels go into a file for --labels"
     for key, line, _ in top.entries if top.kind == "map" else ():
-        if key in ("nodes", "flows", *OUTSIDE, *SIX_LISTS):
+        if key in ("nodes", "flows", *OF_SYSTEM, *OUTSIDE, *SIX_LISTS):
             reader.problem(line, f"{key} in a file of standard channels", hint)
     for entry in reader.entries:
         for statement in entry.statements if "node" not in entry.kinds else ():

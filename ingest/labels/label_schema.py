@@ -12,12 +12,15 @@ from rosprivacy.analysis.non_ros import RECIPIENTS, TRANSFERS
 from rosprivacy.ingest.labels.label_reader import LONGEST_GROUP, NONE, SAYS_NOTHING
 from rosprivacy.ingest.labels.name_reader import END_KINDS
 from rosprivacy.ingest.labels.non_ros_reader import CARRIERS
+from rosprivacy.ingest.labels.stated_processing import LONGEST
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from rosprivacy.analysis.model import Category
 
+_TEXT = {"type": "string", "pattern": "\\S", "maxLength": LONGEST}
+BASIS = {"type": ["string", "integer"], "description": "Such as 6(1)(f), 9(2)(h), 46(2)(c)."}
 END = {"type": "string", "minLength": 1}
 END_OF_KIND = {
     "type": "object",
@@ -53,6 +56,7 @@ def label_schema(categories: Iterable[Category]) -> dict[str, Any]:
         "additionalProperties": False,
         "properties": {
             "labels": {"const": 1, "description": "Version of the format."},
+            **processing_of_system(),
             "nodes": _section("node", "Labels of nodes, by absolute name or glob."),
             "channels": _section("channel", "Labels of topics, services and actions, by absolute name or glob."),
             "topics": _section("channel", "As channels, for topics only."),
@@ -62,6 +66,26 @@ def label_schema(categories: Iterable[Category]) -> dict[str, Any]:
             **non_ros_sections(),
         },
         "$defs": _definitions(list(categories)),
+    }
+
+
+def processing_of_system() -> dict[str, Any]:
+    """Return what the tops of label and fleet files say of the whole system."""
+    return {
+        "controller": {**_TEXT, "description": "Who is responsible (GDPR, Article 4(7)); of joint controllers all."},
+        "dpo": {**_TEXT, "description": "The data-protection officer, and how to reach them."},
+        **_processing(),
+    }
+
+
+def _processing() -> dict[str, Any]:
+    """What data are processed for, and on which basis: for all kinds of data, or for each."""
+    kinds = {"purpose": _TEXT, "legal_basis": BASIS}
+    words = {"purpose": "What data are processed for.", "legal_basis": "Such as 6(1)(f), 9(2)(h), 10."}
+    some = {key: {"anyOf": [one, {"type": "array", "minItems": 1, "items": one}]} for key, one in kinds.items()}
+    return {
+        key: {"description": f"{words[key]} By kind of data where it differs.", "anyOf": [one, _by_category(one)]}
+        for key, one in some.items()
     }
 
 
@@ -144,6 +168,7 @@ def _element(kind: str, labels: dict[str, Any]) -> dict[str, Any]:
         "country": {"type": "string", "pattern": "^[A-Z]{2}$", "description": "ISO 3166-1; quote NO."},
         "operator": {"type": "string", "minLength": 1, "description": "Who runs it."},
         "recipient": {"enum": list(RECIPIENTS)},
+        "contract": {"type": "string", "pattern": "\\S", "description": "Such as Article 28, with its date."},
         "transfer": {"enum": [*TRANSFERS, "none"], "description": "Basis of a transfer out of the EEA."},
     }
     if kind == "storage":
@@ -192,6 +217,7 @@ def _node(one: dict[str, Any], some: dict[str, Any], note: dict[str, Any]) -> di
                 "description": "Of a source: whom its data are about, such as residents or staff.",
             },
             "context": {**CONTEXT, "description": "Of a source: where it works, beside what is said of its system."},
+            **_processing(),
             "absent": {"type": "string", "minLength": 1, "description": "Why it is not on this robot; stands alone."},
             "note": note,
         }

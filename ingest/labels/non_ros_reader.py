@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 LONGEST = 200  # characters of a name
 CARRIERS = ("shared-memory", "side-channel")
-FACTS = ("country", "operator", "recipient", "transfer")
+FACTS = ("country", "operator", "recipient", "contract", "transfer")
 OF_KIND = {"storage": ("retention", "backups", "encrypted"), **dict.fromkeys(CARRIERS, ("between",))}
 TRUE, FALSE = ("true", "yes", "on"), ("false", "no", "off")
 Limit = tuple[str, Duration]  # category, how long it may be kept

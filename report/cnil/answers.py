@@ -10,42 +10,29 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import KINDS, MAY_REVEAL
-from rosprivacy.analysis.non_ros import ADEQUATE, INSIDE
-from rosprivacy.report.cnil.markup import (
-    Html,
-    bullets,
-    counted,
-    escaped,
-    harmless,
-    joined,
-    paragraph,
-    prose,
-    some,
-    strong,
-)
+from rosprivacy.analysis.non_ros import ADEQUATE, INSIDE, retention_of
+from rosprivacy.report.cnil.markup import Html, bullets, escaped, harmless, joined, paragraph, prose, strong
+from rosprivacy.report.cnil.told import NAMES
 from rosprivacy.report.element_counts import count_elements
+from rosprivacy.report.words.reasons import why_told
+from rosprivacy.report.words.typography import plain
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.answer import Analysis, Carried, Finding
     from rosprivacy.analysis.findings.sanitizing import Cleaning
+    from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.model import Element
+    from rosprivacy.report.cnil.told import Told
     from rosprivacy.report.inventory import Kind
 
     Stated = Mapping[tuple[str, str, str], Mapping[str, str]]
 
-NAMES = 30  # named in a row
 SHOWN = 50  # findings shown with their path, recipients
 THREATS = 100
 PROCESSOR = "processor"
 STORED = "storage-limitation"  # the kind of findings whose end is a storage, told under 'Kept in'
-NOTHING_FOLLOWED = Html(
-    "<p>No label names a source of personal data, so nothing was followed and nothing can be said here.</p>"
-)
-NO_RECIPIENT = Html("The analysis knows of no recipient that personal data can reach under the labels given.")
-PERSONS_TO_COMPLETE = "Persons concerned, purpose, who has access: to be completed."
-NO_STORAGE = Html("No storage that personal data reaches is stated. What nodes and recipients keep: to be completed.")
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,11 +46,13 @@ class Known:
     stated
         Identity of a storage or recipient -> what people stated of it (``Answer.stated``).
     accepted
-        Id of a finding -> why a person accepted it (``Answer.accepted``).
+        Id of a finding -> why a person accepted it.
     subjects
         Identity of a source -> groups of persons that its data are about.
-    retention
-        (element, category) -> how long it is kept there, empty where nobody states it (``Answer.retention``).
+    hierarchy
+        Of the categories.
+    told
+        The words of the reader.
     """
 
     analysis: Analysis
@@ -71,7 +60,8 @@ class Known:
     stated: Stated
     accepted: Mapping[str, str]
     subjects: Mapping[tuple[str, str, str], tuple[str, ...]]
-    retention: Callable[[Element, str], str]
+    hierarchy: Hierarchy
+    told: Told
 
     def of(self, element: Element, what: str) -> str:
         """Return what was stated of an element, empty if nothing."""
@@ -86,6 +76,28 @@ class Known:
         """Return the storages that personal data get to."""
         return _storages(carried.element for carried in self.analysis.carried)
 
+    def kept(self, element: Element, category: str) -> str:
+        """Return how long an element keeps a category, with its backups; empty where nobody states it (rule S9)."""
+        facts = self.analysis.outside.get(element)
+        stated = retention_of(facts, category, self.hierarchy) if facts else []
+        return self._kept(", ".join(self.told.words.duration(str(one)) for one in stated), element)
+
+    def kept_in_all(self, element: Element) -> str:
+        """Return how long an element keeps what, as stated; empty where nobody states it."""
+        facts = self.analysis.outside.get(element)
+        words, stated = self.told.words, facts.retention if facts else ()
+        said = [(category, words.duration(str(one))) for category, one in stated]
+        rows = [words.pair(self.told.data(category), one) if category else one for category, one in said]
+        return self._kept(", ".join(rows), element)
+
+    def _kept(self, duration: str, element: Element) -> str:
+        facts, words = self.analysis.outside.get(element), self.told.words
+        if not duration or not facts or not facts.backups:
+            return plain(duration)
+        if facts.backups is True:
+            return plain(words("o.kept.backups.unknown", duration=duration))
+        return plain(words("o.kept.backups", duration=duration, more=words.duration(str(facts.backups))))
+
     def findings(self) -> list[Finding]:
         """Return what is to be assessed, by kind of data."""
         return [finding for kind in self.kinds for finding in kind.findings]
@@ -93,239 +105,251 @@ class Known:
 
 def data(known: Known) -> Html:
     """Return the answer to 121: the data, where they come from, who can get them, how long they are kept."""
-    return joined(*(part for kind in known.kinds for part in _data_of(kind, known))) or NOTHING_FOLLOWED
+    return joined(*(part for kind in known.kinds for part in _data_of(kind, known))) or nothing(known)
+
+
+def nothing(known: Known) -> Html:
+    """Return what is said where no data were followed."""
+    return paragraph(known.told("cnil.nothing"))
 
 
 def _data_of(kind: Kind, known: Known) -> Iterator[Html]:
-    category = kind.category
-    name = joined(escaped(category.title), Html(" ("), escaped(category.name), Html(")"))
-    yield paragraph(strong(name), Html(": "), prose(category.definition))
+    category, told = kind.category, known.told
+    name = joined(_title(kind, told), Html(" ("), escaped(category.name), Html(")"))
+    yield paragraph(told.pair(strong(name), told.prose(category.text("definition", told.words.language))))
     stored = [
-        f"{_name(element)} ({known.retention(element, category.name) or 'retention not stated'})"
+        f"{told.name(element)} ({known.kept(element, category.name) or told('cnil.kept.unstated')})"
         for element in known.storages_of(category.name)
     ]
     persons = sorted({group for source in kind.sources for group in known.subjects.get(source.identity, ())})
     yield bullets(
         [
-            *_lines("Brought in by", kind.sources),
-            *(_line("Made", _made(element, of)) for element, of in kind.made),
-            *_law(kind),
-            _line("Recipients that it can reach", _recipients(kind)),
-            _line("Kept in", some(stored, NAMES) or Html("no storage is stated")),
-            *([_line("Persons concerned, as labels name them", some(persons, NAMES))] if persons else []),
-            Html("Purpose, who has access: to be completed." if persons else PERSONS_TO_COMPLETE),
+            *told.lines("cnil.brought", kind.sources),
+            *(told.line("cnil.made", _made(element, of, told)) for element, of in kind.made),
+            *_law(kind, told),
+            told.line("cnil.recipients", _recipients(kind, told)),
+            told.line("cnil.kept", told.some(stored) or told("cnil.kept.none")),
+            *([told.line("cnil.persons", told.some(persons))] if persons else []),
+            told("cnil.purpose.open" if persons else "cnil.persons.open"),
         ]
     )
 
 
 def life_cycle(known: Known) -> Html:
     """Return the answer to 122: from source to recipient, with the shortest path of each finding."""
-    parts = [part for kind in known.kinds for part in _life_of(kind)]
+    told = known.told
+    parts = [part for kind in known.kinds for part in _life_of(kind, told)]
     findings = known.findings()
     if findings:
-        parts.append(paragraph(strong(Html("Shortest path to each recipient"))))
-        parts.append(bullets(_bounded([_way(finding, known) for finding in findings[:SHOWN]], len(findings))))
-    parts.append(paragraph(Html("What happens outside the analysed system, archiving and erasure: to be completed.")))
-    return joined(*parts) if known.kinds else NOTHING_FOLLOWED
+        parts.append(paragraph(strong(told("cnil.shortest"))))
+        parts.append(told.rows([_way(finding, known) for finding in findings[:SHOWN]], len(findings)))
+    parts.append(paragraph(told("cnil.beyond")))
+    return joined(*parts) if known.kinds else nothing(known)
 
 
-def _life_of(kind: Kind) -> Iterator[Html]:
-    yield paragraph(strong(escaped(kind.category.title)))
+def _life_of(kind: Kind, told: Told) -> Iterator[Html]:
+    yield paragraph(strong(_title(kind, told)))
     users = [element for element in kind.reached if not element.is_channel]
-    channels = counted(len(kind.reached) - len(users), "channel")
+    channels = told.count(len(kind.reached) - len(users), "cnil.channel")
+    elements = told.count(len(users), "element")
     yield bullets(
         [
-            *_lines("Collection", kind.sources),
-            *(_line("Made", _made(element, of)) for element, of in kind.made),
-            _line("Use", joined(counted(len(users), "element"), Html(" over "), channels, Html(": "), _names(users))),
-            *(_line("Cleaning", _cleaning(cleaning)) for cleaning in kind.cleaned),
-            *_lines("Storage", _storages(kind.reached)),
-            _line("Recipients", _recipients(kind)),
-            *_lines("Not reviewed yet", kind.open),
+            *told.lines("cnil.collection", kind.sources),
+            *(told.line("cnil.made", _made(element, of, told)) for element, of in kind.made),
+            told.line("cnil.use", told("cnil.use.of", elements=elements, channels=channels, names=told.names(users))),
+            *(told.line("cnil.cleaning", _cleaning(cleaning, told)) for cleaning in kind.cleaned),
+            *told.lines("cnil.storage", _storages(kind.reached)),
+            told.line("cnil.to", _recipients(kind, told)),
+            *told.lines("cnil.unreviewed", kind.open),
         ]
     )
 
 
+def _title(kind: Kind, told: Told) -> Html:
+    return escaped(kind.category.text("title", told.words.language))
+
+
 def supports(known: Known) -> Html:
     """Return the answer to 123: what carries the data, by its kind."""
+    told = known.told
     carries: dict[str, dict[str, Carried]] = {}
     for carried in known.analysis.carried:
-        carries.setdefault(carried.element.kind, {})[_name(carried.element)] = carried
+        carries.setdefault(carried.element.kind, {})[told.name(carried.element)] = carried
     parts = []
     for kind in (kind for kind in KINDS if kind in carries):
-        rows = [_line(escaped(name), _held(carried)) for name, carried in list(carries[kind].items())[:NAMES]]
-        parts.append(paragraph(strong(counted(len(carries[kind]), "ROS node" if kind == "node" else kind))))
-        parts.append(bullets(_bounded(rows, len(carries[kind]))))
-    parts.append(paragraph(Html("Computers, networks, persons and paper: to be completed.")))
-    return joined(*parts) if carries else NOTHING_FOLLOWED
+        rows = [told.pair(escaped(name), _held(carried, told)) for name, carried in list(carries[kind].items())[:NAMES]]
+        parts.append(paragraph(strong(told.count(len(carries[kind]), f"cnil.{kind}"))))
+        parts.append(told.rows(rows, len(carries[kind])))
+    parts.append(paragraph(told("cnil.paper")))
+    return joined(*parts) if carries else nothing(known)
 
 
 def minimisation(known: Known) -> Html:
     """Return the answer to 213: who gets which kind; whether each needs it is a person's question."""
-    parts = []
+    told, parts = known.told, []
     for kind in known.kinds:
         users = [e for e in kind.reached if not e.is_channel and e not in kind.sources]
-        number = joined(Html(": "), counted(len(users), "element"), Html(" that did not bring it in can get it."))
         rows = [
-            *_lines("They are", users),
-            *_lines("Not reviewed for it", kind.open),
-            *_lines("Cleaned on the way by", [cleaning.element for cleaning in kind.cleaned]),
-            Html("Does each of them need this kind of data for the purpose? To be completed."),
+            *told.lines("cnil.they", users),
+            *told.lines("cnil.unreviewed.for", kind.open),
+            *told.lines("cnil.cleaned.by", [cleaning.element for cleaning in kind.cleaned]),
+            told("cnil.need"),
         ]
-        parts += [paragraph(strong(escaped(kind.category.title)), number), bullets(rows)]
-    return joined(*parts) or NOTHING_FOLLOWED
+        get = told("cnil.get", elements=told.count(len(users), "element"))
+        parts += [paragraph(told.pair(strong(_title(kind, told)), get)), bullets(rows)]
+    return joined(*parts) or nothing(known)
 
 
 def retention(known: Known) -> Html:
     """Return the answer to 215: how long each storage keeps what gets there."""
+    told = known.told
     stored = [carried for carried in known.analysis.carried if carried.element.kind == "storage"]
     rows = [
-        _line(
-            escaped(_name(carried.element)),
-            joined(_held(carried), Html("; "), _stated("retention", known.of(carried.element, "retention"))),
+        told.pair(
+            escaped(told.name(carried.element)),
+            joined(
+                _held(carried, told), Html("; "), _stated("cnil.retention", known.kept_in_all(carried.element), told)
+            ),
         )
         for carried in stored[:SHOWN]
     ]
-    why = paragraph(Html("Why each duration is needed: to be completed."))
-    return joined(bullets(_bounded(rows, len(stored))), why) if rows else paragraph(NO_STORAGE)
+    why = paragraph(told("cnil.why.duration"))
+    return joined(told.rows(rows, len(stored)), why) if rows else paragraph(told("cnil.no.storage"))
 
 
 def processors(known: Known) -> Html:
     """Return the answer to 226: who processes on behalf of the controller, as people stated it; empty if nobody did."""
     reached = [carried.element for carried in known.analysis.carried]
     named = [element for element in reached if known.of(element, "role") == PROCESSOR]
-    rows = [_line(escaped(_name(element)), _named_processor(element, known)) for element in named[:SHOWN]]
-    return bullets(_bounded(rows, len(named))) if rows else Html("")
+    told = known.told
+    rows = [told.pair(escaped(told.name(element)), _named_processor(element, known)) for element in named[:SHOWN]]
+    return told.rows(rows, len(named)) if rows else Html("")
 
 
 def _named_processor(element: Element, known: Known) -> Html:
-    who = known.of(element, "operator") or "to be named"
+    told = known.told
+    who = known.of(element, "operator") or told("cnil.processor.unnamed")
     where = f" ({known.of(element, 'country')})" if known.of(element, "country") else ""
-    return joined(escaped(f"processor: {who}{where}"), Html("; contract under Article 28 GDPR: to be completed"))
+    return joined(told("cnil.processor", who=escaped(f"{who}{where}")), Html("; "), told("cnil.contract"))
 
 
 def transfers(known: Known) -> Html:
     """Return the answer to 227: where each recipient is, and on which basis data goes there."""
+    told = known.told
     leaks = [finding.leak for finding in known.findings()]
     outside = [c.element for c in known.analysis.carried if c.element.kind in ("external-system", "storage")]
     recipients = {element.identity: element for element in (*leaks, *outside)}
     rows = [
-        _line(escaped(_name(element)), joined(_stated("country", known.of(element, "country")), _basis(element, known)))
+        told.pair(
+            escaped(told.name(element)),
+            joined(_stated("cnil.country", known.of(element, "country"), told), _basis(element, known)),
+        )
         for element in list(recipients.values())[:SHOWN]
     ]
-    return bullets(_bounded(rows, len(recipients))) if rows else paragraph(NO_RECIPIENT)
+    return told.rows(rows, len(recipients)) if rows else paragraph(told("cnil.no.recipient"))
 
 
 def _basis(element: Element, known: Known) -> Html:
     """On what data leaves the EEA there; that it does not leave it is no transfer of chapter V."""
-    facts = known.analysis.outside.get(element)
+    facts, told = known.analysis.outside.get(element), known.told
     if facts and facts.area == INSIDE:
-        return Html(", in the EEA: no transfer to a third country")
+        return joined(Html(", "), told("cnil.inside"))
     if facts and facts.area == ADEQUATE and not facts.transfer:
-        return Html(", adequacy decision (Article 45 GDPR)")
-    return joined(Html("; "), _stated("basis of a transfer", known.of(element, "basis")))
+        return joined(Html(", "), told("cnil.adequate"))
+    basis = known.of(element, "basis")
+    in_words = basis if told.words.language == "en" else told.words.known(f"transfer.{basis}", basis)
+    return joined(Html("; "), _stated("cnil.basis", in_words, told))
 
 
 def threats(known: Known) -> list[str]:
     """Return the answer to 322: the paths to assess, and what nobody has reviewed. Neither text nor HTML can harm."""
-    findings = known.findings()
+    findings, told = known.findings(), known.told
     said = [_threat(finding, known) for finding in findings[:THREATS]]
     if len(findings) > THREATS:
-        said.append(f"{len(findings) - THREATS:,} more paths to assess")
+        said.append(told.bare("cnil.threats.more", n=len(findings) - THREATS))
     if known.analysis.open:
         unreviewed = count_elements(question.element for question in known.analysis.open).elements
-        said.append(f"{counted(unreviewed, 'element')} reached by personal data and not reviewed")
+        said.append(told.bare("cnil.threat.open", elements=told.count(unreviewed, "element")))
     open_to_all = [element for element in known.storages() if known.of(element, "encrypted") == "no"]
-    said += [harmless(f"data at rest not encrypted: {_name(element)}") for element in open_to_all[:THREATS]]
+    said += [told.bare("cnil.threat.unencrypted", element=told.name(element)) for element in open_to_all[:THREATS]]
     return said
 
 
 def _threat(finding: Finding, known: Known) -> str:
-    what = f"{_form(finding)}{finding.category} can get from {_name(finding.source)} to {_name(finding.leak)}"
-    why = harmless(f"; {finding.reason}") if finding.reason else ""
-    decided = f", accepted: {known.accepted[finding.id]}" if finding.id in known.accepted else ""
-    return f"{harmless(what)}{why} (path to assess {finding.id}{harmless(decided)})"
-
-
-def _line(what: str, said: Html) -> Html:
-    """One line of a list; ``what`` is ours or escaped."""
-    return Html(f"{what}: {said}")
-
-
-def _lines(what: str, elements: Collection[Element]) -> list[Html]:
-    """One line of names, none without them."""
-    return [_line(what, _names(elements))] if elements else []
-
-
-def _bounded(rows: list[Html], number: int) -> list[Html]:
-    """Rows, and how many more there are."""
-    return [*rows, Html(f"and {number - len(rows):,} more")] if number > len(rows) else rows
-
-
-def _name(element: Element) -> str:
-    kind = "" if element.is_node else f"{element.kind} "
-    return f"{kind}{element.full_name}"
-
-
-def _names(elements: Collection[Element]) -> Html:
-    return some([_name(element) for element in elements], NAMES) if elements else Html("none")
+    told = known.told
+    what = told.bare(
+        "cnil.threat",
+        data=told.data(finding.category, pseudonymised=finding.pseudonymised),
+        source=told.name(finding.source),
+        leak=told.name(finding.leak),
+    )
+    why = f"; {harmless(plain(why_told(finding.why, told.words, told.data)))}" if finding.why else ""
+    accepted = known.accepted.get(finding.id)
+    decided = f", {told.bare('cnil.accepted', why=accepted)}" if accepted else ""
+    return f"{what}{why} ({told.bare('cnil.threat.id', id=finding.id)}{decided})"
 
 
 def _storages(elements: Iterable[Element]) -> list[Element]:
     return [element for element in elements if element.kind == "storage"]
 
 
-def _form(finding: Finding) -> str:
-    return "pseudonymised " if finding.pseudonymised else ""
+def _made(element: Element, of: str, told: Told) -> Html:
+    return told("cnil.makes", element=escaped(told.name(element)), of=escaped(told.data(of)))
 
 
-def _made(element: Element, of: str) -> Html:
-    return joined(escaped(_name(element)), Html(" makes it of "), escaped(of))
+def _held(carried: Carried, told: Told) -> Html:
+    hidden = (told.data(name, pseudonymised=True) for name in carried.pseudonymised)
+    return told.some([*map(told.data, carried.categories), *hidden])
 
 
-def _held(carried: Carried) -> Html:
-    return some([*carried.categories, *(f"pseudonymised {name}" for name in carried.pseudonymised)], NAMES)
+def _cleaning(cleaning: Cleaning, told: Told) -> Html:
+    still = f" ({told('cnil.still')})" if cleaning.method == "pseudonymise" else ""
+    taken = "" if cleaning.stated else f", {told('cnil.taken')}"
+    return told.pair(
+        escaped(told.name(cleaning.element)), Html(f"{told(f'cnil.method.{cleaning.method}')}{still}{taken}")
+    )
 
 
-def _cleaning(cleaning: Cleaning) -> Html:
-    still = " (the data is still personal)" if cleaning.method == "pseudonymise" else ""
-    taken = "" if cleaning.stated else ", taken because the label states no method"
-    return joined(escaped(_name(cleaning.element)), Html(": "), escaped(f"{cleaning.method}{still}{taken}"))
-
-
-def _law(kind: Kind) -> Iterator[Html]:
+def _law(kind: Kind, told: Told) -> Iterator[Html]:
     """What a person has to look up; of what such data may only reveal, the names."""
+    language = told.words.language
     for legal in kind.law:
         if legal.verdict != MAY_REVEAL:
-            condition = f": {prose(legal.condition)}" if legal.condition else ""
-            said = f"{escaped(legal.name)} ({escaped(legal.verdict)}{condition}), law as of {escaped(legal.as_of)}"
-            yield _line("Law to check", Html(said))
-    revealed = list(dict.fromkeys(legal.name for legal in kind.law if legal.verdict == MAY_REVEAL))
+            verdict = told(f"cnil.verdict.{legal.verdict}")
+            condition = legal.text("condition", language)
+            in_full = told.pair(verdict, told.prose(condition)) if condition else verdict
+            as_of = told("cnil.law.as.of", date=escaped(told.words.date(legal.as_of)))
+            yield told.line("cnil.law", Html(f"{escaped(legal.text('name', language))} ({in_full}), {as_of}"))
+    revealed = list(dict.fromkeys(legal.text("name", language) for legal in kind.law if legal.verdict == MAY_REVEAL))
     if revealed:
-        yield _line("May reveal what these speak of", some(revealed, NAMES))
+        yield told.line("cnil.reveals", told.some(revealed))
     if kind.category.article9 == "no":
-        yield _line("Not Article 9 GDPR by itself", prose(kind.category.reason))
+        yield told.line("cnil.no.article9", told.prose(kind.category.text("reason", language)))
     if kind.category.article9 == "unknown":
-        yield Html("Whether Article 9 GDPR applies to such data is not stated: to be completed.")
+        yield told("cnil.unknown.article9")
 
 
-def _recipients(kind: Kind) -> Html:
+def _recipients(kind: Kind, told: Told) -> Html:
     outside = [finding for finding in kind.findings if finding.kind != STORED]
-    names = [_name(f.leak) + (" (pseudonymised)" if f.pseudonymised else "") for f in outside]
-    found = some(list(dict.fromkeys(names)), NAMES) or Html("none found under the labels given")
-    unknown = joined(Html("; not reviewed: "), counted(len(kind.open), "element")) if kind.open else Html("")
-    return joined(found, unknown)
+    hidden = f" ({told('cell.hidden')})"
+    names = [told.name(f.leak) + (hidden if f.pseudonymised else "") for f in outside]
+    found = told.some(list(dict.fromkeys(names))) or told("cnil.none.found")
+    if not kind.open:
+        return found
+    return joined(found, Html("; "), told("cnil.not.reviewed", elements=told.count(len(kind.open), "element")))
 
 
 def _way(finding: Finding, known: Known) -> Html:
-    names = [_name(element) for element in finding.witness]
+    told = known.told
+    names = [escaped(told.name(element)) for element in finding.witness]
     left_out = len(names) - NAMES
     if left_out > 0:
-        names = [*names[: NAMES // 2], f"{left_out} more", *names[-(NAMES // 2) :]]
-    decided = Html(f" (accepted: {prose(known.accepted[finding.id])})") if finding.id in known.accepted else Html("")
-    path = Html(" → ".join(escaped(name) for name in names))
-    return joined(escaped(f"{_form(finding)}{finding.category}"), Html(": "), path, decided)
+        names = [*names[: NAMES // 2], told("cnil.way.more", n=left_out), *names[-(NAMES // 2) :]]
+    accepted = known.accepted.get(finding.id)
+    decided = Html(f" ({told('cnil.accepted', why=prose(accepted))})") if accepted else Html("")
+    data = escaped(told.data(finding.category, pseudonymised=finding.pseudonymised))
+    return joined(told.pair(data, Html(" → ".join(names))), decided)
 
 
-def _stated(what: str, value: str) -> Html:
-    return _line(what, escaped(value) if value else Html("not stated"))
+def _stated(key: str, value: str, told: Told) -> Html:
+    return told.line(key, escaped(value) if value else told("not.stated"))

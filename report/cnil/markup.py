@@ -6,14 +6,13 @@ In: any text. Out: ``Html``, which only the functions here make, so that a type 
 from __future__ import annotations
 
 import html
-from itertools import islice
 from typing import TYPE_CHECKING, NewType
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.text import one_line
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable
+    from collections.abc import Iterable
 
 Html = NewType("Html", str)
 _LOOK_ALIKES = str.maketrans({"<": "‹", ">": "›", "&": "＆", '"': "”", "'": "’"})
@@ -61,23 +60,3 @@ def bullets(parts: Iterable[Html]) -> Html:
     """Return pieces as a list; nothing where there are none."""
     items = "".join(f"<li>{part}</li>" for part in parts)
     return Html(f"<ul>{items}</ul>" if items else "")
-
-
-def counted(number: int, thing: str) -> Html:
-    """Return a number with what it counts.
-
-    >>> counted(1, "node"), counted(1200, "node")
-    ('1 node', '1,200 nodes')
-    """
-    return Html(f"{number:,} {escaped(thing)}{'' if number == 1 else 's'}")
-
-
-def some(names: Collection[str], most: int) -> Html:
-    """Return names in a row, and how many more there are than the most that are named.
-
-    >>> some(["a", "b", "c"], 2)
-    'a, b and 1 more'
-    """
-    row = ", ".join(escaped(name) for name in islice(names, most))
-    more = len(names) - most
-    return Html(f"{row} and {more:,} more" if more > 0 else row)

@@ -6,7 +6,7 @@ as work begun. All is for a person to check: no evaluation is filled, no gauge i
 
 Source: the tool's ``importData``. It needs the four lists, goes through them unguarded, and takes texts as HTML; list
 answers and titles of measures as text in one view and as HTML in another, so these have nothing that HTML reads.
-The answers are in English: the tool shows its questions in the reader's language, and translates no answer.
+The tool shows its questions in the reader's language and translates no answer, so the answers are in one of three.
 """
 
 from __future__ import annotations
@@ -17,53 +17,49 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import Method
 from rosprivacy.analysis.modes import View
-from rosprivacy.report import robots
 from rosprivacy.report.cnil import answers as cnil_answers
-from rosprivacy.report.cnil.answers import NAMES, Known
-from rosprivacy.report.cnil.markup import Html, bullets, counted, escaped, joined, paragraph, prose
+from rosprivacy.report.cnil.answers import Known
+from rosprivacy.report.cnil.markup import Html, escaped, joined, paragraph
+from rosprivacy.report.cnil.told import NAMES, Told
 from rosprivacy.report.element_counts import count_elements
 from rosprivacy.report.inventory import kinds_of
+from rosprivacy.report.words.words import Words
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.analysis.decisions import Decision
     from rosprivacy.analysis.findings.sanitizing import Cleaning
     from rosprivacy.analysis.fleet.patterns import FleetView
     from rosprivacy.analysis.model import FlowGraph
     from rosprivacy.report.answer import Answer
 
-TITLES = {
-    Method.ANONYMISE: "Anonymisation on the way",
-    Method.AGGREGATE: "Aggregation on the way",
-    Method.DROP: "Data taken out on the way",
-    Method.PSEUDONYMISE: "Pseudonymisation on the way",
-}  # at most 120 characters, and nothing that HTML reads
-ACCESS, DENIED, STORAGE = "Access control by SROS 2 policies", "Connections denied by policy", "Encryption of storages"
-GOVERNANCE = (
-    "Whether the policies are enforced, and whether what is sent is encrypted, stands in the governance files of the "
-    "system: to be completed."
-)
+METHODS = (Method.ANONYMISE, Method.AGGREGATE, Method.DROP, Method.PSEUDONYMISE)  # in the order of the measures
 PLACEHOLDER = "measures.default_placeholder"  # the tool's own key
 
 
-def cnil_pia(answer: Answer, created: str) -> dict[str, Any]:
+def cnil_pia(answer: Answer, created: str, language: str = "en") -> dict[str, Any]:
     """Return the file's content.
 
     Parameters
     ----------
     created
         Time as ISO 8601; the tool sorts by it.
+    language
+        Of the answers: ``en``, ``de`` or ``fr``.
     """
     view, vocabulary, assumptions = answer.fleet, answer.vocabulary, answer.assumptions
     analysis = _of_shown_robots(answer.shown, view) if view else answer.shown
     kinds = kinds_of(analysis, vocabulary.categories, vocabulary.hierarchy)
-    known = Known(analysis, kinds, answer.stated, answer.accepted, answer.subjects, answer.retention)
+    told = Told(Words(language), vocabulary.categories)
+    accepted = _accepted(answer, told.words)
+    known = Known(analysis, kinds, answer.stated, accepted, answer.subjects, vocabulary.hierarchy, told)
     measures = list(_measures(known))
-    note = _note(analysis, assumptions, robots.note(view) if view else "")
+    note = _note(analysis, assumptions, _fleet(view, told) if view else "", told)
     texts = {
         121: cnil_answers.data(known),
-        122: joined(cnil_answers.life_cycle(known), _read(assumptions)),
+        122: joined(cnil_answers.life_cycle(known), _read(assumptions, told)),
         123: cnil_answers.supports(known),
         213: cnil_answers.minimisation(known),
         215: cnil_answers.retention(known),
@@ -75,7 +71,7 @@ def cnil_pia(answer: Answer, created: str) -> dict[str, Any]:
     answers = [(number, {"text": joined(text, note), "gauge": 0, "list": []}) for number, text in sorted(texts.items())]
     answers += [(number, {"text": None, "gauge": None, "list": said}) for number, said in lists.items() if said]
     return {
-        "pia": _pia(assumptions, created),
+        "pia": _pia(assumptions, created, told),
         "answers": [
             {"id": order, "reference_to": number, "data": data, "created_at": created, "updated_at": created}
             for order, (number, data) in enumerate(answers, 1)
@@ -107,11 +103,35 @@ def _of_shown_robots(analysis: Analysis, view: FleetView) -> Analysis:
     return replace(analysis, graph=replace(graph, flows=kept(graph.flows), denied=kept(graph.denied)))
 
 
-def _pia(assumptions: Mapping[str, Any], created: str) -> dict[str, Any]:
+def _accepted(answer: Answer, words: Words) -> dict[str, str]:
+    """Id of a finding -> why a person accepted it: reason, owner, legal basis, until when (rule S10)."""
+    held = ((f.id, answer.decided.valid(f)) for f in answer.analysis.findings if f.accepted) if answer.decided else ()
+    return {finding: _why(decision, words) for finding, decision in held if decision}
+
+
+def _why(decision: Decision, words: Words) -> str:
+    until = words("cnil.until", date=words.date(decision.expires)) if decision.expires else ""
+    said = ", ".join(part for part in (decision.owner, *map(words.basis, decision.legal_basis), until) if part)
+    return f"{decision.reason} ({said})" if said else decision.reason
+
+
+def _fleet(view: FleetView, told: Told) -> Html:
+    """What a reader has to know who sees the robots that are shown only."""
+    members = view.likeness.members
+    robots = told.count(sum(map(len, members.values())), "robot")
+    alike = {robot: len(some) for robot, some in members.items() if len(some) > 1}
+    if not alike:
+        return told("cnil.fleet", robots=robots)
+    rows = [told("cnil.fleet.for", robot=escaped(robot), n=number) for robot, number in alike.items()]
+    more = [told("more", n=len(rows) - NAMES)] if len(rows) > NAMES else []
+    return told("cnil.fleet.alike", robots=robots, rows=Html(", ".join([*rows[:NAMES], *more])))
+
+
+def _pia(assumptions: Mapping[str, Any], created: str, told: Told) -> dict[str, Any]:
     """The record itself. Names are empty texts, not null: the tool sorts by them."""
     files = [entry["file"] for entry in assumptions.get("fleet") or assumptions.get("policies") or ()]
-    named = shown(files[0]) if files else "from the database"
-    more = f" and {len(files) - 1} more" if len(files) > 1 else ""
+    named = shown(files[0]) if files else told("cnil.database")
+    more = f" {told('more', n=len(files) - 1)}" if len(files) > 1 else ""
     return {
         "name": f"rosprivacy: {named}{more}",
         "category": "",
@@ -138,59 +158,59 @@ def _pia(assumptions: Mapping[str, Any], created: str) -> dict[str, Any]:
 
 
 def _measures(known: Known) -> Iterator[tuple[str, Html]]:
-    """(title, content) of what the graph shows to protect data."""
-    graph = known.analysis.graph
+    """(title, content) of what the graph shows to protect data; titles are at most 120 characters."""
+    graph, told = known.analysis.graph, known.told
     if graph.profiles:
-        yield ACCESS, paragraph(_access(graph), Html(GOVERNANCE))
+        yield told.bare("cnil.title.access"), paragraph(_access(graph, told), Html(" "), told("cnil.governance"))
     if graph.denied:
         pairs = sorted({(graph.elements[f.source].name, graph.elements[f.target].name) for f in graph.denied})
-        yield DENIED, _rows([joined(escaped(source), Html(" to "), escaped(target)) for source, target in pairs])
+        ends = [told("f.from.to", source=escaped(source), leak=escaped(target)) for source, target in pairs]
+        yield told.bare("cnil.title.denied"), _rows(ends, told)
     cleaned = [cleaning for kind in known.kinds for cleaning in kind.cleaned]
-    for method, title in TITLES.items():
-        done = [_done(cleaning) for cleaning in cleaned if cleaning.method == method]
+    for method in METHODS:
+        done = [_done(cleaning, told) for cleaning in cleaned if cleaning.method == method]
         if done:
-            still = [] if method.ends else [paragraph(Html("The data is still personal (GDPR, recital 26)."))]
-            yield title, joined(_rows(done), *still)
+            still = [] if method.ends else [paragraph(told("cnil.recital26"))]
+            yield told.bare(f"cnil.title.{method}"), joined(_rows(done, told), *still)
     encrypted = [element.name for element in known.storages() if known.of(element, "encrypted") == "yes"]
     if encrypted:
-        yield STORAGE, _rows([joined(escaped(name), Html(": encrypted at rest, as stated")) for name in encrypted])
+        rows = [told.pair(escaped(name), told("cnil.encrypted")) for name in encrypted]
+        yield told.bare("cnil.title.encrypted"), _rows(rows, told)
 
 
-def _access(graph: FlowGraph) -> Html:
-    enclaves = counted(len({profile.enclave for profile in graph.profiles}), "enclave")
-    profiles = counted(len({(profile.enclave, profile.node) for profile in graph.profiles}), "profile")
-    flows = counted(len(graph.flows), "connection")
-    if graph.view == View.enforced:
-        return Html(f"In the enforced view {profiles} in {enclaves} allow {flows}. ")
-    return Html(
-        f"In the declared view {profiles} in {enclaves} allow {flows}. DDS enforces per enclave: a node can do "
-        "whatever its enclave may (enforced view). "
+def _access(graph: FlowGraph, told: Told) -> Html:
+    return told(
+        "cnil.access.enforced" if graph.view == View.enforced else "cnil.access.declared",
+        enclaves=told.count(len({profile.enclave for profile in graph.profiles}), "enclave"),
+        profiles=told.count(len({(profile.enclave, profile.node) for profile in graph.profiles}), "cnil.profile"),
+        flows=told.count(len(graph.flows), "cnil.connection"),
     )
 
 
-def _done(cleaning: Cleaning) -> Html:
-    how = Html("" if cleaning.stated else " (no method stated)")
-    return joined(escaped(cleaning.element.name), Html(": "), escaped(cleaning.category), how)
+def _done(cleaning: Cleaning, told: Told) -> Html:
+    how = Html("" if cleaning.stated else f" ({told('cnil.no.method')})")
+    return joined(told.pair(escaped(cleaning.element.name), escaped(told.data(cleaning.category))), how)
 
 
-def _rows(rows: list[Html]) -> Html:
-    more = [Html(f"and {len(rows) - NAMES:,} more")] if len(rows) > NAMES else []
-    return bullets([*rows[:NAMES], *more])
+def _rows(rows: list[Html], told: Told) -> Html:
+    return told.rows(rows[:NAMES], len(rows))
 
 
-def _note(analysis: Analysis, assumptions: Mapping[str, Any], about: str) -> Html:
+def _note(analysis: Analysis, assumptions: Mapping[str, Any], about: str, told: Told) -> Html:
     """Whose word this is."""
-    program = escaped(f"rosprivacy {assumptions.get('rosprivacy', '')}".strip())
-    unreviewed = counted(count_elements(question.element for question in analysis.open).elements, "element")
-    rests = f"view {analysis.graph.view}, verdict {analysis.verdict}, {unreviewed} not reviewed"
-    more = f" {prose(about)}." if about else ""
-    said = f"Filled in by {program} from policies and labels ({rests}).{more} A person has to check it."
+    said = told(
+        "cnil.note",
+        program=escaped(f"rosprivacy {assumptions.get('rosprivacy', '')}".strip()),
+        view=Html(analysis.graph.view),
+        verdict=Html(analysis.verdict),
+        elements=told.count(count_elements(question.element for question in analysis.open).elements, "element"),
+        more=Html(f" {about}." if about else ""),
+    )
     return Html(f"<p><em>{said}</em></p>")
 
 
-def _read(assumptions: Mapping[str, Any]) -> Html:
+def _read(assumptions: Mapping[str, Any], told: Told) -> Html:
     """Which files it rests on (rule S12)."""
     files = [entry for kind in ("fleet", "policies", "labels") for entry in assumptions.get(kind) or ()]
-    rows = [escaped(f"{entry['file'][-120:]} (sha256 {entry['sha256'][:12]})") for entry in files[:NAMES]]
-    more = [Html(f"and {len(files) - NAMES:,} more")] if len(files) > NAMES else []
-    return joined(paragraph(Html("This rests on:")), bullets([*rows, *more])) if files else Html("")
+    rows = [escaped(f"{entry['file'][-120:]} (sha256 {entry['sha256'][:12]})") for entry in files]
+    return joined(paragraph(told("cnil.rests")), _rows(rows, told)) if files else Html("")

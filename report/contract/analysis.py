@@ -29,6 +29,8 @@ if TYPE_CHECKING:
         NonRosEntry,
         OverruledEntry,
         PointerEntry,
+        ProcessedEntry,
+        ProcessingEntry,
         RolesEntry,
         SanitizerEntry,
         SubjectsEntry,
@@ -128,6 +130,8 @@ class AnalysisDocument(TypedDict):
     surroundings: NotRequired[list[SurroundingsEntry]]
     contexts: NotRequired[list[ContextEntry]]
     look_at: NotRequired[list[PointerEntry]]
+    processing: NotRequired[list[ProcessingEntry]]
+    processed_for: NotRequired[list[ProcessedEntry]]
     sanitizers: list[SanitizerEntry]
     derivations: list[DerivationEntry]
     unreached: list[ElementEntry]

@@ -52,6 +52,14 @@ class StepEntry(TypedDict):
     policy: list[GrantEntry]
 
 
+class ChangedSince(TypedDict):
+    """What is not as it was when a decision was made: view, path, disjoint_paths or robots."""
+
+    what: str
+    before: str
+    now: str
+
+
 class DecisionEntry(TypedDict):
     """What was decided."""
 
@@ -65,6 +73,7 @@ class DecisionEntry(TypedDict):
     ticket: str | None
     file: str
     line: int
+    changed: NotRequired[list[ChangedSince]]
 
 
 class LawEntry(TypedDict):

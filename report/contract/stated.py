@@ -100,6 +100,31 @@ class SubjectsEntry(TypedDict):
     subjects: list[str]
 
 
+class ProcessingEntry(TypedDict, total=False):
+    """What people state of a robot or an element: who is responsible, what for, on which basis."""
+
+    robot: str
+    element: ElementEntry
+    file: str
+    line: int
+    controller: str
+    dpo: str
+    purposes: dict[str, list[str]]
+    legal_bases: dict[str, list[str]]
+
+
+class ProcessedEntry(TypedDict):
+    """What a kind of data is processed for where it begins or ends, as stated there or nearest to it."""
+
+    element: ElementEntry
+    category: str
+    controllers: list[str]
+    officers: list[str]
+    purposes: list[str]
+    legal_bases: list[str]
+    missing: list[str]
+
+
 class SanitizerEntry(TypedDict):
     """Who cleans a category, and what passes all the same."""
 
@@ -136,6 +161,7 @@ class NonRosStated(TypedDict, total=False):
     operator: str
     recipient: str
     transfer: str
+    contract: str
 
 
 class NonRosEntry(NonRosStated, NonRosNotKnown):

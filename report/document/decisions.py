@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.decisions import Decided, Decision
     from rosprivacy.report.contract.analysis import AnalysisDocument
-    from rosprivacy.report.contract.records import DecisionEntry, FindingEntry, ListedDecision, Target
+    from rosprivacy.report.contract.records import ChangedSince, DecisionEntry, FindingEntry, ListedDecision, Target
 
 DONE = {
     Choice.ACCEPT: "accepted",
@@ -28,17 +28,20 @@ DONE = {
 def with_decisions(document: AnalysisDocument, decided: Decided) -> AnalysisDocument:
     """Return a document with what was decided about its findings."""
     decisions = decided.decisions
-    on = {key: _decision(entry, decisions.state(entry)) for key, entry in decided.on.items()}
+    on = {key: _decision(entry, decisions.state(entry), decided) for key, entry in decided.on.items()}
     findings: list[FindingEntry] = [{**finding, "decision": on.get(finding["id"])} for finding in document["findings"]]
     entries: list[ListedDecision] = [
-        {**_decision(entry, state), "target": _target(entry), "findings": list(about)}
+        {**_decision(entry, state, decided), "target": _target(entry), "findings": list(about)}
         for entry, about, state in zip(decisions.entries, decided.about, decided.states, strict=True)
     ]
     return {**document, "findings": findings, "decisions": entries}
 
 
-def _decision(entry: Decision, state: State) -> DecisionEntry:
-    return {
+def _decision(entry: Decision, state: State, decided: Decided) -> DecisionEntry:
+    changed: list[ChangedSince] = [
+        {"what": change.what, "before": change.before, "now": change.now} for change in decided.changed.get(entry, ())
+    ]
+    told: DecisionEntry = {
         "choice": str(entry.choice),
         "state": str(state),
         "reason": entry.reason,
@@ -50,6 +53,7 @@ def _decision(entry: Decision, state: State) -> DecisionEntry:
         "file": entry.place.file,
         "line": entry.place.line,
     }
+    return {**told, "changed": changed} if changed else told
 
 
 def _target(entry: Decision) -> Target:
@@ -77,3 +81,9 @@ def decision_lines(finding: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     yield f"   {choice}{owner}{until}{basis}  ({place})", style
     if decision["reason"]:
         yield f"      {shown(decision['reason'])}", style
+    for change in decision.get("changed", ()):
+        what = change["what"].replace("_", " ")
+        yield (
+            f"      changed since decided: {what}: {shown(change['before'])} then, {shown(change['now'])} now",
+            "yellow",
+        )

@@ -63,6 +63,8 @@ def _facts(facts: NonRosFacts) -> NonRosStated:
         said["recipient"] = facts.recipient
     if facts.transfer:
         said["transfer"] = facts.transfer
+    if facts.contract:
+        said["contract"] = facts.contract
     return said
 
 

@@ -33,7 +33,7 @@ class Decision:
     rows
         (name of the field, value).
     flags
-        What is missing.
+        What has changed since, and what is missing.
     """
 
     decision: str
@@ -56,8 +56,16 @@ def orphans(index: Index) -> tuple[Decision, ...]:
 def _decision(said: Mapping[str, Any], findings: Iterable[Mapping[str, Any]], index: Index) -> Decision:
     words, what = index.words, said["choice"]
     rows = [(words(f"d.{key}"), _value(said[key], key, index)) for key in FIELDS if said[key]]
-    flags = tuple(_flags(said, findings, index)) if what == ACCEPT else ()
+    flags = (*_changed(said, index), *(_flags(said, findings, index) if what == ACCEPT else ()))
     return Decision(words.known(f"d.{what}", what), tuple(rows), flags)
+
+
+def _changed(said: Mapping[str, Any], index: Index) -> Iterator[str]:
+    """What is not as it was when it was decided."""
+    for change in said.get("changed", ()):
+        yield index.words(
+            f"d.changed.{change['what']}", before=printable(change["before"]), now=printable(change["now"])
+        )
 
 
 def _value(value: Any, key: str, index: Index) -> str:

@@ -150,7 +150,7 @@ def outline(
     Parameters
     ----------
     language
-        ``en`` or ``de``.
+        ``en``, ``de`` or ``fr``.
     title
         Of the system; by default the names of its policy files.
     made

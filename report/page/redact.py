@@ -21,15 +21,16 @@ KEPT = {
     "because", "area", "article9", "backups", "beside", "by", "carries", "categories", "categories_asked", "category",
     "condition", "context", "contexts", "countries_as_of", "country", "data_types_asked", "decision", "expires",
     "finding", "findings", "format", "from", "holds", "id", "identity_factors_asked", "kind", "law_as_of", "leaves",
-    "leaves_pseudonymised", "legal_basis", "method", "missing", "paths", "pattern", "provision", "pseudonymised",
-    "recipient", "retention", "role", "roles", "rosprivacy", "severity", "sha256", "special_basis", "state",
-    "taken_as", "taken_by_kind", "to", "transfer", "unlabelled_channel", "unknown", "unlabelled_node", "verdict",
-    "view", "without_limit",
+    "leaves_pseudonymised", "legal_bases", "legal_basis", "method", "missing", "paths", "pattern", "provision",
+    "pseudonymised", "recipient", "retention", "role", "roles", "rosprivacy", "severity", "sha256", "special_basis",
+    "state", "taken_as", "taken_by_kind", "to", "transfer", "unlabelled_channel", "unknown", "unlabelled_node",
+    "verdict", "view", "what", "without_limit",
 }  # fmt: skip
-MAPS = ("because", "retention", "taken_away_by", "taken_by_kind")  # values as they are: durations, kinds, countries
+MAPS = ("because", "legal_bases", "purposes", "retention", "taken_away_by", "taken_by_kind")  # keys are no names
 NAMED = {
     "robot": "robot", "robots": "robot", "model": "model", "file": "file", "enclave": "enclave",
-    "operator": "operator", "profile": "node", "nodes": "node",
+    "operator": "operator", "controller": "controller", "controllers": "controller", "dpo": "officer",
+    "officers": "officer", "profile": "node", "nodes": "node",
 }  # fmt: skip
 
 

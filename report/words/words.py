@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.durations import parts
+from rosprivacy.report.words import words_cnil_de, words_cnil_en, words_cnil_fr
 from rosprivacy.report.words.words_de import WORDS as GERMAN
 from rosprivacy.report.words.words_en import WORDS as ENGLISH
 from rosprivacy.report.words.words_fr import WORDS as FRENCH
@@ -20,7 +21,11 @@ if TYPE_CHECKING:
 
 DATE = 3  # parts of one
 _ARTICLE = re.compile(r"(?P<article>\d+)(?:\((?P<paragraph>\d+)\))?(?:\((?P<point>[a-z])\))?")
-TABLES = {"en": ENGLISH, "de": GERMAN, "fr": FRENCH}
+TABLES = {
+    "en": ENGLISH | words_cnil_en.WORDS,
+    "de": GERMAN | words_cnil_de.WORDS,
+    "fr": FRENCH | words_cnil_fr.WORDS,
+}
 
 
 @dataclass(frozen=True, slots=True)

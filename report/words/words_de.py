@@ -452,6 +452,10 @@ WORDS = {
     "d.gap.secrecy": "Die Entscheidung beruht auf Artikel 9 Absatz 2 Buchst. h, und dass Artikel 9 Absatz 3 (Geheimhaltungspflicht) erfüllt ist, ist nicht festgehalten.",
     "d.gap.article_10": "{data}: Solche Daten können Daten nach Artikel 10 sein, und das Recht, das sie erlaubt, ist nicht festgehalten.",
     "d.gap.chapter_v": "Die Daten verlassen den EWR, und es ist keine Grundlage nach Kapitel V (Artikel 45, 46, 47 oder 49) festgehalten; Artikel 6 allein erlaubt es nicht.",
+    "d.changed.path": "Seit der Entscheidung geändert: Der kürzeste Weg war {before} und ist jetzt {now}.",
+    "d.changed.view": "Seit der Entscheidung geändert: Die Sicht auf die Richtlinien war '{before}' und ist jetzt '{now}'.",
+    "d.changed.disjoint_paths": "Seit der Entscheidung geändert: Es gab {before} getrennte Wege, jetzt gibt es {now}.",
+    "d.changed.robots": "Seit der Entscheidung geändert: Sie betraf {before} Roboter, jetzt sind es {now}. Über Roboter, die es damals nicht gab, ist nichts entschieden.",
     "d.orphans": "Entscheidungen, die zu keinem Weg passen",
     # --- outside ROS
     "o.none": "Keine Datei nennt einen Speicher, einen Server oder anderes außerhalb von ROS. Dass es nichts davon gibt, ist damit nicht gezeigt: Was Knoten und Empfänger aufbewahren, und wie lange, muss eine Person ergänzen.",

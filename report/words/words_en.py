@@ -513,6 +513,10 @@ WORDS = {
     "d.gap.secrecy": "It rests on Article 9(2)(h), and that Article 9(3), professional secrecy, is met is not recorded.",
     "d.gap.article_10": "{data} can be data of Article 10, and the law that authorises them is not recorded.",
     "d.gap.chapter_v": "The data leave the EEA, and no basis of chapter V (Articles 45, 46, 47 or 49) is recorded; Article 6 alone does not permit it.",
+    "d.changed.path": "Changed since it was decided: the shortest path was {before}, and is {now}.",
+    "d.changed.view": "Changed since it was decided: then the view of the policies was '{before}', now it is '{now}'.",
+    "d.changed.disjoint_paths": "Changed since it was decided: there were {before} separate paths, and there are {now}.",
+    "d.changed.robots": "Changed since it was decided: it was about {before} robots, and there are {now}. Nothing is decided about a robot that was not there.",
     "d.orphans": "Decisions that match no path",
     # --- outside ROS
     "o.none": (

@@ -457,6 +457,10 @@ _TYPED = {
     "d.gap.secrecy": "La décision repose sur l'article 9, paragraphe 2, point h), et il n'est pas enregistré que l'article 9, paragraphe 3 (secret professionnel), est respecté.",
     "d.gap.article_10": "{data} : ces données peuvent relever de l'article 10, et le droit qui les autorise n'est pas enregistré.",
     "d.gap.chapter_v": "Les données quittent l'EEE, et aucune base du chapitre V (articles 45, 46, 47 ou 49) n'est enregistrée ; l'article 6 seul ne le permet pas.",
+    "d.changed.path": "Modifié depuis la décision : le chemin le plus court était {before}, il est maintenant {now}.",
+    "d.changed.view": "Modifié depuis la décision : la vue des politiques était « {before} », elle est maintenant « {now} ».",
+    "d.changed.disjoint_paths": "Modifié depuis la décision : il y avait {before} chemins séparés, il y en a maintenant {now}.",
+    "d.changed.robots": "Modifié depuis la décision : elle portait sur {before} robots, il y en a maintenant {now}. Rien n'est décidé d'un robot qui n'y était pas.",
     "d.orphans": "Décisions qui ne correspondent à aucun chemin",
     # --- outside ROS
     "o.none": "Aucun fichier d'annotations ne nomme de stockage, de serveur ni d'autre élément hors ROS. Cela ne montre pas qu'il n'y en a pas : ce que les nœuds et les destinataires conservent, et combien de temps, est à compléter par une personne.",

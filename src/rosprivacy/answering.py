@@ -5,16 +5,18 @@ In: ``System`` and ``Question``. Out: ``Result``. Who computes the analysis else
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.contexts import Contexts
 from rosprivacy.analysis.findings.findings import Options, analyse
+from rosprivacy.analysis.findings.processed import lacks, processed
 from rosprivacy.analysis.fleet.patterns import FleetView
 from rosprivacy.analysis.fleet.patterns_of_pairs import Groups
 from rosprivacy.analysis.model import unread
 from rosprivacy.assumptions import assumptions_of
-from rosprivacy.decided import accepts, joined_to
+from rosprivacy.decided import accepts, joined_to, law_of
 from rosprivacy.ingest.labels.shipped import infrastructure_of
 from rosprivacy.question import in_contexts
 from rosprivacy.result import Result
@@ -72,10 +74,11 @@ def concluded(
     counts
         As of ``Answer``.
     """
-    joined = joined_to(
-        question.decisions, analysis, system.vocabulary, question.asked, system.likeness,
-        Contexts.of(system.graph, system.bound, system.vocabulary.categories),
-    )  # fmt: skip
+    rows = processed(analysis, system.bound, system.vocabulary.hierarchy)
+    at_sources = Contexts.of(system.graph, system.bound, system.vocabulary.categories)
+    law = law_of(system.vocabulary, analysis.emitted, at_sources.everywhere)
+    analysis = replace(analysis, diagnostics=(*analysis.diagnostics, *lacks(rows, law)))
+    joined = joined_to(question.decisions, analysis, law, question.asked, system.likeness, view)
     return Result(
         analysis,
         system.bound,

@@ -9,17 +9,20 @@ import os
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.contexts import revealed
 from rosprivacy.analysis.decisions import Case, decided
 from rosprivacy.analysis.fleet.likeness import NO_ROBOTS, pattern_of
+from rosprivacy.analysis.remembered import About
 from rosprivacy.clock import judged_on, today
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection
+    from collections.abc import Callable, Collection, Iterable, Mapping
 
     from rosprivacy.analysis.answer import Analysis, Finding
-    from rosprivacy.analysis.contexts import Contexts
     from rosprivacy.analysis.decisions import Decided, Decisions
     from rosprivacy.analysis.fleet.likeness import Likeness
+    from rosprivacy.analysis.fleet.patterns import FleetView
+    from rosprivacy.analysis.legal_bases import Verdicts
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.settings import Settings
 
@@ -46,29 +49,49 @@ def not_revived(decisions: Decisions, latest: str) -> Decisions:
 def joined_to(
     decisions: Decisions | None,
     analysis: Analysis,
-    vocabulary: Vocabulary,
+    law: Mapping[str, Verdicts],
     asked: Collection[str] | None,
     likeness: Likeness = NO_ROBOTS,
-    contexts: Contexts | None = None,
+    view: FleetView | None = None,
 ) -> Decided | None:
     """Join decisions to findings; where only some categories were asked for, none is called orphaned.
 
     Parameters
     ----------
-    contexts
-        Of the sources: what data may reveal there needs a ground as what they may reveal anywhere.
+    law
+        Of ``law_of``.
     """
     if decisions is None:
         return None
-    said = {name: list(vocabulary.categories[name].law) for name in analysis.emitted}
-    for finding in analysis.findings if contexts else ():
-        said[finding.category] += contexts.revealed(finding) if contexts else ()
-    law = {name: tuple(dict.fromkeys((one.name, one.verdict) for one in several)) for name, several in said.items()}
 
     def case_of(finding: Finding) -> Case:
         return in_fleet(Case.of(finding), likeness)
 
-    return decided(decisions, analysis.findings, law, everything=asked is None, case_of=case_of)
+    now = about_today(analysis, view)
+    return decided(decisions, analysis.findings, law, everything=asked is None, case_of=case_of, now=now)
+
+
+def about_today(analysis: Analysis, view: FleetView | None) -> dict[str, About]:
+    """Return what a decision would be made about today: of each finding by its id, of a fleet of each pattern."""
+
+    def about(finding: Finding, robots: Iterable[str] = ()) -> About:
+        path = tuple(element.name for element in finding.witness)
+        return About(analysis.graph.view, path, finding.disjoint_paths, frozenset(robots))
+
+    found = {finding.id: about(finding) for finding in analysis.findings}
+    if view is None:
+        return found
+    everywhere = {robot for robots in view.likeness.members.values() for robot in robots}
+    return found | {p.id: about(p.finding, everywhere if p.across else p.robots) for p in view.patterns}
+
+
+def law_of(vocabulary: Vocabulary, categories: Iterable[str], contexts: Collection[str] = ()) -> dict[str, Verdicts]:
+    """Return what can apply to data of some categories, in some contexts too: (provision, verdict)."""
+    kinds = [vocabulary.categories[name] for name in categories]
+    return {
+        kind.name: tuple((legal.name, legal.verdict) for legal in (*kind.law, *revealed(kind, contexts)))
+        for kind in kinds
+    }
 
 
 def accepts(decisions: Decisions | None, likeness: Likeness = NO_ROBOTS) -> Callable[[Case], bool] | None:

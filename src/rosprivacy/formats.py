@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
     Aliases = Mapping[Key, tuple[str, str]]
 
+LANGUAGES = ("en", "de", "fr")
+
 # What is text; the table below has one row for each, and 'docx'.
 TextFormat = Literal["text", "json", "sarif", "cnil-pia", "turtle", "json-ld", "html", "markdown", "article30"]
 
@@ -36,7 +38,9 @@ class Style:
     ----------
     verbose, quiet, colour
         Of text: every open element and notice, the verdict only, for a terminal.
-    language, title
+    language
+        Of a report and of the answers for the CNIL's tool: ``en``, ``de`` or ``fr``.
+    title
         Of a report.
     since
         Document of an earlier analysis, to tell what changed; of a page and of Markdown.
@@ -77,11 +81,15 @@ def written(answer: Answer, name: str, style: Style | None = None) -> str | byte
     Raises
     ------
     InputError
-        If there is no such format, ``SOURCE_DATE_EPOCH`` is no time, or the earlier document cannot be read.
+        If there is no such format or language, ``SOURCE_DATE_EPOCH`` is no time, or the earlier document cannot be
+        read.
     """
     if name not in FORMATS:
         raise InputError("format", 0, f"unknown format {shown(name)!r}", f"one of {', '.join(FORMATS)}")
-    return FORMATS[name].write(answer, style or Style())
+    style = style or Style()
+    if style.language not in LANGUAGES:
+        raise InputError("language", 0, f"unknown language {shown(style.language)!r}", f"one of {', '.join(LANGUAGES)}")
+    return FORMATS[name].write(answer, style)
 
 
 def _text(answer: Answer, style: Style) -> str:
@@ -126,13 +134,13 @@ def _sarif(answer: Answer, _: Style) -> str:
     return as_text(sarif(answer, repository_root(named)))
 
 
-def _cnil_pia(answer: Answer, _: Style) -> str:
+def _cnil_pia(answer: Answer, style: Style) -> str:
     """Without ``SOURCE_DATE_EPOCH`` the file is dated now, since the tool wants a date (rule S14)."""
     from rosprivacy.report.cnil.pia import cnil_pia
     from rosprivacy.report.json_text import as_text
 
     created = (source_date(os.environ) or datetime.now(UTC)).isoformat(timespec="milliseconds")
-    return as_text(cnil_pia(answer, created.replace("+00:00", "Z")))
+    return as_text(cnil_pia(answer, created.replace("+00:00", "Z"), style.language))
 
 
 def _article30(answer: Answer, style: Style) -> str:

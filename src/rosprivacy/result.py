@@ -107,8 +107,10 @@ class Result(Answer):
             A name of ``rosprivacy.formats.FORMATS``: ``text``, ``json``, ``sarif``, ``html``, ``docx``, …
         verbose, quiet
             Of text: every open element and notice, or the verdict only.
-        language, title, redact
-            Of a report: ``en`` or ``de``; name of the system; replace names of elements, files, robots and persons.
+        language
+            Of a report and of the answers for the CNIL's tool: ``en``, ``de`` or ``fr``.
+        title, redact
+            Of a report: name of the system; replace names of elements, files, robots and persons.
         since
             File of an earlier analysis, to tell what changed.
         base
@@ -117,7 +119,7 @@ class Result(Answer):
         Raises
         ------
         InputError
-            If there is no such format, the earlier file cannot be read, or the base is no IRI.
+            If there is no such format or language, the earlier file cannot be read, or the base is no IRI.
 
         Examples
         --------

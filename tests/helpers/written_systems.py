@@ -11,8 +11,10 @@ from hypothesis import strategies as st
 from tests.helpers.fleet_files import policy
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
+    from rosprivacy.analysis.answer import Finding
     from rosprivacy.result import Result
 
 NODES = tuple(f"/n{i}" for i in range(5))
@@ -22,10 +24,22 @@ ROLES = (
     "{sanitizer: {Video: pseudonymise}}", "{sanitizer: {Voice: drop}}", "conduit",
     "{derives: [{from: Video, to: FaceTemplate}]}",
 )  # fmt: skip
+WHY = (  # of the system, of nodes, of the storage
+    ((), "", ""),
+    (
+        ("controller: Haven Home", "dpo: Ada Officer"),
+        "",
+        ", operator: Us, recipient: processor, contract: Art. 28",
+    ),
+    (("purpose: [care, safety]", "legal_basis: {Video: 6(1)(f)}"), "subjects: [residents]", ", purpose: proof"),
+    (("legal_basis: 6(1)(e)",), "purpose: {Video: [counting], PersonalData: guiding}", ", legal_basis: 6(1)(c)"),
+    ((), "legal_basis: [6(1)(a), 9(2)(a)]", ", legal_basis: [6(1)(b), 46(2)(c)]"),
+    (("purpose: safety",), "purpose: lighting, legal_basis: {FaceTemplate: 9(2)(h)}", ""),
+)
 CHANNEL = ("mundane", "sensitive", "{only: [Video]}", "{never: [Voice]}")
 
 
-SURROUNDINGS = (  # of the system, of one source
+SURROUNDINGS: tuple[tuple[list[str], str], ...] = (  # of the system, of one source
     ([], ""), (["context: [care]"], ""), (["context: [union, care]", "country: FR"], "context: school, "),
     (["country: DE"], "context: [worship, workplace], "), ([], "context: public-space, "),
 )  # fmt: skip
@@ -45,11 +59,12 @@ class Written:
         (folder / f"{name}.yaml").write_text(self.labels, "utf-8")
         return f"{name}.xml", f"{name}.yaml"
 
-    @property
-    def decisions(self) -> str:
-        """The text of a decisions file."""
+    def decisions(self, found: Sequence[Finding]) -> str:
+        """The text of a decisions file: accepted leaks, and a finding of which everything has changed since."""
         said = {"decision": "accept", "reason": "agreed", "owner": "Ada Judge"}
-        return json.dumps({"decisions": 1, "findings": [{"leak": leak, **said} for leak in self.accepted]})
+        then = {"view": "enforced", "path": ["/gone", "/away"], "disjoint_paths": 99}
+        of_old = [{"id": finding.id, "decision": "mitigate", "made_about": then} for finding in found[1:2]]
+        return json.dumps({"decisions": 1, "findings": [*of_old, *({"leak": leak, **said} for leak in self.accepted)]})
 
 
 @st.composite
@@ -63,13 +78,16 @@ def written(draw: st.DrawFn) -> Written:
     channels = {name: draw(st.sampled_from(CHANNEL)) for name in used if draw(st.booleans())}
     behind = draw(st.sampled_from(NODES))
     country = draw(st.sampled_from(("DE", "US")))
-    lines = ["labels: 1", "nodes:", *(f"  {name}: {said}" for name, said in sorted(roles.items()))]
-    lines += ["channels:", *(f"  {name}: {said}" for name, said in channels.items())] if channels else []
-    lines += ["elements:", f"  disk: {{kind: storage, country: {country}, retention: P3D}}"]
-    lines += ["flows:", f"  - {{from: {behind}, to: disk}}"]
     accepted = draw(st.sets(st.sampled_from((*NODES, "disk")), min_size=2, max_size=4))
+    top, of_node, of_disk = draw(st.sampled_from(WHY))
+    for name in [name for name in sorted(roles) if of_node and roles[name].endswith("}")][:2]:
+        roles[name] = f"{roles[name][:-1]}, {of_node}}}"
     where, own = draw(st.sampled_from(SURROUNDINGS))
-    lines = [lines[0], *where, *(line.replace("  /n0: {", f"  /n0: {{{own}") for line in lines[1:])]
+    lines = ["labels: 1", *top, *where, "nodes:", *(f"  {name}: {said}" for name, said in sorted(roles.items()))]
+    lines += ["channels:", *(f"  {name}: {said}" for name, said in channels.items())] if channels else []
+    lines += ["elements:", f"  disk: {{kind: storage, country: {country}, retention: P3D{of_disk}}}"]
+    lines += ["flows:", f"  - {{from: {behind}, to: disk}}"]
+    lines = [line.replace("  /n0: {", f"  /n0: {{{own}") for line in lines]
     return Written(policy(*profiles.values()), "\n".join([*lines, ""]), tuple(sorted(accepted)))
 
 

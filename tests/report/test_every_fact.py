@@ -127,7 +127,7 @@ class Fact:
 FACTS = {
     "retention": Fact(
         durations,
-        dict.fromkeys(("cnil-pia", *RDF), same) | dict.fromkeys((*PAGE, "article30"), WORDS.duration),
+        dict.fromkeys(RDF, same) | dict.fromkeys(("cnil-pia", *PAGE, "article30"), WORDS.duration),
     ),
     "country": Fact(of_elements("country"), dict.fromkeys(("cnil-pia", *RDF, *PAGE), same)),
     "operator": Fact(of_elements("operator"), dict.fromkeys((*RDF, *PAGE), same)),

@@ -11,7 +11,7 @@ import typer
 from rosprivacy.analysis.modes import Article9Level, Paths
 from rosprivacy.cli.exit_code import FailOn, exit_code
 from rosprivacy.cli.inputs import Inputs, reads_system, refuse
-from rosprivacy.cli.options import ASKED, Engine, Format, Output
+from rosprivacy.cli.options import ASKED, Engine, Format, Language, Output
 from rosprivacy.cli.output import emit
 
 if TYPE_CHECKING:
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from rosprivacy.settings import Settings
 
 LINKED_DATA = (Format.turtle, Format.json_ld)
+IN_LANGUAGES = (Format.cnil_pia,)
 SPARK = "Where it is computed"  # a panel of help
 
 
@@ -60,6 +61,10 @@ def analyze(
     ] = None,
     format: Annotated[Format, typer.Option("--format", "-f", help="Of the report.")] = Format.text,  # noqa: A002 - the option's name
     output: Output = None,
+    lang: Annotated[
+        Language | None,
+        typer.Option(help="Language of the answers for the CNIL's tool; by default English.", show_default=False),
+    ] = None,
     base: Annotated[
         str | None,
         typer.Option(
@@ -130,7 +135,10 @@ def analyze(
     _check(inputs, engine, save_graph=bool(save_graph), per_policy=per_policy, of_spark=bool(master or results))
     if base is not None and format not in LINKED_DATA:
         raise typer.BadParameter("--base is for --format turtle and json-ld")
-    style = Style(verbose=verbose, quiet=quiet, colour=output is None, base=base)
+    if lang and format not in IN_LANGUAGES:
+        raise typer.BadParameter("--lang is for --format cnil-pia")
+    language = (lang or Language.en).value
+    style = Style(verbose=verbose, quiet=quiet, colour=output is None, language=language, base=base)
     if per_policy:
         raise typer.Exit(_each_alone(inputs, settings, format, style, output, fail_on))
     if results and output:

@@ -126,7 +126,8 @@ def decide(
     with editing(decisions):
         text = _text(decisions)
         for target in targets:
-            text = with_decision(str(decisions), text, {**target, **said}, _remark(findings, target), vocabulary)
+            whole = {**target, **said, **_made_about(findings, target)}
+            text = with_decision(str(decisions), text, whole, _remark(findings, target), vocabulary)
         if ids and not report:
             print("the ids were not checked; --report FILE checks them against an analysis", file=sys.stderr)
         emit(answer, None, {decisions: text or ""}, edited=decisions)  # the one file that is read and written
@@ -183,15 +184,29 @@ def _findings(report: Path) -> dict[str, dict[str, Any]]:
     from rosprivacy.report.compare.earlier import read_earlier
 
     document = read_earlier(str(report)).document
-    findings = {finding["id"]: finding for finding in document["findings"]}
+    findings = {finding["id"]: {**finding, "view": document["view"]} for finding in document["findings"]}
     if "fleet" not in document:
         return findings
-    return {p["id"]: findings[p["finding"]] | _all_of(p) for p in document["fleet"]["patterns"]}
+    robots = sorted({robot for alike in document["fleet"]["alike"] for robot in alike["robots"]})
+    return {p["id"]: findings[p["finding"]] | _all_of(p, robots) for p in document["fleet"]["patterns"]}
 
 
-def _all_of(pattern: dict[str, Any]) -> dict[str, Any]:
-    """What holds for all findings of a pattern."""
-    return {"pseudonymised": pattern["pseudonymised"] == pattern["findings"]}
+def _all_of(pattern: dict[str, Any], robots: list[str]) -> dict[str, Any]:
+    """What holds for all findings of a pattern; what goes from one robot to another is about all of the fleet."""
+    pseudonymised = pattern["pseudonymised"] == pattern["findings"]
+    return {"pseudonymised": pseudonymised, "robots": robots if pattern["across"] else pattern["robots"]}
+
+
+def _made_about(findings: dict[str, dict[str, Any]] | None, target: dict[str, Any]) -> dict[str, Any]:
+    """What is there now, for later runs to compare to; nothing of a pattern by names, or without a report."""
+    from rosprivacy.analysis.remembered import About, as_written
+
+    finding = (findings or {}).get(target.get("id", ""))
+    if finding is None:
+        return {}
+    path = tuple(element["name"] for element in finding["witness"])
+    robots = frozenset(finding.get("robots", ()))
+    return {"made_about": as_written(About(finding["view"], path, finding["disjoint_paths"], robots))}
 
 
 def _chosen(findings: dict[str, dict[str, Any]], written: str, report: str) -> dict[str, Any]:

@@ -120,3 +120,64 @@ def test_without_a_valid_decision_nothing_differs_from_the_fleet_without_decisio
         assert document[key] == plain[key]
     assert document["fleet"] == plain["fleet"]
     assert [f["id"] for f in document["findings"]] == [f["id"] for f in plain["findings"]]
+
+
+def decided_by_report(cli: Cli) -> str:
+    """Accept the one pattern of the fleet, as it is now."""
+    cli("analyze", "--fleet", "five.yaml", "-f", "json", "-o", "r.json")
+    said = ("--report", "r.json", "--reason", "agreed", "--owner", "me", "--decisions", "d.yaml")
+    (shown,) = json.loads(Path("r.json").read_text("utf-8"))["fleet"]["patterns"]
+    assert cli("decide", "accept", shown["id"], *said).returncode == 0
+    return str(shown["id"])
+
+
+def test_a_robot_that_joins_an_accepted_pattern_is_not_accepted(cli: Cli) -> None:
+    """A wrong 'nothing found' is the worst: nobody looked at that robot."""
+    decided_by_report(cli)
+    before = told(cli)
+    assert (before["verdict"], before["fleet"]["patterns"][0]["accepted"]) == ("undetermined", 5)
+    assert not any("changed since" in said["message"] for said in before["diagnostics"])
+    write("five.yaml", FIVE.replace("robots: 5", "robots: 6"))
+    after = told(cli)
+    (found,) = after["fleet"]["patterns"]
+    assert (after["verdict"], after["code"]) == ("leak", 1)
+    assert (found["findings"], found["accepted"]) == (6, 5)
+    (entry,) = after["decisions"]
+    assert entry["changed"] == [{"what": "robots", "before": "5", "now": "6, +eye_6"}]
+    (message,) = (said["message"] for said in after["diagnostics"] if "changed since" in said["message"])
+    assert "robots: 5 then, 6, +eye_6 now; decide anew" in message
+
+
+def test_it_is_accepted_when_it_is_decided_anew_and_the_file_keeps_what_was(cli: Cli) -> None:
+    decided_by_report(cli)
+    write("five.yaml", FIVE.replace("robots: 5", "robots: 6"))
+    decided_by_report(cli)
+    document = told(cli)
+    assert document["fleet"]["patterns"][0]["accepted"] == 6
+    assert "changed" not in document["decisions"][0]
+    text = Path("d.yaml").read_text("utf-8")
+    assert "history:" in text
+    assert text.count("eye_6") == 1
+
+
+def test_without_what_was_there_a_pattern_is_about_all_robots_as_before(cli: Cli) -> None:
+    """Decisions files of earlier versions mean what they meant."""
+    decide(f"id: {pattern(cli)['id']}")
+    write("five.yaml", FIVE.replace("robots: 5", "robots: 6"))
+    document = told(cli)
+    assert document["fleet"]["patterns"][0]["accepted"] == 6
+    assert not any("changed since" in said["message"] for said in document["diagnostics"])
+
+
+def test_what_a_new_robot_gets_from_another_is_not_accepted_either(cli: Cli) -> None:
+    write("five.yaml", FIVE + CROSS)
+    decide("category: Voice")
+    plain = {p["across"]: p for p in told(cli)["fleet"]["patterns"] if p["findings"] in (5, 20)}
+    cli("analyze", "--fleet", "five.yaml", "-f", "json", "-o", "r.json")
+    said = ("--report", "r.json", "--reason", "agreed", "--owner", "me", "--decisions", "e.yaml")
+    assert cli("decide", "accept", plain[True]["id"], *said).returncode == 0
+    Path("d.yaml").write_text(Path("e.yaml").read_text("utf-8"), "utf-8")
+    assert {p["id"]: p["accepted"] for p in told(cli)["fleet"]["patterns"]}[plain[True]["id"]] == 20
+    write("five.yaml", FIVE.replace("robots: 5", "robots: 6") + CROSS)
+    (after,) = (p for p in told(cli)["fleet"]["patterns"] if p["id"] == plain[True]["id"])
+    assert (after["findings"], after["accepted"]) == (30, 20)

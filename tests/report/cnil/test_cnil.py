@@ -24,21 +24,27 @@ from rosprivacy.analysis.non_ros import EVERY
 from rosprivacy.ingest.database.loading import load as load_robots
 from rosprivacy.ontology.vocabulary import Vocabulary, load
 from rosprivacy.private_neo4j import connection
-from rosprivacy.report.cnil import answers as cnil_answers
+from rosprivacy.report.cnil import told
 from rosprivacy.report.cnil.pia import cnil_pia
+from rosprivacy.report.words.typography import plain
 from rosprivacy.robot_system import robot_of
 from rosprivacy.settings import Settings
 from rosprivacy.stored_system import answer_stored
 from tests.helpers.additions import ADD_STORAGE
 from tests.helpers.answers import accepting, answer_of, as_json
+from tests.helpers.graphs import care_home as analysed_care_home
+from tests.helpers.graphs import factory, hospital
+from tests.helpers.languages import OTHERS, english_in
 from tests.helpers.paths import ROOT
 from tests.helpers.sarif import HOSTILE, analyze, checked, log_of, physical, small_system, way
 from tests.helpers.systems import HIERARCHY, PARENTS, System, analysed, systems
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
     from rosprivacy.private_neo4j.connection import Connection
+    from rosprivacy.result import Result
     from tests.helpers.command import Cli
 
 CARE_HOME = (["care-home/care-home.policy.xml"], ["care-home/care-home.labels.yaml"])
@@ -166,7 +172,7 @@ def imported(data: dict[str, Any]) -> Tool:
     for text in tool.shown_as_html():
         page = Page(text)
         assert set(page.tags) <= {"p", "ul", "li", "strong", "em"}
-        assert page.seen.isprintable()
+        assert plain(page.seen).isprintable()
     for question in LIST:
         for item in tool.answers.get(question, {"list": []})["list"]:
             assert item
@@ -301,11 +307,11 @@ def test_storages_and_recipients_with_what_was_stated_of_them() -> None:
         elements[2]: NonRosFacts(country="US", transfer="standard-clauses"),
     }
     tool = imported(cnil_pia(answer_of(analysis, vocabulary, {}, outside=outside), CREATED))
-    assert "Kept in: storage bucket (P30D), storage disk (retention not stated)" in seen(tool, 121)
+    assert "Kept in: storage bucket (30 days), storage disk (retention not stated)" in seen(tool, 121)
     assert "/blur: pseudonymise (the data is still personal), taken because the label states no method" in seen(
         tool, 122
     )
-    assert "storage bucket: pseudonymised Video; retention: P30D" in seen(tool, 215)
+    assert "storage bucket: pseudonymised Video; retention: 30 days" in seen(tool, 215)
     assert "storage disk: pseudonymised Video; retention: not stated" in seen(tool, 215)
     assert "external-system cloud: country: US; basis of a transfer: standard-clauses" in seen(tool, 227)
     contents = {m["title"]: Page(m["content"]).seen for m in tool.measures.values()}
@@ -373,7 +379,7 @@ def test_long_answers_are_bounded_and_say_so(tmp_path: Path, monkeypatch: pytest
     assert tool.answers[322]["list"][100] == "44 more paths to assess"
     assert "and 94 more" in seen(tool, 122)
     assert "and 20 more" in seen(tool, 123)
-    monkeypatch.setattr(cnil_answers, "NAMES", 3)
+    monkeypatch.setattr(told, "NAMES", 3)
     assert "/l0, /l1, /l10 and 9 more" in seen(imported(as_json(result, "cnil-pia")), 121)
 
 
@@ -441,4 +447,54 @@ def test_what_people_added_in_the_database_is_in_both_formats(neo4j_server: Conn
     last = way(found)[-1]
     assert last["message"]["text"] == "pseudonymised Video goes from /recorder to storage footage bucket."
     tool = imported(as_json(result, "cnil-pia"))
-    assert "storage footage bucket: pseudonymised Video; retention: P30D" in seen(tool, 215)
+    assert "storage footage bucket: pseudonymised Video; retention: 30 days" in seen(tool, 215)
+
+
+# ---------------------------------------------------------------- languages
+
+
+def names_in(result: Result) -> list[str]:
+    """What users wrote: names, files, groups of persons."""
+    elements = {element.name for element in result.analysis.graph.elements}
+    groups = {group for groups in result.subjects.values() for group in groups}
+    files = {entry["file"] for kind in ("policies", "labels", "fleet") for entry in result.assumptions.get(kind) or ()}
+    return [*elements, *groups, *files, *result.vocabulary.categories]
+
+
+SYSTEMS: dict[str, Callable[[], Result]] = {
+    "care-home": analysed_care_home,
+    "hospital": hospital,
+    "run1": lambda: factory(1),
+    "run3": lambda: factory(3),
+}
+
+
+@pytest.mark.parametrize("language", OTHERS)
+@pytest.mark.parametrize("system", SYSTEMS)
+def test_the_file_is_whole_in_every_language(language: str, system: str) -> None:
+    """law.md, 3.5: the users of the tool are French controllers; keys, questions and measures are those in English."""
+    result = SYSTEMS[system]()
+    english, data = cnil_pia(result, CREATED), cnil_pia(result, CREATED, language)
+    tool = imported(data)
+    assert sorted(tool.answers) == sorted(imported(english).answers)
+    assert [len(answer["data"]["list"]) for answer in data["answers"]] == [
+        len(answer["data"]["list"]) for answer in english["answers"]
+    ]
+    assert len(data["measures"]) == len(english["measures"])
+    text = "\n".join(Page(part).seen for part in tool.shown_as_html())
+    assert english_in(text, language, names_in(result)) == []
+    assert "\\xa0" not in text
+    assert "\\u202f" not in text
+
+
+def test_the_answers_in_french_are_in_the_terms_of_the_rgpd() -> None:
+    result = hospital()
+    tool = imported(cnil_pia(result, CREATED, "fr"))
+    text = plain(seen(tool, 121))
+    assert "Conservées dans : stockage hospital:footage bucket (1 an, dans les sauvegardes 7 jours de plus)" in text
+    assert "Droit à examiner : art. 9, par. 1" in text
+    assert "pays : US" in plain(seen(tool, 227))
+    assert "ce qui peut dépasser la limite de 30 jours pour : vidéo de personnes" in "\n".join(
+        tool.answers[322]["list"]
+    )
+    assert "Pseudonymisation sur le chemin" in tool.answers[324]["list"]

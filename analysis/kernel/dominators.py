@@ -1,0 +1,76 @@
+"""What all paths to a vertex go through: immediate dominators.
+
+In: a graph as the targets of each vertex. Out: for each vertex that can be reached, the last vertex before it that
+every path to it passes. The algorithm is that of Cooper, Harvey and Kennedy, 'A simple, fast dominance algorithm'
+(2001), as in networkx, whose import takes longer than most analyses.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+
+def immediate_dominators(following: Mapping[int, Iterable[int]], start: int) -> dict[int, int]:
+    """Return the immediate dominator of each vertex that can be reached, but for the start itself.
+
+    Notes
+    -----
+    Complexity: O(V · E) at worst, on flow graphs a few passes over the edges.
+
+    Examples
+    --------
+    >>> immediate_dominators({0: [1, 2], 1: [3], 2: [3], 3: [4]}, 0)
+    {1: 0, 2: 0, 3: 0, 4: 3}
+    """
+    order = _finished(following, start)
+    rank = {vertex: at for at, vertex in enumerate(order)}
+    entering: dict[int, list[int]] = defaultdict(list)
+    for here in order:
+        for there in following.get(here, ()):
+            entering[rank[there]].append(rank[here])
+    root = len(order) - 1
+    above = {root: root}
+    changed = True
+    while changed:
+        changed = False
+        for vertex in range(root - 1, -1, -1):
+            known = [one for one in entering[vertex] if one in above]
+            dominator = known[0]
+            for other in known[1:]:
+                dominator = _common(above, dominator, other)
+            if above.get(vertex) != dominator:
+                above[vertex] = dominator
+                changed = True
+    return {order[vertex]: order[above[vertex]] for vertex in sorted(above, key=order.__getitem__) if vertex != root}
+
+
+def _finished(following: Mapping[int, Iterable[int]], start: int) -> list[int]:
+    """The vertices that can be reached, each after all that a depth-first search meets behind it: the start is last."""
+    finished: list[int] = []
+    seen = {start}
+    stack = [(start, iter(following.get(start, ())))]
+    while stack:
+        vertex, targets = stack[-1]
+        for target in targets:
+            if target not in seen:
+                seen.add(target)
+                stack.append((target, iter(following.get(target, ()))))
+                break
+        else:
+            stack.pop()
+            finished.append(vertex)
+    return finished
+
+
+def _common(above: Mapping[int, int], one: int, other: int) -> int:
+    """The nearest vertex that dominates both; a higher rank is nearer to the start."""
+    while one != other:
+        while one < other:
+            one = above[one]
+        while other < one:
+            other = above[other]
+    return one

@@ -1,0 +1,105 @@
+"""What a decision was made about, and what of it has changed since (rule S10).
+
+In: what a decisions file remembers of a finding or a pattern, and the same of today. Out: what differs. A decision that
+remembers nothing is compared to nothing. That something has changed takes no decision away, but for robots: one that
+was not there is not decided about.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+MOST_NAMED = 5  # robots in a message
+
+
+@dataclass(frozen=True, slots=True)
+class About:
+    """What a decision was made about, or would be today; what is empty is not known.
+
+    Attributes
+    ----------
+    view
+        ``declared`` or ``enforced``.
+    path
+        Names of the elements of the witness, source first.
+    disjoint_paths
+        How many paths share no flow.
+    robots
+        Of a pattern on a fleet: its robots; where data gets from one robot to another, all of the fleet.
+    """
+
+    view: str = ""
+    path: tuple[str, ...] = ()
+    disjoint_paths: int = 0
+    robots: frozenset[str] = frozenset()
+
+    def knew(self, ends: Iterable[str]) -> bool:
+        """Whether the robots of two ends were there; an end on none is empty. Where none are remembered, all were."""
+        return not self.robots or {robot for robot in ends if robot} <= self.robots
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """What is not as it was when a decision was made: a field of ``About``, as text then and now."""
+
+    what: str
+    before: str
+    now: str
+
+
+def changes(before: About | None, now: About | None) -> tuple[Change, ...]:
+    """Return what has changed, of what is known of both.
+
+    >>> before = About("declared", ("/camera", "/uplink"), 1)
+    >>> [(c.what, c.before, c.now) for c in changes(before, About("declared", ("/camera", "/log", "/uplink"), 2))]
+    [('path', '/camera -> /uplink', '/camera -> /log -> /uplink'), ('disjoint_paths', '1', '2')]
+    >>> changes(None, before), changes(before, before)
+    ((), ())
+    """
+    return tuple(_changes(before, now)) if before and now else ()
+
+
+def _changes(before: About, now: About) -> Iterator[Change]:
+    pairs = {
+        "view": (before.view, now.view),
+        "path": (" -> ".join(before.path), " -> ".join(now.path)),
+        "disjoint_paths": (str(before.disjoint_paths or ""), str(now.disjoint_paths or "")),
+    }
+    yield from (Change(what, then, today) for what, (then, today) in pairs.items() if then and today and then != today)
+    if before.robots and now.robots and before.robots != now.robots:
+        yield Change("robots", str(len(before.robots)), _counted(now.robots, now.robots - before.robots))
+
+
+def _counted(robots: frozenset[str], joined: frozenset[str]) -> str:
+    """How many robots there are, and the first of those that joined."""
+    named = [f"+{robot}" for robot in sorted(joined)]
+    more = [f"+{len(named) - MOST_NAMED}"] if len(named) > MOST_NAMED else []
+    return ", ".join([str(len(robots)), *named[:MOST_NAMED], *more])
+
+
+def told(found: Iterable[Change]) -> str:
+    """Return changes as one text.
+
+    >>> told([Change("disjoint_paths", "1", "2"), Change("robots", "2", "3, +amr-3")])
+    'disjoint paths: 1 then, 2 now; robots: 2 then, 3, +amr-3 now'
+    """
+    return "; ".join(f"{change.what.replace('_', ' ')}: {change.before} then, {change.now} now" for change in found)
+
+
+def as_written(about: About) -> Mapping[str, object]:
+    """Return it as a decisions file holds it, without what is not known.
+
+    >>> as_written(About("declared", disjoint_paths=2, robots=frozenset({"amr-2", "amr-1"})))
+    {'view': 'declared', 'disjoint_paths': 2, 'robots': ['amr-1', 'amr-2']}
+    """
+    said = {
+        "view": about.view,
+        "path": list(about.path),
+        "disjoint_paths": about.disjoint_paths,
+        "robots": sorted(about.robots),
+    }
+    return {key: value for key, value in said.items() if value}

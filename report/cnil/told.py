@@ -1,0 +1,89 @@
+"""What answers are told with: the words of a language as HTML, names of elements and kinds of data, lines and lists.
+
+In: words, elements, names of categories. Out: ``Html``, or plain text for the lists of the tool, which it shows in one
+view as text and in another as HTML.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import islice
+from typing import TYPE_CHECKING
+
+from rosprivacy.report.cnil.markup import Html, bullets, escaped, harmless, prose
+from rosprivacy.report.words.typography import plain, spaced
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Mapping
+
+    from rosprivacy.analysis.model import Category, Element
+    from rosprivacy.report.words.words import Words
+
+NAMES = 30  # named in a row
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """The words of a language for this file."""
+
+    words: Words
+    categories: Mapping[str, Category]
+
+    def __call__(self, key: str, **values: Html | int) -> Html:
+        """Return a sentence as HTML; the words hold nothing that HTML reads."""
+        return Html(self.words(key, **values))
+
+    def bare(self, key: str, **values: str | int) -> str:
+        """Return a sentence that says the same whether it is taken as HTML or not."""
+        said = {place: harmless(value) if isinstance(value, str) else value for place, value in values.items()}
+        return harmless(plain(self.words(key, **said)))
+
+    def count(self, number: int, thing: str) -> Html:
+        """Return how many of a thing there are."""
+        return Html(self.words.count(number, thing))
+
+    def line(self, key: str, said: Html) -> Html:
+        """Return one line of a list: what it is about, and what is said of it."""
+        return self.pair(self(key), said)
+
+    def pair(self, what: Html, said: Html) -> Html:
+        """Return what something is, after its name."""
+        return Html(self.words.pair(what, said))
+
+    def lines(self, key: str, elements: Collection[Element]) -> list[Html]:
+        """Return one line of names, none without them."""
+        return [self.line(key, self.names(elements))] if elements else []
+
+    def name(self, element: Element) -> str:
+        """Return what an element is called, after its kind where it is no node."""
+        kind = "" if element.is_node else f"{self.kind(element.kind)} "
+        return f"{kind}{element.full_name}"
+
+    def kind(self, kind: str) -> str:
+        """Return what a kind of elements is called; English keeps the word of label files."""
+        return kind if self.words.language == "en" else self.words.known(f"kind.{kind}", kind)
+
+    def names(self, elements: Collection[Element]) -> Html:
+        """Return elements in a row."""
+        return self.some([self.name(element) for element in elements]) if elements else self("none")
+
+    def some(self, names: Collection[str]) -> Html:
+        """Return names in a row, and how many more there are than the most that are named."""
+        row = ", ".join(escaped(name) for name in islice(names, NAMES))
+        more = len(names) - NAMES
+        return Html(f"{row} {self('more', n=more)}" if more > 0 else row)
+
+    def rows(self, rows: list[Html], number: int) -> Html:
+        """Return a list, and how many rows it lacks."""
+        return bullets([*rows, self("more", n=number - len(rows))] if number > len(rows) else rows)
+
+    def data(self, category: str, *, pseudonymised: bool = False) -> str:
+        """Return what a kind of data is called; English keeps its name in label files."""
+        known = self.categories.get(category)
+        language = self.words.language
+        title = known.text("title", language) if known and language != "en" else category
+        return self.words("cnil.hidden", data=title) if pseudonymised else title
+
+    def prose(self, text: str) -> Html:
+        """Return a text of the ontology in the reader's language."""
+        return Html(spaced(prose(text), self.words.language))
