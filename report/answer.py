@@ -16,7 +16,7 @@ from rosprivacy.analysis.findings.review_order import Behind, review_order
 from rosprivacy.analysis.fleet.counts import Counts, counted
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Iterator
+    from collections.abc import Collection, Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.decisions import Decided, Decision
@@ -62,6 +62,15 @@ class Answer:
     def shown(self) -> Analysis:
         """The analysis as readers get it: of a fleet one finding of each pattern, one robot of those that are alike."""
         return self.fleet.shown(self.analysis) if self.fleet else self.analysis
+
+    @property
+    def named(self) -> tuple[str, ...]:
+        """The policy files that a user named, without what they include; none where that is not known."""
+        return ()
+
+    def proposals(self) -> Mapping[str, Any] | str:
+        """Return what closes the open findings, a mitigation document; or why there is none, a word."""
+        return "fleet" if self.fleet else "graph"
 
     @property
     def taken_away(self) -> tuple[TakenAway, ...]:

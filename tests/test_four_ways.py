@@ -79,7 +79,7 @@ def test_most_of_them_have_a_finding_and_many_an_accepted_one() -> None:
     """Else the tests here would compare empty answers."""
     results: list[Result] = []
 
-    @settings(max_examples=80, derandomize=True, database=None, phases=[Phase.generate], deadline=None)
+    @settings(max_examples=40, derandomize=True, database=None, phases=[Phase.generate], deadline=None)
     @given(written())
     def take(system: Written) -> None:
         with TemporaryDirectory() as folder, chdir(folder):

@@ -8,10 +8,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from rosprivacy.report.page.inline import Inline, Wishes, pictures_of
+from rosprivacy.report.page.inline import Inline, Wishes, picture_of_all, pictures_of
 from rosprivacy.report.page.redacted_pictures import renamed
 from rosprivacy.report.pictures.graphviz import available
 from rosprivacy.report.pictures.looks import INK, LINE_LOOKS, ROLE_LOOKS, SHORTEST, WAY, Look
+from rosprivacy.report.pictures.overview import drawable
 from rosprivacy.report.pictures.phrases import TEXTS, Phrases
 from rosprivacy.report.words.typography import plain
 
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from rosprivacy.report.words.words import Words
 
 ROOM = 5 * 2**20  # bytes of all pictures together
+OVERVIEW = 24  # elements of the first picture
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,10 +38,14 @@ class Figures:
         Id of a finding -> its picture.
     installed
         Whether what draws them is.
+    overview
+        The shortest paths of the first things to decide, in one picture; ``drawn`` says how many things these are.
     """
 
     of: Mapping[str, Inline] = field(default_factory=dict)
     installed: bool = True
+    overview: Inline | None = None
+    drawn: int = 0
 
 
 def figures(
@@ -77,7 +83,21 @@ def figures(
             break
         if made:
             found[entry.id] = made
-    return Figures(found)
+    picture, rows = _overview(analysis, report, wishes)
+    return Figures(found, overview=picture, drawn=rows)
+
+
+def _overview(analysis: Analysis, report: Outline, wishes: Wishes) -> tuple[Inline | None, int]:
+    """One picture of the first things to decide, and how many they are."""
+    findings = {finding.id: finding for finding in analysis.findings}
+    rows = [[findings[entry.id] for entry in row.entries if entry.id in findings] for row in report.opening.rows]
+    rows = rows[: next((n for n, row in enumerate(rows) if not row), len(rows))]
+    count = drawable([row[0] for row in rows], OVERVIEW)
+    shown = [finding for row in rows[:count] for finding in row]
+    if not shown:
+        return None, 0
+    label = plain(report.words("b.picture"))
+    return picture_of_all(analysis, shown, replace(wishes, labels={shown[0].id: label})), count
 
 
 def page_legend(words: Words) -> list[tuple[Look, bool, str]]:

@@ -13,11 +13,12 @@ from rosprivacy.report.page.page_svg import page_svg, width
 from rosprivacy.report.pictures.dot import dot
 from rosprivacy.report.pictures.graphviz import Graphviz, Job, TooLongError
 from rosprivacy.report.pictures.narrow import folded
+from rosprivacy.report.pictures.overview import overview
 from rosprivacy.report.pictures.svg import alt_text
 from rosprivacy.report.pictures.views import LONGER, PER_BOX, FindingViews, bounded
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from markupsafe import Markup
 
@@ -98,6 +99,19 @@ def pictures_of(
             whole = folded(views.of(finding, PER_BOX * wishes.most))
             picture = bounded(whole, wishes.most)
             yield _drawn(graphviz, picture, wishes, finding, whole=_is_whole(picture, whole))
+
+
+def picture_of_all(analysis: Analysis, findings: Sequence[Finding], wishes: Wishes) -> Inline | None:
+    """Return the shortest paths of findings in one picture; None where it could not be drawn.
+
+    Raises
+    ------
+    DrawingError
+        If Graphviz is not installed.
+    """
+    picture = folded(overview(analysis, findings, wishes.say))
+    with Graphviz() as graphviz:
+        return _drawn(graphviz, picture, wishes, findings[0], whole=True)
 
 
 def _is_whole(picture: Picture, whole: Picture) -> bool:

@@ -1,6 +1,7 @@
 """The kinds of data of a document: what each is, which provisions to look at, who brings it in, how it stands.
 
-In: an ``Index`` and the entries of the report. Out: one ``Kind`` per emitted category, in the document's order.
+In: an ``Index`` and the entries of the report. Out: one ``Kind`` per emitted category: those with the worst finding
+first, then the others, in the document's order.
 """
 
 from __future__ import annotations
@@ -99,10 +100,11 @@ def kinds(index: Index, entries: Iterable[Entry]) -> tuple[Kind, ...]:
     by_category: dict[str, list[Entry]] = {}
     for entry in entries:
         by_category.setdefault(entry.category, []).append(entry)
-    return tuple(
+    made = [
         _kind(category, index, tuple(by_category.get(category["name"], ())))
         for category in index.document["categories"]
-    )
+    ]
+    return tuple(sorted(made, key=lambda kind: kind.entries[0].number if kind.entries else len(index.findings) + 1))
 
 
 def _kind(category: Mapping[str, Any], index: Index, entries: tuple[Entry, ...]) -> Kind:

@@ -68,13 +68,14 @@ class Opening:
     said
         What is there, by name, and what is not known.
     rows
-        The first of them; ``more`` tells how many others there are.
+        The first of them, ``count`` in all; ``more`` tells how many others there are.
     """
 
     headline: str
     said: tuple[str, ...]
-    rows: tuple[ToDecide, ...]
-    more: str
+    rows: tuple[ToDecide, ...] = ()
+    count: int = 0
+    more: str = ""
 
 
 def opening(index: Index, entries: Iterable[Entry], verdict: str, means: str) -> Opening:
@@ -93,11 +94,11 @@ def opening(index: Index, entries: Iterable[Entry], verdict: str, means: str) ->
     rows.sort(key=lambda row: not row.waits)
     waiting = sum(row.waits for row in rows)
     if not rows:
-        return Opening(verdict, (means, *_first_to_review(index)), (), "")
+        return Opening(verdict, (means, *_first_to_review(index)))
     headline = words.count(waiting, "b.decide") if waiting else words.count(len(rows), "b.carry")
     said = [_can(rows, index), *([words.count(len(rows) - waiting, "b.decided")] if 0 < waiting < len(rows) else [])]
     more = words("b.more", n=len(rows) - MOST) if len(rows) > MOST else ""
-    return Opening(headline, (*said, *_unreviewed(index)), tuple(rows[:MOST]), more)
+    return Opening(headline, (*said, *_unreviewed(index)), tuple(rows[:MOST]), len(rows), more)
 
 
 def _flow(entry: Entry) -> Any:
@@ -161,9 +162,9 @@ def _name(element: Mapping[str, Any], index: Index, *, many: bool) -> str:
 
 
 def _waits(finding: Mapping[str, Any], index: Index) -> bool:
-    """Whether nobody has decided about it, or the decision is over, or is about some of its robots only."""
+    """Whether nobody has decided about it, or the decision is over, about something else now, or about some robots."""
     said = finding.get("decision")
-    return not said or said["state"] != VALID or bool(_only(finding, index))
+    return not said or said["state"] != VALID or bool(said.get("changed") or _only(finding, index))
 
 
 def _only(finding: Mapping[str, Any], index: Index) -> str:
@@ -216,6 +217,8 @@ def _state(finding: Mapping[str, Any], index: Index) -> str:
     decided = words.known(f"d.{said['choice']}", printable(said["choice"]))
     if only := _only(finding, index):
         decided = words("b.only", decided=decided, robot=fit(only))
+    if said.get("changed"):
+        decided = words("b.changed", decided=decided)
     state = words.known(f"d.state.{said['state']}", printable(said["state"]))
     return decided if said["state"] == VALID else f"{decided}; {state}"
 

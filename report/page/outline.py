@@ -19,6 +19,7 @@ from rosprivacy.report.finding_order import REVEALS, strength
 from rosprivacy.report.naming import name
 from rosprivacy.report.page import assumed, elements, sanitizers, tables
 from rosprivacy.report.page.closed import Closed, closed
+from rosprivacy.report.page.closing import Closing, closing
 from rosprivacy.report.page.criteria import Criterion, criteria
 from rosprivacy.report.page.decision_texts import Decision, orphans
 from rosprivacy.report.page.finding_entries import Entry, finding_entries
@@ -38,8 +39,8 @@ if TYPE_CHECKING:
 
 DECIDE = "decide"  # its heading is what there is to decide
 SECTIONS = (
-    DECIDE, "changes", "fleet", "findings", "questions", "tables", "outside", "sanitizers", "criteria", "sign",
-    "kinds", "assumptions", "inventory", "method",
+    DECIDE, "closing", "changes", "fleet", "findings", "questions", "tables", "outside", "sanitizers", "criteria",
+    "sign", "kinds", "assumptions", "inventory", "method",
 )  # fmt: skip
 PARAGRAPHS = 10  # of the method note
 SIGNED = (  # what Article 35(7) asks for, 35(2), 35(9), 36, and who answers for it
@@ -90,6 +91,8 @@ class Outline:
         Of the contract; ``nothing`` if no data was followed.
     opening
         What it begins with: what is to be decided.
+    closing
+        What closes these paths; None where there are none.
     numbers
         (number, what it counts).
     """
@@ -104,6 +107,7 @@ class Outline:
     code: str
     verdict: str
     opening: Opening
+    closing: Closing | None
     means: tuple[str, ...]
     numbers: tuple[tuple[int, str], ...]
     assumptions: tuple[str, ...]
@@ -144,6 +148,7 @@ def outline(
     made: str = "",
     earlier: Earlier | None = None,
     redacted: bool = False,
+    proposals: Mapping[str, Any] | str = "graph",
 ) -> Outline:
     """Return the outline of a report.
 
@@ -157,6 +162,8 @@ def outline(
         The date that the report tells, ``YYYY-MM-DD``; empty for none.
     redacted
         Whether names were replaced in the documents; the report then says so.
+    proposals
+        A mitigation document of the same system, or why there is none, see ``closing``.
 
     Complexity: O(size of the documents), but for the cells of the tables: recipients x categories.
     """
@@ -168,7 +175,8 @@ def outline(
     begins = opening(index, entries, words(f"verdict.{verdict}"), _told_of(verdict, index))
     links = tables.Links(entries)
     subjects, silent = tables.subjects(index, links)
-    there = {"changes": bool(differ), "fleet": bool(index.alike)}
+    closes = closing(index, entries, proposals)
+    there = {"closing": bool(closes), "changes": bool(differ), "fleet": bool(index.alike)}
     names = [name for name in SECTIONS if there.get(name, True)]
     return Outline(
         words=words,
@@ -181,6 +189,7 @@ def outline(
         code=document["verdict"],
         verdict=verdict,
         opening=begins,
+        closing=closes,
         means=tuple(_means(index, names)),
         numbers=tuple(_numbers(index)),
         assumptions=tuple(assumed.assumed(index)),

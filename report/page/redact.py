@@ -24,7 +24,7 @@ KEPT = {
     "leaves_pseudonymised", "legal_bases", "legal_basis", "method", "missing", "paths", "pattern", "provision",
     "pseudonymised", "recipient", "retention", "role", "roles", "rosprivacy", "severity", "sha256", "special_basis",
     "state", "taken_as", "taken_by_kind", "to", "transfer", "unlabelled_channel", "unknown", "unlabelled_node",
-    "verdict", "view", "what", "without_limit",
+    "verdict", "verdict_then", "view", "what", "without_limit",
 }  # fmt: skip
 MAPS = ("because", "legal_bases", "purposes", "retention", "taken_away_by", "taken_by_kind")  # keys are no names
 NAMED = {

@@ -201,7 +201,7 @@ def privacy_view(analysis: Analysis, beside: Collection[str] = ()) -> Picture:
     for found in _ways_to_all(analysis, net, open_findings):
         for flow, length in found.items():
             lengths[flow] = min(length, lengths.get(flow, length))
-    lines = _data_lines(reached, boxes, range(len(analysis.graph.flows)), lengths, _pairs(open_findings))
+    lines = data_lines(reached, boxes, range(len(analysis.graph.flows)), lengths, pairs(open_findings))
     what = listed(analysis.emitted, most=6)
     findings = counted(len(open_findings), "finding")
     unreviewed = count_elements(q.element for q in analysis.open if q.element.robot not in beside).elements
@@ -209,8 +209,8 @@ def privacy_view(analysis: Analysis, beside: Collection[str] = ()) -> Picture:
     title = f"Where {what} can go ({analysis.graph.view}): {_verdict(analysis)}"
     notes = (f"{findings}, {open_count} not reviewed", *reached.left_out(beside))
     shown = tuple(in_words(finding) for finding in open_findings)
-    core = _core(open_findings)
-    return Picture(PRIVACY, title, sorted_boxes(boxes.values()), lines.made(), notes, shown, core)
+    ordered = sorted_boxes(boxes.values())
+    return Picture(PRIVACY, title, ordered, lines.made(), notes, shown, core(open_findings))
 
 
 def _verdict(analysis: Analysis) -> str:
@@ -278,7 +278,7 @@ class FindingViews:
         for index in lengths:
             keys |= set(_ends(self._analysis, graph.flows[index]))
         boxes = {box.key: box for box in reached.boxes(keys)}
-        lines = _data_lines(reached, boxes, lengths, lengths, _pairs([finding]))
+        lines = data_lines(reached, boxes, lengths, lengths, pairs([finding]))
         form = "pseudonymised " if finding.pseudonymised else ""
         from_to = f"{shortened(finding.source.name, 60)} to {shortened(finding.leak.name, 60)}"
         title = f"How {form}{category} can get from {from_to} ({graph.view})"
@@ -291,7 +291,7 @@ class FindingViews:
         if not found.complete:
             notes.append(f"{LONGER} than {counted(max(lengths.values()), 'step')}")
         ordered = sorted_boxes(boxes.values())
-        return Picture(PRIVACY, title, ordered, lines.made(), tuple(notes), (in_words(finding),), _core([finding]))
+        return Picture(PRIVACY, title, ordered, lines.made(), tuple(notes), (in_words(finding),), core([finding]))
 
 
 def finding_view(analysis: Analysis, finding: Finding, about: int | None = None) -> Picture:
@@ -327,23 +327,32 @@ def _joined(lines: Iterable[Line]) -> set[Key]:
     return {key for line in lines for key in (line.source, line.target)}
 
 
-def _pairs(findings: Iterable[Finding]) -> set[tuple[Key, Key]]:
-    """The steps of the shortest paths."""
+def pairs(findings: Iterable[Finding]) -> set[tuple[Key, Key]]:
+    """Return the steps of the shortest paths."""
     return {(step.source.identity, step.target.identity) for finding in findings for step in finding.steps}
 
 
-def _core(findings: Iterable[Finding]) -> frozenset[Key]:
+def core(findings: Iterable[Finding]) -> frozenset[Key]:
+    """Return the elements of the shortest paths."""
     return frozenset(element.identity for finding in findings for element in finding.witness)
 
 
-def _data_lines(
+def data_lines(
     reached: Reached,
     boxes: Collection[Key],
     flows: Iterable[int],
     lengths: Mapping[int, int],
     shortest: Collection[tuple[Key, Key]],
 ) -> _Lines:
-    """What goes along some flows; ``lengths`` has those on paths to leaks."""
+    """Return what goes along some flows.
+
+    Parameters
+    ----------
+    lengths
+        Flow on a path to a leak -> steps of the shortest one through it.
+    shortest
+        Ends of the steps of the shortest paths.
+    """
     lines = _Lines(boxes)
     for index in flows:
         carries, pseudonymised = reached.along(index)

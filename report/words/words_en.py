@@ -183,11 +183,40 @@ WORDS = {
     "b.owner": "Who decides",
     "b.owner.none": "nobody is named",
     "b.only": "{decided}, for {robot} only",
+    "b.changed": "{decided}; changed since",
     "b.see": "In full",
     "b.dismissed": "{ways} lead only through one of these places; they stand below, at the end of their kind.",
     "code.leak": "data can get to a point of exit",
     "code.undetermined": "not known",
     "code.no-leak-found": "none found under the labels given",
+    # --- what closes paths
+    "h.closing": "What closes these paths",
+    "z.none.fleet": (
+        "Changes are proposed for the policies of one robot: 'rosprivacy mitigate' with the policies and labels of a robot "
+        "tells the cheapest ones, proven by a new analysis."
+    ),
+    "z.none.many": (
+        "There are too many paths to propose changes here; 'rosprivacy mitigate' with the files of this report tells the "
+        "cheapest ones, proven by a new analysis."
+    ),
+    "z.none.graph": "No change can be proposed here: the policies behind this report are not at hand.",
+    "z.nothing": "No change that can be proposed removes these paths.",
+    "z.intro": "With {changes}, this would be closed: {removed}. That is no decision: a change is work for a person, and there may be others.",
+    "z.change.one": "{n} change",
+    "z.change.many": "{n} changes",
+    "z.proven": "Analysed anew with them. Paths to a point of exit are then: {verdict}. That holds as far as reviews find what is assumed.",
+    "z.less": "These get less than today: {names}.",
+    "z.more": "{n} more; 'rosprivacy mitigate' tells all.",
+    "z.filter": "Put a filter between {source} and {target} that ends {data} (anonymise, aggregate or drop; pseudonymising does not do it).",
+    "z.review": "Review {channel}: does it carry {data}? If a person finds that it does not, a label that says so closes the path.",
+    "z.deny": "Set these policy lines to DENY, for {data}. A DENY holds for the whole enclave: {enclaves}.",
+    "z.spares": "A filter one step before would also reach {names}.",
+    "z.instead": "Without a change of flows, if it is so or can be arranged, a label file can state:",
+    "z.state.storage-limitation": "of {element}, for how long {data} is kept, within the limit",
+    "z.state.third-country-transfer": "of {element}, another country, or the basis of the transfer of {data}",
+    "z.stays": "No change removes:",
+    "b.picture": "The shortest paths of what is to be decided, in one picture",
+    "b.picture.part": "The shortest paths of the first {n} of {all} to decide; the others have a picture each, below",
     # --- Article 9
     "article9.short": "Article 9(1)",
     "article9.always": "applies to such data",

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.contexts import Contexts
 from rosprivacy.analysis.findings.findings import Options, analyse
@@ -22,7 +22,7 @@ from rosprivacy.question import in_contexts
 from rosprivacy.result import Result
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.fleet.counts import Counts
@@ -93,7 +93,14 @@ def concluded(
         labels=system.labels,
         options=options,
         again=partial(_again, system.under, question) if system.under else None,
+        closes=_proposed if system.policies else None,
     )
+
+
+def _proposed(result: Result) -> Mapping[str, Any] | str:
+    from rosprivacy.mitigation import proposed  # noqa: PLC0415 - only where a report asks for it
+
+    return {**document} if isinstance(document := proposed(result), dict) else document
 
 
 def _again(

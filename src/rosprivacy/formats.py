@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, overload
 
 from rosprivacy.analysis.errors import InputError, shown
@@ -28,6 +29,8 @@ LANGUAGES = ("en", "de", "fr")
 
 # What is text; the table below has one row for each, and 'docx'.
 TextFormat = Literal["text", "json", "sarif", "cnil-pia", "turtle", "json-ld", "html", "markdown", "article30"]
+
+NAMED = 3  # policies in the title of a report
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,27 +178,48 @@ def _html(answer: Answer, style: Style) -> str:
 def _outline(answer: Answer, style: Style) -> tuple[Outline, Aliases | None]:
     from rosprivacy.report.page.outline import outline
 
-    told, earlier, aliases = _told(answer, style)
-    made = today(os.environ)
-    entries = outline(told, style.language, title=style.title, made=made, earlier=earlier, redacted=style.redact)
-    return entries, aliases
+    told, earlier, proposals, aliases = _told(answer, style, answer.proposals())
+    report = outline(
+        told,
+        style.language,
+        title=style.title or ("" if style.redact else _title(answer, style)),
+        made=today(os.environ),
+        earlier=earlier,
+        redacted=style.redact,
+        proposals=proposals,
+    )
+    return report, aliases
 
 
-def _told(answer: Answer, style: Style) -> tuple[Mapping[str, Any], Earlier | None, Aliases | None]:
-    """The document, the earlier one if there is one, and what elements are called if names are replaced."""
+def _title(answer: Answer, style: Style) -> str:
+    """The policies that were named, without what they include; empty where that is not known."""
+    from rosprivacy.analysis.text import fit
+    from rosprivacy.report.words.words import Words
+
+    words, names = Words(style.language), list(dict.fromkeys(Path(file).name for file in answer.named))
+    more = [words("more", n=len(names) - NAMED)] if len(names) > NAMED else []
+    return words.row([*map(fit, names[:NAMED]), *more])
+
+
+def _told(
+    answer: Answer, style: Style, proposals: Mapping[str, Any] | str = ""
+) -> tuple[Mapping[str, Any], Earlier | None, Mapping[str, Any] | str, Aliases | None]:
+    """The document, the earlier one if there is one, proposals, and what elements are called if names are replaced."""
     from rosprivacy.report.compare.earlier import read_earlier
     from rosprivacy.report.document.whole import document
 
     told = document(answer)
     earlier = read_earlier(style.since) if style.since else None
     if not style.redact:
-        return told, earlier, None
+        return told, earlier, proposals, None
     from rosprivacy.report.page.redact import redacted
     from rosprivacy.report.page.redacted_pictures import aliases_of
 
-    copies = redacted([told, *([earlier.document] if earlier else [])])
+    beside = [earlier.document] if earlier else []
+    also = [proposals] if not isinstance(proposals, str) else []
+    copies = redacted([told, *beside, *also])
     earlier = replace(earlier, document=copies[1], file="file-0") if earlier else None
-    return copies[0], earlier, aliases_of(told, copies[0])
+    return copies[0], earlier, copies[-1] if also else proposals, aliases_of(told, copies[0])
 
 
 FORMATS = {

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.mitigation.limits import CHANGES, DENY, Limits
-from rosprivacy.analysis.mitigation.propose import System, mitigate
+from rosprivacy.analysis.mitigation.propose import System, mitigate, open_findings
 from rosprivacy.ingest.labels.binding import join
 from rosprivacy.ingest.mitigation.deny_lines import denials, with_denied
 from rosprivacy.ingest.mitigation.deny_patch import Patch, patch
@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Bound, FlowGraph, Grant
     from rosprivacy.report.contract.mitigation import MitigationDocument
     from rosprivacy.result import Result
+
+REPORTED = 20  # findings for which a report proposes changes
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,6 +109,19 @@ def run_mitigation(
     changed = build(with_denied(result.policies, grants), view, bounds)
     unmatched = tuple(str(problem) for problem in join(changed, result.labels, bounds)[1])
     return Mitigation(result, limits, proposals, patch(result.policies, grants), unmatched, notes)
+
+
+def proposed(result: Result) -> MitigationDocument | str:
+    """Return what a report proposes, or ``many`` if there are too many findings.
+
+    Notes
+    -----
+    On TurtleBot3, 4 findings cost 1.1 s and 16 cost 2.3 s, where the analysis takes 0.3 s: more than ``REPORTED`` are
+    left to ``mitigate``.
+    """
+    if len(open_findings(result.analysis)) > REPORTED:
+        return "many"
+    return run_mitigation(result, bounds=result.options.bounds).document()
 
 
 def _denied(proposals: Iterable[Proposal]) -> Iterable[Grant]:

@@ -16,7 +16,7 @@ from rosprivacy.report.document.whole import document
 from rosprivacy.report.terminal.analysis import verdict_line
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
     from typing import Unpack
 
     import networkx as nx
@@ -50,12 +50,15 @@ class Result(Answer):
         What was asked.
     again
         Analyses the same policies, as they were read, under other labels; None of a fleet and of a database.
+    closes
+        Proposes changes that remove the open findings; None where the policies are not at hand.
     """
 
     policies: tuple[Policy, ...] = ()
     labels: tuple[Labels, ...] = ()
     options: Options = field(default_factory=Options)
     again: Callable[[tuple[str | Labels, ...]], Result] | None = field(default=None, compare=False)
+    closes: Callable[[Result], Mapping[str, Any] | str] | None = field(default=None, compare=False)
 
     def __repr__(self) -> str:
         return f"<Result: {self._verdict()}>"
@@ -76,6 +79,15 @@ class Result(Answer):
         [('/robot_camera', '/archive_server'), ('/safety_camera', '/archive_server')]
         """
         return Findings(self.shown.findings, self.fleet, self._verdict)
+
+    @property
+    def named(self) -> tuple[str, ...]:
+        """The policy files that a user named, without what they include; none of a fleet and of a database."""
+        return () if self.fleet else tuple(policy.file for policy in self.policies)
+
+    def proposals(self) -> Mapping[str, Any] | str:
+        """Return what closes the open findings, a mitigation document; or why there is none, a word."""
+        return self.closes(self) if self.closes and not self.fleet else Answer.proposals(self)
 
     def document(self) -> dict[str, Any]:
         """Return the JSON document of the contract."""

@@ -1,7 +1,7 @@
 """The program as tests call it.
 
-``run`` starts a process. ``cli`` calls the same entry point in this process, because there are many rows; with
-``--slow`` every test that uses it runs as a process too.
+``run`` starts a process. ``cli`` calls the same entry point in this process, because there are many rows;
+``tests/cli/test_processes.py`` holds each command and each of its endings to what a process gives.
 """
 
 from __future__ import annotations
@@ -40,10 +40,8 @@ class Cli(Protocol):
     ) -> Done: ...
 
 
-@pytest.fixture(params=["here", pytest.param("process", marks=pytest.mark.slow)])
-def cli(request: pytest.FixtureRequest, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Cli:
-    if request.param == "process":
-        return run
+@pytest.fixture
+def cli(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Cli:
     for name in UNSET:
         monkeypatch.delenv(name, raising=False)
 

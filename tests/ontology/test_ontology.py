@@ -37,7 +37,10 @@ COVERED = (
     "wireless device identifier", "name of a person", "staff badge", "staff performance", "household object",
     "ethnicity", "religion", "political opinion", "trade union membership", "sex life or sexual orientation",
     "genetic data", "criminal offence", "criminal conviction", "depth image of persons", "thermal image of persons",
-    "point cloud of persons",
+    "point cloud of persons", "payment data", "employment data", "conversation with a language model",
+    "multimodal embedding", "rehabilitation data", "brain signal", "smart home sensor data", "map with names",
+    "access event", "phone identifier", "vehicle data", "record of calls", "image of a document",
+    "state of a driver or operator",
 )  # fmt: skip
 
 
@@ -180,6 +183,8 @@ class TestCategories:
             ("EmotionEstimate", {"mental"}),
             ("DeliveryOrder", {"economic"}),
             ("StaffPerformance", {"economic"}),
+            ("PaymentData", {"economic", "number"}),
+            ("EmploymentData", {"economic", "social"}),
             ("Religion", {"cultural"}),
             ("CommunicationMetadata", {"social"}),
             ("HouseholdMembers", {"social"}),
@@ -228,6 +233,20 @@ class TestVerdicts:
             ("PersonTrack", {"GDPR-9-1": "may-reveal"}),  # CJEU C-511/18, par. 117
             ("GnssPosition", {"GDPR-9-1": "may-reveal"}),
             ("Presence", {"GDPR-9-1": "may-reveal"}),
+            ("PaymentData", {"GDPR-9-1": "may-reveal"}),  # to a pharmacy, a church, a party
+            ("EmploymentData", {"GDPR-9-1": "may-reveal"}),  # an accident, sick leave
+            ("ConversationWithModel", {"GDPR-9-1": "may-reveal"}),
+            ("MultimodalEmbedding", {"GDPR-9-1": "may-reveal"}),  # biometric only where a person is recognised by it
+            ("RehabilitationData", {"GDPR-9-1-health": "always"}),  # recital 35: physiological state
+            ("BrainSignal", {"GDPR-9-1-health": "always"}),
+            ("SmartHomeSensorData", {"GDPR-9-1": "may-reveal"}),
+            ("AnnotatedMap", {"GDPR-9-1": "may-reveal"}),
+            ("AccessEvent", {"GDPR-9-1": "may-reveal"}),
+            ("VehicleData", {"GDPR-9-1": "may-reveal"}),
+            ("CallLog", {"GDPR-9-1": "may-reveal"}),  # CJEU C-511/18, par. 117
+            ("DocumentImage", {"GDPR-9-1": "may-reveal"}),
+            ("DriverOrOperatorState", {"GDPR-9-1-health": "conditional"}),  # tiredness alone is no illness
+            ("PhoneIdentifier", {}),
             ("HomeLocation", {}),
             ("LicencePlate", {}),
             ("StaffPerformance", {}),

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from lxml import etree
 from lxml import html as lxml_html
 
+from rosprivacy.report.finding_order import in_order
 from rosprivacy.report.page import figures as module
 from rosprivacy.report.page import inline
 from rosprivacy.report.page.figures import Figures, figures, page_legend
@@ -126,7 +127,8 @@ def test_each_way_has_its_picture_and_says_it_in_words() -> None:
     page = lxml_html.document_fromstring(html(told, drawn))
     pictures = page.xpath("//figure[@class='picture']//*[@role='img']")
     assert [picture.get("aria-label") for picture in pictures] == [
-        "Picture of the path: " + " → ".join(e["name"] for e in finding["witness"]) for finding in care()["findings"]
+        "Picture of the path: " + " → ".join(e["name"] for e in finding["witness"])
+        for finding in in_order(care()["findings"])
     ]
     assert "no picture" not in page.text_content()
     assert set(drawn.of) == {entry.id for entry in told.entries}
@@ -237,3 +239,27 @@ def test_what_pictures_share_is_made_once_for_each_kind_of_data(monkeypatch: pyt
 
 def test_the_room_is_that_of_a_file_that_can_be_mailed() -> None:
     assert module.ROOM <= 6 * 2**20
+
+
+def test_the_first_picture_has_the_shortest_paths_of_what_is_to_be_decided_and_nothing_else() -> None:
+    result = care_home()
+    told = outline(result.document(), "en")
+    drawn = figures(result.analysis, told)
+    assert drawn.overview
+    assert drawn.drawn == told.opening.count == 3
+    page = lxml_html.document_fromstring(html(told, drawn))
+    (picture,) = page.xpath("//section[@id='decide']//figure")
+    texts = {text.text for text in picture.iter("text")}
+    names = {element["name"] for finding in care()["findings"] for element in finding["witness"]}
+    assert names <= texts
+    assert {text for text in texts if text.startswith("/")} == names
+    assert picture.xpath(".//figcaption/a/@href") == ["#h-legend"]
+
+
+def test_the_first_picture_stays_small_and_says_what_it_leaves_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    result = care_home()
+    told = outline(result.document(), "en")
+    monkeypatch.setattr("rosprivacy.report.page.figures.OVERVIEW", 8)
+    drawn = figures(result.analysis, told)
+    assert drawn.drawn == 1
+    assert "The shortest paths of the first 1 of 3 to decide" in html(told, drawn)

@@ -93,6 +93,14 @@ def test_a_decision_that_is_over_is_to_be_made_again() -> None:
     assert dict(row.facts)["State"] == "accepted; expired: it no longer counts"
 
 
+def test_a_decision_about_what_has_changed_since_is_to_be_made_again() -> None:
+    document = care()
+    decide(document, 0, choice="mitigate", changed=[{"what": "path", "before": "a", "now": "b"}])
+    row = told(document).opening.rows[0]
+    assert row.waits
+    assert dict(row.facts)["State"] == "to be mitigated; changed since"
+
+
 def test_a_decision_about_one_robot_does_not_decide_for_its_likes() -> None:
     document = {**hospital().document()}
     pattern = next(p for p in document["fleet"]["patterns"] if len(p["robots"]) == 40 and not p["dismissed"])

@@ -1,0 +1,133 @@
+"""What closes the paths to decide: the proposals of ``mitigate`` in words, each proven by a new analysis.
+
+In: an ``Index``, the entries of the report and a mitigation document; or why there is none. Out: ``Closing``, in plain
+texts. A proposal is work for a person; what it takes from whom is told with it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.mitigation.limits import DENY, FILTER, REVIEW
+from rosprivacy.analysis.text import fit
+from rosprivacy.report.naming import line, name
+from rosprivacy.report.page.finding_entries import LINES
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from rosprivacy.report.page.finding_entries import Entry
+    from rosprivacy.report.page.index import Index
+
+NAMED = 6  # elements that get less
+SHOWN = 20  # steps; the others are told by their number
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """One change: what to do, at which policy lines, and what else to know of it."""
+
+    text: str
+    lines: tuple[str, ...]
+    more: int
+    notes: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Closing:
+    """What closes paths.
+
+    Attributes
+    ----------
+    said
+        What the changes together do, or why none is proposed.
+    changes
+        The first of them; ``more`` tells how many others there are.
+    instead
+        What can be stated or arranged without a change of flows.
+    stays
+        Entries that no change removes.
+    """
+
+    said: tuple[str, ...]
+    changes: tuple[Change, ...] = ()
+    more: str = ""
+    instead: tuple[str, ...] = ()
+    stays: tuple[Entry, ...] = ()
+
+
+def closing(index: Index, entries: Iterable[Entry], proposals: Mapping[str, Any] | str) -> Closing | None:
+    """Return what closes the paths of a report; None if there is none to close.
+
+    Parameters
+    ----------
+    proposals
+        A mitigation document; or why there is none: ``fleet``, ``many`` or ``graph``.
+
+    Complexity: O(steps + elements affected).
+    """
+    words = index.words
+    if not index.to_assess:
+        return None
+    if isinstance(proposals, str):
+        return Closing((words(f"z.none.{proposals}"),))
+    if not proposals["proposals"]:
+        return Closing((words("z.none.graph"),))
+    last = proposals["proposals"][-1]  # of all kinds together
+    stays = {row["finding"] for row in last["keeps"]}
+    steps = last["steps"] if last["proven"] else []
+    instead = {
+        words(f"z.state.{row['kind']}", element=name(row["element"]), data=index.data(row["category"]))
+        for row in last["statements"]
+    }
+    return Closing(
+        said=tuple(_said(last, steps, index)),
+        changes=tuple(_change(step, index) for step in steps[:SHOWN]),
+        more=words("z.more", n=len(steps) - SHOWN) if len(steps) > SHOWN else "",
+        instead=tuple(sorted(instead)),
+        stays=tuple(entry for entry in entries if stays.intersection((entry.id, *entry.others))),
+    )
+
+
+def _said(last: Mapping[str, Any], steps: list[Any], index: Index) -> Iterator[str]:
+    words = index.words
+    if not steps:
+        yield words("z.nothing")
+        return
+    removed = words.count(len(last["removes"]), "way")
+    yield words("z.intro", changes=words.count(len(steps), "z.change"), removed=removed)
+    yield words("z.proven", verdict=words(f"code.{last['verdict_then']}"))
+    less = list(dict.fromkeys(name(row["element"]) for row in last["affected"]))
+    if less:
+        more = [words("more", n=len(less) - NAMED)] if len(less) > NAMED else []
+        yield words("z.less", names=words.row([*less[:NAMED], *more]))
+
+
+def _change(step: Mapping[str, Any], index: Index) -> Change:
+    places = [line(grant) for grant in step["policy"]]
+    unique = tuple(dict.fromkeys(places))
+    text = _TEXTS[step["kind"]](step, index)
+    return Change(text, unique[:LINES], len(unique[LINES:]), tuple(_notes(step, index)))
+
+
+def _filter(step: Mapping[str, Any], index: Index) -> str:
+    ends = [index.words.row(dict.fromkeys(name(one[end]) for one in step["between"])) for end in ("from", "to")]
+    return index.words("z.filter", source=ends[0], target=ends[1], data=index.all_data(step["categories"]))
+
+
+def _review(step: Mapping[str, Any], index: Index) -> str:
+    return index.words("z.review", channel=name(step["channel"]), data=index.all_data(step["categories"]))
+
+
+def _deny(step: Mapping[str, Any], index: Index) -> str:
+    enclaves = dict.fromkeys(fit(grant["enclave"]) for grant in step["policy"])
+    return index.words("z.deny", data=index.all_data(step["categories"]), enclaves=index.words.row(enclaves))
+
+
+_TEXTS = {FILTER: _filter, REVIEW: _review, DENY: _deny}
+
+
+def _notes(step: Mapping[str, Any], index: Index) -> Iterator[str]:
+    if step["spares"]:
+        yield index.words("z.spares", names=index.words.row(dict.fromkeys(map(name, step["spares"]))))
