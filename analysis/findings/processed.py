@@ -129,11 +129,12 @@ class _Rows:
         self._reached = self._ways()
 
     def ends(self) -> Iterator[tuple[int, str]]:
-        """Sources, leaks and elements outside ROS, each with the kinds of data that are there."""
+        """Sources, nodes that make a kind of another, leaks and elements outside ROS, with the kinds of data there."""
         spread, elements = self._spread, self._analysis.graph.elements
         outside = set(self._analysis.outside)
         for vertex, element in enumerate(elements):
-            bits = spread.begins(vertex) | spread.leaks.get(vertex, 0) & spread.present(vertex)
+            made = sum({1 << after for before, after in spread.derives.get(vertex, ()) if self._differ(before, after)})
+            bits = spread.begins(vertex) | (made | spread.leaks.get(vertex, 0)) & spread.present(vertex)
             here = spread.names(spread.present(vertex) if element in outside else bits)
             yield from ((vertex, category) for category in here if category in self._analysis.emitted)
 

@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, shown
 from rosprivacy.analysis.legal_bases import transfer_of
-from rosprivacy.analysis.model import NOWHERE, Processing
+from rosprivacy.analysis.model import NOWHERE, Place, Processing
 from rosprivacy.analysis.non_ros import EVERY
 from rosprivacy.ingest.reading.legal_basis import read_bases
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
-    from rosprivacy.analysis.model import ByCategory, NonRosFacts, Place
+    from rosprivacy.analysis.model import ByCategory, NonRosFacts
     from rosprivacy.ingest.labels.name_reader import NameReader
     from rosprivacy.ingest.reading.yaml_values import Value
 
@@ -39,7 +39,8 @@ def read_processing(
         if key == "purpose":
             said = replace(said, purposes=_by_category(reader, key, line, value, _purposes))
         elif key == "legal_basis":
-            said = replace(said, bases=_by_category(reader, key, line, value, read_bases))
+            stated = _by_category(reader, key, line, value, read_bases)
+            said = replace(said, bases=stated, place=Place(reader.file, line))
         elif key == "controller":
             said = replace(said, controller=text_of(reader, key, value))
         else:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import KINDS, MAY_REVEAL
 from rosprivacy.analysis.non_ros import ADEQUATE, INSIDE, retention_of
+from rosprivacy.report.cnil.lawfulness import purposes_of
 from rosprivacy.report.cnil.markup import Html, bullets, escaped, harmless, joined, paragraph, prose, strong
 from rosprivacy.report.cnil.told import NAMES
 from rosprivacy.report.element_counts import count_elements
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.answer import Analysis, Carried, Finding
+    from rosprivacy.analysis.findings.processed import Processed
     from rosprivacy.analysis.findings.sanitizing import Cleaning
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.model import Element
@@ -53,6 +55,8 @@ class Known:
         Of the categories.
     told
         The words of the reader.
+    processed
+        What is stated of purposes and legal bases where data begin and end.
     """
 
     analysis: Analysis
@@ -62,6 +66,7 @@ class Known:
     subjects: Mapping[tuple[str, str, str], tuple[str, ...]]
     hierarchy: Hierarchy
     told: Told
+    processed: tuple[Processed, ...] = ()
 
     def of(self, element: Element, what: str) -> str:
         """Return what was stated of an element, empty if nothing."""
@@ -130,9 +135,17 @@ def _data_of(kind: Kind, known: Known) -> Iterator[Html]:
             told.line("cnil.recipients", _recipients(kind, told)),
             told.line("cnil.kept", told.some(stored) or told("cnil.kept.none")),
             *([told.line("cnil.persons", told.some(persons))] if persons else []),
-            told("cnil.purpose.open" if persons else "cnil.persons.open"),
+            *purposes_of(known.processed, category.name, told),
+            told(_open_of(persons, list(purposes_of(known.processed, category.name, told)))),
         ]
     )
+
+
+def _open_of(persons: list[str], purposes: list[Html]) -> str:
+    """The sentence that names what a person has to complete."""
+    if purposes:
+        return "cnil.access.open" if persons else "cnil.persons.access.open"
+    return "cnil.purpose.open" if persons else "cnil.persons.open"
 
 
 def life_cycle(known: Known) -> Html:
@@ -178,7 +191,7 @@ def supports(known: Known) -> Html:
     parts = []
     for kind in (kind for kind in KINDS if kind in carries):
         rows = [told.pair(escaped(name), _held(carried, told)) for name, carried in list(carries[kind].items())[:NAMES]]
-        parts.append(paragraph(strong(told.count(len(carries[kind]), f"cnil.{kind}"))))
+        parts.append(paragraph(strong(told.count(len(carries[kind]), f"cnil.kind.{kind}"))))
         parts.append(told.rows(rows, len(carries[kind])))
     parts.append(paragraph(told("cnil.paper")))
     return joined(*parts) if carries else nothing(known)
@@ -230,7 +243,9 @@ def _named_processor(element: Element, known: Known) -> Html:
     told = known.told
     who = known.of(element, "operator") or told("cnil.processor.unnamed")
     where = f" ({known.of(element, 'country')})" if known.of(element, "country") else ""
-    return joined(told("cnil.processor", who=escaped(f"{who}{where}")), Html("; "), told("cnil.contract"))
+    contract = known.of(element, "contract")
+    on = told.line("cnil.contract.stated", escaped(contract)) if contract else told("cnil.contract")
+    return joined(told("cnil.processor", who=escaped(f"{who}{where}")), Html("; "), on)
 
 
 def transfers(known: Known) -> Html:

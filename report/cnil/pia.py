@@ -18,6 +18,7 @@ from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import Method
 from rosprivacy.analysis.modes import View
 from rosprivacy.report.cnil import answers as cnil_answers
+from rosprivacy.report.cnil import lawfulness
 from rosprivacy.report.cnil.answers import Known
 from rosprivacy.report.cnil.markup import Html, escaped, joined, paragraph
 from rosprivacy.report.cnil.told import NAMES, Told
@@ -54,7 +55,9 @@ def cnil_pia(answer: Answer, created: str, language: str = "en") -> dict[str, An
     kinds = kinds_of(analysis, vocabulary.categories, vocabulary.hierarchy)
     told = Told(Words(language), vocabulary.categories)
     accepted = _accepted(answer, told.words)
-    known = Known(analysis, kinds, answer.stated, accepted, answer.subjects, vocabulary.hierarchy, told)
+    known = Known(
+        analysis, kinds, answer.stated, accepted, answer.subjects, vocabulary.hierarchy, told, answer.processed
+    )
     measures = list(_measures(known))
     note = _note(analysis, assumptions, _fleet(view, told) if view else "", told)
     texts = {
@@ -66,8 +69,13 @@ def cnil_pia(answer: Answer, created: str, language: str = "en") -> dict[str, An
         227: cnil_answers.transfers(known),
     }
     lists = {322: cnil_answers.threats(known), 324: [title for title, _ in measures]}
-    if processors := cnil_answers.processors(known):
-        texts[226] = processors
+    stated = {
+        112: lawfulness.responsible(known.processed, told),
+        211: lawfulness.purposes(known.processed, kinds, told),
+        212: lawfulness.bases(known.processed, kinds, told),
+        226: cnil_answers.processors(known),
+    }
+    texts |= {number: text for number, text in stated.items() if text}
     answers = [(number, {"text": joined(text, note), "gauge": 0, "list": []}) for number, text in sorted(texts.items())]
     answers += [(number, {"text": None, "gauge": None, "list": said}) for number, said in lists.items() if said]
     return {

@@ -1,28 +1,16 @@
-"""Decisions in what readers get: added to the JSON document, and as lines for the terminal.
+"""Decisions in what readers get: added to the JSON document.
 
 In: a document and decisions joined to its findings. Out: the document with ``decision`` on findings and ``decisions``.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, cast
-
-from rosprivacy.analysis.decisions import Choice, State
-from rosprivacy.analysis.errors import shown
+from typing import TYPE_CHECKING, cast
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from rosprivacy.analysis.decisions import Decided, Decision
+    from rosprivacy.analysis.decisions import Decided, Decision, State
     from rosprivacy.report.contract.analysis import AnalysisDocument
     from rosprivacy.report.contract.records import ChangedSince, DecisionEntry, FindingEntry, ListedDecision, Target
-
-DONE = {
-    Choice.ACCEPT: "accepted",
-    Choice.MITIGATE: "to be mitigated",
-    Choice.DELEGATE: "delegated",
-    Choice.AVOID: "to be avoided",
-}
 
 
 def with_decisions(document: AnalysisDocument, decided: Decided) -> AnalysisDocument:
@@ -63,27 +51,3 @@ def _target(entry: Decision) -> Target:
     if entry.pseudonymised is not None:
         said["pseudonymised"] = entry.pseudonymised
     return said
-
-
-def decision_lines(finding: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    """Yield (text, style) of the decision about a finding, if there is one."""
-    decision = finding.get("decision")
-    if not decision:
-        return
-    choice, place = DONE[Choice(decision["choice"])], f"{shown(decision['file'])}:{decision['line']}"
-    if decision["state"] == State.EXPIRED:
-        yield f"   undecided: {choice} until {decision['expires']}, which has passed  ({place})", "yellow"
-        return
-    owner = f" by {shown(decision['owner'])}" if decision["owner"] else ""
-    until = f" until {decision['expires']}" if decision["expires"] else ""
-    basis = f", {', '.join(decision['legal_basis'])}" if decision["legal_basis"] else ""
-    style = "green" if decision["choice"] == Choice.ACCEPT else "yellow"
-    yield f"   {choice}{owner}{until}{basis}  ({place})", style
-    if decision["reason"]:
-        yield f"      {shown(decision['reason'])}", style
-    for change in decision.get("changed", ()):
-        what = change["what"].replace("_", " ")
-        yield (
-            f"      changed since decided: {what}: {shown(change['before'])} then, {shown(change['now'])} now",
-            "yellow",
-        )

@@ -17,6 +17,7 @@ from rosprivacy.analysis.non_ros import INSIDE, PARTLY, THIRD
 from rosprivacy.analysis.text import fit
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import key, name, whole
+from rosprivacy.report.page import purposes
 from rosprivacy.report.page.entries_of_robots import grouped
 from rosprivacy.report.page.index import Index
 from rosprivacy.report.page.kinds import provision
@@ -104,6 +105,12 @@ class _Facts:
         found = sorted(self._reached[category].values(), key=lambda e: (e["kind"], e["name"], e["robot"]))
         return grouped(found, lambda element: (element["kind"], element["name"]))
 
+    def processed(self, category: str, group: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+        """What is stated of a kind of data where it leaves; where it does not, where it begins."""
+        ends = {key(element) for element in group}
+        rows = self.index.processed_for.items()
+        return [row for (end, of), row in rows if of == category and (end in ends or not ends)]
+
     def sources(self, category: str) -> list[str]:
         """Groups of persons of the sources that the kind can come from."""
         return sorted({group for source in self._origins[category] for group in self.index.subjects.get(source, ())})
@@ -115,10 +122,11 @@ def _entry(category: str, group: Sequence[Mapping[str, Any]], facts: _Facts) -> 
     findings = [finding for element in group for finding in facts.findings.get((category, key(element)), ())]
     stated = [index.outside[key(element)] for element in group if key(element) in index.outside]
     law = [provision(legal, category, index) for legal in known["law"]]
+    rows = facts.processed(category, group)
     values = {
         "activity": "",
-        "controller": "",
-        "purpose": "",
+        "controller": purposes.controllers(rows, index) or words("r.open"),
+        "purpose": purposes.purposes(rows, index),
         "category": index.data(category),
         "article9": words(f"article9.{known['article9']}"),
         "provisions": "; ".join(words.pair(p.name, p.condition) if p.condition else p.name for p in law),
@@ -128,18 +136,26 @@ def _entry(category: str, group: Sequence[Mapping[str, Any]], facts: _Facts) -> 
         "country": _told(stated, _country, index),
         "form": _form(findings, stated, index),
         "transfer": _told(stated, _transfer, index),
-        "basis": "; ".join(map(words.basis, _bases(findings))),
+        "basis": purposes.bases(rows, _bases(findings), index),
         "retention": _kept(category, facts),
         "measures": "; ".join(_measures(category, facts)),
         "findings": words.row(finding["id"] for finding in findings),
         "note": _note(category, index),
     }
-    missing = {"a", "b", "g", *(() if values["subjects"] else "c"), *(() if values["retention"] else "f")}
+    missing = {"g", *_not_stated(rows), *(() if values["subjects"] else "c"), *(() if values["retention"] else "f")}
     if len(stated) < len(group) or any(not row.get("operator") or not row.get("recipient") for row in stated):
         missing.add("d")
     if len(stated) < len(group) or any(_transfer_unknown(row) for row in stated):
         missing.add("e")
     return Entry(**values, complete=words.row(words("r.letter", letter=letter) for letter in sorted(missing)))
+
+
+def _not_stated(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
+    """The letters of Article 30(1) for who is responsible and what for, where that is not stated of all data."""
+    if not rows or not all(row["controllers"] and row["officers"] for row in rows):
+        yield "a"
+    if not rows or any(purposes.PURPOSE in row["missing"] for row in rows):
+        yield "b"
 
 
 def _told(stated: Sequence[Mapping[str, Any]], said: Callable[[Mapping[str, Any], Index], str], index: Index) -> str:
@@ -149,7 +165,7 @@ def _told(stated: Sequence[Mapping[str, Any]], said: Callable[[Mapping[str, Any]
 def _recipient(row: Mapping[str, Any], index: Index) -> str:
     """Who operates it and as what, as people stated it."""
     role = index.words.known(f"recipient.{row['recipient']}", row["recipient"]) if row.get("recipient") else ""
-    return ", ".join(part for part in (fit(row.get("operator", "")), role) if part)
+    return ", ".join(part for part in (fit(row.get("operator", "")), role, fit(row.get("contract", ""))) if part)
 
 
 def _country(row: Mapping[str, Any], index: Index) -> str:

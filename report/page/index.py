@@ -72,6 +72,11 @@ class Index:
         """Whom the data of a source are about."""
         return {key(row["element"]): [fit(group) for group in row["subjects"]] for row in self.document["subjects"]}
 
+    @cached_property
+    def processed_for(self) -> dict[tuple[Key, str], Mapping[str, Any]]:
+        """(element, category) -> what data that begin or end there are processed for, and on which basis."""
+        return {(key(row["element"]), row["category"]): row for row in self.document.get("processed_for", ())}
+
     @property
     def findings(self) -> list[Mapping[str, Any]]:
         """All findings."""

@@ -46,6 +46,7 @@ class Outside:
     operator: str
     recipient: str
     transfer: str
+    contract: str
     warnings: tuple[str, ...]
     place: str
 
@@ -73,6 +74,7 @@ def _outside(row: Mapping[str, Any], index: Index) -> Outside:
         operator=fit(row.get("operator", "")),
         recipient=words.known(f"recipient.{row['recipient']}", row["recipient"]) if row.get("recipient") else "",
         transfer=words.known(f"transfer.{row['transfer']}", row["transfer"]) if row.get("transfer") else "",
+        contract=fit(row.get("contract", "")),
         warnings=tuple(warnings),
         place=f"{fit(row['file'])}:{row['line']}" if row.get("file") else "",
     )

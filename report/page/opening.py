@@ -182,7 +182,7 @@ def _facts(findings: Sequence[Mapping[str, Any]], index: Index) -> Iterator[tupl
     subjects = index.subjects.get(key(first["source"]))
     yield words("b.whose"), words.row(subjects) if subjects else words("not.stated")
     yield words("b.law"), "; ".join(dict.fromkeys(_provisions(findings, index)))
-    yield words("b.basis"), words.row(_bases(findings)) or words("b.basis.none")
+    yield words("b.basis"), words.row(_bases(findings, index)) or words("b.basis.none")
     yield words("b.recipient"), _recipient(first["leak"], index)
     yield words("b.owner"), words.row(_owners(findings)) or words("b.owner.none")
     yield words("d.state"), words.row(dict.fromkeys(_state(finding, index) for finding in findings))
@@ -195,9 +195,12 @@ def _provisions(findings: Iterable[Mapping[str, Any]], index: Index) -> Iterator
             yield text(legal, "provision", index.words.language)
 
 
-def _bases(findings: Iterable[Mapping[str, Any]]) -> list[str]:
-    bases = (basis for finding in findings for basis in _decided(finding, "legal_basis"))
-    return [printable(basis) for basis in dict.fromkeys(bases)]
+def _bases(findings: Sequence[Mapping[str, Any]], index: Index) -> list[str]:
+    """The legal bases that decisions record, and those that labels state where the data get to."""
+    ends = [index.processed_for.get((key(finding["leak"]), finding["category"]), {}) for finding in findings]
+    decided = [basis for finding in findings for basis in _decided(finding, "legal_basis")]
+    stated = [basis for end in ends for basis in end.get("legal_bases", ())]
+    return [index.words.basis(printable(basis)) for basis in dict.fromkeys((*decided, *stated))]
 
 
 def _owners(findings: Iterable[Mapping[str, Any]]) -> list[str]:

@@ -29,6 +29,7 @@ from rosprivacy.report.page.kinds import Kind, kinds
 from rosprivacy.report.page.look_at import LookAt, further
 from rosprivacy.report.page.non_ros import Outside, outside
 from rosprivacy.report.page.opening import Opening, opening
+from rosprivacy.report.page.purposes import Row, processed, signed
 from rosprivacy.report.page.review import Group, review, unknown_ends
 from rosprivacy.report.words.words import Words
 
@@ -119,6 +120,8 @@ class Outline:
     subjects: tables.Table
     silent: tuple[str, ...]
     recipients: tables.Table
+    processed: tuple[Row, ...]
+    signed: Mapping[str, str]
     kinds: tuple[Kind, ...]
     entries: tuple[Entry, ...]
     orphans: tuple[Decision, ...]
@@ -201,6 +204,8 @@ def outline(
         subjects=subjects,
         silent=silent,
         recipients=tables.recipients(index, links),
+        processed=processed(index),
+        signed=signed(index),
         kinds=kinds(index, entries),
         entries=entries,
         orphans=orphans(index),

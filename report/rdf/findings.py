@@ -13,6 +13,7 @@ from rdflib import RDF, RDFS, SKOS, XSD, Graph, Literal
 from rdflib.namespace import PROV
 
 from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.findings.processed import of_end
 from rosprivacy.report.document.whole import document
 from rosprivacy.report.rdf.facts import changes, emitted_by, kinds_along, label_of, legal_of
 from rosprivacy.report.rdf.individuals import below, names_of
@@ -132,7 +133,7 @@ class _Findings:
     def of(cls, answer: Answer, analysis: Analysis, names: Names, things: Things) -> _Findings:
         unstated = frozenset((element.shown_as, category) for element, category in analysis.unstated)
         unreviewed = frozenset((q.element.shown_as, category) for q in analysis.open for category in q.categories)
-        processes = Processes(answer, names, things, answer.stated, unstated)
+        processes = Processes(answer, names, things, answer.stated, unstated, of_end(answer.processed))
         rest = emitted_by(analysis), unreviewed, processes, answer.contexts
         return cls(answer, analysis, names, things, answer.accepted, *rest)
 

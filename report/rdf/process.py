@@ -12,13 +12,14 @@ from typing import TYPE_CHECKING
 from rdflib import RDF, RDFS, Literal
 
 from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.findings.processed import Processed
 from rosprivacy.analysis.non_ros import EVERY, INSIDE, retention_of
 from rosprivacy.report.rdf.facts import foreign_terms, label_of
 from rosprivacy.report.rdf.individuals import below, foreign
 from rosprivacy.report.rdf.terms import DPV, RISK, RP, Triple, about, duration, legal_basis, text
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from rdflib import URIRef
 
@@ -49,6 +50,8 @@ class Processes:
         Of the answer, worked out once.
     unstated
         (element as shown, category) where a method is not stated.
+    processed
+        (element, category) -> purposes, legal bases and who is responsible, as stated.
     """
 
     answer: Answer
@@ -56,6 +59,7 @@ class Processes:
     things: Things
     stated: Stated
     unstated: frozenset[tuple[object, str]]
+    processed: Mapping[tuple[Element, str], Processed]
 
     def triples(self, finding: Finding, changed: list[Change]) -> Iterator[Triple]:
         """Everything about the process of a finding."""
@@ -68,6 +72,7 @@ class Processes:
             (DPV.hasDataSource, [source]),
             (DPV.hasLegalBasis, self._bases(finding)),
         )
+        yield from self._why(iri, finding)
         yield RP.PossibleActivity, RDF.type, DPV.ActivityStatus
         yield source, RDF.type, DPV.DataSource
         yield from self._data(iri, finding)
@@ -92,9 +97,28 @@ class Processes:
         )
 
     def _bases(self, finding: Finding) -> list[URIRef]:
-        """The legal bases that a valid decision to accept the finding records; no word of whether they fit."""
+        """The legal bases that label files state or a valid decision records; no word of whether they fit."""
         decision = self.answer.decided.valid(finding) if self.answer.decided and finding.accepted else None
-        return [term for basis in (decision.legal_basis if decision else ()) for term in legal_basis(basis)]
+        recorded = decision.legal_basis if decision else ()
+        return [term for basis in (*recorded, *self._processed(finding).bases) for term in legal_basis(basis)]
+
+    def _processed(self, finding: Finding) -> Processed:
+        """What label files state of the kind of data where it gets to."""
+        return self.processed.get((finding.leak, finding.category)) or Processed(finding.leak, finding.category)
+
+    def _why(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:
+        """Who is responsible and what for, as label files state it (GDPR, Article 30(1)(a) and (b))."""
+        said = self._processed(finding)
+        for what, texts, relation, kind in (
+            ("controller", said.controllers, DPV.hasDataController, DPV.DataController),
+            ("officer", said.officers, DPV.hasDataProtectionOfficer, DPV.DataProtectionOfficer),
+            ("purpose", said.purposes, DPV.hasPurpose, DPV.Purpose),
+        ):
+            for one in texts:
+                thing = self.names.of(what, one)
+                yield iri, relation, thing
+                yield from about(thing, (RDF.type, [kind]), (RDFS.label, [text(shown(one))]))
+        yield from about(iri, (RP.statedLegalBasis, map(text, said.bases)), (RP.notStated, map(text, said.missing)))
 
     def _persons(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:
         """Whose data they are, as labels of the source name them (GDPR, Article 30(1)(c))."""

@@ -34,7 +34,7 @@ CLASSES = {
 Stated = Mapping[tuple[str, str, str], Mapping[str, str]]
 STATED = {
     "country": RP.country, "encrypted": RP.encrypted, "operator": RP.operator, "role": RP.operatorRole,
-    "basis": RP.transferBasis, "retention": RP.retention,
+    "basis": RP.transferBasis, "contract": RP.contract, "retention": RP.retention,
 }  # fmt: skip
 
 

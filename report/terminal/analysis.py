@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any
 from rich.text import Text
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.model import GOES_NOWHERE, MERGED, NO_LEAK_NAMED
-from rosprivacy.analysis.text import counted
+from rosprivacy.analysis.model import MERGED
 from rosprivacy.report.document.analysis import files_not_read, lacking
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import shown_name
 from rosprivacy.report.review_groups import SHOWN
+from rosprivacy.report.terminal.called_alike import legs
 from rosprivacy.report.terminal.denied import denied_lines
 from rosprivacy.report.terminal.finding_lines import MANY, details, law_lines, overview
 from rosprivacy.report.terminal.fleet import fleet_lines
@@ -28,38 +28,32 @@ from rosprivacy.report.terminal.restriction import asked_at_verdict, asked_lines
 from rosprivacy.report.terminal.review import review_lines
 from rosprivacy.report.terminal.unknown_ends import end_lines, ends_at_verdict
 from rosprivacy.report.terminal.wrapped import wrapped
+from rosprivacy.report.words.words import IN_ENGLISH, Words
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     from rich.console import Console
 
-VERDICTS = {
-    "leak": ("bold red", "data can reach a leak"),
-    "undetermined": ("bold yellow", "no leak reached, but not everything on the way is reviewed"),
-    "no-leak-found": ("bold green", "no way to a leak, everything on the way is reviewed"),
-}
-ACCEPTED = {  # the same where a decision accepts a finding
-    "undetermined": "no leak reached but what is accepted, and not everything on the way is reviewed",
-    "no-leak-found": "no way to a leak but what is accepted, everything on the way is reviewed",
-}
-TAKEN = {"conduit": "passes on all that gets there", "leak": "lets out all that gets there"}
-UNREAD = "no leak reached, but policy files with grants were not read"
-LACKING = {
-    GOES_NOWHERE: "no data was followed, it goes nowhere but to standard channels",
-    NO_LEAK_NAMED: "no label says where data gets out, so nothing that it gets to could be a leak",
-    "": "no data was followed",
-}
+STYLES = {"leak": "bold red", "undetermined": "bold yellow", "no-leak-found": "bold green"}
 Line = tuple[str, str]  # text, style
 
 
 def print_report(
-    console: Console, report: Mapping[str, Any], *, verbose: bool = False, quiet: bool = False, width: int | None = None
+    console: Console,
+    report: Mapping[str, Any],
+    words: Words = IN_ENGLISH,
+    *,
+    verbose: bool = False,
+    quiet: bool = False,
+    width: int | None = None,
 ) -> None:
     """Print a document.
 
     Parameters
     ----------
+    words
+        Of the reader's language; messages about files stay in English.
     verbose
         All open elements and notices.
     quiet
@@ -67,130 +61,138 @@ def print_report(
     width
         Of the terminal; None for a file or a pipe, where lines are not broken.
     """
-    for text, style in wrapped(_lines(report, verbose=verbose, quiet=quiet), width):
+    for text, style in wrapped(_lines(report, words, verbose=verbose, quiet=quiet), width):
         console.print(Text(text, style), soft_wrap=True)
 
 
-def verdict_line(report: Mapping[str, Any]) -> Line:
+def verdict_line(report: Mapping[str, Any], words: Words = IN_ENGLISH) -> Line:
     """Return the line that says the verdict, what it leaves open, and what was not asked for (rules S11, S12)."""
-    style, meaning = VERDICTS[report["verdict"]]
-    if not any(report["categories"]) or (report["verdict"] == "undetermined" and not report["open"]):
-        meaning = UNREAD if files_not_read(report) and any(report["categories"]) else LACKING[lacking(report)]
+    verdict = report["verdict"]
+    style, meaning = STYLES[verdict], words(f"tty.verdict.{verdict}")
+    if not any(report["categories"]) or (verdict == "undetermined" and not report["open"]):
+        unread = files_not_read(report) and any(report["categories"])
+        meaning = words("tty.unread" if unread else f"tty.lacking.{lacking(report) or 'nothing'}")
     accepted = sum(finding["accepted"] for finding in report["findings"])
-    if accepted and report["verdict"] != "leak":
-        style, meaning = "bold yellow", ACCEPTED[report["verdict"]]
-    meaning += f"; {counted(accepted, 'finding')} accepted" if accepted else ""
-    meaning += "".join(f"; {end}" for end in ends_at_verdict(report)) + asked_at_verdict(report)
-    return f"{report['verdict']}: {meaning}", style
+    if accepted and verdict != "leak":
+        style, meaning = "bold yellow", words(f"tty.accepted.{verdict}")
+    meaning += f"; {words('tty.n.accepted', findings=words.count(accepted, 'tty.finding'))}" if accepted else ""
+    meaning += "".join(f"; {end}" for end in ends_at_verdict(report, words)) + asked_at_verdict(report, words)
+    return words.pair(verdict, meaning), style
 
 
-def _lines(report: Mapping[str, Any], *, verbose: bool, quiet: bool) -> Iterator[Line]:
-    yield verdict_line(report)
+def _lines(report: Mapping[str, Any], words: Words, *, verbose: bool, quiet: bool) -> Iterator[Line]:
+    yield verdict_line(report, words)
     if quiet:
         return
-    yield _summary(report), ""
-    yield from fleet_lines(report)
-    yield from _findings(report, verbose=verbose)
-    yield from review_lines(report, verbose=verbose)
-    yield from end_lines(report, most=None if verbose else SHOWN)
-    yield from denied_lines(report, most=None if verbose else SHOWN)
+    most = None if verbose else SHOWN
+    yield _summary(report, words), ""
+    yield from fleet_lines(report, words)
+    yield from _findings(report, words, verbose=verbose)
+    yield from review_lines(report, words, verbose=verbose)
+    yield from end_lines(report, most, words)
+    yield from denied_lines(report, words, most=most)
     if verbose:
-        yield from ledger_lines(report)
-        yield from glob_lines(report)
-    yield from _assumed(report, verbose=verbose)
-    yield from _diagnostics(report, verbose=verbose)
+        yield from ledger_lines(report, words)
+        yield from glob_lines(report, words)
+    yield from _assumed(report, words, most)
+    yield from _diagnostics(report, words, verbose=verbose)
     yield "", ""
-    yield verdict_line(report)
-    yield from next_lines(report)
+    yield verdict_line(report, words)
+    yield from next_lines(report, words)
 
 
-def _summary(report: Mapping[str, Any]) -> str:
+def _summary(report: Mapping[str, Any], words: Words) -> str:
     findings = [finding for finding in report["findings"] if not finding["dismissed"]]
     dismissed = len(report["findings"]) - len(findings)
     accepted = sum(finding["accepted"] for finding in findings)
+    elements, flows = words.count(report["elements"], "element"), words.count(report["flows"], "flow")
     parts = [
-        counted(len(findings), "finding"),
-        *([f"{accepted} of them accepted"] if accepted else []),
-        *([f"{dismissed} more only through another leak"] if dismissed else []),
-        _to_review(report),
-        f"{counted(report['elements'], 'element')} and {counted(report['flows'], 'flow')} in all",
+        words.count(len(findings), "tty.finding"),
+        *([words("tty.of.them.accepted", n=accepted)] if accepted else []),
+        *([words("tty.dismissed.more", n=dismissed)] if dismissed else []),
+        _to_review(report, words),
+        words("tty.in.all", elements=elements, flows=flows),
     ]
     return ", ".join(parts)
 
 
-def _to_review(report: Mapping[str, Any]) -> str:
+def _to_review(report: Mapping[str, Any], words: Words) -> str:
     """How many elements are open, and how many where the legs of services and actions are counted by themselves."""
     count = count_rows(report["open"])
-    return f"{counted(count.elements, 'element')} to review{count.more}"
+    return words("tty.to.review", elements=words.count(count.elements, "element"), more=legs(count, words))
 
 
-def _findings(report: Mapping[str, Any], *, verbose: bool) -> Iterator[Line]:
+def _findings(report: Mapping[str, Any], words: Words, *, verbose: bool) -> Iterator[Line]:
     """Details of each finding; a list of one line each where there are many, and nobody asked for more."""
-    yield from overview(report)
+    yield from overview(report, words)
     if verbose or len(report["findings"]) <= MANY:
-        yield from details(report, report["findings"])
+        yield from details(report, report["findings"], words)
     elif report["findings"]:
         yield "", ""
-        yield "Details of one: rosprivacy show ID, with the same policies and labels; of all: -v", "dim"
-    yield from law_lines(report, report["findings"])
+        yield words("tty.details"), "dim"
+    yield from law_lines(report, report["findings"], words)
 
 
-def _assumed(report: Mapping[str, Any], *, verbose: bool) -> Iterator[Line]:
+def _assumed(report: Mapping[str, Any], words: Words, most: int | None) -> Iterator[Line]:
     assumptions = report["assumptions"]
     yield "", ""
-    yield "Assumed", "bold"
-    view = {"declared": "each node does what its own profile says", "enforced": "each node may do what its enclave may"}
-    yield f"   view {report['view']}: {view[report['view']]}", ""
-    yield from standard_lines(report, None if verbose else SHOWN)
-    yield from taken_away_lines(report)
-    yield from hanging_lines(report, None if verbose else SHOWN)
-    yield from glob_warnings(report)
+    yield words("tty.assumed"), "bold"
+    view = report["view"]
+    yield f"   {words(f'tty.view.{view}')}", ""
+    yield from standard_lines(report, most, words)
+    yield from taken_away_lines(report, words)
+    yield from hanging_lines(report, most, words)
+    yield from glob_warnings(report, words)
     if "database" in assumptions:
-        robots = counted(assumptions["database"]["robots"], "robot")
-        yield f"   {robots} in the database, as loaded from these files and changed there since", ""
-    for file in assumptions.get("fleet", ()):
-        yield f"   fleet {shown(file['file'])} (sha256 {file['sha256'][:12]})", ""
-    for file in assumptions["labels"]:
-        yield f"   labels {shown(file['file'])} (sha256 {file['sha256'][:12]})", ""
+        robots = words.count(assumptions["database"]["robots"], "robot")
+        yield f"   {words('tty.database', robots=robots)}", ""
+    yield from _files(assumptions.get("fleet", ()), "fleet", words)
+    yield from _files(assumptions["labels"], "labels", words)
     if not assumptions["labels"]:
-        yield "   no labels", ""
+        yield f"   {words('tty.no.labels')}", ""
     if "decisions" in assumptions:
         taken = assumptions["decisions"]
-        yield f"   decisions {shown(taken['file'])} (sha256 {taken['sha256'][:12]}), as of {taken['today']}", ""
-    yield from asked_lines(report)
-    for file in assumptions["ontologies"]:
-        yield f"   more categories of {shown(file['file'])} (sha256 {file['sha256'][:12]})", ""
-    yield f"   law as of {assumptions['law_as_of']}", ""
-    yield from _assumed_outside(report)
+        named = {"file": shown(taken["file"]), "sha": taken["sha256"][:12], "date": words.date(taken["today"])}
+        yield f"   {words('tty.file.decisions', **named)}", ""
+    yield from asked_lines(report, words)
+    yield from _files(assumptions["ontologies"], "ontologies", words)
+    yield f"   {words('tty.law', date=words.date(assumptions['law_as_of']))}", ""
+    yield from _assumed_outside(report, words)
     for taken in assumptions["sanitizers_without_method"]:
-        method = f"sanitizer {shown_name(taken['element'])} states no method for {taken['category']}"
-        yield f"   {method}: taken as pseudonymise, the data is still personal", "yellow"
-    yield from absent_lines(report)
-    yield from overruled_lines(report)
-    yield "   labels are a person's word; this is no legal verdict", "dim"
+        said = words("tty.no.method", element=shown_name(taken["element"]), kind=taken["category"])
+        yield f"   {said}", "yellow"
+    yield from absent_lines(report, words)
+    yield from overruled_lines(report, words)
+    yield f"   {words('tty.word')}", "dim"
 
 
-def _assumed_outside(report: Mapping[str, Any]) -> Iterator[Line]:
+def _files(files: Iterable[Mapping[str, Any]], role: str, words: Words) -> Iterator[Line]:
+    for file in files:
+        yield f"   {words(f'tty.file.{role}', file=shown(file['file']), sha=file['sha256'][:12])}", ""
+
+
+def _assumed_outside(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
     """What was taken of elements outside ROS (rule S9)."""
     assumptions = report["assumptions"]
     for kind, role in assumptions["taken_by_kind"].items():
-        yield f"   {kind}: {TAKEN[role]} ({role}), unless a label says otherwise", ""
+        yield f"   {words(f'tty.taken.{role}', kind=words.known(f'tty.kind.of.{kind}', kind))}", ""
     if taken := assumptions["backups_taken_as_none"]:
-        yield f"   backups are not stated, taken to have none: {', '.join(map(shown_name, taken))}", "yellow"
+        yield f"   {words('tty.backups', names=', '.join(map(shown_name, taken)))}", "yellow"
     if "countries_as_of" in assumptions:
-        yield f"   EEA and adequacy decisions as of {assumptions['countries_as_of']}: check them", ""
+        yield f"   {words('tty.countries', date=words.date(assumptions['countries_as_of']))}", ""
     for row in report["outside"]:
         if "without_limit" in row:
-            what = f"how long {shown_name(row['element'])} keeps {', '.join(row['without_limit'])} was not judged"
-            yield f"   {what}: no label file states a limit", "yellow"
+            kinds = ", ".join(row["without_limit"])
+            yield f"   {words('tty.limit', element=shown_name(row['element']), kinds=kinds)}", "yellow"
 
 
-def _diagnostics(report: Mapping[str, Any], *, verbose: bool) -> Iterator[Line]:
+def _diagnostics(report: Mapping[str, Any], words: Words, *, verbose: bool) -> Iterator[Line]:
+    """Messages about files: they are in English, as other tools read them."""
     notices = [d for d in report["diagnostics"] if d["severity"] == "notice" and d.get("code") != MERGED]
     for diagnostic in report["diagnostics"]:
         if verbose or diagnostic not in notices:
             line = f":{diagnostic['line']}" if diagnostic["line"] else ""
-            place = f"{shown(diagnostic['file'])}{line}"
-            yield f"{diagnostic['severity']}: {place}: {diagnostic['message']}", "yellow"
+            severity = words(f"tty.severity.{diagnostic['severity']}")
+            yield f"{severity}: {shown(diagnostic['file'])}{line}: {diagnostic['message']}", "yellow"
     if notices and not verbose:
-        yield f"{counted(len(notices), 'notice')} (-v shows them)", "dim"
+        yield words.count(len(notices), "tty.notice"), "dim"

@@ -13,24 +13,27 @@ from rosprivacy.report.naming import shown_name
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
+    from rosprivacy.report.words.words import Words
+
 Line = tuple[str, str]  # text, style
 
 
-def denied_lines(report: Mapping[str, Any], *, most: int | None) -> Iterator[Line]:
+def denied_lines(report: Mapping[str, Any], words: Words, *, most: int | None) -> Iterator[Line]:
     """Return the denied flows; ``most`` of them, all if None."""
     flows = report["denied"]
     if not flows:
         return
     yield "", ""
-    yield f"Allowed by one line and denied by another: {len(flows)}", "bold"
+    yield words("tty.denied", n=len(flows)), "bold"
     for flow in flows[:most]:
-        allowed, denied = _places(flow["allowed_by"]), _places(flow["denied_by"])
+        allowed, denied = _places(flow["allowed_by"], words), _places(flow["denied_by"], words)
         ends = f"{shown_name(flow['source'])} -> {shown_name(flow['target'])}"
-        yield f"   {ends}  ({flow['role']}; ALLOW at {allowed}, DENY at {denied})", ""
+        line = words("tty.denied.line", ends=ends, role=flow["role"], allowed=allowed, denied=denied)
+        yield f"   {line}", ""
     if most is not None and len(flows) > most:
-        yield f"   … and {len(flows) - most} more (-v shows all)", "dim"
+        yield f"   {words('tty.rest', n=len(flows) - most)}", "dim"
 
 
-def _places(lines: Iterable[Mapping[str, Any]]) -> str:
+def _places(lines: Iterable[Mapping[str, Any]], words: Words) -> str:
     places = list(dict.fromkeys(f"{shown(line['file'])}:{line['line']}" for line in lines))
-    return f"{places[0]} and {len(places) - 1} more" if len(places) > 1 else places[0]
+    return places[0] + words("tty.more", n=len(places) - 1) if len(places) > 1 else places[0]

@@ -6,123 +6,139 @@ In: a JSON document of the contract. Out: lines. What a person decides first sta
 from __future__ import annotations
 
 import os
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.text import blanked, counted
-from rosprivacy.report.document.decisions import decision_lines
+from rosprivacy.analysis.model import CHANNELS
+from rosprivacy.analysis.text import blanked
 from rosprivacy.report.finding_order import in_order
-from rosprivacy.report.looked_at import looked_at
-from rosprivacy.report.naming import key, kind_of, shown_name
+from rosprivacy.report.naming import key, shown_name
+from rosprivacy.report.terminal.called_alike import kind_in
+from rosprivacy.report.terminal.context_lines import context_lines, further_lines, pointer_lines
+from rosprivacy.report.terminal.decision_lines import decision_lines
 from rosprivacy.report.terminal.fleet import on_robots, robots_of
 from rosprivacy.report.terminal.restriction import may_be_asked
+from rosprivacy.report.words.reasons import reason_told
+from rosprivacy.report.words.typography import spaced
+from rosprivacy.report.words.words import IN_ENGLISH, Words
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 Line = tuple[str, str]  # text, style
 MANY = 5  # findings; of more a list of one line each comes first
+NARROWER = "⊇ "  # how the ontology writes, in other languages than English: if the data are of one of these kinds
 VERBS = {  # (role, whether data goes into a channel) -> what is between the two
-    ("publish", True): "publishes",
-    ("subscribe", False): "is read by",
-    ("request", True): "asks",
-    ("request", False): "answers",
-    ("reply", False): "asks",
-    ("reply", True): "answers",
-    ("call", True): "sends a goal to",
-    ("call", False): "reports to",
-    ("execute", False): "sends a goal to",
-    ("execute", True): "reports to",
-}
-OTHER_VERBS = {"matches": "wildcard covers", "flow": "goes to"}
-MAY = {"always": "applies", "conditional": "can apply", "may-reveal": "may be revealed"}  # to the data, not the system
-KINDS = {
-    "disclosure": "",
-    "storage-limitation": "kept without a stated end, or too long: ",
-    "third-country-transfer": "leaves the EEA without a stated basis: ",
+    ("publish", True): "publish",
+    ("subscribe", False): "subscribe",
+    ("request", True): "ask",
+    ("request", False): "answer",
+    ("reply", False): "ask",
+    ("reply", True): "answer",
+    ("call", True): "goal",
+    ("call", False): "report",
+    ("execute", False): "goal",
+    ("execute", True): "report",
 }
 
 
-def overview(report: Mapping[str, Any]) -> Iterator[Line]:
+def verb(role: str, *, into_channel: bool, words: Words) -> str:
+    """Return what is between two elements, as a flow's role says it; the role itself if it has no word."""
+    return words.known(f"tty.verb.{VERBS.get((role, into_channel), role)}", role)
+
+
+def overview(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
     """Return one line for each finding where there are many."""
     if len(report["findings"]) <= MANY:
         return
     unreviewed = _unreviewed(report)
     yield "", ""
-    yield f"Findings: {len(report['findings'])}", "bold"
+    yield words("tty.findings", n=str(len(report["findings"]))), "bold"
     for number, finding in enumerate(in_order(report["findings"], report.get("fleet")), 1):
-        hops = counted(len(finding["steps"]), "hop")
         met = {key(e) for e in finding["witness"]} & {element for element, _ in unreviewed}
-        parts = [hops, *([f"{len(met)} not reviewed"] if met else []), *on_robots(report, finding), *_states(finding)]
-        yield f"{number:>3}. {_title(report, finding)}, {', '.join(parts)}   [{finding['id']}]", _style(finding)
+        parts = [
+            words.count(len(finding["steps"]), "tty.hop"),
+            *([words("tty.n.unreviewed", n=len(met))] if met else []),
+            *on_robots(report, finding, words),
+            *_states(finding, words),
+        ]
+        title = _title(report, finding, words)
+        yield f"{number:>3}. {title}, {', '.join(parts)}   [{finding['id']}]", _style(finding)
 
 
-def details(report: Mapping[str, Any], findings: Sequence[Mapping[str, Any]]) -> Iterator[Line]:
+def details(
+    report: Mapping[str, Any], findings: Sequence[Mapping[str, Any]], words: Words = IN_ENGLISH
+) -> Iterator[Line]:
     """Return the findings hop by hop."""
     roles = {(key(said["element"]), said["category"]): said["roles"] for said in report["roles"]}
     unreviewed, folder = _unreviewed(report), policies_in(report)
     if folder and any(finding["steps"] for finding in findings):
-        yield f"lines are those of files in {shown(folder)}", "dim"
+        yield words("tty.folder", folder=shown(folder)), "dim"
     for number, finding in enumerate(in_order(findings, report.get("fleet")), 1):
         yield "", ""
-        yield f"{number}. {_title(report, finding)}   [{finding['id']}]", _style(finding)
-        yield from robots_of(report, finding)
+        yield f"{number}. {_title(report, finding, words)}   [{finding['id']}]", _style(finding)
+        yield from robots_of(report, finding, words)
         if "reason" in finding:
-            yield f"   {shown(finding['reason'])}", ""
+            yield f"   {_reason(finding, words)}", ""
         if finding["dismissed"]:
             through = ", ".join(shown_name(element) for element in finding["through"])
-            past = "; past it, data gets there pseudonymised only" if finding.get("beside_pseudonymised") else ""
-            yield f"   only through {through}, which has a finding of its own{past}", "dim"
-        yield from decision_lines(finding)
-        yield from _way(finding, roles, unreviewed, folder)
-        yield from _paths(finding)
+            past = words("tty.past") if finding.get("beside_pseudonymised") else ""
+            yield f"   {words('tty.through', names=through, past=past)}", "dim"
+        yield from decision_lines(finding, words)
+        yield from _Way(roles, unreviewed, folder, words).lines(finding)
+        yield from _paths(finding, words)
         if finding["special_from"]:
-            yield f"   {shown_name(finding['special_from'])} makes such data of other data", ""
+            yield f"   {words('tty.special', element=shown_name(finding['special_from']))}", ""
 
 
-def law_lines(report: Mapping[str, Any], findings: Iterable[Mapping[str, Any]]) -> Iterator[Line]:
+def _reason(finding: Mapping[str, Any], words: Words) -> str:
+    """Why it is one: in English with durations as they are stated."""
+    return shown(finding["reason"]) if words.language == "en" else reason_told(finding, words, str)
+
+
+def law_lines(
+    report: Mapping[str, Any], findings: Iterable[Mapping[str, Any]], words: Words = IN_ENGLISH
+) -> Iterator[Line]:
     """Return what a person has to look up about each kind of data that arrives somewhere, once for each kind."""
     told = in_order(findings)
     by_kind = {finding["category"]: finding for finding in told}
     findings_of = {kind: [finding for finding in told if finding["category"] == kind] for kind in by_kind}
     if not by_kind:
         return
-    reasons = {category["name"]: category["reason"] for category in report["categories"]}
+    kinds = {category["name"]: category for category in report["categories"]}
     yield "", ""
-    yield "What the law says of these kinds of data", "bold"
+    yield words("tty.law.title"), "bold"
     for category, finding in sorted(by_kind.items()):
-        for legal in finding["law"]:
-            condition = f": {blanked(legal['condition'])}" if legal["condition"] else ""
-            yield f"   {category}: {shown(legal['provision'])}, {MAY[legal['verdict']]}{condition}", "magenta"
-        yield from _context_lines(category, findings_of[category])
-        if pointed := [one["provision"] for one in looked_at(report) if category in one["categories"]]:
-            yield f"   {category}: look at {', '.join(map(shown, pointed))} too", "dim"
+        for legal in _law(finding, kinds, words):
+            yield f"   {words('tty.law.line', kind=category, **legal)}", "magenta"
+        yield from context_lines(kinds.get(category, {}), findings_of[category], words)
+        yield from pointer_lines(report, category, words)
         if finding["article9"] == "unknown":
-            yield f"   {category}: the ontology does not say whether Article 9 GDPR applies to such data", "yellow"
+            yield f"   {words('tty.law.unknown', kind=category)}", "yellow"
         if finding["article9"] == "no":
-            yield f"   {category}: not Article 9 GDPR by itself: {blanked(reasons.get(category, ''))}", "dim"
-    yield from _further_law(report)
+            reason = _text(kinds[category], "reason", words) if category in kinds else ""
+            yield f"   {words('tty.law.no', kind=category, reason=reason)}", "dim"
+    yield from further_lines(report, words)
 
 
-def _context_lines(category: str, findings: Iterable[Mapping[str, Any]]) -> Iterator[Line]:
-    """What data may reveal where they are brought in, once for each context, provision and source."""
-    rows: dict[tuple[str, str, str], dict[str, None]] = {}
-    for finding in findings:
-        for said in finding.get("in_context", ()):
-            of_source = rows.setdefault((said["context"], said["provision"], said["condition"]), {})
-            of_source[shown_name(finding["source"])] = None
-    for (context, provision, condition), sources in rows.items():
-        who = f"{category} of {', '.join(sources)}"
-        yield f"   {who}: may reveal in this context ({context}): {shown(provision)}: {blanked(condition)}", "magenta"
+def _law(finding: Mapping[str, Any], kinds: Mapping[str, Mapping[str, Any]], words: Words) -> Iterator[dict[str, str]]:
+    """The provisions of a finding, with the texts that the ontology has of them."""
+    stated = kinds.get(finding["category"], {}).get("law", ())
+    for legal in finding["law"]:
+        known = (one for one in stated if all(one[key] == legal[key] for key in ("provision", "verdict", "condition")))
+        told = next(known, {**legal, "translations": {}})
+        condition = _text(told, "condition", words).removeprefix(NARROWER)
+        yield {
+            "provision": _text(told, "provision", words),
+            "may": words(f"tty.may.{legal['verdict']}"),
+            "condition": words("tty.law.condition", condition=condition) if condition else "",
+        }
 
 
-def _further_law(report: Mapping[str, Any]) -> Iterator[Line]:
-    """Provisions that a context calls for; no verdict."""
-    rows = looked_at(report)
-    for context in report.get("contexts", ()):
-        names = [row["provision"] for row in rows if context["name"] in row["contexts"]]
-        if names:
-            yield f"   in this context ({context['name']}): look at {', '.join(map(shown, names))} too", "dim"
+def _text(of: Mapping[str, Any], what: str, words: Words) -> str:
+    """A text of the ontology in the reader's language, in English if there is no translation."""
+    return spaced(blanked(of.get("translations", {}).get(words.language, {}).get(what) or of[what]), words.language)
 
 
 def policies_in(report: Mapping[str, Any]) -> str:
@@ -134,15 +150,19 @@ def policies_in(report: Mapping[str, Any]) -> str:
         return ""
 
 
-def _title(report: Mapping[str, Any], finding: Mapping[str, Any]) -> str:
-    form = "pseudonymised " if finding["pseudonymised"] else ""
-    what = f"{KINDS[finding['kind']]}{form}{finding['category']}{may_be_asked(report, finding['category'])}"
-    return f"{what}: {shown_name(finding['source'])} -> {shown_name(finding['leak'])}"
+def _title(report: Mapping[str, Any], finding: Mapping[str, Any], words: Words) -> str:
+    data = _data(finding["category"], words, pseudonymised=finding["pseudonymised"])
+    asked = may_be_asked(report, finding["category"], words)
+    what = words(f"tty.kind.{finding['kind']}", data=f"{data}{asked}")
+    return words.pair(what, f"{shown_name(finding['source'])} -> {shown_name(finding['leak'])}")
 
 
-def _states(finding: Mapping[str, Any]) -> list[str]:
-    said = (("accepted", finding["accepted"]), ("only through another leak", finding["dismissed"]))
-    return [word for word, holds in said if holds]
+def _data(category: str, words: Words, *, pseudonymised: bool) -> str:
+    return words("tty.hidden", kind=category) if pseudonymised else category
+
+
+def _states(finding: Mapping[str, Any], words: Words) -> list[str]:
+    return [words(f"tty.state.{state}") for state in ("accepted", "dismissed") if finding[state]]
 
 
 def _style(finding: Mapping[str, Any]) -> str:
@@ -153,41 +173,60 @@ def _unreviewed(report: Mapping[str, Any]) -> set[Any]:
     return {(key(question["element"]), name) for question in report["open"] for name in question["categories"]}
 
 
-def _way(
-    finding: Mapping[str, Any], roles: Mapping[Any, Any], unreviewed: Collection[Any], folder: str
-) -> Iterator[Line]:
-    """The witness, hop by hop: element, what labels say of it, policy line."""
-    witness, steps = finding["witness"], finding["steps"]
-    data = [step["category"] for step in steps]
-    for hop, element in enumerate(witness):
-        # what is there: the data that arrives, at the source the data that leaves, at the leak what gets out too
-        here = dict.fromkeys([*data[max(hop - 1, 0) : hop or 1], *([] if hop < len(steps) else [finding["category"]])])
-        said = [(name, role) for name in here for role in roles.get((key(element), name), ())]
-        notes = [f"{role} of {name}{_of_another(finding, hop, role, name)}" for name, role in said]
-        notes += ["not reviewed" for name in here if (key(element), name) in unreviewed]
-        style = "red" if any(role == "leak" for _, role in said) else ""
-        yield f"   {shown_name(element)}  ({', '.join([kind_of(element), *notes])})", style
-        if hop < len(steps):
-            before = steps[hop - 1] if hop else steps[hop]
-            yield f"     | {_step(steps[hop], before, witness[hop + 1], folder)}", "dim"
+@dataclass(frozen=True, slots=True)
+class _Way:
+    """How a witness is told, hop by hop.
 
+    Attributes
+    ----------
+    roles
+        (element, category) -> what labels say.
+    unreviewed
+        (element, category) that nobody has reviewed.
+    folder
+        Of all policies.
+    """
 
-def _of_another(finding: Mapping[str, Any], hop: int, role: str, name: str) -> str:
-    """Why a leak on the path does not dismiss a finding: it lets out what this one is not about (rule S10)."""
-    between = role == "leak" and hop < len(finding["steps"]) and name != finding["category"]
-    return ", which is a finding of its own" if between else ""
+    roles: Mapping[Any, Any]
+    unreviewed: Collection[Any]
+    folder: str
+    words: Words
 
+    def lines(self, finding: Mapping[str, Any]) -> Iterator[Line]:
+        """Return the witness: element, what labels say of it, policy line."""
+        witness, steps, words = finding["witness"], finding["steps"], self.words
+        data = [step["category"] for step in steps]
+        for hop, element in enumerate(witness):
+            # what is there: the data that arrives, at the source the data that leaves, at the leak what gets out too
+            last = [] if hop < len(steps) else [finding["category"]]
+            here = dict.fromkeys([*data[max(hop - 1, 0) : hop or 1], *last])
+            said = [(name, role) for name in here for role in self.roles.get((key(element), name), ())]
+            notes = [
+                f"{words(f'tty.role.{role}', kind=name)}{self._of_another(finding, hop, role, name)}"
+                for name, role in said
+            ]
+            notes += [words("tty.unreviewed") for name in here if (key(element), name) in self.unreviewed]
+            style = "red" if any(role == "leak" for _, role in said) else ""
+            yield f"   {shown_name(element)}  ({', '.join([kind_in(element, words), *notes])})", style
+            if hop < len(steps):
+                before = steps[hop - 1] if hop else steps[hop]
+                yield f"     | {self._step(steps[hop], before, witness[hop + 1])}", "dim"
 
-def _step(step: Mapping[str, Any], before: Mapping[str, Any], to: Mapping[str, Any], folder: str) -> str:
-    """One hop: what the policy allows, where, and what the data has become."""
-    places = [f"{shown(_within(folder, grant['file']))}:{grant['line']}" for grant in step["policy"]]
-    more = f" and {len(places) - 1} more" if len(places) > 1 else ""
-    into_channel = to["kind"] in ("topic", "service", "action")
-    verb = VERBS.get((step["role"], into_channel)) or OTHER_VERBS[step["role"]]
-    what = f"{verb}  {places[0]}{more}" if places else verb
-    changed = (step["category"], step["pseudonymised"]) != (before["category"], before["pseudonymised"])
-    form = "pseudonymised " if step["pseudonymised"] else ""
-    return f"{what}   now {form}{step['category']}" if changed else what
+    def _of_another(self, finding: Mapping[str, Any], hop: int, role: str, name: str) -> str:
+        """Why a leak on the path does not dismiss a finding: it lets out what this one is not about (rule S10)."""
+        between = role == "leak" and hop < len(finding["steps"]) and name != finding["category"]
+        return self.words("tty.another") if between else ""
+
+    def _step(self, step: Mapping[str, Any], before: Mapping[str, Any], to: Mapping[str, Any]) -> str:
+        """One hop: what the policy allows, where, and what the data has become."""
+        words = self.words
+        places = [f"{shown(_within(self.folder, grant['file']))}:{grant['line']}" for grant in step["policy"]]
+        more = words("tty.more", n=len(places) - 1) if len(places) > 1 else ""
+        said = verb(step["role"], into_channel=to["kind"] in CHANNELS, words=words)
+        what = f"{said}  {places[0]}{more}" if places else said
+        if (step["category"], step["pseudonymised"]) == (before["category"], before["pseudonymised"]):
+            return what
+        return what + words("tty.now", data=_data(step["category"], words, pseudonymised=step["pseudonymised"]))
 
 
 def _within(folder: str, file: str) -> str:
@@ -196,10 +235,10 @@ def _within(folder: str, file: str) -> str:
     return inside or file
 
 
-def _paths(finding: Mapping[str, Any]) -> Iterator[Line]:
+def _paths(finding: Mapping[str, Any], words: Words) -> Iterator[Line]:
     if finding["disjoint_paths"] > 1:
-        yield f"   {finding['disjoint_paths']} paths that share no flow", ""
+        yield f"   {words('tty.disjoint', n=finding['disjoint_paths'])}", ""
     for path in finding.get("paths", ()):
-        yield "   path: " + " -> ".join(shown_name(element) for element in path), ""
+        yield f"   {words('tty.path', path=' -> '.join(shown_name(element) for element in path))}", ""
     if finding.get("paths_bounded"):
-        yield f"   … there are more paths; the bound is {len(finding['paths'])} (--max-paths)", "yellow"
+        yield f"   {words('tty.bounded', n=len(finding['paths']))}", "yellow"

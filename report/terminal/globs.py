@@ -8,45 +8,46 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.text import counted
 from rosprivacy.report.naming import shown_name
+from rosprivacy.report.terminal.called_alike import both
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from rosprivacy.report.words.words import Words
+
 Line = tuple[str, str]  # text, style
-WARNINGS = {
-    "half": "that is more than half of the nodes, channels or flows that data gets to: check that it is meant",
-    "last-path": "without it the verdict would not be no-leak-found: check that it is meant",
-}
 
 
-def glob_warnings(report: Mapping[str, Any]) -> Iterator[Line]:
+def glob_warnings(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
     """Return what ``Assumed`` says of globs that decide more than a person may see."""
     for row in report["assumptions"].get("globs", ()):
         if row["warning"]:
-            yield f"   warning: {_row(row)}; {WARNINGS[row['warning']]}", "bold yellow"
+            why = words(f"tty.glob.{row['warning']}")
+            yield f"   {words('tty.glob.warning', row=_row(row, words), why=why)}", "bold yellow"
 
 
-def glob_lines(report: Mapping[str, Any]) -> Iterator[Line]:
+def glob_lines(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
     """Return a line for each glob of the label files."""
     rows = report["assumptions"].get("globs", ())
     if rows:
         yield "", ""
-        yield f"Globs of label files: {len(rows)}", "bold"
+        yield words("tty.globs", n=len(rows)), "bold"
     for row in rows:
-        yield f"   {_row(row)}", ""
+        yield f"   {_row(row, words)}", ""
 
 
-def _row(row: Mapping[str, Any]) -> str:
+def _row(row: Mapping[str, Any], words: Words) -> str:
     flows = row.get("flows", 0)
-    decided = [counted(row["elements"], "element")] if row["elements"] or not flows else []
-    decided += [counted(flows, "flow")] if flows else []
-    parts = [f"decides {' and '.join(decided)}"]
-    parts += [f"ends data at {row['closed']:,}"] if row["closed"] else []
-    parts += [f"ends data along {counted(row['flows_closed'], 'flow')}"] if row.get("flows_closed") else []
-    parts += [f"answers for {row['reviewed']:,}"] if row["reviewed"] else []
-    behind = [f"the leak {shown_name(row['leak'])}"] if row["leak"] else []
-    behind += [f"{shown_name(row['open'])}, which is not reviewed"] if row["open"] else []
-    lies = f" (behind it: {' and '.join(behind)})" if behind else ""
-    return f"the glob at {shown(row['file'])}:{row['line']} ({', '.join(row['says'])}) {', '.join(parts)}{lies}"
+    decided = [words.count(row["elements"], "element")] if row["elements"] or not flows else []
+    decided += [words.count(flows, "flow")] if flows else []
+    parts = [words("tty.glob.decides", what=both(decided, words))]
+    parts += [words("tty.glob.closed", n=row["closed"])] if row["closed"] else []
+    if row.get("flows_closed"):
+        parts.append(words("tty.glob.along", flows=words.count(row["flows_closed"], "flow")))
+    parts += [words("tty.glob.reviewed", n=row["reviewed"])] if row["reviewed"] else []
+    behind = [words("tty.the.leak", leak=shown_name(row["leak"]))] if row["leak"] else []
+    behind += [words("tty.the.open", element=shown_name(row["open"]))] if row["open"] else []
+    lies = words("tty.glob.behind", places=both(behind, words)) if behind else ""
+    place, says = f"{shown(row['file'])}:{row['line']}", ", ".join(row["says"])
+    return words("tty.glob", place=place, says=says, parts=", ".join(parts), behind=lies)

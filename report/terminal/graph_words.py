@@ -12,7 +12,8 @@ from rosprivacy.analysis.model import CHANNELS
 from rosprivacy.queries.graph_values import Node, Relationship, graph_values, nodes_in
 from rosprivacy.report.naming import kind_of
 from rosprivacy.report.stored import flow_said, record_kind, record_name
-from rosprivacy.report.terminal.finding_lines import OTHER_VERBS, VERBS
+from rosprivacy.report.terminal.finding_lines import verb
+from rosprivacy.report.words.words import IN_ENGLISH
 
 if TYPE_CHECKING:
     from rosprivacy.queries.graph_values import GraphValue
@@ -70,5 +71,5 @@ class GraphWords:
         end = self.names.element(relationship.end)
         role, denied = flow_said(relationship)
         into_channel = end is not None and end["kind"] in CHANNELS
-        verb = VERBS.get((role, into_channel)) or OTHER_VERBS.get(role, role)
-        return f"{verb} (denied)" if denied else verb
+        said = verb(role, into_channel=into_channel, words=IN_ENGLISH)
+        return f"{said} (denied)" if denied else said

@@ -8,50 +8,50 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.text import counted
 from rosprivacy.report.naming import infrastructure_file, shown_name
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
+    from rosprivacy.report.words.words import Words
+
 SHIPPED = "rosprivacy:standard"
 Line = tuple[str, str]  # text, style
 
 
-def standard_lines(report: Mapping[str, Any], most: int | None) -> Iterator[Line]:
+def standard_lines(report: Mapping[str, Any], most: int | None, words: Words) -> Iterator[Line]:
     """Return which standard channels were taken as mundane, on which file's word, and what data stops there."""
     assumptions = report["assumptions"]
     taken = assumptions["standard_channels"]
     if not taken:
-        yield "   no standard channels taken as mundane", ""
+        yield f"   {words('tty.standard.none')}", ""
         return
-    count = report["standard_channels"]
-    by = f"by {shown(taken['file'])} (sha256 {taken['sha256'][:12]})"
-    by = "(rosprivacy labels --standard)" if taken["file"] == SHIPPED else by
     proposed = infrastructure_file(assumptions)
-    more = f", or by {proposed} (rosprivacy labels --infrastructure)" if proposed else ""
-    yield f"   {counted(count, 'standard ROS channel')} taken as mundane {by}{more}", ""
+    more = words("tty.standard.proposed", file=proposed) if proposed else ""
+    channels = words.count(report["standard_channels"], "tty.standard")
+    by = "tty.standard.shipped" if taken["file"] == SHIPPED else "tty.standard.by"
+    said = words(by, channels=channels, more=more, file=shown(taken["file"]), sha=taken["sha256"][:12])
+    yield f"   {said}", ""
     reached = [f"{shown_name(row['element'])} ({', '.join(row['categories'])})" for row in reached_of(report)]
     if reached:
-        yield f"   data gets to {len(reached):,} of them and stops there: {_listed(reached, most)}", ""
+        yield f"   {words('tty.standard.reached', n=len(reached), names=_listed(reached, most, words))}", ""
     unchanged = [shown_name(element) for element in assumptions.get("standard_channels_unchanged", ())]
     if unchanged:
-        what = f"of {len(unchanged):,} of them a glob says otherwise, which does not count: {_listed(unchanged, most)}"
-        yield f"   {what}; name them, or write out the end of the glob (*/rosout)", "yellow"
+        names = _listed(unchanged, most, words)
+        yield f"   {words('tty.standard.unchanged', n=len(unchanged), names=names)}", "yellow"
 
 
-def absent_lines(report: Mapping[str, Any]) -> Iterator[Line]:
+def absent_lines(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
     """Return the nodes of which labels say that they are not on the robot."""
     for row in report["assumptions"].get("absent", ()):
-        yield f"   {shown_name(row['element'])} is not on the robot: {shown(row['why'])}", ""
+        yield f"   {words('tty.absent', element=shown_name(row['element']), why=shown(row['why']))}", ""
 
 
-def overruled_lines(report: Mapping[str, Any]) -> Iterator[Line]:
+def overruled_lines(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
     """Return how many sources and leaks labels say that other labels take away."""
     rows = report["assumptions"].get("overruled", ())
     if rows:
-        what = counted(len(rows), "label of a source or leak is", "labels of sources or leaks are")
-        yield f"   {what} taken away by another label (see the warnings)", "yellow"
+        yield f"   {words.count(len(rows), 'tty.overruled')}", "yellow"
 
 
 def reached_of(report: Mapping[str, Any]) -> Sequence[Mapping[str, Any]]:
@@ -60,6 +60,6 @@ def reached_of(report: Mapping[str, Any]) -> Sequence[Mapping[str, Any]]:
     return rows
 
 
-def _listed(names: Sequence[str], most: int | None) -> str:
-    more = f" and {len(names) - most:,} more (-v shows all)" if most is not None and len(names) > most else ""
-    return ", ".join(names[:most]) + more
+def _listed(names: Sequence[str], most: int | None, words: Words) -> str:
+    left_out = len(names) - most if most is not None else 0
+    return ", ".join(names[:most]) + (words("tty.more.verbose", n=left_out) if left_out > 0 else "")

@@ -14,25 +14,29 @@ from rosprivacy.report.document.analysis import lacking
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import shown_name
 from rosprivacy.report.review_groups import next_round
+from rosprivacy.report.terminal.called_alike import named
 from rosprivacy.report.terminal.restriction import asked_at_verdict
+from rosprivacy.report.words.words import IN_ENGLISH, Words
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
 Line = tuple[str, str]  # text, style
-NAMED = 5  # candidates
 SENSORS = (  # what is in the name of a node that brings personal data in, more often than not; the surest first
     "camera", "video", "image", "kinect", "realsense", "depth", "thermal", "microphone", "audio", "voice", "speech",
     "laser", "lidar", "scan", "radar", "gnss", "face", "person", "people", "teleop", "amcl", "slam", "localiz",
 )  # fmt: skip
 SHORT = ("cam", "rgb", "zed", "mic", "asr", "gps", "joy", "user")  # of these only whole words
 EXAMPLE = "nodes: {/camera: {source: [Video]}}"
-LACKING = {
-    GOES_NOWHERE: f"check which node brings the data in (those named send none on): {EXAMPLE}",
-    NO_LEAK_NAMED: "name what lets data out, such as nodes: {/uplink: {leak: [Video]}}; if nothing does, say so at a "
-    "node that might: {leak: none}",
-}
-SOURCE = f"name a source in a label file, such as {EXAMPLE}"
+
+
+def lacking_step(code: str, words: Words = IN_ENGLISH) -> str:
+    """Return what to do where an answer lacks grounds, by the code of that; empty for another.
+
+    >>> lacking_step(GOES_NOWHERE)
+    'check which node brings the data in (those named send none on): nodes: {/camera: {source: [Video]}}'
+    """
+    return words(f"tty.next.{code}", example=EXAMPLE) if code in (GOES_NOWHERE, NO_LEAK_NAMED) else ""
 
 
 def followed(report: Mapping[str, Any]) -> bool:
@@ -40,32 +44,32 @@ def followed(report: Mapping[str, Any]) -> bool:
     return bool(report["carries"])
 
 
-def next_lines(report: Mapping[str, Any]) -> Iterator[Line]:
+def next_lines(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
     """Return the next step; none where nothing was found and nothing is open."""
-    step = _step(report)
+    step = _step(report, words)
     if step:
-        yield f"Next: {step}", "bold"
+        yield words("tty.next", step=step), "bold"
 
 
-def _step(report: Mapping[str, Any]) -> str:
+def _step(report: Mapping[str, Any], words: Words) -> str:
     if report["verdict"] == "leak":
-        return "decide about each finding (rosprivacy decide), or see what would remove it (rosprivacy mitigate)"
+        return words("tty.next.leak")
     if report["verdict"] != "undetermined":
         return ""
-    if not followed(report) and (restriction := asked_at_verdict(report)):
-        return f"ask about all kinds, or {SOURCE}{restriction}"
+    source = words("tty.next.source", example=EXAMPLE)
+    if not followed(report) and (restriction := asked_at_verdict(report, words)):
+        return words("tty.next.all", source=source, restriction=restriction)
     if not followed(report):
-        named = candidates(report)
-        rest = f" and {len(named) - NAMED} more" if len(named) > NAMED else ""
-        more = f"; candidates by name: {', '.join(named[:NAMED])}{rest}" if named else ""
-        return f"{SOURCE}{more} (rosprivacy labels --init lists all nodes)"
+        likely = candidates(report)
+        names = words("tty.next.candidates", names=named(likely, words)) if likely else ""
+        return words("tty.next.init", source=source, candidates=names)
     if report["open"]:
         first = next_round(report)[0]["element"]
         others = count_rows(report["open"]).elements - 1
-        more = f" and {others:,} more" if others else ""
-        return f"review {shown_name(first)}{more}, say it in a label file (rosprivacy labels --next), repeat"
+        more = words("tty.more", n=others) if others else ""
+        return words("tty.next.review", element=shown_name(first), more=more)
     unread = sorted({shown(said["file"]) for said in report["diagnostics"] if said.get("code") == UNREAD_FILE})
-    return f"name the policy that includes {unread[0]}, or remove it" if unread else LACKING.get(lacking(report), "")
+    return words("tty.next.unread", file=unread[0]) if unread else lacking_step(lacking(report), words)
 
 
 def candidates(report: Mapping[str, Any]) -> list[str]:

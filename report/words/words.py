@@ -11,7 +11,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.durations import parts
-from rosprivacy.report.words import words_cnil_de, words_cnil_en, words_cnil_fr
+from rosprivacy.report.words import (
+    words_cnil_de,
+    words_cnil_en,
+    words_cnil_fr,
+    words_terminal_de,
+    words_terminal_en,
+    words_terminal_fr,
+)
 from rosprivacy.report.words.words_de import WORDS as GERMAN
 from rosprivacy.report.words.words_en import WORDS as ENGLISH
 from rosprivacy.report.words.words_fr import WORDS as FRENCH
@@ -22,9 +29,9 @@ if TYPE_CHECKING:
 DATE = 3  # parts of one
 _ARTICLE = re.compile(r"(?P<article>\d+)(?:\((?P<paragraph>\d+)\))?(?:\((?P<point>[a-z])\))?")
 TABLES = {
-    "en": ENGLISH | words_cnil_en.WORDS,
-    "de": GERMAN | words_cnil_de.WORDS,
-    "fr": FRENCH | words_cnil_fr.WORDS,
+    "en": ENGLISH | words_cnil_en.WORDS | words_terminal_en.WORDS,
+    "de": GERMAN | words_cnil_de.WORDS | words_terminal_de.WORDS,
+    "fr": FRENCH | words_cnil_fr.WORDS | words_terminal_fr.WORDS,
 }
 
 
@@ -115,3 +122,6 @@ class Words:
         parts += [self(f"leg.{element['leg']}")] if element.get("leg") else []
         parts += [self("wildcard")] if element.get("pattern") else []
         return self.row(parts)
+
+
+IN_ENGLISH = Words("en")

@@ -42,7 +42,7 @@ class Style:
     verbose, quiet, colour
         Of text: every open element and notice, the verdict only, for a terminal.
     language
-        Of a report and of the answers for the CNIL's tool: ``en``, ``de`` or ``fr``.
+        Of text, a report and the answers for the CNIL's tool: ``en``, ``de`` or ``fr``.
     title
         Of a report.
     since
@@ -102,12 +102,14 @@ def _text(answer: Answer, style: Style) -> str:
 
     from rosprivacy.report.document.whole import document
     from rosprivacy.report.terminal.analysis import print_report
+    from rosprivacy.report.words.words import Words
 
     text = StringIO()
     terminal = style.colour and Console().is_terminal
     console = Console(file=text, force_terminal=terminal, highlight=False, emoji=False)
     width = Console().width if terminal else None
-    print_report(console, document(answer), verbose=style.verbose, quiet=style.quiet, width=width)
+    words = Words(style.language)
+    print_report(console, document(answer), words, verbose=style.verbose, quiet=style.quiet, width=width)
     return text.getvalue()
 
 

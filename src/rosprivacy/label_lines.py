@@ -28,7 +28,7 @@ from rosprivacy.ingest.reading.yaml_values import MAX_BYTES
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.report.document.analysis import lacking
 from rosprivacy.report.review_groups import next_round, sources_of
-from rosprivacy.report.terminal.next_step import LACKING, candidates
+from rosprivacy.report.terminal.next_step import candidates, lacking_step
 from rosprivacy.report.terminal.review import review_text
 from rosprivacy.robot_system import answer_robot, read_label_files, read_system, standard_channels
 
@@ -106,7 +106,7 @@ def next_lines(policies: tuple[str, ...], labels: tuple[str, ...], settings: Set
         guess = f"candidates by name: {', '.join(likely)}" if likely else "no node sounds like a sensor"
         remarks.append(f"{own.file}: no source is named; {guess}; {NAME_ONE}")
     if code := lacking(report):
-        remarks.append(f"{own.file}: nothing is left to review, but {LACKING[code]}")
+        remarks.append(f"{own.file}: nothing is left to review, but {lacking_step(code)}")
     text = with_lines(own.file, text, list(lines.values()), vocabulary)
     return Written(own.file, text, len(lines), tuple(remarks))
 

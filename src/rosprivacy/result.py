@@ -120,7 +120,7 @@ class Result(Answer):
         verbose, quiet
             Of text: every open element and notice, or the verdict only.
         language
-            Of a report and of the answers for the CNIL's tool: ``en``, ``de`` or ``fr``.
+            Of text, a report and the answers for the CNIL's tool: ``en``, ``de`` or ``fr``.
         title, redact
             Of a report: name of the system; replace names of elements, files, robots and persons.
         since

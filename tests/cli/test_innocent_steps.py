@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING
 import pytest
 import yaml
 
+from rosprivacy.analysis.model import GOES_NOWHERE, NO_LEAK_NAMED
 from rosprivacy.ingest.labels.label_template import HEADER
 from rosprivacy.label_lines import next_lines, updated
-from rosprivacy.report.terminal.next_step import EXAMPLE, LACKING
+from rosprivacy.report.terminal.next_step import EXAMPLE, lacking_step
 from rosprivacy.settings import Settings
 from tests.helpers.daily import one_in
 from tests.helpers.innocent_steps import CHANNEL_WORDS, INFRASTRUCTURE, NODE_WORDS, Line, Planted, plant
@@ -72,7 +73,7 @@ def test_the_words_are_those_of_the_template() -> None:
     for word in (*NODE_WORDS, *CHANNEL_WORDS):
         assert any(word.format(kind) in HEADER for kind in ("Video", "Voice", "Location")), word
     assert NODE_WORDS[0].format("Video") in EXAMPLE
-    assert all("{leak: [" in text or "{source: [" in text for text in LACKING.values())
+    assert all("{leak: [" in text or "{source: [" in text for text in map(lacking_step, (GOES_NOWHERE, NO_LEAK_NAMED)))
 
 
 def test_what_is_planted_is_a_leak(corpus: Path) -> None:
@@ -150,7 +151,7 @@ def test_as_a_person_does_it(cli: Cli, tmp_path: Path, corpus: Path) -> None:
     assert text.startswith(
         "undetermined: no label says where data gets out, so nothing that it gets to could be a leak\n"
     )
-    assert text.splitlines()[-1] == f"Next: {LACKING['no-leak-named']}"
+    assert text.splitlines()[-1] == f"Next: {lacking_step(NO_LEAK_NAMED)}"
     code, text = after(source, mundane, ("/listener", "{leak: [Video]}"))
     assert code == 0
     assert ": l.yaml:" in text

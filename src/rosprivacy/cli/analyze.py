@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from rosprivacy.settings import Settings
 
 LINKED_DATA = (Format.turtle, Format.json_ld)
-IN_LANGUAGES = (Format.cnil_pia,)
+IN_LANGUAGES = (Format.text, Format.cnil_pia)
 SPARK = "Where it is computed"  # a panel of help
 
 
@@ -63,7 +63,9 @@ def analyze(
     output: Output = None,
     lang: Annotated[
         Language | None,
-        typer.Option(help="Language of the answers for the CNIL's tool; by default English.", show_default=False),
+        typer.Option(
+            help="Language of text and of the file for the CNIL's tool; by default English.", show_default=False
+        ),
     ] = None,
     base: Annotated[
         str | None,
@@ -136,7 +138,7 @@ def analyze(
     if base is not None and format not in LINKED_DATA:
         raise typer.BadParameter("--base is for --format turtle and json-ld")
     if lang and format not in IN_LANGUAGES:
-        raise typer.BadParameter("--lang is for --format cnil-pia")
+        raise typer.BadParameter("--lang is for --format text and cnil-pia")
     language = (lang or Language.en).value
     style = Style(verbose=verbose, quiet=quiet, colour=output is None, language=language, base=base)
     if per_policy:

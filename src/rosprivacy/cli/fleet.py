@@ -50,7 +50,8 @@ def fleet(
 
 
 def _lines(fleet: Fleet, groups: tuple[Alike, ...]) -> Iterator[str]:
-    from rosprivacy.report.terminal.fleet import named
+    from rosprivacy.report.terminal.called_alike import named
+    from rosprivacy.report.words.words import IN_ENGLISH
 
     kinds = sum(not group.fixed for group in groups)
     yield f"{len(fleet.robots):,} robots of {kinds:,} kinds, infrastructure: {len(fleet.infrastructure):,}"
@@ -58,7 +59,7 @@ def _lines(fleet: Fleet, groups: tuple[Alike, ...]) -> Iterator[str]:
         robot = group.robots[0]
         what = "infrastructure" if group.fixed else f"model {robot.model}" if robot.model else "no model"
         domain = f", domain {robot.domain}" if robot.domain else ""
-        yield f"{named(one.id for one in group.robots)}  ({len(group.robots):,}; {what}{domain})"
+        yield f"{named((one.id for one in group.robots), IN_ENGLISH)}  ({len(group.robots):,}; {what}{domain})"
         for name, files in (("policies", robot.policies), ("labels", robot.labels), ("own labels", robot.own)):
             if files:
                 yield f"    {name}: {', '.join(files)}"

@@ -9,7 +9,7 @@ import typer
 
 from rosprivacy.analysis.errors import InputError, InputErrors, shown
 from rosprivacy.cli.inputs import Inputs, reads_system
-from rosprivacy.cli.options import Output, TextOrJson
+from rosprivacy.cli.options import Language, Output, TextOrJson
 from rosprivacy.cli.output import emit, on_console, terminal_width
 
 if TYPE_CHECKING:
@@ -24,6 +24,7 @@ def show(
     inputs: Inputs,
     format: Annotated[TextOrJson, typer.Option("--format", "-f", help="Of the answer.")] = TextOrJson.text,  # noqa: A002 - the option's name
     output: Output = None,
+    lang: Annotated[Language, typer.Option(help="Language of the text.")] = Language.en,
 ) -> None:
     """Show one finding hop by hop: which policy line allows each step, and what the law says of such data."""
     from rich.text import Text
@@ -31,13 +32,15 @@ def show(
     from rosprivacy.report.json_text import as_text
     from rosprivacy.report.terminal.finding_lines import details, law_lines
     from rosprivacy.report.terminal.wrapped import wrapped
+    from rosprivacy.report.words.words import Words
 
     report = inputs.result(inputs.settings).document()
     chosen = _chosen(report, finding)
     if format is TextOrJson.json:
         emit(as_text(chosen), output)
         return
-    lines = [*details(report, chosen), *law_lines(report, chosen)]
+    words = Words(lang.value)
+    lines = [*details(report, chosen, words), *law_lines(report, chosen, words)]
     width = None if output else terminal_width()
 
     def write(console: Any) -> None:

@@ -36,9 +36,9 @@ def test_one_row_for_each_kind_and_recipient() -> None:
     ]
 
 
-def test_what_only_a_person_can_know_is_empty_and_marked() -> None:
+def test_what_nobody_stated_is_to_be_completed_and_marked() -> None:
     for row in record(care()):
-        assert row["controller"] == row["purpose"] == ""
+        assert row["controller"] == row["purpose"] == row["basis"] == "to be completed"
         assert row["complete"].startswith("30(1)(a), 30(1)(b)")
         assert ("30(1)(c)" in row["complete"]) == (row["subjects"] == "")
 
@@ -105,7 +105,7 @@ def test_a_basis_that_a_valid_decision_records_stands_in_its_row() -> None:
     told = {row["findings"]: row["basis"] for row in record(document)}
     first, second, *_ = (finding["id"] for finding in document["findings"])
     assert next(basis for ids, basis in told.items() if first in ids) == "6(1)(c)"
-    assert next(basis for ids, basis in told.items() if second in ids) == ""
+    assert next(basis for ids, basis in told.items() if second in ids) == "to be completed"
 
 
 def test_recipients_that_nobody_reviewed_may_be_missing_and_the_row_says_so() -> None:

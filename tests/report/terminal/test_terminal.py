@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
-def report(document: dict[str, Any], **options: bool) -> list[str]:
+def report(document: dict[str, Any], **options: Any) -> list[str]:
     text = StringIO()
     print_report(Console(file=text, highlight=False, emoji=False), document, **options)
     return text.getvalue().splitlines()

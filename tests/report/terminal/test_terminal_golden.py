@@ -49,7 +49,7 @@ def turtlebot3(corpus: Path) -> dict[str, Any]:
         return rosprivacy.analyze(TURTLEBOT3, rosprivacy.parse_labels(COSTMAP + MEMORY)).document()
 
 
-def printed(report: dict[str, Any], width: int | None, **options: bool) -> str:
+def printed(report: dict[str, Any], width: int | None, **options: Any) -> str:
     text = StringIO()
     print_report(Console(file=text, highlight=False, emoji=False), report, width=width, **options)
     return text.getvalue()

@@ -1,0 +1,48 @@
+"""What several parts of the report for the terminal count and call alike, in the words of a language.
+
+In: rows, elements, names. Out: parts of lines.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.errors import shown
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from rosprivacy.report.element_counts import ElementCount
+    from rosprivacy.report.words.words import Words
+
+NAMED = 5  # names in a row
+
+
+def legs(count: ElementCount, words: Words) -> str:
+    """Return what is said beside a number of elements; empty where no leg makes a difference."""
+    return words("tty.legs", n=count.legs) if count.legs != count.elements else ""
+
+
+def kind_in(element: Mapping[str, Any], words: Words) -> str:
+    """Return what an element is; in English in the program's own words."""
+    parts = [words.known(f"tty.kind.of.{element['kind']}", element["kind"])]
+    parts += [words.known(f"tty.leg.{element['leg']}", element["leg"])] if element.get("leg") else []
+    parts += [words("tty.wildcard")] if element.get("pattern") else []
+    return " ".join(parts)
+
+
+def named(names: Iterable[str], words: Words) -> str:
+    """Return some names, and how many more there are.
+
+    >>> from rosprivacy.report.words.words import IN_ENGLISH
+    >>> named(["a", "b", "c", "d", "e", "f"], IN_ENGLISH)
+    'a, b, c, d, e and 1 more'
+    """
+    everything = list(names)
+    more = words("tty.more", n=len(everything) - NAMED) if len(everything) > NAMED else ""
+    return shown(", ".join(everything[:NAMED])) + more
+
+
+def both(parts: Sequence[str], words: Words) -> str:
+    """Return parts joined by 'and'."""
+    return words("tty.and").join(parts)
