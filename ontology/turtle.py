@@ -10,10 +10,11 @@ import re
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rdflib import DCTERMS, RDF, RDFS, SKOS, Graph, Namespace
+from rdflib import DCTERMS, RDF, RDFS, SKOS, Graph, Namespace, URIRef
 
 from rosprivacy.analysis.errors import InputErrors, OntologyError, shown
 from rosprivacy.analysis.model import Category, Legal, Pointer, Situation
+from rosprivacy.ontology.iris import PUBLISHED, STORED, as_stored
 from rosprivacy.ontology.pointed import EVERY_SYSTEM, Pointed
 
 if TYPE_CHECKING:
@@ -21,14 +22,14 @@ if TYPE_CHECKING:
 
     from rdflib.term import Node
 
-RP = Namespace("urn:x-rosprivacy:")
+RP = Namespace(STORED)
 ENGLISH = "en"
 _LOCAL = re.compile(r"[#/:]")
 _QUOTED = re.compile(r" at \^ in: .*")  # rdflib quotes the text, which may be anybody's
 
 
 def read(turtle: str, file: str) -> Graph:
-    """Return the triples of a Turtle text.
+    """Return the triples of a Turtle text; our terms have the stored form (``iris.py``), whichever it uses.
 
     Raises
     ------
@@ -37,14 +38,21 @@ def read(turtle: str, file: str) -> Graph:
     """
     graph = Graph(bind_namespaces="none")
     try:
-        graph.parse(data=turtle, format="turtle")
+        graph.parse(data=as_stored(turtle), format="turtle")
     except Exception as error:  # noqa: BLE001 - rdflib raises its own and plain exceptions alike
         line = getattr(error, "lines", 0)
         said = shown(_QUOTED.sub("", " ".join(str(getattr(error, "message", error)).split())))
         raise InputErrors(
             [OntologyError(file, line + 1 if line else 0, f"not Turtle: {said}", "correct the syntax")]
         ) from None
+    for subject, predicate, value in [triple for triple in graph if any(PUBLISHED in str(term) for term in triple)]:
+        graph.remove((subject, predicate, value))  # written with escapes, or relative to a base
+        graph.add((_stored(subject), _stored(predicate), _stored(value)))
     return graph
+
+
+def _stored(term: Node) -> Node:
+    return URIRef(as_stored(term)) if isinstance(term, URIRef) else term
 
 
 def categories_of(graph: Graph, subjects: Iterable[Node] | None = None) -> tuple[Category, ...]:

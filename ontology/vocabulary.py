@@ -20,6 +20,7 @@ from rosprivacy.analysis.files_read import noted
 from rosprivacy.analysis.hierarchy import Hierarchy
 from rosprivacy.analysis.legal import close
 from rosprivacy.ontology import cache as kept
+from rosprivacy.ontology.iris import STORED, as_stored
 from rosprivacy.ontology.known import Known
 from rosprivacy.ontology.pointed import Pointed
 
@@ -32,7 +33,7 @@ LARGEST = 4 * 2**20  # bytes of a user's file
 TOP = "PersonalData"
 SHIPPED = ("categories.ttl", "law.ttl", "other_law.ttl", "contexts.ttl", "elements.ttl", "dpv.ttl")
 PREFIXES = {
-    "rp:": "urn:x-rosprivacy:",
+    "rp:": STORED,
     "dpv:": "https://w3id.org/dpv#",
     "pd:": "https://w3id.org/dpv/pd#",
     "eu-gdpr:": "https://w3id.org/dpv/legal/eu/gdpr#",
@@ -139,9 +140,9 @@ class Vocabulary:
 
 
 def _whole(text: str) -> str:
-    """An IRI in place of a prefixed name."""
+    """An IRI in place of a prefixed name; one of ours in the form in which it is stored."""
     prefix, colon, rest = text.partition(":")
-    return PREFIXES.get(prefix + colon, prefix + colon) + rest
+    return as_stored(PREFIXES.get(prefix + colon, prefix + colon) + rest)
 
 
 def load(cache: Path | None = None, ontologies: Sequence[str] = ()) -> Vocabulary:

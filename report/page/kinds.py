@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.text import fit, printable
+from rosprivacy.ontology.iris import as_published
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import text
 from rosprivacy.report.page.look_at import LookAt, context_of, of_kind
@@ -113,7 +114,7 @@ def _kind(category: Mapping[str, Any], index: Index, entries: tuple[Entry, ...])
     return Kind(
         name=fit(of),
         title=index.data(of),
-        iri=fit(category["iri"]),
+        iri=fit(as_published(category["iri"])),
         definition=text(category, "definition", language),
         types=tuple(index.words.known(f"type.{kind}", fit(kind)) for kind in category["data_types"]),
         factors=tuple(

@@ -8,17 +8,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from rdflib import RDF, SKOS, XSD, Literal
+from rdflib import OWL, RDF, SKOS, XSD, Literal, URIRef
 from rdflib.namespace import PROV
 
 from rosprivacy.analysis.model import Pointer
+from rosprivacy.ontology.iris import STORED
 from rosprivacy.report.rdf.individuals import foreign
 from rosprivacy.report.rdf.terms import DPV, RP, Triple, about, text
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
-
-    from rdflib import URIRef
 
     from rosprivacy.analysis.model import Category, Element, Grant, Legal, Surroundings
     from rosprivacy.ontology.vocabulary import Vocabulary
@@ -166,6 +165,7 @@ def _provision(iri: URIRef, legal: Legal | Pointer) -> list[Triple]:
         (RP.asOf, [Literal(legal.as_of, datatype=XSD.date)]),
         (RP.appliesFrom, [Literal(applies, datatype=XSD.date)] if applies else []),
         (RP.country, [text(country)] if country else []),
+        (OWL.sameAs, _stored(legal.iri)),
     )
 
 
@@ -179,4 +179,10 @@ def _category(category: Category, broader: list[URIRef]) -> list[Triple]:
         (SKOS.broader, broader),
         (SKOS.broadMatch, map(foreign, category.within)),
         (SKOS.exactMatch, map(foreign, category.same_as)),
+        (OWL.sameAs, _stored(category.iri)),
     )
+
+
+def _stored(iri: str) -> list[URIRef]:
+    """What a term of ours is called in documents and databases; nothing of what is not ours."""
+    return [URIRef(iri)] if iri.startswith(STORED) else []

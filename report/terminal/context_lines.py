@@ -38,7 +38,7 @@ def context_lines(kind: Mapping[str, Any], findings: Iterable[Mapping[str, Any]]
 
 def pointer_lines(report: Mapping[str, Any], category: str, words: Words) -> Iterator[Line]:
     """Yield the provisions that a kind of data points at, in one line."""
-    rows = [row for row in looked_at(report, words.language) if category in row["categories"]]
+    rows = [row for row in looked_at(report) if category in row["categories"]]
     if rows:
         yield f"   {words('tty.law.look', kind=category, names=_names(rows, words))}", "dim"
 
@@ -46,7 +46,7 @@ def pointer_lines(report: Mapping[str, Any], category: str, words: Words) -> Ite
 def further_lines(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
     """Yield the provisions that each context of the system points at; those of every system are in the report."""
     for context in report.get("contexts", ()):
-        rows = [row for row in looked_at(report, words.language) if context["name"] in row["contexts"]]
+        rows = [row for row in looked_at(report) if context["name"] in row["contexts"]]
         if rows:
             yield f"   {words('tty.law.look.context', context=context['name'], names=_names(rows, words))}", "dim"
 

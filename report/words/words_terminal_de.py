@@ -148,7 +148,7 @@ WORDS = {
     "tty.standard.by": "{channels}, nach {file} (sha256 {sha}){more}",
     "tty.standard.proposed": ", oder nach {file} (rosprivacy labels --infrastructure)",
     "tty.standard.reached": "Daten gelangen zu {n} davon und enden dort: {names}",
-    "tty.standard.unchanged": "von {n} davon sagt ein Muster etwas anderes, was nicht zählt: {names}; nennen Sie sie, oder schreiben Sie das Ende des Musters aus (*/rosout)",
+    "tty.standard.unchanged": "von {n} davon sagt ein Muster etwas anderes, was nicht zählt: {names}; einzeln nennen, oder das Ende des Musters ausschreiben (*/rosout)",
     "tty.absent": "{element} ist nicht auf dem Roboter: {why}",
     "tty.overruled.one": "{n} Angabe einer Quelle oder eines Ausgangs wird von einer anderen aufgehoben (siehe die Warnungen)",
     "tty.overruled.many": "{n} Angaben von Quellen oder Ausgängen werden von anderen aufgehoben (siehe die Warnungen)",

@@ -23,7 +23,7 @@ _TYPED = {
     "tty.title.flow": "Éléments hors ROS qu'aucun flux n'atteint (dire ce qui y entre, ou les retirer)",
     "tty.asked": "; demandé seulement : {what}",
     "tty.asked.types": "données de cette forme : {types}",
-    "tty.asked.factors": "données avec le facteur d'identité {factors}",
+    "tty.asked.factors": "données avec l'élément d'identité {factors}",
     "tty.level.always": "ce qui relève toujours de l'art. 9, par. 1, du RGPD",
     "tty.level.conditional": "ce qui relève de l'art. 9, par. 1, du RGPD, toujours ou sous condition",
     "tty.level.may-reveal": "ce qui peut relever de l'art. 9, par. 1, du RGPD",

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 FOLDER = ROOT / "ontology"
 SHIPPED = ("categories", "law", "other_law", "contexts", "elements", "dpv")
-RP = Namespace("urn:x-rosprivacy:")
+RP = Namespace("https://w3id.org/rosprivacy#")
 
 
 @cache
