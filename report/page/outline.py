@@ -28,6 +28,7 @@ from rosprivacy.report.page.finding_entries import Entry, finding_entries
 from rosprivacy.report.page.fleet_section import Fleet, fleet_told
 from rosprivacy.report.page.index import Index, state
 from rosprivacy.report.page.kinds import Kind, kinds
+from rosprivacy.report.page.look_at import LookAt, further
 from rosprivacy.report.page.non_ros import Outside, outside
 from rosprivacy.report.page.opening import Opening, flows, opening
 from rosprivacy.report.page.purposes import Row, processed, signed
@@ -123,6 +124,7 @@ class Outline:
     entries: tuple[Entry, ...]
     orphans: tuple[Decision, ...]
     hanging: tuple[Hanging, ...]
+    look_at: tuple[tuple[str, tuple[LookAt, ...]], ...]
     outside: tuple[Outside, ...]
     cleanings: tuple[sanitizers.Cleaning, ...]
     makings: tuple[sanitizers.Making, ...]
@@ -211,6 +213,7 @@ def outline(
         entries=entries,
         orphans=orphans(index),
         hanging=hanging(index),
+        look_at=further(index),
         outside=outside(index),
         cleanings=sanitizers.cleanings(index, entries),
         makings=sanitizers.makings(index),

@@ -262,6 +262,14 @@ WORDS = {
     ),
     "law.gdpr": "Defined in",
     "law.box": "Provisions to look at",
+    "law.context": "In this context ({context}), such data may reveal what it names",
+    "law.look": "Look at too",
+    "look.heading": "Further law to look at",
+    "look.intro": "Only the GDPR is followed into paths; these provisions are pointed at. Whether they apply is for a person to judge.",
+    "look.system": "Every system",
+    "look.context": "In this context: {context}",
+    "look.applies": "applies from {date}",
+    "f.context": "In the context of the source ({context}), the data may reveal what {provision} speaks of: {reason}.",
     # --- assumptions
     "a.view.declared": "View 'declared': each node does what its own profile in the policy says, and nothing else.",
     "a.view.enforced": (
