@@ -74,6 +74,9 @@ _TYPED = {
     "tty.through": "uniquement par {names}, qui a son propre constat{past}",
     "tty.past": "; à côté, des données n'y arrivent que pseudonymisées",
     "tty.special": "{element} produit ces données à partir d'autres",
+    "tty.law.context": "{kind} de {sources} : peut révéler dans ce contexte ({context}) : {provision} : {condition}",
+    "tty.law.look": "{kind} : à examiner aussi : {names}",
+    "tty.law.look.context": "dans ce contexte ({context}) : à examiner aussi : {names}",
     "tty.law.title": "Ce que dit le droit de ces types de données",
     "tty.law.line": "{kind} : {provision}, {may}{condition}",
     "tty.law.condition": " : {condition}",
@@ -253,6 +256,15 @@ _TYPED = {
     "tty.leg.request": "requête",
     "tty.leg.response": "réponse",
     "tty.wildcard": "caractère générique",
+    "tty.hangs": "À quoi tient le résultat : {what}",
+    "tty.hangs.own.one": "{n} déclaration de vos annotations",
+    "tty.hangs.own.many": "{n} déclarations de vos annotations",
+    "tty.hangs.shipped.one": "{n} de fichiers fournis",
+    "tty.hangs.shipped.many": "{n} de fichiers fournis",
+    "tty.hangs.wrong": "si l'une d'elles est fausse, il y a plus de résultats ou de questions ouvertes (-v les montre)",
+    "tty.hangs.line": "{place} : {ends} {said}{by}{why} ; si c'est faux : {opened}",
+    "tty.hangs.by": ", dit {author}",
+    "tty.hangs.asked": "à examiner : {elements}",
 }
 
 WORDS = {key: spaced(text, "fr") for key, text in _TYPED.items()}
