@@ -219,6 +219,8 @@ WORDS = {
     "wc.kinds": "Was das für Daten sind",
     "wc.measures": "Was zu ihrem Schutz getan wird",
     "wc.open": "Was noch zu entscheiden ist",
+    "wc.point.one": "{n} Punkt ist noch zu entscheiden.",
+    "wc.point.many": "{n} Punkte sind noch zu entscheiden.",
     "wc.law": "Wo nachzusehen ist: Artikel 88 DSGVO, § 26 BDSG, § 87 Absatz 1 Nummer 6 BetrVG.",
     # --- Article 9
     "article9.short": "Artikel 9 Absatz 1",

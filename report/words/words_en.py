@@ -250,6 +250,8 @@ WORDS = {
     "wc.kinds": "What these data are",
     "wc.measures": "What is done to protect them",
     "wc.open": "What is still to be decided",
+    "wc.point.one": "{n} point has still to be decided.",
+    "wc.point.many": "{n} points have still to be decided.",
     "wc.law": "Where to look: Article 88 GDPR, and the national law on data of employees and on works councils.",
     # --- Article 9
     "article9.short": "Article 9(1)",

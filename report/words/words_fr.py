@@ -224,6 +224,8 @@ _TYPED = {
     "wc.kinds": "Ce que sont ces données",
     "wc.measures": "Ce qui est fait pour les protéger",
     "wc.open": "Ce qui reste à décider",
+    "wc.point.one": "{n} point reste à décider.",
+    "wc.point.many": "{n} points restent à décider.",
     "wc.law": "Où regarder : article 88 du RGPD, code du travail (article L. 2312-38).",
     # --- Article 9
     "article9.short": "Article 9, par. 1",

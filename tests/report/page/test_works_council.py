@@ -36,7 +36,7 @@ def test_every_group_with_every_place_is_there_as_in_the_report(language: str) -
 def test_it_says_what_is_open_and_what_was_decided() -> None:
     report = told(care(), answers=Answers({"sign.measures": "the archive goes"}))
     text = lxml_html.document_fromstring(works_council(report)).text_content()
-    assert "You have to decide 3 things" in text
+    assert "3 points have still to be decided." in text
     assert "the archive goes" in text
     assert "This report is no legal verdict" in text
 
