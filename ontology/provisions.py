@@ -6,6 +6,7 @@ In: a language. Out: ``Provision`` facts. rdflib reads them, which is heavy: imp
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from importlib.resources import files
 from typing import TYPE_CHECKING
 
@@ -44,13 +45,19 @@ class Provision:
     address: str
 
 
+@cache
+def law() -> Graph:
+    """Return what ``law.ttl`` says; it is read once."""
+    return read((files(__package__) / FILE).read_text("utf-8"), FILE)
+
+
 def provisions(language: str = ENGLISH) -> tuple[Provision, ...]:
     """Return all of them, in the order of their identifiers.
 
     >>> [one.title for one in provisions("de") if one.name == "Art. 32 DSGVO"]
     ['Sicherheit der Verarbeitung']
     """
-    graph = read((files(__package__) / FILE).read_text("utf-8"), FILE)
+    graph = law()
     subjects = set(graph.subjects(RDF.type, RP.LegalProvision))
     return tuple(
         Provision(

@@ -8,17 +8,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from rdflib import OWL, RDF, SKOS, XSD, Literal, URIRef
+from rdflib import RDF, Literal, URIRef
 from rdflib.namespace import PROV
 
-from rosprivacy.ontology.iris import STORED
+from rosprivacy.report.rdf.concepts import category_triples, provision_triples
 from rosprivacy.report.rdf.individuals import foreign
-from rosprivacy.report.rdf.terms import DPV, RP, Triple, about, text
+from rosprivacy.report.rdf.terms import RP, Triple, about, text
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from rosprivacy.analysis.model import Category, Element, Grant, Legal
+    from rosprivacy.analysis.model import Element, Grant, Legal
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.report.rdf.individuals import Names
 
@@ -107,12 +107,11 @@ class Things:
             yield from about(iri, (RP.aboutPersons, map(text, self.subjects(element))))
         for iri, grant in self._lines.items():
             yield from _line(iri, grant, self._files.get(grant.place.file, ()))
-        for iri, legal in self._provisions.items():
-            yield from _provision(iri, legal)
+        yield from provision_triples(self._provisions.values())
         for name in {up for category in self._named for up in self._ancestors[category]}:
             category = self._categories[name]
             broader = [foreign(self._categories[up].iri) for up in category.broader if up in self._categories]
-            yield from _category(category, broader)
+            yield from category_triples(category, broader)
 
 
 def _element(iri: URIRef, element: Element) -> list[Triple]:
@@ -137,33 +136,3 @@ def _line(iri: URIRef, grant: Grant, files: Iterable[URIRef]) -> list[Triple]:
         (RP.profile, [text(grant.node)]),
         (RP.inFile, files),
     )
-
-
-def _provision(iri: URIRef, legal: Legal) -> list[Triple]:
-    return about(
-        iri,
-        (RDF.type, [RP.LegalProvision]),
-        (RP.identifier, [text(legal.name)]),
-        (SKOS.definition, [text(legal.meaning, "en")]),
-        (RP.asOf, [Literal(legal.as_of, datatype=XSD.date)]),
-        (OWL.sameAs, _stored(legal.iri)),
-    )
-
-
-def _category(category: Category, broader: list[URIRef]) -> list[Triple]:
-    return about(
-        foreign(category.iri),
-        (RDF.type, [SKOS.Concept, *([DPV.SpecialCategoryPersonalData] if category.article9 == "always" else [])]),
-        (SKOS.prefLabel, [text(category.title, "en")]),
-        (SKOS.definition, [text(category.definition, "en")]),
-        (RP.identityFactor, map(text, category.identity_factors)),
-        (SKOS.broader, broader),
-        (SKOS.broadMatch, map(foreign, category.within)),
-        (SKOS.exactMatch, map(foreign, category.same_as)),
-        (OWL.sameAs, _stored(category.iri)),
-    )
-
-
-def _stored(iri: str) -> list[URIRef]:
-    """What a term of ours is called in documents and databases; nothing of what is not ours."""
-    return [URIRef(iri)] if iri.startswith(STORED) else []
