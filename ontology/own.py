@@ -99,8 +99,8 @@ def _unfit(subjects: list[Node], there: set[URIRef]) -> Iterator[Problem]:
 def _shape_problems(graph: Graph, ours: Graph, subjects: set[Node]) -> Iterator[Problem]:
     """What the shapes refuse, with their own words: 'what is wrong; what to do'.
 
-    Of ours only the provisions are put beside the user's file: the shapes hold ours in tests, and parents and names
-    are checked above.
+    Of ours only the provisions, and what contexts reveal, are put beside the user's file: the shapes hold ours in
+    tests, and parents and names are checked above.
     """
     import pyshacl  # noqa: PLC0415 - takes longer than all the rest
 
@@ -109,6 +109,11 @@ def _shape_problems(graph: Graph, ours: Graph, subjects: set[Node]) -> Iterator[
     for provision in ours.subjects(RDF.type, RP.LegalProvision):
         for triple in ((provision, RDF.type, RP.LegalProvision), *ours.triples((provision, RP.partOf, None))):
             provisions.add(triple)
+    for context in ours.subjects(RDF.type, RP.Context):
+        provisions.add((context, RDF.type, RP.Context))
+    for sharpening in ours.subjects(RDF.type, RP.Sharpening):
+        for predicate in (RP.context, RP.provision, RP.verdict, RP.condition):
+            provisions += ours.triples((sharpening, predicate, None))
     _, report, _ = pyshacl.validate(graph + provisions, shacl_graph=shapes, advanced=True, inplace=False)
     found = set()
     for result in report.objects(None, SH.result):

@@ -1,4 +1,4 @@
-"""The provisions of ``law.ttl`` by themselves: what they are called, as of when they were read, where they stand.
+"""The provisions of the Turtle files by themselves: what they are called, as of when they were read, where they stand.
 
 In: a language. Out: ``Provision`` facts. rdflib reads them, which is heavy: import this where it is used.
 """
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rdflib import Graph
     from rdflib.term import Node
 
-FILE = "law.ttl"
+FILES = ("law.ttl", "other_law.ttl")
 MONTHS = 6  # after which a person has to look whether the law is still as it was read
 
 
@@ -47,8 +47,9 @@ class Provision:
 
 @cache
 def law() -> Graph:
-    """Return what ``law.ttl`` says; it is read once."""
-    return read((files(__package__) / FILE).read_text("utf-8"), FILE)
+    """Return what the shipped files of the law say; they are read once."""
+    text = "\n".join((files(__package__) / file).read_text("utf-8") for file in FILES)
+    return read(text, "the shipped law")
 
 
 def provisions(language: str = ENGLISH) -> tuple[Provision, ...]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.contexts import Contexts
 from rosprivacy.analysis.findings.globs import GlobUse, globs
 from rosprivacy.analysis.findings.ledger import ledger
 from rosprivacy.analysis.findings.processed import processed
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.findings.ledger import TakenAway
     from rosprivacy.analysis.findings.processed import Processed
     from rosprivacy.analysis.fleet.patterns import FleetView
-    from rosprivacy.analysis.model import Bound, Diagnostic, NonRosFacts
+    from rosprivacy.analysis.model import Bound, Diagnostic, NonRosFacts, Surroundings
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 
@@ -113,6 +114,17 @@ class Answer:
         """Whom the data of a source are about, as labels name them: (robot, kind, name) -> groups of persons."""
         elements = self.analysis.graph.elements
         return {elements[vertex].identity: groups for vertex, groups in self.bound.subjects.items()}
+
+    @property
+    def surroundings(self) -> dict[tuple[str, str, str], Surroundings]:
+        """Where elements work, as people state it of them or of their system: by (robot, kind, name)."""
+        elements = self.analysis.graph.elements
+        return {elements[vertex].identity: where for vertex, where in self.bound.surroundings.items()}
+
+    @property
+    def contexts(self) -> Contexts:
+        """Where sources work, and what data may reveal there."""
+        return Contexts.of(self.analysis.graph, self.bound, self.vocabulary.categories, together=self.fleet is not None)
 
     @property
     def processed(self) -> tuple[Processed, ...]:

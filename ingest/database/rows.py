@@ -122,7 +122,7 @@ def robot_rows(
     ids = [element_id(robot, element) for element in graph.elements]
     by_element = dict(zip(graph.elements, ids, strict=True))
     enclaves = sorted({profile.enclave for profile in graph.profiles})
-    found, across = finding_rows(analysis, vocabulary, by_element, dict.fromkeys(graph.elements, robot))
+    found, across = finding_rows(analysis, bound, vocabulary, by_element, dict.fromkeys(graph.elements, robot))
     results = list(element_results(analysis, bound, names, roles))
     carrying = Carrying(analysis, [said for _, said in results], labels)
     elements = graph.elements

@@ -24,6 +24,7 @@ from rosprivacy.analysis.model import (
     Processing,
     Severity,
     Statement,
+    Surroundings,
 )
 from rosprivacy.ingest.labels.entries import EXACT, SHIPPED, Entry, FlowEntry, naming, specificity
 from rosprivacy.ingest.labels.name_reader import NameReader
@@ -35,6 +36,7 @@ from rosprivacy.ingest.labels.stated_processing import (
     read_system,
     with_transfer,
 )
+from rosprivacy.ingest.labels.surroundings import read_contexts, read_country
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -50,11 +52,13 @@ SECTIONS = {
     "actions": ("action",),
 }
 SIX_LISTS = ("source", "leak", "conduit", "sanitizer", "sensitive", "mundane")
-NODE_KEYS = ("source", "leak", "sanitizer", "conduit", "derives", "subjects", *OF_ELEMENT, "absent", "note")
-SAYS_NOTHING = ("subjects", *OF_ELEMENT, "note")  # of what data does
+NODE_KEYS = ("source", "leak", "sanitizer", "conduit", "derives", "subjects", "context", *OF_ELEMENT, "absent", "note")
+SAYS_NOTHING = ("subjects", "context", *OF_ELEMENT, "note")  # of what data does
 CHANNEL_KEYS = ("only", "never", "note")
 FLOW_KEYS = ("from", "to", "only", "never", "note")
 OUTSIDE = ("elements", "limits")
+SURROUNDINGS = ("context", "country")  # of a system
+SYSTEM = (*OF_SYSTEM, *SURROUNDINGS)
 NONE = "none"  # in place of categories: takes back what labels of lower rank say (rule S7)
 LONGEST_GROUP = 100  # characters of a group of persons
 
@@ -70,6 +74,7 @@ class LabelReader(NameReader):
     flows: list[FlowEntry] = field(default_factory=list)
     elements: list[Stated] = field(default_factory=list)
     limits: list[Limit] = field(default_factory=list)
+    surroundings: Surroundings = field(default_factory=Surroundings)
     processing: Processing = UNSTATED
 
     def rank(self, specific: int) -> tuple[int, int]:
@@ -88,11 +93,19 @@ class LabelReader(NameReader):
     def _labels(self, top: Value) -> None:
         self.version(top, "labels", "label")
         self.system(top)
-        for key, line, value in self.entries_of(top, ("labels", *OF_SYSTEM, *SECTIONS, *OUTSIDE, "flows")):
-            if key in ("flows", *OUTSIDE):
+        for key, line, value in self.entries_of(top, ("labels", *SYSTEM, *SECTIONS, *OUTSIDE, "flows")):
+            if key in SURROUNDINGS:
+                self.surroundings = self.surrounded(self.surroundings, key, value)
+            elif key in ("flows", *OUTSIDE):
                 self.outside(key, line, value)
             elif key in SECTIONS:
                 self._section(key, line, value)
+
+    def surrounded(self, known: Surroundings, key: str, value: Value) -> Surroundings:
+        """Return where a system works with what one more key says of it."""
+        if key == "context":
+            return replace(known, contexts=read_contexts(self, value))
+        return replace(known, country=read_country(self, value))
 
     def system(self, top: Value) -> None:
         """Read what the top says of the whole system; fleet files say it too."""
@@ -123,9 +136,8 @@ class LabelReader(NameReader):
         processing = self._processing(labels, stated.place)
         facts = with_transfer(self, value, stated.outside, processing.bases)
         self.elements.append(replace(stated, outside=facts))
-        subjects = self._subjects(labels)
-        kinds, rank = (stated.kind,), self.rank(EXACT)
-        self.entries.append(Entry(kinds, name, stated.place, statements, subjects, processing, rank))
+        about = self._subjects(labels), processing, self.rank(EXACT), self._contexts(labels)
+        self.entries.append(Entry((stated.kind,), name, stated.place, statements, *about))
 
     def _section(self, section: str, line: int, value: Value) -> None:
         if value.kind == "empty":
@@ -145,7 +157,8 @@ class LabelReader(NameReader):
             place, of_node = Place(self.file, at), section == "nodes"
             subjects = self._subjects(label) if of_node else ()
             processing = self._processing(label, place) if of_node else UNSTATED
-            self.entries.append(Entry(SECTIONS[section], name, place, statements, subjects, processing, rank))
+            contexts = self._contexts(label) if of_node else ()
+            self.entries.append(Entry(SECTIONS[section], name, place, statements, subjects, processing, rank, contexts))
 
     def _node(self, label: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
         if label.kind == "empty":  # a line of --init that nobody has filled in yet
@@ -241,6 +254,11 @@ class LabelReader(NameReader):
                 what = f"{shown(item.text) or f'a {item.kind}'!r} where a group of persons is named"
                 self.problem(item.line, what, f"write a word or two, at most {LONGEST_GROUP} characters")
         return tuple(sorted({item.text.strip() for item in value.items}))
+
+    def _contexts(self, label: Value) -> tuple[str, ...]:
+        """Where a source works, beside what is said of its system."""
+        value = label.get("context")
+        return () if value is None else read_contexts(self, value)
 
     def _processing(self, label: Value, place: Place) -> Processing:
         """What data there are processed for, and on which basis."""

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.model import CLEANS, NON_ROS
+from rosprivacy.analysis.model import CLEANS, CONTEXTS, NON_ROS
 from rosprivacy.analysis.non_ros import RECIPIENTS, TRANSFERS
 from rosprivacy.ingest.labels.label_reader import LONGEST_GROUP, NONE, SAYS_NOTHING
 from rosprivacy.ingest.labels.name_reader import END_KINDS
@@ -29,6 +29,11 @@ END_OF_KIND = {
     "maxProperties": 1,
     "properties": dict.fromkeys(END_KINDS, END),
     "description": "Which of several of that name: {topic: /map} or {node: /map}.",
+}
+CONTEXT = {"anyOf": [{"enum": list(CONTEXTS)}, {"type": "array", "minItems": 1, "items": {"enum": list(CONTEXTS)}}]}
+SURROUNDINGS = {
+    "context": {**CONTEXT, "description": "Where the system works: what its data may reveal depends on it."},
+    "country": {"type": "string", "pattern": "^[A-Z]{2}$", "description": "Where it runs, ISO 3166-1; quote NO."},
 }
 OUTSIDE_NAME = {"type": "string", "pattern": r"^[^/=*?\[:][^:]*$", "maxLength": 200}
 NAME = {"type": "string", "pattern": r"^[/=*?\[]", "description": "A name, a glob, or = and a name with glob signs."}
@@ -57,6 +62,7 @@ def label_schema(categories: Iterable[Category]) -> dict[str, Any]:
             "topics": _section("channel", "As channels, for topics only."),
             "services": _section("channel", "As channels, for services only."),
             "actions": _section("channel", "As channels, for actions only."),
+            **SURROUNDINGS,
             **non_ros_sections(),
         },
         "$defs": _definitions(list(categories)),
@@ -210,6 +216,7 @@ def _node(one: dict[str, Any], some: dict[str, Any], note: dict[str, Any]) -> di
                 "items": {"type": "string", "pattern": "\\S", "maxLength": LONGEST_GROUP},
                 "description": "Of a source: whom its data are about, such as residents or staff.",
             },
+            "context": {**CONTEXT, "description": "Of a source: where it works, beside what is said of its system."},
             **_processing(),
             "absent": {"type": "string", "minLength": 1, "description": "Why it is not on this robot; stands alone."},
             "note": note,

@@ -24,14 +24,17 @@ if TYPE_CHECKING:
     from rosprivacy.report.contract.stated import (
         Carried,
         CategoryEntry,
+        ContextEntry,
         DerivationEntry,
         NonRosEntry,
         OverruledEntry,
+        PointerEntry,
         ProcessedEntry,
         ProcessingEntry,
         RolesEntry,
         SanitizerEntry,
         SubjectsEntry,
+        SurroundingsEntry,
     )
 
 
@@ -124,6 +127,9 @@ class AnalysisDocument(TypedDict):
     roles: NotRequired[list[RolesEntry]]
     outside: list[NonRosEntry]
     subjects: list[SubjectsEntry]
+    surroundings: NotRequired[list[SurroundingsEntry]]
+    contexts: NotRequired[list[ContextEntry]]
+    look_at: NotRequired[list[PointerEntry]]
     processing: NotRequired[list[ProcessingEntry]]
     processed_for: NotRequired[list[ProcessedEntry]]
     sanitizers: list[SanitizerEntry]

@@ -84,6 +84,12 @@ class LawEntry(TypedDict):
     condition: str
 
 
+class ContextLaw(LawEntry):
+    """What a finding's data may reveal in a context."""
+
+    context: str
+
+
 class WhyEntry(TypedDict):
     """A reason as a key and values, for words of any language."""
 
@@ -93,6 +99,8 @@ class WhyEntry(TypedDict):
 
 class FindingMore(TypedDict, total=False):
     """What only some findings have."""
+
+    in_context: list[ContextLaw]  # absent in earlier versions
 
     reason: str
     because: WhyEntry

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 
-from rosprivacy.report.page.outline import PARAGRAPHS, SIGNED
+from rosprivacy.report.page.outline import PARAGRAPHS
 from rosprivacy.report.page.spaced_templates import SpacedTemplates
 from rosprivacy.report.words.typography import NARROW, WIDE
 
@@ -31,7 +31,7 @@ def markdown(report: Outline) -> str:
     text = (
         _environment(report.words.language)
         .get_template("report.md.j2")
-        .render(r=report, t=report.words, paragraphs=PARAGRAPHS, signed=SIGNED)
+        .render(r=report, t=report.words, paragraphs=PARAGRAPHS)
     )
     return re.sub(r"\n{3,}", "\n\n", text).strip() + "\n"
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from rdflib import DCTERMS, OWL, RDF, RDFS, SKOS, XSD, Literal, URIRef
 
+from rosprivacy.analysis.model import Pointer
 from rosprivacy.ontology.iris import STORED
 from rosprivacy.ontology.provisions import law
 from rosprivacy.ontology.turtle import RP as INSIDE
@@ -46,12 +47,16 @@ def category_triples(category: Category, broader: Iterable[URIRef]) -> list[Trip
     )
 
 
-def provision_triples(provisions: Iterable[Legal]) -> Iterator[Triple]:
+def provision_triples(provisions: Iterable[Legal | Pointer]) -> Iterator[Triple]:
     """Say what provisions are called and mean, where EUR-Lex has them (ELI), and what they are part of."""
     shipped = law()
     named: set[URIRef] = set()
     for legal in provisions:
         subject = URIRef(legal.iri)
+        if isinstance(legal, Pointer):
+            applies = [Literal(legal.applies, datatype=XSD.date)] if legal.applies else []
+            country = [text(legal.country)] if legal.country else []
+            yield from about(foreign(legal.iri), (RP.appliesFrom, applies), (RP.country, country))
         if (subject, RDF.type, INSIDE.LegalProvision) in shipped:
             named |= {URIRef(str(up)) for up in shipped.transitive_objects(subject, INSIDE.partOf)}
         else:  # of a vocabulary that is not the shipped one
@@ -70,7 +75,7 @@ def provision_triples(provisions: Iterable[Legal]) -> Iterator[Triple]:
         )
 
 
-def _told(legal: Legal) -> list[Triple]:
+def _told(legal: Legal | Pointer) -> list[Triple]:
     return about(
         foreign(legal.iri),
         (RDF.type, [RP.LegalProvision]),

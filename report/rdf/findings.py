@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from rdflib import URIRef
 
     from rosprivacy.analysis.answer import Analysis, Finding
+    from rosprivacy.analysis.contexts import Contexts
     from rosprivacy.analysis.fleet.patterns import FleetView
     from rosprivacy.analysis.model import Element
     from rosprivacy.report.answer import Answer
@@ -74,7 +75,8 @@ def rdf_graph(answer: Answer, when: datetime | None = None, base: str | None = N
     """
     analysis, told = answer.shown, document(answer)
     names = names_of(told, base)
-    things = Things(answer.vocabulary, names, by_path(told["assumptions"], names), answer.stated, answer.subjects)
+    files = by_path(told["assumptions"], names)
+    things = Things(answer.vocabulary, names, files, answer.stated, answer.subjects, answer.surroundings)
     findings = _Findings.of(answer, analysis, names, things)
     graph = Graph(bind_namespaces="none")
     for prefix, namespace in PREFIXES.items():
@@ -125,13 +127,15 @@ class _Findings:
     emitted: Mapping[Element, set[str]]
     unreviewed: frozenset[tuple[object, str]]
     processes: Processes
+    contexts: Contexts
 
     @classmethod
     def of(cls, answer: Answer, analysis: Analysis, names: Names, things: Things) -> _Findings:
         unstated = frozenset((element.shown_as, category) for element, category in analysis.unstated)
         unreviewed = frozenset((q.element.shown_as, category) for q in analysis.open for category in q.categories)
         processes = Processes(answer, names, things, answer.stated, unstated, of_end(answer.processed))
-        return cls(answer, analysis, names, things, answer.accepted, emitted_by(analysis), unreviewed, processes)
+        rest = emitted_by(analysis), unreviewed, processes, answer.contexts
+        return cls(answer, analysis, names, things, answer.accepted, *rest)
 
     def triples(self, finding: Finding) -> Iterator[Triple]:
         """Everything about a finding."""
@@ -158,6 +162,7 @@ class _Findings:
         )
         yield from self.processes.triples(finding, changed)
         yield from self._law(iri, finding)
+        yield from self._contexts(iri, finding)
         yield from self._witness(iri, finding)
         yield from self._paths(iri, finding)
 
@@ -171,6 +176,19 @@ class _Findings:
                 (RP.verdict, [text(legal.verdict)]),
                 (RP.condition, texts(legal.condition, legal.translations, "condition")),
                 (RP.statedOf, self.things.categories(names)),
+            )
+
+    def _contexts(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:
+        """What the data may reveal where their source works: a fact about the place, no verdict."""
+        for number, legal in enumerate(self.contexts.revealed(finding), 1):
+            link = below(iri, "context", number)
+            yield iri, RP.inContext, link
+            yield from about(
+                link,
+                (RP.context, [text(legal.context)]),
+                (RP.provision, [self.things.provision(legal)]),
+                (RP.verdict, [text(legal.verdict)]),
+                (RP.condition, texts(legal.condition, legal.translations, "condition")),
             )
 
     def _witness(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:

@@ -18,7 +18,7 @@ from rosprivacy.report.rdf.terms import RP, Triple, about, text
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from rosprivacy.analysis.model import Element, Grant, Legal
+    from rosprivacy.analysis.model import Element, Grant, Legal, Pointer, Surroundings
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.report.rdf.individuals import Names
 
@@ -49,6 +49,8 @@ class Things:
         (robot, kind, name) -> what people stated of an element.
     subjects
         (robot, kind, name) -> groups of persons that the data of a source are about.
+    surroundings
+        (robot, kind, name) -> where an element works.
     """
 
     def __init__(
@@ -58,6 +60,7 @@ class Things:
         files: Mapping[str, tuple[URIRef, ...]],
         stated: Stated,
         subjects: Mapping[tuple[str, str, str], tuple[str, ...]],
+        surroundings: Mapping[tuple[str, str, str], Surroundings],
     ) -> None:
         self._categories = vocabulary.categories
         self._ancestors = vocabulary.hierarchy.ancestors
@@ -65,9 +68,11 @@ class Things:
         self._files = files
         self._stated = stated
         self._subjects = subjects
+        self._surroundings = surroundings
+        self._pointed = {one.name: one for one in vocabulary.pointed.provisions}
         self._elements: dict[URIRef, Element] = {}
         self._lines: dict[URIRef, Grant] = {}
-        self._provisions: dict[URIRef, Legal] = {}
+        self._provisions: dict[URIRef, Legal | Pointer] = {}
         self._named: set[str] = set()
 
     def element(self, element: Element) -> URIRef:
@@ -86,11 +91,17 @@ class Things:
         self._lines.setdefault(iri, grant)
         return iri
 
-    def provision(self, legal: Legal) -> URIRef:
+    def provision(self, legal: Legal | Pointer) -> URIRef:
         """Return the IRI of a provision."""
         iri = foreign(legal.iri)
         self._provisions.setdefault(iri, legal)
         return iri
+
+    def pointed(self, names: Iterable[str]) -> list[URIRef]:
+        """Return the IRIs of provisions to look at; a day from which one applies, and its country, are described."""
+        found = [self._pointed[name] for name in names]
+        self._provisions |= {foreign(one.iri): one for one in found}
+        return [foreign(one.iri) for one in found]
 
     def categories(self, names: Iterable[str]) -> list[URIRef]:
         """Return the IRIs of categories, in order of their names."""
@@ -105,13 +116,17 @@ class Things:
             known = self._stated.get(element.identity, {})
             yield from about(iri, *((term, [text(known[what])]) for what, term in STATED.items() if known.get(what)))
             yield from about(iri, (RP.aboutPersons, map(text, self.subjects(element))))
+            if where := self._surroundings.get(element.identity):
+                country = [text(where.country)] if where.country else []
+                yield from about(iri, (RP.context, map(text, where.contexts)), (RP.country, country))
         for iri, grant in self._lines.items():
             yield from _line(iri, grant, self._files.get(grant.place.file, ()))
-        yield from provision_triples(self._provisions.values())
         for name in {up for category in self._named for up in self._ancestors[category]}:
             category = self._categories[name]
             broader = [foreign(self._categories[up].iri) for up in category.broader if up in self._categories]
             yield from category_triples(category, broader)
+            yield from about(foreign(category.iri), (RP.lookAt, self.pointed(category.look_at)))
+        yield from provision_triples(self._provisions.values())
 
 
 def _element(iri: URIRef, element: Element) -> list[Triple]:

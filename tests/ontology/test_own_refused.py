@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.ontology.vocabulary import load
 from tests.helpers.command import Cli, cli, refused
 
@@ -222,3 +223,28 @@ class TestHierarchy:
         files = ("--ontology", "a.ttl", "--ontology", "b.ttl")
         done = cli("analyze", "p.policy.xml", "-l", "l.yaml", *files, cwd=tmp_path)
         assert (done.returncode, done.stderr) == (1, "")
+
+
+CARE = "rp:context rp:CareContext ; rp:provision rp:GDPR-88"
+REVEAL = 'rp:verdict "may-reveal" ; rp:condition "x"@en'
+
+
+@pytest.mark.parametrize(
+    ("said", "message"),
+    [
+        (f"rp:inContext [ rp:context rp:Market ; rp:provision rp:GDPR-88 ; {REVEAL} ]", "a context that is not known"),
+        (f'rp:inContext [ {CARE} ; rp:verdict "always" ]', "something else of a context than what may be revealed"),
+        (f"rp:inContext [ rp:context rp:CareContext ; {REVEAL} ]", "what no known provision speaks of"),
+        ("rp:lookAt rp:NoLaw", "points at a provision that is not known"),
+    ],
+)
+def test_contexts_and_pointers_that_are_none(tmp_path: Path, said: str, message: str) -> None:
+    file = tmp_path / "mine.ttl"
+    file.write_text(
+        f'{HEAD}\n:Bed a skos:Concept ; rp:label "Bed" ; skos:broader rp:Location ; skos:prefLabel "bed sensor"@en ;\n'
+        f'  skos:definition "Who lies in a bed."@en ; {said} .\n',
+        "utf-8",
+    )
+    with pytest.raises(InputErrors) as raised:
+        load(ontologies=[str(file)])
+    assert message in str(raised.value)

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 CONDITION = (
     "biometric data count here only when they are processed to identify a person uniquely or to confirm who a person "
-    "is (Article 4(14), recital 51); a template that is kept to recognise somebody again is presumed to be"
+    "is (Article 4(14), recital 51); a template that is kept to recognise somebody again usually is"
 )
 CARE = "examples/care-home/care-home"
 PAGE = ROOT / "docs" / "linked-data.md"
@@ -102,7 +102,7 @@ def row(graph: Graph, finding: Node, law: Node) -> tuple[str, ...]:
         value(finding, RP.leak, RP.name),
         value(law, RP.provision, RP.identifier),
         value(law, RP.verdict),
-        value(law, RP.condition),
+        next((str(c) for c in graph.objects(law, RP.condition) if c.language == "en"), ""),  # type: ignore[attr-defined]
         value(law, RP.statedOf).removeprefix(str(RP)),
     )
 
