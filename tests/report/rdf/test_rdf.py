@@ -442,9 +442,9 @@ class TestShapesCanFail:
             if not problems(changed):
                 accepted.append(re.split("[:#]", str(predicate))[-1])
         assert sorted(accepted) == [  # what a finding, a hop, a category can be without
-            "broadMatch", "broader", "conduitOf", "derivationOf", "diagnostic", "exactMatch", "fallsUnder", "followed",
-            "identityFactor", "inFile", "leakOf", "leg", "path", "sameAs", "sanitizerOf", "sourceOf", "used",
-            "wasDerivedFrom",
+            "appliesFrom", "broadMatch", "broader", "conduitOf", "country", "derivationOf", "diagnostic", "exactMatch",
+            "fallsUnder", "followed", "identityFactor", "inContext", "inFile", "leakOf", "leg", "lookAt", "path", "sameAs",
+            "sanitizerOf", "sourceOf", "used", "wasDerivedFrom",
         ]  # fmt: skip
 
     @pytest.mark.parametrize(
