@@ -67,7 +67,9 @@ class Statement:
         How the label names the element: by a full ``NAME``, by a glob with its last ``SEGMENT`` written out, or by
         another ``GLOB``.
     why
-        Of a node that is not on the robot: a person's reason.
+        A person's reason: the note beside it, or why a node is not on the robot.
+    author
+        Who says it, and answers for it; empty where nobody is named.
     """
 
     role: str
@@ -81,6 +83,7 @@ class Statement:
     shipped: bool = False
     naming: str = NAME
     why: str = ""
+    author: str = ""
 
     @property
     def by_name(self) -> bool:

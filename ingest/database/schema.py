@@ -84,6 +84,8 @@ _PLACE = (
     Property("specificity", INTEGER, "rank: the more of the name is spelt out, the higher"),
     Property("naming", STRING, "name, glob, or segment for a glob with its last segment written out"),
     Property("every", BOOLEAN, "the label names no category: it holds for every one"),
+    Property("why", STRING, "the label's note; of method absent: why the node is not on the robot"),
+    Property("author", STRING, "who says it, as the label file names them"),
     _OURS,
 )
 _PROCESSING = (
@@ -291,7 +293,6 @@ ROLES = {
             *_PLACE,
             Property("method", STRING, "anonymise, aggregate, drop, absent or pseudonymise; none counts as the last"),
             Property("stated", BOOLEAN, "whether the label states the method"),
-            Property("why", STRING, "of method absent: why the node is not on the robot"),
         ),
     ),
     "conduit": RelationshipKind("PASSES", "Element", "DataCategory", "Reviewed: it passes the category on.", _PLACE),

@@ -52,15 +52,27 @@ SECTIONS = {
     "actions": ("action",),
 }
 SIX_LISTS = ("source", "leak", "conduit", "sanitizer", "sensitive", "mundane")
-NODE_KEYS = ("source", "leak", "sanitizer", "conduit", "derives", "subjects", "context", *OF_ELEMENT, "absent", "note")
-SAYS_NOTHING = ("subjects", "context", *OF_ELEMENT, "note")  # of what data does
-CHANNEL_KEYS = ("only", "never", "note")
-FLOW_KEYS = ("from", "to", "only", "never", "note")
+NODE_KEYS = (
+    "source",
+    "leak",
+    "sanitizer",
+    "conduit",
+    "derives",
+    "subjects",
+    "context",
+    *OF_ELEMENT,
+    "absent",
+    "note",
+    "author",
+)
+SAYS_NOTHING = ("subjects", "context", *OF_ELEMENT, "note", "author")  # of what data does
+CHANNEL_KEYS = ("only", "never", "note", "author")
+FLOW_KEYS = ("from", "to", "only", "never", "note", "author")
 OUTSIDE = ("elements", "limits")
 SURROUNDINGS = ("context", "country")  # of a system
 SYSTEM = (*OF_SYSTEM, *SURROUNDINGS)
 NONE = "none"  # in place of categories: takes back what labels of lower rank say (rule S7)
-LONGEST_GROUP = 100  # characters of a group of persons
+LONGEST_GROUP = 100  # characters of a group of persons, or of the name of an author
 
 
 @dataclass
@@ -70,6 +82,7 @@ class LabelReader(NameReader):
     category: str
     tier: int
     above: int = 0
+    author: str = ""
     entries: list[Entry] = field(default_factory=list)
     flows: list[FlowEntry] = field(default_factory=list)
     elements: list[Stated] = field(default_factory=list)
@@ -93,7 +106,8 @@ class LabelReader(NameReader):
     def _labels(self, top: Value) -> None:
         self.version(top, "labels", "label")
         self.system(top)
-        for key, line, value in self.entries_of(top, ("labels", *SYSTEM, *SECTIONS, *OUTSIDE, "flows")):
+        self.author = self._author(top)
+        for key, line, value in self.entries_of(top, ("labels", "author", *SYSTEM, *SECTIONS, *OUTSIDE, "flows")):
             if key in SURROUNDINGS:
                 self.surroundings = self.surrounded(self.surroundings, key, value)
             elif key in ("flows", *OUTSIDE):
@@ -130,7 +144,7 @@ class LabelReader(NameReader):
         if stated is None:
             return
         labels = replace(value, entries=tuple(entry for entry in value.entries if entry[0] in NODE_KEYS))
-        statements = tuple(self._node(labels, stated.place, self.rank(EXACT)))
+        statements = self._said(labels, self._node(labels, stated.place, self.rank(EXACT)))
         if stated.kind == "device" and all(key in SAYS_NOTHING for key, *_ in labels.entries):
             self.problem(line, f"device {shown(name)!r} does nothing", "say what comes from it: source: [Voice]")
         processing = self._processing(labels, stated.place)
@@ -153,12 +167,29 @@ class LabelReader(NameReader):
                 continue
             rank = self.rank(specificity(name))
             read = self._node if section == "nodes" else self._channel
-            statements = tuple(replace(s, naming=naming(name)) for s in read(label, Place(self.file, at), rank))
+            statements = self._said(label, read(label, Place(self.file, at), rank), naming(name))
             place, of_node = Place(self.file, at), section == "nodes"
             subjects = self._subjects(label) if of_node else ()
             processing = self._processing(label, place) if of_node else UNSTATED
             contexts = self._contexts(label) if of_node else ()
             self.entries.append(Entry(SECTIONS[section], name, place, statements, subjects, processing, rank, contexts))
+
+    def _said(self, label: Value, statements: Iterable[Statement], how: str = NAME) -> tuple[Statement, ...]:
+        """Statements of one entry, with how it names, its reason, and who says it: its author, or the file's."""
+        note = label.get("note")
+        why = note.text.strip() if note and note.kind == "text" else ""
+        author = self._author(label) or self.author
+        return tuple(replace(s, naming=how, why=s.why or why, author=author) for s in statements)
+
+    def _author(self, label: Value) -> str:
+        value = label.get("author")
+        if value is None:
+            return ""
+        if value.kind != "text" or not value.text.strip() or len(value.text) > LONGEST_GROUP:
+            what = f"author takes a name, not {shown(value.text) or f'a {value.kind}'!r}"
+            self.problem(value.line, what, f"write who says it, in at most {LONGEST_GROUP} characters")
+            return ""
+        return value.text.strip()
 
     def _node(self, label: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
         if label.kind == "empty":  # a line of --init that nobody has filled in yet
@@ -234,7 +265,7 @@ class LabelReader(NameReader):
 
     def _absent(self, label: Value, why: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
         """A node that has a profile and is not on the robot: nothing gets there, and nothing comes from it."""
-        beside = [key for key, *_ in label.entries if key not in ("absent", "note")]
+        beside = [key for key, *_ in label.entries if key not in ("absent", "note", "author")]
         if why.kind != "text" or not why.text.strip():
             self.problem(place.line, "absent without a reason", "write why it is not there: {absent: a test tool}")
         elif beside:
@@ -297,7 +328,7 @@ class LabelReader(NameReader):
         names = [end.name for end in ends.values()]
         rank = self.rank(sum(map(specificity, names)))
         how = GLOB if any(naming(name) != NAME for name in names) else NAME
-        statements = tuple(replace(s, naming=how) for s in self._restrictions(item, FLOW_KEYS, rank))
+        statements = self._said(item, self._restrictions(item, FLOW_KEYS, rank), how)
         if len(ends) < len(("from", "to")):
             self.problem(item.line, "a flow needs from and to", "write {from: /a, to: /b, never: [Video]}")
             return

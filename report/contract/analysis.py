@@ -19,6 +19,7 @@ if TYPE_CHECKING:
         ListedDecision,
         OpenEntry,
         Reached,
+        RelianceEntry,
         UnknownEnd,
     )
     from rosprivacy.report.contract.stated import (
@@ -123,6 +124,7 @@ class AnalysisDocument(TypedDict):
     open: list[OpenEntry]
     unknown_ends: NotRequired[list[UnknownEnd]]
     taken_away: NotRequired[list[LedgerRow]]
+    hangs_on: NotRequired[list[RelianceEntry]]
     carries: list[Carried]
     roles: NotRequired[list[RolesEntry]]
     outside: list[NonRosEntry]

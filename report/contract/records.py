@@ -220,6 +220,45 @@ class GlobEntry(PlaceEntry):
     warning: str
 
 
+class OpeningEntry(TypedDict):
+    """A finding that there would be, or would be worse, if a statement were wrong."""
+
+    kind: str
+    category: str
+    source: ElementEntry
+    leak: ElementEntry
+    dismissed: bool
+    pseudonymised: bool
+    new: bool
+
+
+class OpenedEntry(TypedDict):
+    """An element that would be open if a statement were wrong."""
+
+    element: ElementEntry
+    categories: list[str]
+
+
+class RelianceEntry(TypedDict):
+    """What hangs on one statement of a label file."""
+
+    role: str
+    method: str
+    categories: list[str]
+    file: str
+    line: int
+    glob: bool
+    shipped: bool
+    why: str
+    author: str
+    elements: list[ElementEntry]
+    to: list[ElementEntry]
+    findings: list[OpeningEntry]
+    questions: list[OpenedEntry]
+    refused: str
+    perhaps: bool
+
+
 class LedgerRow(TypedDict):
     """What was taken away, and on whose word."""
 

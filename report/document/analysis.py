@@ -15,7 +15,7 @@ from rosprivacy.analysis.kernel.ranks import in_words
 from rosprivacy.analysis.legal import turned_special
 from rosprivacy.analysis.model import GOES_NOWHERE, NO_LEAK_NAMED, UNREAD_FILE
 from rosprivacy.analysis.written_names import literal
-from rosprivacy.report.document import ledger
+from rosprivacy.report.document import ledger, reliance
 from rosprivacy.report.document.non_ros import inventory, taken_by_kind, without_backups
 from rosprivacy.report.document.pointers import pointers, situations
 
@@ -80,6 +80,7 @@ def analysis_document(answer: Answer) -> AnalysisDocument:
             for end in analysis.unknown_ends
         ],
         "taken_away": ledger.rows(taken, element_dict),
+        "hangs_on": reliance.rows(answer.hangs_on, element_dict),
         "carries": [
             {
                 "element": element_dict(carried.element),

@@ -32,6 +32,7 @@ from rosprivacy.report.page.look_at import LookAt, further
 from rosprivacy.report.page.non_ros import Outside, outside
 from rosprivacy.report.page.opening import Opening, flows, opening
 from rosprivacy.report.page.purposes import Row, processed, signed
+from rosprivacy.report.page.reliance import Hanging, hanging
 from rosprivacy.report.page.review import Group, review, unknown_ends
 from rosprivacy.report.words.words import Words
 
@@ -42,8 +43,8 @@ if TYPE_CHECKING:
 
 DECIDE = "decide"  # its heading is what there is to decide
 SECTIONS = (
-    DECIDE, "closing", "changes", "fleet", "findings", "questions", "tables", "rights", "outside", "sanitizers",
-    "risks", "criteria", "sign", "kinds", "assumptions", "inventory", "method",
+    DECIDE, "closing", "hangs", "changes", "fleet", "findings", "questions", "tables", "rights", "outside",
+    "sanitizers", "risks", "criteria", "sign", "kinds", "assumptions", "inventory", "method",
 )  # fmt: skip
 PARAGRAPHS = 10  # of the method note
 
@@ -122,6 +123,7 @@ class Outline:
     kinds: tuple[Kind, ...]
     entries: tuple[Entry, ...]
     orphans: tuple[Decision, ...]
+    hanging: tuple[Hanging, ...]
     look_at: tuple[tuple[str, tuple[LookAt, ...]], ...]
     outside: tuple[Outside, ...]
     cleanings: tuple[sanitizers.Cleaning, ...]
@@ -210,6 +212,7 @@ def outline(
         kinds=kinds(index, entries),
         entries=entries,
         orphans=orphans(index),
+        hanging=hanging(index),
         look_at=further(index),
         outside=outside(index),
         cleanings=sanitizers.cleanings(index, entries),

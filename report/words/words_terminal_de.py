@@ -254,4 +254,13 @@ WORDS = {
     "tty.leg.request": "Anfrage",
     "tty.leg.response": "Antwort",
     "tty.wildcard": "Platzhalter",
+    "tty.hangs": "Woran das Ergebnis hängt: {what}",
+    "tty.hangs.own.one": "{n} Angabe Ihrer Label-Dateien",
+    "tty.hangs.own.many": "{n} Angaben Ihrer Label-Dateien",
+    "tty.hangs.shipped.one": "{n} mitgelieferter Dateien",
+    "tty.hangs.shipped.many": "{n} mitgelieferter Dateien",
+    "tty.hangs.wrong": "ist eine davon falsch, gibt es mehr Befunde oder offene Fragen (-v zeigt sie)",
+    "tty.hangs.line": "{place}: {ends} {said}{by}{why}; falls falsch: {opened}",
+    "tty.hangs.by": ", sagt {author}",
+    "tty.hangs.asked": "zu prüfen: {elements}",
 }

@@ -254,4 +254,13 @@ WORDS = {
     "tty.leg.request": "request",
     "tty.leg.response": "response",
     "tty.wildcard": "wildcard",
+    "tty.hangs": "What the answer hangs on: {what}",
+    "tty.hangs.own.one": "{n} statement of your labels",
+    "tty.hangs.own.many": "{n} statements of your labels",
+    "tty.hangs.shipped.one": "{n} of shipped files",
+    "tty.hangs.shipped.many": "{n} of shipped files",
+    "tty.hangs.wrong": "if one of these is wrong, there are more findings or open questions (-v lists them)",
+    "tty.hangs.line": "{place}: {ends} {said}{by}{why}; if wrong: {opened}",
+    "tty.hangs.by": ", says {author}",
+    "tty.hangs.asked": "to review: {elements}",
 }

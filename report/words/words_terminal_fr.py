@@ -256,6 +256,15 @@ _TYPED = {
     "tty.leg.request": "requête",
     "tty.leg.response": "réponse",
     "tty.wildcard": "caractère générique",
+    "tty.hangs": "À quoi tient le résultat : {what}",
+    "tty.hangs.own.one": "{n} déclaration de vos annotations",
+    "tty.hangs.own.many": "{n} déclarations de vos annotations",
+    "tty.hangs.shipped.one": "{n} de fichiers fournis",
+    "tty.hangs.shipped.many": "{n} de fichiers fournis",
+    "tty.hangs.wrong": "si l'une d'elles est fausse, il y a plus de résultats ou de questions ouvertes (-v les montre)",
+    "tty.hangs.line": "{place} : {ends} {said}{by}{why} ; si c'est faux : {opened}",
+    "tty.hangs.by": ", dit {author}",
+    "tty.hangs.asked": "à examiner : {elements}",
 }
 
 WORDS = {key: spaced(text, "fr") for key, text in _TYPED.items()}

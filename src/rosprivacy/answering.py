@@ -89,6 +89,7 @@ def concluded(
         view,
         counts,
         infrastructure_of((question.element for question in analysis.open), system.vocabulary),
+        accepts=options.accepts,
         policies=system.policies,
         labels=system.labels,
         options=options,

@@ -21,7 +21,7 @@ NODES = tuple(f"/n{i}" for i in range(5))
 TOPICS = ("/a", "/b", "/c", "/a*", "/parameter_events")
 ROLES = (
     "{source: [Video]}", "{source: [Voice], leak: [Video]}", "{leak: [Biometric]}", "{leak: [Video, Voice]}",
-    "{sanitizer: {Video: pseudonymise}}", "{sanitizer: {Voice: drop}}", "conduit",
+    "{sanitizer: {Video: pseudonymise}, note: a filter, author: Ada Judge}", "{sanitizer: {Voice: drop}}", "conduit",
     "{derives: [{from: Video, to: FaceTemplate}]}",
 )  # fmt: skip
 WHY = (  # of the system, of nodes, of the storage
@@ -36,7 +36,7 @@ WHY = (  # of the system, of nodes, of the storage
     ((), "legal_basis: [6(1)(a), 9(2)(a)]", ", legal_basis: [6(1)(b), 46(2)(c)]"),
     (("purpose: safety",), "purpose: lighting, legal_basis: {FaceTemplate: 9(2)(h)}", ""),
 )
-CHANNEL = ("mundane", "sensitive", "{only: [Video]}", "{never: [Voice]}")
+CHANNEL = ("mundane", "sensitive", "{only: [Video], note: checked}", "{never: [Voice]}")
 
 
 SURROUNDINGS: tuple[tuple[list[str], str], ...] = (  # of the system, of one source

@@ -443,7 +443,8 @@ class TestShapesCanFail:
                 accepted.append(re.split("[:#]", str(predicate))[-1])
         assert sorted(accepted) == [  # what a finding, a hop, a category can be without
             "broadMatch", "broader", "conduitOf", "derivationOf", "diagnostic", "exactMatch", "fallsUnder", "followed",
-            "identityFactor", "inFile", "leakOf", "leg", "path", "sanitizerOf", "sourceOf", "used", "wasDerivedFrom",
+            "identityFactor", "inFile", "leakOf", "leg", "path", "sameAs", "sanitizerOf", "sourceOf", "used",
+            "wasDerivedFrom",
         ]  # fmt: skip
 
     @pytest.mark.parametrize(
