@@ -99,7 +99,7 @@ class Things:
 
     def pointed(self, names: Iterable[str]) -> list[URIRef]:
         """Return the IRIs of provisions to look at; a day from which one applies, and its country, are described."""
-        found = [self._pointed[name] for name in names]
+        found = [self._pointed[name] for name in names if name in self._pointed]
         self._provisions |= {foreign(one.iri): one for one in found}
         return [foreign(one.iri) for one in found]
 
