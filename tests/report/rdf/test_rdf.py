@@ -443,8 +443,8 @@ class TestShapesCanFail:
                 accepted.append(re.split("[:#]", str(predicate))[-1])
         assert sorted(accepted) == [  # what a finding, a hop, a category can be without
             "appliesFrom", "broadMatch", "broader", "conduitOf", "country", "derivationOf", "diagnostic", "exactMatch",
-            "fallsUnder", "followed", "identityFactor", "inContext", "inFile", "leakOf", "leg", "lookAt", "path", "sameAs",
-            "sanitizerOf", "sourceOf", "used", "wasDerivedFrom",
+            "fallsUnder", "followed", "identityFactor", "inContext", "inFile", "leakOf", "leg", "lookAt", "path",
+            "sameAs", "sanitizerOf", "sourceOf", "used", "wasDerivedFrom",
         ]  # fmt: skip
 
     @pytest.mark.parametrize(
