@@ -188,7 +188,7 @@ WORDS = {
     "b.picture.part": "Die kürzesten Wege der ersten {n} von {all} Punkten; die anderen haben unten je ein Bild",
     # --- the rights of the persons
     "h.rights": "Rechte der betroffenen Personen: wo ihre Daten liegen können",
-    "rt.intro": "Wer auf Auskunft, Löschung oder Datenübertragbarkeit in Anspruch genommen wird (Artikel 15, 17 und 20), muss wissen, wo die Daten liegen. Zu jeder Kategorie betroffener Personen nennen die Tabellen die Speicher, Empfänger und Austrittspunkte, an die Daten über sie gelangen können.",
+    "rt.intro": "Wer auf Auskunft, Löschung oder Datenübertragbarkeit in Anspruch genommen wird (Artikel 15, 17 und 20), muss wissen, wo die Daten liegen. Zu jeder Kategorie betroffener Personen nennen die Tabellen die Speicher, Empfänger und Ausgänge, an die Daten über sie gelangen können.",
     "rt.of": "Daten über: {group}",
     "rt.where": "Wo",
     "rt.who": "Wer es betreibt, und wo",

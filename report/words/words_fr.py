@@ -192,7 +192,7 @@ _TYPED = {
     "b.picture": "Les plus courts chemins de ce qui est à décider, en une image",
     "b.picture.part": "Les plus courts chemins des {n} premiers points sur {all} ; les autres ont chacun une image plus bas",
     # --- the rights of the persons
-    "h.rights": "Droits des personnes : où leurs données peuvent se trouver",
+    "h.rights": "Droits des personnes concernées : où leurs données peuvent se trouver",
     "rt.intro": "Qui est saisi d'une demande d'accès, d'effacement ou de portabilité (articles 15, 17 et 20) doit savoir où se trouvent les données. Pour chaque catégorie de personnes concernées, les tableaux nomment les stockages, destinataires et points de sortie que leurs données peuvent atteindre.",
     "rt.of": "Données concernant : {group}",
     "rt.where": "Où",
