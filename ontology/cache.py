@@ -15,10 +15,12 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from rosprivacy.analysis.model import Category, Legal
+from rosprivacy.analysis.model import Category, Legal, Pointer, Situation
+from rosprivacy.ontology.pointed import Pointed
 
-FORMAT = 7  # one more when what is kept, or what is refused, changes
-_TUPLES = ("broader", "synonyms", "data_types", "identity_factors", "same_as", "within", "stated_of")
+FORMAT = 8  # one more when what is kept, or what is refused, changes
+PARTS = ("categories", "respelt", "pointed")
+_TUPLES = ("broader", "synonyms", "data_types", "identity_factors", "same_as", "within", "stated_of", "look_at")
 
 
 def default_folder() -> Path:
@@ -28,21 +30,26 @@ def default_folder() -> Path:
     return user_cache_path("rosprivacy")
 
 
-def get(folder: Path, key: str) -> tuple[tuple[Category, ...], dict[str, str]] | None:
-    """Return the categories and former spellings that an earlier run kept, if they are whole and of these files."""
+Kept = tuple[tuple[Category, ...], dict[str, str], Pointed]
+
+
+def get(folder: Path, key: str) -> Kept | None:
+    """Return what an earlier run kept, if it is whole and of these files."""
     try:
         kept = json.loads(_path(folder, key).read_text("utf-8"))
-        if kept["key"] != key or kept["digest"] != _digest(kept["categories"], kept["respelt"]):
+        if kept["key"] != key or kept["digest"] != _digest(*(kept[part] for part in PARTS)):
             return None
-        return tuple(_category(facts) for facts in kept["categories"]), dict(kept["respelt"])
+        categories = tuple(_category(facts) for facts in kept["categories"])
+        return categories, dict(kept["respelt"]), _pointed(kept["pointed"])
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return None
 
 
-def keep(folder: Path, key: str, categories: tuple[Category, ...], respelt: dict[str, str]) -> None:
+def keep(folder: Path, key: str, categories: tuple[Category, ...], respelt: dict[str, str], pointed: Pointed) -> None:
     """Write them, whole or not at all; a folder that cannot be written is no error."""
     facts = json.loads(json.dumps([asdict(category) for category in categories]))
-    text = json.dumps({"key": key, "digest": _digest(facts, respelt), "categories": facts, "respelt": respelt})
+    parts = dict(zip(PARTS, (facts, respelt, json.loads(json.dumps(asdict(pointed)))), strict=True))
+    text = json.dumps({"key": key, "digest": _digest(*parts.values()), **parts})
     with suppress(OSError):
         folder.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(dir=folder)
@@ -59,10 +66,20 @@ def _path(folder: Path, key: str) -> Path:
     return folder / f"categories-{FORMAT}-{key[:16]}.json"
 
 
-def _digest(categories: Any, respelt: Any) -> str:
-    return hashlib.sha256(json.dumps([categories, respelt], sort_keys=True).encode()).hexdigest()
+def _digest(*parts: Any) -> str:
+    return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()
 
 
 def _category(facts: dict[str, Any]) -> Category:
-    law = tuple(Legal(**{**legal, "sources": tuple(legal["sources"])}) for legal in facts["law"])
-    return Category(**{**facts, **{name: tuple(facts[name]) for name in _TUPLES}, "law": law})
+    law = {part: tuple(map(_legal, facts[part])) for part in ("law", "in_context")}
+    return Category(**{**facts, **{name: tuple(facts[name]) for name in _TUPLES}, **law})
+
+
+def _legal(facts: dict[str, Any]) -> Legal:
+    return Legal(**{**facts, "sources": tuple(facts["sources"])})
+
+
+def _pointed(facts: dict[str, Any]) -> Pointed:
+    situations = (Situation(**{**said, "look_at": tuple(said["look_at"])}) for said in facts["situations"])
+    at_stake = tuple((kind, tuple(names)) for kind, names in facts["at_stake"])
+    return Pointed(tuple(Pointer(**said) for said in facts["provisions"]), tuple(situations), at_stake)

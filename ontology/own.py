@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from rdflib import RDF, SH, SKOS, Graph, URIRef
 
 from rosprivacy.analysis.errors import InputErrors, OntologyError, shown
+from rosprivacy.ontology.iris import as_published, as_stored
 from rosprivacy.ontology.known import Known, Problem
 from rosprivacy.ontology.lines import Lines
 from rosprivacy.ontology.odd_terms import odd_terms, silence
@@ -50,7 +51,7 @@ def with_own(known: Known, data: bytes, file: str) -> Known:
     if not subjects:
         hint = "write each as: :Name a skos:Concept ; rp:label …"
         raise InputErrors([OntologyError(file, 0, "has no category", hint)])
-    lines = Lines(text, graph)
+    lines = Lines(as_stored(text), graph)
     if odd := list(odd_terms(graph)):
         raise InputErrors([_error(problem, file, lines) for problem in odd])
     both = known.graph + graph
@@ -81,7 +82,8 @@ def _decoded(data: bytes, file: str) -> str:
 def _error(problem: Problem, file: str, lines: Lines) -> OntologyError:
     subject = problem.subject
     who = f"<{shown(str(subject))}>" if isinstance(subject, URIRef) else "[]"  # the name of a blank node is by chance
-    return OntologyError(file, lines.of(subject, problem.predicate), f"{who} {problem.what}", problem.hint)
+    what = as_published(f"{who} {problem.what}")
+    return OntologyError(file, lines.of(subject, problem.predicate), what, problem.hint)
 
 
 def _unfit(subjects: list[Node], there: set[URIRef]) -> Iterator[Problem]:
@@ -97,16 +99,21 @@ def _unfit(subjects: list[Node], there: set[URIRef]) -> Iterator[Problem]:
 def _shape_problems(graph: Graph, ours: Graph, subjects: set[Node]) -> Iterator[Problem]:
     """What the shapes refuse, with their own words: 'what is wrong; what to do'.
 
-    Of ours only the provisions are put beside the user's file: the shapes hold ours in tests, and parents and names
-    are checked above.
+    Of ours only the provisions, and what contexts reveal, are put beside the user's file: the shapes hold ours in
+    tests, and parents and names are checked above.
     """
     import pyshacl  # noqa: PLC0415 - takes longer than all the rest
 
-    shapes = Graph().parse(data=files("rosprivacy.ontology").joinpath(SHAPES).read_text("utf-8"), format="turtle")
+    shapes = read(files("rosprivacy.ontology").joinpath(SHAPES).read_text("utf-8"), SHAPES)
     provisions = Graph()
     for provision in ours.subjects(RDF.type, RP.LegalProvision):
         for triple in ((provision, RDF.type, RP.LegalProvision), *ours.triples((provision, RP.partOf, None))):
             provisions.add(triple)
+    for context in ours.subjects(RDF.type, RP.Context):
+        provisions.add((context, RDF.type, RP.Context))
+    for sharpening in ours.subjects(RDF.type, RP.Sharpening):
+        for predicate in (RP.context, RP.provision, RP.verdict, RP.condition):
+            provisions += ours.triples((sharpening, predicate, None))
     _, report, _ = pyshacl.validate(graph + provisions, shacl_graph=shapes, advanced=True, inplace=False)
     found = set()
     for result in report.objects(None, SH.result):

@@ -1,4 +1,4 @@
-"""The provisions of ``law.ttl`` by themselves: what they are called, as of when they were read, where they stand.
+"""The provisions of the Turtle files by themselves: what they are called, as of when they were read, where they stand.
 
 In: a language. Out: ``Provision`` facts. rdflib reads them, which is heavy: import this where it is used.
 """
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rdflib import Graph
     from rdflib.term import Node
 
-FILE = "law.ttl"
+FILES = ("law.ttl", "other_law.ttl")
 MONTHS = 6  # after which a person has to look whether the law is still as it was read
 
 
@@ -50,7 +50,8 @@ def provisions(language: str = ENGLISH) -> tuple[Provision, ...]:
     >>> [one.title for one in provisions("de") if one.name == "Art. 32 DSGVO"]
     ['Sicherheit der Verarbeitung']
     """
-    graph = read((files(__package__) / FILE).read_text("utf-8"), FILE)
+    text = "\n".join((files(__package__) / file).read_text("utf-8") for file in FILES)
+    graph = read(text, "the shipped law")
     subjects = set(graph.subjects(RDF.type, RP.LegalProvision))
     return tuple(
         Provision(

@@ -7,26 +7,29 @@ ones is for ``analysis/legal.py``.
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rdflib import DCTERMS, RDF, SKOS, Graph, Namespace
+from rdflib import DCTERMS, RDF, RDFS, SKOS, Graph, Namespace, URIRef
 
 from rosprivacy.analysis.errors import InputErrors, OntologyError, shown
-from rosprivacy.analysis.model import Category, Legal
+from rosprivacy.analysis.model import Category, Legal, Pointer, Situation
+from rosprivacy.ontology.iris import PUBLISHED, STORED, as_stored
+from rosprivacy.ontology.pointed import EVERY_SYSTEM, Pointed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from rdflib.term import Node
 
-RP = Namespace("urn:x-rosprivacy:")
+RP = Namespace(STORED)
 ENGLISH = "en"
 _LOCAL = re.compile(r"[#/:]")
 _QUOTED = re.compile(r" at \^ in: .*")  # rdflib quotes the text, which may be anybody's
 
 
 def read(turtle: str, file: str) -> Graph:
-    """Return the triples of a Turtle text.
+    """Return the triples of a Turtle text; our terms have the stored form (``iris.py``), whichever it uses.
 
     Raises
     ------
@@ -35,14 +38,21 @@ def read(turtle: str, file: str) -> Graph:
     """
     graph = Graph(bind_namespaces="none")
     try:
-        graph.parse(data=turtle, format="turtle")
+        graph.parse(data=as_stored(turtle), format="turtle")
     except Exception as error:  # noqa: BLE001 - rdflib raises its own and plain exceptions alike
         line = getattr(error, "lines", 0)
         said = shown(_QUOTED.sub("", " ".join(str(getattr(error, "message", error)).split())))
         raise InputErrors(
             [OntologyError(file, line + 1 if line else 0, f"not Turtle: {said}", "correct the syntax")]
         ) from None
+    for subject, predicate, value in [triple for triple in graph if any(PUBLISHED in str(term) for term in triple)]:
+        graph.remove((subject, predicate, value))  # written with escapes, or relative to a base
+        graph.add((_stored(subject), _stored(predicate), _stored(value)))
     return graph
+
+
+def _stored(term: Node) -> Node:
+    return URIRef(as_stored(term)) if isinstance(term, URIRef) else term
 
 
 def categories_of(graph: Graph, subjects: Iterable[Node] | None = None) -> tuple[Category, ...]:
@@ -133,6 +143,8 @@ def _category(graph: Graph, subject: Node, ours: set[Node], same: dict[Node, str
         same_as=tuple(sorted(str(other) for other in graph.objects(subject, SKOS.exactMatch))),
         within=tuple(sorted({str(up) for up in (parents | set(graph.objects(subject, SKOS.broadMatch))) - ours})),
         note=first_texts(graph, subject, SKOS.note).get(ENGLISH, ""),
+        in_context=tuple(sorted(_in_context(graph, subject), key=lambda legal: (legal.context, legal.name))),
+        look_at=tuple(sorted(_identifier(graph, at) for at in graph.objects(subject, RP.lookAt))),
         translations=_translated(
             title=title, definition=definition, reason=reason, gdpr={} if gdpr is None else _cited(graph, gdpr)
         ),
@@ -141,27 +153,86 @@ def _category(graph: Graph, subject: Node, ours: set[Node], same: dict[Node, str
 
 def _law(graph: Graph, subject: Node, own: str) -> Iterator[Legal]:
     for link in graph.objects(subject, RP.fallsUnder):
-        provision = graph.value(link, RP.provision)
-        if provision is None:
-            continue
-        meaning, condition = first_texts(graph, provision, SKOS.definition), first_texts(graph, link, RP.condition)
-        sources = sorted(graph.objects(link, RP.source), key=lambda source: _identifier(graph, source))
-        yield Legal(
-            iri=str(provision),
-            name=_identifier(graph, provision),
-            meaning=meaning.get(ENGLISH, ""),
-            as_of=str(graph.value(provision, RP.asOf) or ""),
-            verdict=str(graph.value(link, RP.verdict) or ""),
-            condition=condition.get(ENGLISH, ""),
-            sources=tuple(_identifier(graph, source) for source in sources),
-            stated_of=own,
-            translations=_translated(
-                meaning=meaning,
-                condition=condition,
-                name=_cited(graph, provision),
-                sources=_listed([_cited(graph, source) for source in sources]),
-            ),
-        )
+        if legal := _legal(graph, link, own):
+            yield legal
+
+
+def _in_context(graph: Graph, subject: Node) -> Iterator[Legal]:
+    """What data of a kind may reveal in a context (rp:inContext)."""
+    for link in graph.objects(subject, RP.inContext):
+        context = graph.value(link, RP.context)
+        legal = _legal(graph, link, "")
+        if legal and context is not None:
+            yield replace(legal, context=str(graph.value(context, SKOS.notation) or ""))
+
+
+def _legal(graph: Graph, link: Node, own: str) -> Legal | None:
+    """What a link says: which provision, how surely, when, by which sources."""
+    provision = graph.value(link, RP.provision)
+    if provision is None:
+        return None
+    meaning, condition = first_texts(graph, provision, SKOS.definition), first_texts(graph, link, RP.condition)
+    sources = sorted(graph.objects(link, RP.source), key=lambda source: _identifier(graph, source))
+    return Legal(
+        iri=str(provision),
+        name=_identifier(graph, provision),
+        meaning=meaning.get(ENGLISH, ""),
+        as_of=str(graph.value(provision, RP.asOf) or ""),
+        verdict=str(graph.value(link, RP.verdict) or ""),
+        condition=condition.get(ENGLISH, ""),
+        sources=tuple(_identifier(graph, source) for source in sources),
+        stated_of=own,
+        translations=_translated(
+            meaning=meaning,
+            condition=condition,
+            name=_cited(graph, provision),
+            sources=_listed([_cited(graph, source) for source in sources]),
+        ),
+    )
+
+
+def pointed_of(graph: Graph) -> Pointed:
+    """Return the provisions that anything is pointed at (rp:lookAt), and what points at them beside categories."""
+    kinds = sorted(set(graph.subjects(RDF.type, RP.FindingKind)), key=str)
+    at_stake = {kind: sorted(graph.objects(kind, RP.provision), key=str) for kind in kinds}
+    named = {*graph.objects(None, RP.lookAt), *(one for several in at_stake.values() for one in several)}
+    situations = {*graph.subjects(RDF.type, RP.Context), *graph.subjects(RDF.type, RP.Situation)}
+    stakes = (
+        (str(graph.value(kind, SKOS.notation)), tuple(sorted(_identifier(graph, one) for one in several)))
+        for kind, several in at_stake.items()
+    )
+    return Pointed(
+        tuple(_pointer(graph, one) for one in sorted(named, key=lambda one: _identifier(graph, one))),
+        tuple(sorted((_situation(graph, one) for one in situations), key=lambda one: one.name)),
+        tuple(sorted(stakes)),
+    )
+
+
+def _pointer(graph: Graph, provision: Node) -> Pointer:
+    title, meaning = first_texts(graph, provision, DCTERMS.title), first_texts(graph, provision, SKOS.definition)
+    cited = first_texts(graph, provision, DCTERMS.bibliographicCitation)
+    return Pointer(
+        iri=str(provision),
+        name=_identifier(graph, provision),
+        title=title.get(ENGLISH, ""),
+        meaning=meaning.get(ENGLISH, ""),
+        as_of=str(graph.value(provision, RP.asOf) or ""),
+        applies=str(graph.value(provision, RP.appliesFrom) or ""),
+        country=str(graph.value(provision, RP.country) or ""),
+        address=str(graph.value(provision, RDFS.seeAlso) or ""),
+        translations=_translated(name=cited, title=title, meaning=meaning),
+    )
+
+
+def _situation(graph: Graph, subject: Node) -> Situation:
+    title, definition = first_texts(graph, subject, SKOS.prefLabel), first_texts(graph, subject, SKOS.definition)
+    return Situation(
+        name=str(graph.value(subject, SKOS.notation) or EVERY_SYSTEM),
+        title=title.get(ENGLISH, ""),
+        definition=definition.get(ENGLISH, ""),
+        look_at=tuple(sorted(_identifier(graph, at) for at in graph.objects(subject, RP.lookAt))),
+        translations=_translated(title=title, definition=definition),
+    )
 
 
 def _cited(graph: Graph, provision: Node) -> dict[str, str]:

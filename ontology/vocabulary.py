@@ -14,12 +14,15 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.contexts import surrounded
 from rosprivacy.analysis.errors import InputErrors, OntologyError, reason
 from rosprivacy.analysis.files_read import noted
 from rosprivacy.analysis.hierarchy import Hierarchy
 from rosprivacy.analysis.legal import close
 from rosprivacy.ontology import cache as kept
+from rosprivacy.ontology.iris import STORED, as_stored
 from rosprivacy.ontology.known import Known
+from rosprivacy.ontology.pointed import Pointed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -28,9 +31,9 @@ if TYPE_CHECKING:
 
 LARGEST = 4 * 2**20  # bytes of a user's file
 TOP = "PersonalData"
-SHIPPED = ("categories.ttl", "law.ttl", "elements.ttl", "dpv.ttl")
+SHIPPED = ("categories.ttl", "law.ttl", "other_law.ttl", "contexts.ttl", "elements.ttl", "dpv.ttl")
 PREFIXES = {
-    "rp:": "urn:x-rosprivacy:",
+    "rp:": STORED,
     "dpv:": "https://w3id.org/dpv#",
     "pd:": "https://w3id.org/dpv/pd#",
     "eu-gdpr:": "https://w3id.org/dpv/legal/eu/gdpr#",
@@ -51,12 +54,15 @@ class Vocabulary:
         Former spellings of DPV terms -> IRIs of today.
     sources
         (file, SHA-256) of users' own ontologies.
+    pointed
+        Law to look at beside what is followed, and the contexts that point at it.
     """
 
     categories: Mapping[str, Category]
     hierarchy: Hierarchy
     respelt: Mapping[str, str] = field(default_factory=dict)
     sources: tuple[tuple[str, str], ...] = ()
+    pointed: Pointed = field(default_factory=Pointed)
 
     @classmethod
     def of(
@@ -64,11 +70,13 @@ class Vocabulary:
         categories: Iterable[Category],
         respelt: Mapping[str, str] | None = None,
         sources: tuple[tuple[str, str], ...] = (),
+        pointed: Pointed | None = None,
     ) -> Vocabulary:
         """Put categories together; what follows from what is stated of them is added."""
         by_name = {category.name: category for category in sorted(categories, key=lambda c: c.name)}
         hierarchy = Hierarchy.of(by_name.values())
-        return cls(close(by_name, hierarchy), hierarchy, respelt or {}, sources)
+        closed = surrounded(close(by_name, hierarchy), hierarchy)
+        return cls(closed, hierarchy, respelt or {}, sources, pointed or Pointed())
 
     def find(self, text: str) -> Category | None:
         """Return the category of that name, IRI, label, title or synonym in any language, or DPV term.
@@ -132,9 +140,9 @@ class Vocabulary:
 
 
 def _whole(text: str) -> str:
-    """An IRI in place of a prefixed name."""
+    """An IRI in place of a prefixed name; one of ours in the form in which it is stored."""
     prefix, colon, rest = text.partition(":")
-    return PREFIXES.get(prefix + colon, prefix + colon) + rest
+    return as_stored(PREFIXES.get(prefix + colon, prefix + colon) + rest)
 
 
 def load(cache: Path | None = None, ontologies: Sequence[str] = ()) -> Vocabulary:
@@ -166,8 +174,9 @@ def _vocabulary(folder: Path, shipped: tuple[bytes, ...], own: tuple[tuple[str, 
     if found is None:
         found = _parse(shipped, own)
         kept.keep(folder, key, *found)
-    categories, respelt = found
-    return Vocabulary.of(categories, respelt, tuple((file, hashlib.sha256(data).hexdigest()) for file, data in own))
+    categories, respelt, pointed = found
+    sources = tuple((file, hashlib.sha256(data).hexdigest()) for file, data in own)
+    return Vocabulary.of(categories, respelt, sources, pointed)
 
 
 def _read(file: str) -> bytes:
@@ -196,7 +205,7 @@ def _shipped(texts: tuple[bytes, ...]) -> tuple[Known, dict[str, str]]:
     return Known(graph, categories_of(graph)), respelt_of(graph)
 
 
-def _parse(shipped: tuple[bytes, ...], own: Iterable[tuple[str, bytes]]) -> tuple[tuple[Category, ...], dict[str, str]]:
+def _parse(shipped: tuple[bytes, ...], own: Iterable[tuple[str, bytes]]) -> kept.Kept:
     known, respelt = _shipped(shipped)
     problems = []
     for file, data in own:
@@ -208,4 +217,6 @@ def _parse(shipped: tuple[bytes, ...], own: Iterable[tuple[str, bytes]]) -> tupl
             problems += [e for e in error.errors if isinstance(e, OntologyError)]
     if problems:
         raise InputErrors(problems)
-    return known.categories, respelt
+    from rosprivacy.ontology.turtle import pointed_of  # noqa: PLC0415 - heavy
+
+    return known.categories, respelt, pointed_of(known.graph)

@@ -5,25 +5,27 @@ In: what was found, and what it rests on. Out: ``Answer``. A format is a functio
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.contexts import Contexts
 from rosprivacy.analysis.findings.globs import GlobUse, globs
 from rosprivacy.analysis.findings.ledger import ledger
 from rosprivacy.analysis.findings.processed import processed
+from rosprivacy.analysis.findings.reliance import Reliance, reliances
 from rosprivacy.analysis.findings.review_order import Behind, review_order
 from rosprivacy.analysis.fleet.counts import Counts, counted
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Iterator, Mapping
+    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.answer import Analysis
-    from rosprivacy.analysis.decisions import Decided, Decision
+    from rosprivacy.analysis.decisions import Case, Decided, Decision
     from rosprivacy.analysis.durations import Duration
     from rosprivacy.analysis.findings.ledger import TakenAway
     from rosprivacy.analysis.findings.processed import Processed
     from rosprivacy.analysis.fleet.patterns import FleetView
-    from rosprivacy.analysis.model import Bound, Diagnostic, NonRosFacts
+    from rosprivacy.analysis.model import Bound, Diagnostic, NonRosFacts, Surroundings
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 
@@ -45,6 +47,8 @@ class Answer:
         Of the whole fleet, where the graph does not hold all of it; None where it does.
     infrastructure
         (kind, name) of open channels that the program's own file proposes to take as mundane (rule S13).
+    accepts
+        As of ``Options``: whether a person has accepted what would be a finding.
     """
 
     analysis: Analysis
@@ -56,6 +60,7 @@ class Answer:
     fleet: FleetView | None = None
     counts: Counts | None = None
     infrastructure: frozenset[tuple[str, str]] = frozenset()
+    accepts: Callable[[Case], bool] | None = field(default=None, repr=False, compare=False)
 
     @property
     def shown(self) -> Analysis:
@@ -76,6 +81,24 @@ class Answer:
         """The ledger: what was taken away on the data's side, and on whose word; of robots that are alike of one."""
         rows = ledger(self.analysis, self.bound, self.vocabulary.hierarchy, self.diagnostics)
         return tuple(row for row in rows if row.element is None or row.element.robot not in self._beside)
+
+    @property
+    def hangs_on(self) -> tuple[Reliance, ...]:
+        """What the answer hangs on, statement by statement; of robots that are alike of one."""
+        rows = reliances(self.analysis, self.bound, self.vocabulary.hierarchy, self.accepts)
+        return tuple(row for row in map(self._of_shown_robots, rows) if row.hangs)
+
+    def _of_shown_robots(self, row: Reliance) -> Reliance:
+        if self.fleet is None:
+            return row
+        beside, between = self._beside, self.fleet.likeness.between
+        return replace(
+            row,
+            elements=tuple(e for e in row.elements if e.robot not in beside),
+            to=tuple(e for e in row.to if e.robot not in beside),
+            findings=tuple(f for f in row.findings if between(f.source.robot, f.leak.robot)),
+            questions=tuple(q for q in row.questions if q[0].robot not in beside),
+        )
 
     @property
     def review_order(self) -> dict[tuple[str, str, str, str], Behind]:
@@ -113,6 +136,17 @@ class Answer:
         """Whom the data of a source are about, as labels name them: (robot, kind, name) -> groups of persons."""
         elements = self.analysis.graph.elements
         return {elements[vertex].identity: groups for vertex, groups in self.bound.subjects.items()}
+
+    @property
+    def surroundings(self) -> dict[tuple[str, str, str], Surroundings]:
+        """Where elements work, as people state it of them or of their system: by (robot, kind, name)."""
+        elements = self.analysis.graph.elements
+        return {elements[vertex].identity: where for vertex, where in self.bound.surroundings.items()}
+
+    @property
+    def contexts(self) -> Contexts:
+        """Where sources work, and what data may reveal there."""
+        return Contexts.of(self.analysis.graph, self.bound, self.vocabulary.categories, together=self.fleet is not None)
 
     @property
     def processed(self) -> tuple[Processed, ...]:

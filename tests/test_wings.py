@@ -30,6 +30,12 @@ SAME_PART = {
     "fleet": {"cli", "report/contract", "report/document", "report/terminal"},  # what is told of a fleet
     "law": {"cli", "report/terminal"},  # the command, and what it prints
     "labels": {"cli", "report/terminal"},  # the command, and what was said of labels
+    "reliance": {  # what the answer hangs on, and how it is told
+        "analysis/findings",
+        "report/document",
+        "report/page",
+        "report/terminal",
+    },
     "review": {"report/page", "report/terminal"},  # what nobody has reviewed, for each kind of reader
     "globs": {"analysis/findings", "report/terminal"},  # what globs of label files decide, and how it is told
     "ledger": {"analysis/findings", "report/document", "report/terminal"},  # what was taken away, and how it is told

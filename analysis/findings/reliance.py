@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 
     Pair = tuple[Mapping[Key, State], Mapping[Key, State]]  # findings at an element before and after
     Shown = tuple[str, str, str, str]
+    One = tuple[Statement, tuple[str, ...]]
 
 BRINGS_IN = frozenset({"source", "leak", "derivation"})
 TOGETHER = 64  # sources that are followed at once
@@ -131,7 +132,8 @@ def reliances(
     if work is None:
         return ()
     spots = _spots(analysis.spread, bound)
-    rows = (work.without(statement, spots[statement]) for statement in sorted(spots, key=line_key))
+    order = sorted(spots, key=lambda key: (line_key(key[0]), key[1]))
+    rows = (work.without(key[0], spots[key]) for key in order)
     return tuple(row for row in rows if row.hangs)
 
 
@@ -149,22 +151,34 @@ class _Spots:
     reached: bool = False
 
 
-def _spots(spread: Spread, bound: Bound) -> dict[Statement, _Spots]:
-    spots: dict[Statement, _Spots] = defaultdict(_Spots)
+def _spots(spread: Spread, bound: Bound) -> dict[One, _Spots]:
+    elements, flows = spread.graph.elements, spread.graph.flows
+    spots: dict[One, _Spots] = defaultdict(_Spots)
     for vertex, said in bound.elements.items():
         sources = any(statement.role == "source" for statement in said)
         reached = sources or vertex in spread.arrives or vertex in spread.leaves
         for statement in said:
             if _takes(statement):
-                spots[statement].vertices.append(vertex)
-                spots[statement].reached |= reached
+                one = spots[_one(statement, elements[vertex])]
+                one.vertices.append(vertex)
+                one.reached |= reached
     for index, said in bound.flows.items():
-        reached = bool(spread.sent.get(spread.graph.flows[index].source, 0) | spread.flow_emits.get(index, 0))
+        source, target = flows[index].source, flows[index].target
+        reached = bool(spread.sent.get(source, 0) | spread.flow_emits.get(index, 0))
         for statement in said:
             if _takes(statement):
-                spots[statement].flows.append(index)
-                spots[statement].reached |= reached
-    return {statement: some for statement, some in spots.items() if some.reached}
+                one = spots[_one(statement, elements[source], elements[target])]
+                one.flows.append(index)
+                one.reached |= reached
+    return {key: some for key, some in spots.items() if some.reached}
+
+
+def _one(statement: Statement, *ends: Element) -> One:
+    """What is one statement: a glob with all that it is about, a name on all robots; by hand, of one robot."""
+    if statement.glob:
+        return statement, ()
+    robots = () if statement.place.line else tuple(end.robot for end in ends)
+    return statement, (*(end.name for end in ends), *robots)
 
 
 def _takes(statement: Statement) -> bool:

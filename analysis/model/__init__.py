@@ -14,6 +14,8 @@ from rosprivacy.analysis.model.category import (
     THIRD_COUNTRY,
     Category,
     Legal,
+    Pointer,
+    Situation,
     is_article_9,
 )
 from rosprivacy.analysis.model.diagnostic import (
@@ -49,6 +51,7 @@ from rosprivacy.analysis.model.reason import REASONS, Reason
 from rosprivacy.analysis.model.statement import (
     CHANGED,
     CLEANS,
+    CONTEXTS,
     GLOB,
     NAME,
     NOWHERE,
@@ -62,6 +65,7 @@ from rosprivacy.analysis.model.statement import (
     NonRosFacts,
     Processing,
     Statement,
+    Surroundings,
     UnknownEnd,
 )
 
@@ -73,6 +77,7 @@ __all__ = [
     "CHANGED",
     "CHANNELS",
     "CLEANS",
+    "CONTEXTS",
     "DEAD_DENY",
     "DISCLOSURE",
     "EMPTY_GROUP",
@@ -114,12 +119,15 @@ __all__ = [
     "Method",
     "NonRosFacts",
     "Place",
+    "Pointer",
     "Policy",
     "Processing",
     "Profile",
     "Reason",
     "Severity",
+    "Situation",
     "Statement",
+    "Surroundings",
     "UnknownEnd",
     "is_article_9",
     "unread",

@@ -43,6 +43,8 @@ class Legal:
         Name of the category that the ontology says it of: this one, a broader one, or narrower ones.
     translations
         Language -> ``meaning``, ``condition``, ``name`` and ``sources`` (in a row) in it.
+    context
+        Where it holds only: one of ``CONTEXTS``; empty where it holds everywhere.
     """
 
     iri: str
@@ -54,6 +56,7 @@ class Legal:
     sources: tuple[str, ...] = ()
     stated_of: str = ""
     translations: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    context: str = ""
 
     @property
     def special(self) -> bool:
@@ -63,6 +66,54 @@ class Legal:
     def text(self, what: str, language: str) -> str:
         """Return its ``meaning``, ``condition`` or ``name`` in a language, in English if there is no translation."""
         return self.translations.get(language, {}).get(what) or str(getattr(self, what))
+
+
+@dataclass(frozen=True, slots=True)
+class Pointer:
+    """A provision that is to be looked at beside what is followed into paths: no verdict.
+
+    Attributes
+    ----------
+    title, meaning
+        What it is about; what it says in one sentence of our own.
+    as_of
+        The day of the newest source that was read, ``YYYY-MM-DD``.
+    applies
+        The day from which it applies, or will; empty where it simply applies.
+    country
+        ISO 3166-1 code of the country whose law it is; empty for law of the Union.
+    address
+        Where EUR-Lex has it; empty where nothing is known.
+    translations
+        Language -> ``name``, ``title`` and ``meaning`` in it.
+    """
+
+    iri: str
+    name: str
+    title: str
+    meaning: str
+    as_of: str
+    applies: str = ""
+    country: str = ""
+    address: str = ""
+    translations: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Situation:
+    """A context with the names of the provisions to look at there; the one without a name is every system.
+
+    Attributes
+    ----------
+    translations
+        Language -> ``title`` and ``definition`` in it.
+    """
+
+    name: str
+    title: str = ""
+    definition: str = ""
+    look_at: tuple[str, ...] = ()
+    translations: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,6 +153,10 @@ class Category:
         IRIs of other vocabularies: the same concept, broader ones; sorted.
     note
         For readers of the ontology.
+    in_context
+        What data of it may reveal in a context, sorted; each ``Legal`` names its context.
+    look_at
+        Names of further provisions to look at, sorted.
     translations
         Language -> ``title``, ``definition``, ``reason`` and ``gdpr`` in it.
     """
@@ -122,6 +177,8 @@ class Category:
     same_as: tuple[str, ...] = ()
     within: tuple[str, ...] = ()
     note: str = ""
+    in_context: tuple[Legal, ...] = ()
+    look_at: tuple[str, ...] = ()
     translations: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
 
     @property

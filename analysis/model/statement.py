@@ -67,7 +67,9 @@ class Statement:
         How the label names the element: by a full ``NAME``, by a glob with its last ``SEGMENT`` written out, or by
         another ``GLOB``.
     why
-        Of a node that is not on the robot: a person's reason.
+        A person's reason: the note beside it, or why a node is not on the robot.
+    author
+        Who says it, and answers for it; empty where nobody is named.
     """
 
     role: str
@@ -81,6 +83,7 @@ class Statement:
     shipped: bool = False
     naming: str = NAME
     why: str = ""
+    author: str = ""
 
     @property
     def by_name(self) -> bool:
@@ -147,6 +150,29 @@ class NonRosFacts:
     place: Place = NOWHERE
 
 
+CONTEXTS = ("care", "public-space", "school", "union", "workplace", "worship")  # those of ontology/contexts.ttl
+
+
+@dataclass(frozen=True, slots=True)
+class Surroundings:
+    """Where an element of a robot works, as labels state it: what data reveals there, and whose law is to be looked at.
+
+    Attributes
+    ----------
+    contexts
+        Some of ``CONTEXTS``, sorted.
+    country
+        ISO 3166-1 alpha-2 code of the country where it runs; empty where nobody states it.
+    """
+
+    contexts: tuple[str, ...] = ()
+    country: str = ""
+
+    def __bool__(self) -> bool:
+        """Whether anything is stated."""
+        return bool(self.contexts or self.country)
+
+
 ByCategory = tuple[tuple[str, tuple[str, ...]], ...]  # (category, or ``EVERY``; what is stated of it), sorted
 
 
@@ -198,6 +224,8 @@ class Bound:
         What is stated about non-ROS elements, by vertex (rule S9).
     subjects
         By vertex: whom the data of a source are about, sorted. It changes no flow.
+    surroundings
+        By vertex: where an element works, its own with those of its system. It changes no flow.
     processing
         By vertex: what the data there are processed for, and on which basis.
     of_robots
@@ -209,6 +237,7 @@ class Bound:
     through: Mapping[tuple[int, tuple[str, ...]], tuple[int, ...]] = field(default_factory=dict)
     outside: Mapping[int, NonRosFacts] = field(default_factory=dict)
     subjects: Mapping[int, tuple[str, ...]] = field(default_factory=dict)
+    surroundings: Mapping[int, Surroundings] = field(default_factory=dict)
     processing: Mapping[int, Processing] = field(default_factory=dict)
     of_robots: Mapping[str, Processing] = field(default_factory=dict)
 

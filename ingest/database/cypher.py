@@ -17,6 +17,7 @@ from rosprivacy.ingest.database.schema import (
     FALLS_UNDER,
     FINDING,
     INTAKE,
+    LOOK_AT,
     NODES,
     PROVISION,
     ROBOT,
@@ -110,9 +111,8 @@ MERGE_CATEGORIES = merge_nodes(CATEGORY)
 MERGE_PROVISIONS = merge_nodes(PROVISION)
 MERGE_ENCLAVES = merge_nodes(ENCLAVE)
 # The ontology says it anew: what it no longer says goes.
-DROP_CATEGORY_LINKS = (
-    f"MATCH (c:{quoted(CATEGORY.label)})-[r:`BROADER`|{quoted(FALLS_UNDER.type)}]->() WHERE c.`iri` IN $iris DELETE r"
-)
+_LAW = f"{quoted(FALLS_UNDER.type)}|{quoted(LOOK_AT.type)}"
+DROP_CATEGORY_LINKS = f"MATCH (c:{quoted(CATEGORY.label)})-[r:`BROADER`|{_LAW}]->() WHERE c.`iri` IN $iris DELETE r"
 
 # The first write of a robot's transaction: whoever else writes it waits here.
 LOCK_ROBOTS = (

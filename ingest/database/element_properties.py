@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.contexts import Contexts
 from rosprivacy.analysis.errors import LabelError
 from rosprivacy.analysis.findings.derived_from import origins
 from rosprivacy.analysis.fleet.likeness import NO_ROBOTS, pattern_id
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.findings.derived_from import Origin
     from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.analysis.kernel.spread import Spread
-    from rosprivacy.analysis.model import Bound, Element, Processing, Statement
+    from rosprivacy.analysis.model import Bound, Element, Processing, Statement, Surroundings
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 Row = dict[str, Any]
@@ -125,6 +126,7 @@ def element_results(analysis: Analysis, bound: Bound, names: Names, roles: Roles
             "sanitizes": cleans,
             "stops": names.exact(_stopped(found, found.keeps.get(vertex, found.all_bits))),
             "subjects": list(bound.subjects.get(vertex, ())),
+            **_surroundings(bound.surroundings.get(vertex), element),
             **_of_element(bound.processing.get(vertex, UNSTATED)),
             "open": list(question.categories) if question else [],
             "frontier": question.frontier if question else None,
@@ -136,6 +138,12 @@ def element_results(analysis: Analysis, bound: Bound, names: Names, roles: Roles
             *labelled,
         ]
         yield properties, list(dict.fromkeys(labels))
+
+
+def _surroundings(where: Surroundings | None, element: Element) -> Row:
+    """Where it works; the country of an element outside ROS is a fact of its own."""
+    of_system = {"country": where.country} if where and where.country and element.is_node else {}
+    return {"context": list(where.contexts) or None if where else None, **of_system}
 
 
 def _of_element(said: Processing) -> Row:
@@ -189,6 +197,7 @@ def origin_properties(analysis: Analysis, origin: Origin, robot: str) -> Row:
 
 def finding_rows(
     analysis: Analysis,
+    bound: Bound,
     vocabulary: Vocabulary,
     ids: Mapping[Element, str],
     robots: Mapping[Element, str],
@@ -202,15 +211,21 @@ def finding_rows(
         Which names are those of robots.
     """
     rows, across = [], []
+    contexts = Contexts.of(analysis.graph, bound, vocabulary.categories)
     for finding in analysis.findings:
-        row, steps = finding_row(finding, pattern_id(finding, likeness), vocabulary, ids, robots)
+        row, steps = finding_row(finding, pattern_id(finding, likeness), vocabulary, ids, robots, contexts)
         rows.append(row)
         across += steps
     return rows, across
 
 
 def finding_row(
-    finding: Finding, pattern: str, vocabulary: Vocabulary, ids: Mapping[Element, str], robots: Mapping[Element, str]
+    finding: Finding,
+    pattern: str,
+    vocabulary: Vocabulary,
+    ids: Mapping[Element, str],
+    robots: Mapping[Element, str],
+    contexts: Contexts,
 ) -> tuple[Row, list[Row]]:
     """Return the row of a finding, and those of the elements that it goes across."""
     robot = robots[finding.source]
@@ -231,6 +246,8 @@ def finding_row(
             "pseudonymised": finding.pseudonymised,
             "dismissed": finding.dismissed,
             "disjoint_paths": finding.disjoint_paths,
+            "article9": contexts.article9(finding),
+            "in_context": [f"{legal.context}: {legal.name}" for legal in contexts.revealed(finding)] or None,
             "special_from": turned.name if (turned := turned_special(finding, vocabulary.categories)) else None,
         },
     }

@@ -12,6 +12,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.answer import robot_verdicts
+from rosprivacy.analysis.contexts import Contexts
 from rosprivacy.analysis.findings.derived_from import origins
 from rosprivacy.analysis.fleet.likeness import pattern_id
 from rosprivacy.ingest.database.carrying import Carrying
@@ -244,6 +245,7 @@ class FleetRows:
     def _findings(self, owner: str, name: str, ids: _Ids) -> tuple[list[Row], list[Row]]:
         rows: list[Row] = []
         across: list[Row] = []
+        contexts = Contexts.of(self._graph, self._placed.bound, self._vocabulary.categories)
         for finding in self._analysis.findings:
             if finding.source.robot != owner or not self._likeness.count(finding):
                 continue
@@ -253,7 +255,7 @@ class FleetRows:
                 placed = _Moved(finding, name, robot, self._likeness)
                 keys = {element: ids.of(element, placed.robot(element)) for element in placed.elements}
                 robots = {element: placed.robot(element) for element in placed.elements}
-                row, steps = finding_row(finding, pattern, self._vocabulary, keys, robots)
+                row, steps = finding_row(finding, pattern, self._vocabulary, keys, robots, contexts)
                 rows.append(row)
                 across += steps
         return rows, across

@@ -75,6 +75,7 @@ def _as_json(statement: Statement) -> dict[str, Any]:
         "naming": statement.naming,
         "file": statement.place.file,
         "line": statement.place.line,
+        **{key: text for key, text in (("why", statement.why), ("author", statement.author)) if text},
     }
 
 
@@ -82,7 +83,12 @@ def _stated(properties: Mapping[str, Any]) -> list[Statement]:
     stated = []
     for said in map(json.loads, properties.get("statements") or ()):
         rank, place = (int(said["tier"]), int(said["specificity"])), Place(str(said["file"]), int(said["line"]))
-        stated.append(Statement(said["role"], tuple(said["categories"]), rank, place, naming=said["naming"]))
+        why, author = (str(said.get(key) or "") for key in ("why", "author"))
+        stated.append(
+            Statement(
+                said["role"], tuple(said["categories"]), rank, place, naming=said["naming"], why=why, author=author
+            )
+        )
     return stated
 
 

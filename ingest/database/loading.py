@@ -20,6 +20,7 @@ from rosprivacy.ingest.database.schema import (
     FALLS_UNDER,
     FLOWS_TO,
     IN_ENCLAVE,
+    LOOK_AT,
     RELATIONSHIPS,
     ROLES,
     SUFFIXES,
@@ -235,7 +236,19 @@ def _write_vocabulary(transaction: ManagedTransaction, vocabulary: Vocabulary) -
     run(transaction, cypher.DROP_CATEGORY_LINKS, iris=[row["id"] for row in rows])
     run(transaction, cypher.create_relationships(_BROADER), rows=broader)
     law = [(c.iri, legal) for c in categories.values() for legal in c.law]
-    provisions = {legal.iri: {"name": legal.name, "title": legal.meaning, "as_of": legal.as_of} for _, legal in law}
+    names = {name for c in categories.values() for name in c.look_at}
+    pointed = {one.name: one for one in vocabulary.pointed.provisions if one.name in names}
+    provisions: dict[str, dict[str, str | None]] = {
+        one.iri: {
+            "name": one.name,
+            "title": one.meaning,
+            "as_of": one.as_of,
+            "applies_from": one.applies or None,
+            "country": one.country or None,
+        }
+        for one in pointed.values()
+    }
+    provisions |= {legal.iri: {"name": legal.name, "title": legal.meaning, "as_of": legal.as_of} for _, legal in law}
     run(transaction, cypher.MERGE_PROVISIONS, rows=[{"id": i, "properties": p} for i, p in sorted(provisions.items())])
     under = [
         {
@@ -251,6 +264,9 @@ def _write_vocabulary(transaction: ManagedTransaction, vocabulary: Vocabulary) -
         for iri, legal in law
     ]
     run(transaction, cypher.create_relationships(FALLS_UNDER), rows=under)
+    at = [(c.iri, pointed[name].iri) for c in categories.values() for name in c.look_at]
+    links = [{"source": source, "target": target, "properties": {}} for source, target in at]
+    run(transaction, cypher.create_relationships(LOOK_AT), rows=links)
 
 
 def _write_robots(transaction: ManagedTransaction, robots: list[RobotRows], labels: list[str]) -> None:

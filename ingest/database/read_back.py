@@ -40,6 +40,7 @@ from rosprivacy.ingest.database.row_facts import (
     subjects_of,
 )
 from rosprivacy.ingest.database.schema import KIND_LABELS, ROLES
+from rosprivacy.ingest.labels.surroundings import surroundings_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -196,6 +197,12 @@ class _Reader:
                 self.problems.append(_problem(f"{shown(name)!r}: {error}", "SET n.subjects = ['residents', 'staff']"))
                 continue
             try:
+                surroundings_of(properties, ros="node" in kinds)
+            except TypeError as error:
+                hint = "SET n.context = ['care'], n.country = 'DE'"
+                self.problems.append(_problem(f"{shown(name)!r}: {error}", hint))
+                continue
+            try:
                 self._processing[record["key"]] = processing_of(properties, self._vocabulary.categories)
             except ValueError as error:
                 what = f"{shown(name)!r} cannot be understood: {shown(str(error))}"
@@ -297,6 +304,11 @@ class _Reader:
                 {i: said for i, said in restrictions.items() if said},
                 flows_through(graph, statements),
                 outside,
+                surroundings={
+                    v: where
+                    for v, vertex in enumerate(vertices)
+                    if (where := surroundings_of(vertex.properties, ros=elements[v].is_node))
+                },
                 subjects={v: groups for v, vertex in enumerate(vertices) if (groups := subjects_of(vertex.properties))},
                 processing={v: one for v, vertex in enumerate(vertices) if (one := self._processing[vertex.key])},
                 of_robots=self._of_robots,
@@ -322,7 +334,7 @@ class _Reader:
                 raise InputErrors([_problem(what, "see docs/database.md for what a role has")]) from None
             alone = () if role in ("only", "never") or said.get("every") else (category,)
             together[(*facts, *alone)].append(category)
-        for (role, rank, place, method, stated, to, through, every, naming, why, *_), categories in sorted(
+        for (role, rank, place, method, stated, to, through, every, naming, why, author, *_), categories in sorted(
             together.items(), key=lambda item: str(item[0])
         ):
             names = () if every else tuple(sorted(categories))
@@ -330,4 +342,4 @@ class _Reader:
                 names = (to,)
                 to = categories[0]  # noqa: PLW2901 - it is stored the other way round: the target is what is made
             shipped = role == "mundane" and rank[0] <= STANDARD
-            yield Statement(role, names, rank, place, method, stated, to, through, shipped, naming, why)
+            yield Statement(role, names, rank, place, method, stated, to, through, shipped, naming, why, author)

@@ -69,7 +69,10 @@ def subjects_of(properties: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def role_facts_of(role: str, category: str, said: Mapping[str, Any]) -> tuple[Any, ...]:
-    """Return (role, rank, place, method, stated, what it is made of, through, every, naming, why) of a relationship."""
+    """Return what a relationship says.
+
+    (role, rank, place, method, stated, what it is made of, through, every, naming, why, author)
+    """
     tier, specificity = said.get("tier", HAND), said.get("specificity", EXACT)
     place = Place(str(said.get("file") or DATABASE), int(said.get("line") or 0))
     method, stated = None, True
@@ -91,6 +94,7 @@ def role_facts_of(role: str, category: str, said: Mapping[str, Any]) -> tuple[An
         bool(said.get("every")),
         str(said.get("naming") or (NAME if int(specificity) >= EXACT else SEGMENT)),  # absent in earlier versions
         str(said.get("why") or ""),
+        str(said.get("author") or ""),
     )
 
 

@@ -122,7 +122,7 @@ def robot_rows(
     ids = [element_id(robot, element) for element in graph.elements]
     by_element = dict(zip(graph.elements, ids, strict=True))
     enclaves = sorted({profile.enclave for profile in graph.profiles})
-    found, across = finding_rows(analysis, vocabulary, by_element, dict.fromkeys(graph.elements, robot))
+    found, across = finding_rows(analysis, bound, vocabulary, by_element, dict.fromkeys(graph.elements, robot))
     results = list(element_results(analysis, bound, names, roles))
     carrying = Carrying(analysis, [said for _, said in results], labels)
     elements = graph.elements
@@ -282,6 +282,8 @@ def add_roles(
             "naming": statement.naming,
             "every": None if statement.categories else True,
             "robot": robot,
+            "why": statement.why or None,
+            "author": statement.author or None,
             **_particulars(statement),
         }
         top = [category.name for category in vocabulary.categories.values() if not category.broader]
@@ -296,5 +298,5 @@ def _particulars(statement: Statement) -> Row:
         return {"through": list(statement.through) or None}
     if statement.role == "sanitizer":
         method = str(statement.method) if statement.method else None
-        return {"method": method, "stated": statement.stated, "why": statement.why or None}
+        return {"method": method, "stated": statement.stated}
     return {"of": statement.categories[0]} if statement.role == "derivation" else {}

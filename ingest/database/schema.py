@@ -10,6 +10,8 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
+from rosprivacy.analysis.model import CONTEXTS
+
 SCHEMA = 4  # raised when what a load writes gains what an answer rests on, or changes its meaning; none was stored at 1
 _IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 STRING, INTEGER, BOOLEAN, STRINGS = "STRING", "INTEGER", "BOOLEAN", "LIST<STRING>"
@@ -82,6 +84,8 @@ _PLACE = (
     Property("specificity", INTEGER, "rank: the more of the name is spelt out, the higher"),
     Property("naming", STRING, "name, glob, or segment for a glob with its last segment written out"),
     Property("every", BOOLEAN, "the label names no category: it holds for every one"),
+    Property("why", STRING, "the label's note; of method absent: why the node is not on the robot"),
+    Property("author", STRING, "who says it, as the label file names them"),
     _OURS,
 )
 _PROCESSING = (
@@ -108,6 +112,7 @@ ELEMENT = NodeKind(
         Property("pseudonymised", STRINGS, f"kinds of data that get here pseudonymised{_BROAD}"),
         Property("begins", STRINGS, "kinds that it brings in"),
         Property("subjects", STRINGS, "of a source: whom its data are about"),
+        Property("context", STRINGS, f"where it works, with its system: some of {', '.join(CONTEXTS)}"),
         *_PROCESSING,
         Property("leaks", STRINGS, "kinds that it lets out, if they come"),
         Property("sanitizes", STRINGS, "kinds that it cleans, if they come"),
@@ -119,7 +124,7 @@ ELEMENT = NodeKind(
         Property("limits", STRINGS, "of a storage: how long kinds may be kept, as above"),
         Property("backups", STRING, "of a storage: how much longer backups keep data; true where that is not known"),
         Property("encrypted", BOOLEAN, "of a storage: at rest"),
-        Property("country", STRING, "outside ROS: ISO 3166-1 code"),
+        Property("country", STRING, "ISO 3166-1 code; of a node that of its system, where it is stated"),
         Property("operator", STRING, "outside ROS: who runs it"),
         Property("recipient", STRING, "outside ROS: controller, joint-controller, processor or third-party"),
         Property("contract", STRING, "outside ROS: on what it is operated, such as a contract under Article 28"),
@@ -193,6 +198,8 @@ PROVISION = NodeKind(
         Property("name", STRING, "short, such as GDPR Art. 9(1) health"),
         Property("title", STRING, "its meaning in one sentence, in our words"),
         Property("as_of", STRING, "date of the law"),
+        Property("applies_from", STRING, "day from which it applies, or will; absent where it simply applies"),
+        Property("country", STRING, "ISO 3166-1 code of the country whose law it is; absent for law of the Union"),
     ),
 )
 FINDING = NodeKind(
@@ -215,6 +222,8 @@ FINDING = NodeKind(
         Property("pseudonymised", BOOLEAN, "it arrives in pseudonymised form only"),
         Property("dismissed", BOOLEAN, "every path goes through another leak of the category"),
         Property("disjoint_paths", INTEGER, "paths that share no flow"),
+        Property("article9", STRING, "strongest verdict under Art. 9(1) where its source works"),
+        Property("in_context", STRINGS, "what the data may reveal where its source works, `care: GDPR Art. 9(1) …`"),
         Property("special_from", STRING, "element that makes a special category of other data; absent if none does"),
     ),
 )
@@ -284,7 +293,6 @@ ROLES = {
             *_PLACE,
             Property("method", STRING, "anonymise, aggregate, drop, absent or pseudonymise; none counts as the last"),
             Property("stated", BOOLEAN, "whether the label states the method"),
-            Property("why", STRING, "of method absent: why the node is not on the robot"),
         ),
     ),
     "conduit": RelationshipKind("PASSES", "Element", "DataCategory", "Reviewed: it passes the category on.", _PLACE),
@@ -334,6 +342,12 @@ FALLS_UNDER = RelationshipKind(
         Property("sources", STRINGS, "what the verdict rests on"),
     ),
 )
+LOOK_AT = RelationshipKind(
+    "LOOK_AT",
+    "DataCategory",
+    "LegalProvision",
+    "A provision to look at beside those that data of the category fall under; it is not followed into paths.",
+)
 ACROSS = RelationshipKind(
     "ACROSS",
     "Finding",
@@ -356,6 +370,7 @@ RELATIONSHIPS = (
     IN_ENCLAVE,
     RelationshipKind("BROADER", "DataCategory", "DataCategory", "The second is broader (skos:broader)."),
     FALLS_UNDER,
+    LOOK_AT,
     RelationshipKind("OF_CATEGORY", "Finding", "DataCategory", "What arrives."),
     RelationshipKind("FROM", "Finding", "Element", "The source."),
     RelationshipKind("TO", "Finding", "Element", "The leak."),

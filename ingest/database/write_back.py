@@ -97,7 +97,7 @@ class _Changes:
         self.changed = sum(map(len, self._elements.values())) + sum(map(len, self._flows.values()))
         by_element = dict(zip(elements, ids, strict=True))
         of_robot = dict(zip(elements, robots, strict=True))
-        findings, across = finding_rows(analysis, vocabulary, by_element, of_robot, stored.likeness)
+        findings, across = finding_rows(analysis, stored.bound, vocabulary, by_element, of_robot, stored.likeness)
         self._findings = _by(findings, {row["id"]: row["properties"]["robot"] for row in findings}, "id")
         self._across = _by(across, {row["id"]: row["properties"]["robot"] for row in findings}, "source")
         origins = list(origin_rows(analysis, ids, robots))

@@ -85,7 +85,10 @@ def alike(fleet: Fleet, told_apart: Callable[[str], object] = lambda _: None) ->
         means = tuple(i for i, test in enumerate(tests) if test(robot.id))
         several = bool(robot.domain) and domains[robot.domain] > 1
         alone = robot.id if several and (robot.strip or robot.add) else runs.namespace(robot)
-        key = (robot.model, runs.of(robot), robot.domain, robot.strip, alone, means, told_apart(robot.id))
+        key = (
+            robot.model, runs.of(robot), robot.domain, robot.strip, alone, means, told_apart(robot.id),
+            robot.surroundings,
+        )  # fmt: skip
         groups[key].append(robot)
         joined[key] = bool(means) or several
     found = [Alike(tuple(robots), joined[key]) for key, robots in groups.items()]

@@ -16,11 +16,13 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import FleetError, InputError, InputErrors, shown
-from rosprivacy.analysis.model import UNSTATED
+from rosprivacy.analysis.model import UNSTATED, Surroundings
 from rosprivacy.ingest.fleet.fleet_reader import GROUP_KEYS, ID, ID_HINT, ROBOT_KEYS, SECTIONS, SPEC, FleetReader, Spec
 from rosprivacy.ingest.labels.entries import OWN
 from rosprivacy.ingest.labels.label_file import OURS
+from rosprivacy.ingest.labels.label_reader import SURROUNDINGS
 from rosprivacy.ingest.labels.stated_processing import OF_SYSTEM, two_of_one, united
+from rosprivacy.ingest.labels.surroundings import joined
 from rosprivacy.ingest.reading import yaml_values
 from rosprivacy.ingest.reading.confined import WIDEN, leaves, what_leaves
 
@@ -54,6 +56,8 @@ class Robot:
         Name of the DDS domain that it shares with others; empty for one of its own (rule S1).
     strip, add
         Namespace that its policies have and names are shown without, or lack and run under; empty for none.
+    surroundings
+        Where it works, as the file states it of the fleet, of its model and of itself.
     """
 
     id: str
@@ -65,6 +69,7 @@ class Robot:
     domain: str = ""
     strip: str = ""
     add: str = ""
+    surroundings: Surroundings = Surroundings()  # noqa: RUF009 - it is frozen
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,6 +92,8 @@ class Fleet:
         The folder that the files which it names do not leave.
     bounds
         With which it was read, for what its robots make together.
+    surroundings
+        Where it works as a whole: what is shared works there.
     """
 
     name: str
@@ -99,6 +106,7 @@ class Fleet:
     flows: tuple[FlowEntry, ...]
     root: str
     bounds: Bounds = BOUNDS
+    surroundings: Surroundings = Surroundings()  # noqa: RUF009 - it is frozen
     processing: Processing = UNSTATED
 
 
@@ -180,6 +188,8 @@ class _Fleet:
         elif key == "include":
             for item in value.items if value.kind == "list" else (value,):
                 self._include(part, item, within)
+        elif key in SURROUNDINGS:
+            part.surroundings = part.surrounded(part.surroundings, key, value)
         elif key in ("elements", "limits", "flows"):
             part.outside(key, line, value)
         elif key == "groups":
@@ -245,8 +255,13 @@ class _Fleet:
             tuple(flow for part in self._parts for flow in part.flows),
             self._root,
             self._bounds,
+            self._everywhere(),
             united((((0, 0), part.processing) for part in self._parts), self._differ),
         )
+
+    def _everywhere(self) -> Surroundings:
+        """Where the whole fleet works; what an including file says counts before what it includes."""
+        return joined(part.surroundings for part in reversed(self._parts))
 
     def _differ(self, what: str, first: Processing, other: Processing) -> None:
         self.problems.append(two_of_one(what, first, other, FleetError))
@@ -266,6 +281,7 @@ class _Fleet:
             return
         own = bool(spec.strip or spec.add)
         namespace = (spec.strip, spec.add) if own else (model.strip, model.add)
+        strip, add = (text.replace(STAR, name) for text in namespace)
         robot = Robot(
             name,
             spec.place,
@@ -274,7 +290,9 @@ class _Fleet:
             model.labels,
             spec.labels,
             spec.domain or model.domain,
-            *(text.replace(STAR, name) for text in namespace),
+            strip,
+            add,
+            joined((self._everywhere(), model.surroundings, spec.surroundings)),
         )
         (self._infrastructure if shared else self._robots)[name] = robot
 

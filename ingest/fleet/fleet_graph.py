@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.durations import ordered
 from rosprivacy.analysis.errors import FleetError, InputError, InputErrors, shown
 from rosprivacy.analysis.fleet.likeness import Likeness
-from rosprivacy.analysis.model import UNSTATED, Element
+from rosprivacy.analysis.model import UNSTATED, Element, Surroundings
 from rosprivacy.analysis.non_ros import by_kind
 from rosprivacy.analysis.written_names import meant
 from rosprivacy.ingest.fleet.alike_robots import COLON, chosen, known_to_flows
@@ -23,6 +23,7 @@ from rosprivacy.ingest.fleet.mergeable_graph import Part, numbered, together
 from rosprivacy.ingest.labels.add_non_ros import FLOW, Ends, ambiguous, line_of, merged, missing, two_meanings
 from rosprivacy.ingest.labels.entries import End
 from rosprivacy.ingest.labels.stated_processing import over, united
+from rosprivacy.ingest.labels.surroundings import joined
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -232,10 +233,14 @@ class _Placing:
             element = Element(one.kind, name, fleet.name)
             part.elements[element] = (*dict.fromkeys(said[name]), *by_kind(element))
             part.outside[element] = one.outside
-            part.subjects[element] = tuple(g for entry in fleet.entries if entry.name == name for g in entry.subjects)
-            part.processing[element] = united((e.rank, e.processing) for e in fleet.entries if e.name == name)
+            about = [entry for entry in fleet.entries if entry.name == name]
+            part.subjects[element] = tuple(g for entry in about for g in entry.subjects)
+            part.processing[element] = united((entry.rank, entry.processing) for entry in about)
+            own = (Surroundings(entry.contexts) for entry in about)
+            part.surroundings[element] = joined((Surroundings(fleet.surroundings.contexts), *own))
         part.subjects = {element: groups for element, groups in part.subjects.items() if groups}
         part.processing = {element: said for element, said in part.processing.items() if said}
+        part.surroundings = {element: where for element, where in part.surroundings.items() if where}
         self._ends[""] = Ends(part.elements)
         return part
 

@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.model import Place
+from rosprivacy.analysis.model import Place, Surroundings
 from rosprivacy.ingest.labels.label_file import OURS
-from rosprivacy.ingest.labels.label_reader import LabelReader
+from rosprivacy.ingest.labels.label_reader import SURROUNDINGS, LabelReader
 from rosprivacy.ingest.labels.non_ros_reader import is_non_ros
 from rosprivacy.ingest.reading.confined import unusable
 
@@ -26,9 +26,21 @@ if TYPE_CHECKING:
 ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,199}")
 ID_HINT = "use letters, digits and _ . -, at most 200"
 NAMESPACE = re.compile(r"(/[A-Za-z_*][A-Za-z0-9_*]*)+")
-SPEC = ("policies", "labels", "domain", "namespace")
+SPEC = ("policies", "labels", "domain", "namespace", *SURROUNDINGS)
 ROBOT_KEYS, GROUP_KEYS = ("model", *SPEC, "note"), ("robots", "id", "model", *SPEC, "note")
-SECTIONS = ("name", "include", "models", "infrastructure", "robots", "groups", "elements", "limits", "flows", "note")
+SECTIONS = (
+    "name",
+    "include",
+    "models",
+    "infrastructure",
+    "robots",
+    "groups",
+    "elements",
+    "limits",
+    "flows",
+    *SURROUNDINGS,
+    "note",
+)
 
 
 @dataclass
@@ -42,6 +54,7 @@ class Spec:
     domain: str = ""
     strip: str = ""
     add: str = ""
+    surroundings: Surroundings = field(default_factory=Surroundings)
     lines: dict[str, int] = field(default_factory=dict)
 
 
@@ -82,6 +95,8 @@ class FleetReader(LabelReader):
                 spec.domain = self.text_of(said, "a domain")
             elif key == "namespace":
                 self._namespace(spec, said)
+            elif key in SURROUNDINGS:
+                spec.surroundings = self.surrounded(spec.surroundings, key, said)
         return spec
 
     def _files(self, key: str, value: Value) -> Iterator[str]:

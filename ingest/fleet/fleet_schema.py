@@ -8,7 +8,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.ingest.fleet.fleet_reader import ID, NAMESPACE
-from rosprivacy.ingest.labels.label_schema import END, END_OF_KIND, label_schema, non_ros_sections, processing_of_system
+from rosprivacy.ingest.labels.label_schema import (
+    END,
+    END_OF_KIND,
+    SURROUNDINGS,
+    label_schema,
+    non_ros_sections,
+    processing_of_system,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -49,6 +56,7 @@ def fleet_schema(categories: Iterable[Category]) -> dict[str, Any]:
             "groups": {"type": ["array", "null"], "items": {"$ref": "#/$defs/group"}},
             **processing_of_system(),
             **non_ros_sections(),
+            **SURROUNDINGS,
             "note": {"type": "string"},
         },
         "$defs": {**definitions, "flow": flow},
@@ -80,6 +88,7 @@ def _definitions() -> dict[str, Any]:
         "policies": {**_files(), "description": "SROS 2 policies: files, folders or globs, relative to this file."},
         "labels": {**_files(), "description": "Label files; those of a robot outrank those of its model."},
         "domain": {**WORD, "description": "DDS domain that it shares with others; by default it has its own."},
+        **SURROUNDINGS,
         "namespace": {
             "description": "Of a robot, in which * is its id: what its policies have before names, or lack.",
             "oneOf": [_object({key: space}, [key]) for key in ("strip", "add")],

@@ -14,7 +14,7 @@ from rosprivacy.analysis.model import Bound, Element, Flow, FlowGraph
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
-    from rosprivacy.analysis.model import Grant, NonRosFacts, Processing, Profile, Statement
+    from rosprivacy.analysis.model import Grant, NonRosFacts, Processing, Profile, Statement, Surroundings
 
 K = TypeVar("K")
 V = TypeVar("V")
@@ -39,8 +39,8 @@ class Part:
         (source, name expressions) -> the flows that these mean.
     outside
         What is stated about elements outside ROS.
-    subjects, processing
-        Whom data of elements are about; what data there are processed for, and on which basis.
+    subjects, surroundings, processing
+        Whom data of elements are about; where they work; what data there are processed for, and on which basis.
     of_robots
         By robot: who is responsible, what for, on which basis.
     """
@@ -52,6 +52,7 @@ class Part:
     through: dict[tuple[Element, tuple[str, ...]], tuple[Key, ...]] = field(default_factory=dict)
     outside: dict[Element, NonRosFacts] = field(default_factory=dict)
     subjects: dict[Element, tuple[str, ...]] = field(default_factory=dict)
+    surroundings: dict[Element, Surroundings] = field(default_factory=dict)
     processing: dict[Element, Processing] = field(default_factory=dict)
     of_robots: dict[str, Processing] = field(default_factory=dict)
 
@@ -68,6 +69,7 @@ class Part:
             {(elements[v], names): tuple(keys[i] for i in flows) for (v, names), flows in bound.through.items()},
             {elements[vertex]: facts for vertex, facts in bound.outside.items()},
             {elements[vertex]: groups for vertex, groups in bound.subjects.items()},
+            {elements[vertex]: where for vertex, where in bound.surroundings.items()},
             {elements[vertex]: said for vertex, said in bound.processing.items()},
             dict(bound.of_robots),
         )
@@ -87,6 +89,7 @@ class Part:
             {(new[v], names): tuple(map(key_of, keys)) for (v, names), keys in self.through.items()},
             {new[element]: facts for element, facts in self.outside.items()},
             _joined((new[element], groups) for element, groups in self.subjects.items()),
+            {new[element]: where for element, where in self.surroundings.items()},
             {new[element]: said for element, said in self.processing.items()},
         )
 
@@ -102,6 +105,7 @@ def together(parts: Iterable[Part]) -> Part:
         _joined(pair for part in parts for pair in part.through.items()),
         {element: facts for part in parts for element, facts in part.outside.items()},
         _joined(pair for part in parts for pair in part.subjects.items()),
+        {element: where for part in parts for element, where in part.surroundings.items()},
         {element: said for part in parts for element, said in part.processing.items()},
         {robot: said for part in parts for robot, said in part.of_robots.items()},
     )
@@ -138,6 +142,7 @@ def numbered(part: Part, profiles: Mapping[str, tuple[Profile, ...]], view: str)
         {(number[v], names): tuple(sorted(map(index.__getitem__, keys))) for (v, names), keys in part.through.items()},
         _by_number(number, part.outside),
         _by_number(number, {element: tuple(sorted(groups)) for element, groups in part.subjects.items()}),
+        _by_number(number, part.surroundings),
         _by_number(number, part.processing),
         dict(sorted(part.of_robots.items())),
     )

@@ -14,12 +14,13 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.bounds import BOUNDS, Tally
 from rosprivacy.analysis.durations import ordered
 from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, shown
-from rosprivacy.analysis.model import Bound, Diagnostic, Severity
+from rosprivacy.analysis.model import Bound, Diagnostic, Severity, Surroundings
 from rosprivacy.analysis.non_ros import by_kind
 from rosprivacy.analysis.text import counted
 from rosprivacy.analysis.written_names import is_glob, literal, meant
 from rosprivacy.ingest.labels.label_file import OURS
 from rosprivacy.ingest.labels.stated_processing import two_of_one, united
+from rosprivacy.ingest.labels.surroundings import everywhere, joined
 from rosprivacy.ingest.policies.names import covered
 
 if TYPE_CHECKING:
@@ -31,26 +32,36 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.labels.label_file import Labels
 
 NEAREST = 3
+NOT_STATED = Surroundings()
 STEPS_OF_A_NAME = 4  # beside a glob
 GLOB_LIKE_A_WILDCARD = "glob-like-a-wildcard"
 COMPARISONS = 50_000  # of names, in the search for the nearest; a label file of another system is refused soon
 
 
-def bind(graph: FlowGraph, labels: Sequence[Labels], bounds: Bounds = BOUNDS) -> Bound:
+def bind(
+    graph: FlowGraph, labels: Sequence[Labels], bounds: Bounds = BOUNDS, system: Surroundings = NOT_STATED
+) -> Bound:
     """Join label files to a graph.
+
+    Parameters
+    ----------
+    system
+        Where it works, as a fleet file states it, beside what the label files say.
 
     Raises
     ------
     InputErrors
         With every name that matches nothing, but for shipped files; above a bound.
     """
-    bound, problems = join(graph, labels, bounds)
+    bound, problems = join(graph, labels, bounds, system)
     if problems:
         raise InputErrors(problems)
     return bound
 
 
-def join(graph: FlowGraph, labels: Sequence[Labels], bounds: Bounds = BOUNDS) -> tuple[Bound, list[InputError]]:
+def join(
+    graph: FlowGraph, labels: Sequence[Labels], bounds: Bounds = BOUNDS, system: Surroundings = NOT_STATED
+) -> tuple[Bound, list[InputError]]:
     """Join label files to a graph as far as its names go; return also what matches nothing."""
     names = _Names(graph)
     _check_work(names, labels, bounds)
@@ -58,6 +69,7 @@ def join(graph: FlowGraph, labels: Sequence[Labels], bounds: Bounds = BOUNDS) ->
     flows: dict[int, list[Statement]] = defaultdict(list)
     through: dict[tuple[int, tuple[str, ...]], tuple[int, ...]] = {}
     subjects: dict[int, set[str]] = defaultdict(set)
+    own: dict[int, Surroundings] = {}
     processing: dict[int, list[tuple[tuple[int, int], Processing]]] = defaultdict(list)
     leaving = _leaving(graph)
     problems: list[InputError] = []
@@ -70,6 +82,8 @@ def join(graph: FlowGraph, labels: Sequence[Labels], bounds: Bounds = BOUNDS) ->
                 elements[vertex] += entry.statements
                 if entry.subjects:
                     subjects[vertex].update(entry.subjects)
+                if entry.contexts:
+                    own[vertex] = joined((own.get(vertex, NOT_STATED), Surroundings(entry.contexts)))
                 if entry.processing:
                     processing[vertex].append((entry.rank, entry.processing))
             problems += _through(graph, leaving, entry, vertices, through)
@@ -88,8 +102,9 @@ def join(graph: FlowGraph, labels: Sequence[Labels], bounds: Bounds = BOUNDS) ->
         through,
         outside,
         subjects={vertex: tuple(sorted(groups)) for vertex, groups in sorted(subjects.items())},
+        surroundings=everywhere(graph, own, joined((system, *(file.surroundings for file in labels)))),
         processing={vertex: united(said) for vertex, said in sorted(processing.items())},
-        of_robots={"": system} if (system := _of_system(labels, problems)) else {},
+        of_robots={"": whole} if (whole := _of_system(labels, problems)) else {},
     )
     return bound, problems
 

@@ -29,6 +29,8 @@ class Entry:
     ----------
     subjects
         Of a source: whom its data are about, in a person's words.
+    contexts
+        Of a source: where it works, some of ``CONTEXTS``.
     processing
         What the data there are processed for, and on which basis.
     rank
@@ -42,6 +44,7 @@ class Entry:
     subjects: tuple[str, ...] = ()
     processing: Processing = UNSTATED
     rank: tuple[int, int] = (0, 0)
+    contexts: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, shown
-from rosprivacy.analysis.model import UNSTATED, Place
+from rosprivacy.analysis.model import UNSTATED, Place, Surroundings
 from rosprivacy.analysis.non_ros import EVERY
 from rosprivacy.ingest.labels.entries import OWN, PROPOSED, ROBOT, SHIPPED
 from rosprivacy.ingest.labels.label_reader import LabelReader, check_mundane
@@ -53,6 +53,8 @@ class Labels:
         How long kinds of data may be kept at most.
     own
         Whether it is about one robot of a fleet, and outranks its model's.
+    surroundings
+        Where the system works, as the top of the file states it.
     processing
         Who is responsible for the whole system, what it is for, on which basis.
     """
@@ -66,6 +68,7 @@ class Labels:
     elements: tuple[Stated, ...] = ()
     limits: tuple[Limit, ...] = ()
     own: bool = False
+    surroundings: Surroundings = Surroundings()  # noqa: RUF009 - it is frozen
     processing: Processing = UNSTATED
 
 
@@ -152,6 +155,7 @@ def _labels(reader: LabelReader, top: Value, data: bytes, *, shipped: bool = Fal
         tuple(reader.elements),
         tuple(reader.limits),
         own,
+        reader.surroundings,
         reader.processing,
     )
 

@@ -24,6 +24,7 @@ from rosprivacy.analysis.model import (
     Processing,
     Severity,
     Statement,
+    Surroundings,
 )
 from rosprivacy.ingest.labels.entries import EXACT, SHIPPED, Entry, FlowEntry, naming, specificity
 from rosprivacy.ingest.labels.name_reader import NameReader
@@ -35,6 +36,7 @@ from rosprivacy.ingest.labels.stated_processing import (
     read_system,
     with_transfer,
 )
+from rosprivacy.ingest.labels.surroundings import read_contexts, read_country
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -50,13 +52,27 @@ SECTIONS = {
     "actions": ("action",),
 }
 SIX_LISTS = ("source", "leak", "conduit", "sanitizer", "sensitive", "mundane")
-NODE_KEYS = ("source", "leak", "sanitizer", "conduit", "derives", "subjects", *OF_ELEMENT, "absent", "note")
-SAYS_NOTHING = ("subjects", *OF_ELEMENT, "note")  # of what data does
-CHANNEL_KEYS = ("only", "never", "note")
-FLOW_KEYS = ("from", "to", "only", "never", "note")
+NODE_KEYS = (
+    "source",
+    "leak",
+    "sanitizer",
+    "conduit",
+    "derives",
+    "subjects",
+    "context",
+    *OF_ELEMENT,
+    "absent",
+    "note",
+    "author",
+)
+SAYS_NOTHING = ("subjects", "context", *OF_ELEMENT, "note", "author")  # of what data does
+CHANNEL_KEYS = ("only", "never", "note", "author")
+FLOW_KEYS = ("from", "to", "only", "never", "note", "author")
 OUTSIDE = ("elements", "limits")
+SURROUNDINGS = ("context", "country")  # of a system
+SYSTEM = (*OF_SYSTEM, *SURROUNDINGS)
 NONE = "none"  # in place of categories: takes back what labels of lower rank say (rule S7)
-LONGEST_GROUP = 100  # characters of a group of persons
+LONGEST_GROUP = 100  # characters of a group of persons, or of the name of an author
 
 
 @dataclass
@@ -66,10 +82,12 @@ class LabelReader(NameReader):
     category: str
     tier: int
     above: int = 0
+    author: str = ""
     entries: list[Entry] = field(default_factory=list)
     flows: list[FlowEntry] = field(default_factory=list)
     elements: list[Stated] = field(default_factory=list)
     limits: list[Limit] = field(default_factory=list)
+    surroundings: Surroundings = field(default_factory=Surroundings)
     processing: Processing = UNSTATED
 
     def rank(self, specific: int) -> tuple[int, int]:
@@ -88,11 +106,20 @@ class LabelReader(NameReader):
     def _labels(self, top: Value) -> None:
         self.version(top, "labels", "label")
         self.system(top)
-        for key, line, value in self.entries_of(top, ("labels", *OF_SYSTEM, *SECTIONS, *OUTSIDE, "flows")):
-            if key in ("flows", *OUTSIDE):
+        self.author = self._author(top)
+        for key, line, value in self.entries_of(top, ("labels", "author", *SYSTEM, *SECTIONS, *OUTSIDE, "flows")):
+            if key in SURROUNDINGS:
+                self.surroundings = self.surrounded(self.surroundings, key, value)
+            elif key in ("flows", *OUTSIDE):
                 self.outside(key, line, value)
             elif key in SECTIONS:
                 self._section(key, line, value)
+
+    def surrounded(self, known: Surroundings, key: str, value: Value) -> Surroundings:
+        """Return where a system works with what one more key says of it."""
+        if key == "context":
+            return replace(known, contexts=read_contexts(self, value))
+        return replace(known, country=read_country(self, value))
 
     def system(self, top: Value) -> None:
         """Read what the top says of the whole system; fleet files say it too."""
@@ -117,15 +144,14 @@ class LabelReader(NameReader):
         if stated is None:
             return
         labels = replace(value, entries=tuple(entry for entry in value.entries if entry[0] in NODE_KEYS))
-        statements = tuple(self._node(labels, stated.place, self.rank(EXACT)))
+        statements = self._said(labels, self._node(labels, stated.place, self.rank(EXACT)))
         if stated.kind == "device" and all(key in SAYS_NOTHING for key, *_ in labels.entries):
             self.problem(line, f"device {shown(name)!r} does nothing", "say what comes from it: source: [Voice]")
         processing = self._processing(labels, stated.place)
         facts = with_transfer(self, value, stated.outside, processing.bases)
         self.elements.append(replace(stated, outside=facts))
-        subjects = self._subjects(labels)
-        kinds, rank = (stated.kind,), self.rank(EXACT)
-        self.entries.append(Entry(kinds, name, stated.place, statements, subjects, processing, rank))
+        about = self._subjects(labels), processing, self.rank(EXACT), self._contexts(labels)
+        self.entries.append(Entry((stated.kind,), name, stated.place, statements, *about))
 
     def _section(self, section: str, line: int, value: Value) -> None:
         if value.kind == "empty":
@@ -141,11 +167,29 @@ class LabelReader(NameReader):
                 continue
             rank = self.rank(specificity(name))
             read = self._node if section == "nodes" else self._channel
-            statements = tuple(replace(s, naming=naming(name)) for s in read(label, Place(self.file, at), rank))
+            statements = self._said(label, read(label, Place(self.file, at), rank), naming(name))
             place, of_node = Place(self.file, at), section == "nodes"
             subjects = self._subjects(label) if of_node else ()
             processing = self._processing(label, place) if of_node else UNSTATED
-            self.entries.append(Entry(SECTIONS[section], name, place, statements, subjects, processing, rank))
+            contexts = self._contexts(label) if of_node else ()
+            self.entries.append(Entry(SECTIONS[section], name, place, statements, subjects, processing, rank, contexts))
+
+    def _said(self, label: Value, statements: Iterable[Statement], how: str = NAME) -> tuple[Statement, ...]:
+        """Statements of one entry, with how it names, its reason, and who says it: its author, or the file's."""
+        note = label.get("note")
+        why = note.text.strip() if note and note.kind == "text" else ""
+        author = self._author(label) or self.author
+        return tuple(replace(s, naming=how, why=s.why or why, author=author) for s in statements)
+
+    def _author(self, label: Value) -> str:
+        value = label.get("author")
+        if value is None:
+            return ""
+        if value.kind != "text" or not value.text.strip() or len(value.text) > LONGEST_GROUP:
+            what = f"author takes a name, not {shown(value.text) or f'a {value.kind}'!r}"
+            self.problem(value.line, what, f"write who says it, in at most {LONGEST_GROUP} characters")
+            return ""
+        return value.text.strip()
 
     def _node(self, label: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
         if label.kind == "empty":  # a line of --init that nobody has filled in yet
@@ -221,7 +265,7 @@ class LabelReader(NameReader):
 
     def _absent(self, label: Value, why: Value, place: Place, rank: tuple[int, int]) -> Iterable[Statement]:
         """A node that has a profile and is not on the robot: nothing gets there, and nothing comes from it."""
-        beside = [key for key, *_ in label.entries if key not in ("absent", "note")]
+        beside = [key for key, *_ in label.entries if key not in ("absent", "note", "author")]
         if why.kind != "text" or not why.text.strip():
             self.problem(place.line, "absent without a reason", "write why it is not there: {absent: a test tool}")
         elif beside:
@@ -241,6 +285,11 @@ class LabelReader(NameReader):
                 what = f"{shown(item.text) or f'a {item.kind}'!r} where a group of persons is named"
                 self.problem(item.line, what, f"write a word or two, at most {LONGEST_GROUP} characters")
         return tuple(sorted({item.text.strip() for item in value.items}))
+
+    def _contexts(self, label: Value) -> tuple[str, ...]:
+        """Where a source works, beside what is said of its system."""
+        value = label.get("context")
+        return () if value is None else read_contexts(self, value)
 
     def _processing(self, label: Value, place: Place) -> Processing:
         """What data there are processed for, and on which basis."""
@@ -279,7 +328,7 @@ class LabelReader(NameReader):
         names = [end.name for end in ends.values()]
         rank = self.rank(sum(map(specificity, names)))
         how = GLOB if any(naming(name) != NAME for name in names) else NAME
-        statements = tuple(replace(s, naming=how) for s in self._restrictions(item, FLOW_KEYS, rank))
+        statements = self._said(item, self._restrictions(item, FLOW_KEYS, rank), how)
         if len(ends) < len(("from", "to")):
             self.problem(item.line, "a flow needs from and to", "write {from: /a, to: /b, never: [Video]}")
             return

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.model import CLEANS, NON_ROS
+from rosprivacy.analysis.model import CLEANS, CONTEXTS, NON_ROS
 from rosprivacy.analysis.non_ros import RECIPIENTS, TRANSFERS
 from rosprivacy.ingest.labels.label_reader import LONGEST_GROUP, NONE, SAYS_NOTHING
 from rosprivacy.ingest.labels.name_reader import END_KINDS
@@ -30,6 +30,17 @@ END_OF_KIND = {
     "properties": dict.fromkeys(END_KINDS, END),
     "description": "Which of several of that name: {topic: /map} or {node: /map}.",
 }
+AUTHOR = {
+    "type": "string",
+    "pattern": "\\S",
+    "maxLength": LONGEST_GROUP,
+    "description": "Who says it; of a file, of all that names nobody else.",
+}
+CONTEXT = {"anyOf": [{"enum": list(CONTEXTS)}, {"type": "array", "minItems": 1, "items": {"enum": list(CONTEXTS)}}]}
+SURROUNDINGS = {
+    "context": {**CONTEXT, "description": "Where the system works: what its data may reveal depends on it."},
+    "country": {"type": "string", "pattern": "^[A-Z]{2}$", "description": "Where it runs, ISO 3166-1; quote NO."},
+}
 OUTSIDE_NAME = {"type": "string", "pattern": r"^[^/=*?\[:][^:]*$", "maxLength": 200}
 NAME = {"type": "string", "pattern": r"^[/=*?\[]", "description": "A name, a glob, or = and a name with glob signs."}
 
@@ -51,12 +62,14 @@ def label_schema(categories: Iterable[Category]) -> dict[str, Any]:
         "additionalProperties": False,
         "properties": {
             "labels": {"const": 1, "description": "Version of the format."},
+            "author": AUTHOR,
             **processing_of_system(),
             "nodes": _section("node", "Labels of nodes, by absolute name or glob."),
             "channels": _section("channel", "Labels of topics, services and actions, by absolute name or glob."),
             "topics": _section("channel", "As channels, for topics only."),
             "services": _section("channel", "As channels, for services only."),
             "actions": _section("channel", "As channels, for actions only."),
+            **SURROUNDINGS,
             **non_ros_sections(),
         },
         "$defs": _definitions(list(categories)),
@@ -119,7 +132,10 @@ def _section(kind: str, description: str) -> dict[str, Any]:
 def _definitions(categories: list[Category]) -> dict[str, Any]:
     one = {"$ref": "#/$defs/category"}
     some = {"type": "array", "minItems": 1, "items": one}
-    note = {"type": "string", "description": "Why; for people."}
+    said = {
+        "note": {"type": "string", "description": "Why; stands in the report where the answer hangs on it."},
+        "author": AUTHOR,
+    }
     restrictions = {
         "only": {**some, "description": "Carries these at most."},
         "never": {**some, "description": "Does not carry these."},
@@ -131,18 +147,18 @@ def _definitions(categories: list[Category]) -> dict[str, Any]:
                 {"type": "string", "minLength": 1, "description": "Another name, a synonym or the IRI of one."},
             ]
         },
-        "node": {"anyOf": [{"type": "null"}, {"const": "conduit"}, _node(one, some, note)]},
+        "node": {"anyOf": [{"type": "null"}, {"const": "conduit"}, _node(one, some, said)]},
         "channel": {
             "anyOf": [
                 {"type": "null"},
                 {"enum": ["mundane", "sensitive"]},
-                _object({**restrictions, "note": note}),
+                _object({**restrictions, **said}),
             ]
         },
         "duration": {"type": "string", "pattern": "^P", "description": "ISO 8601, such as P30D."},
-        "element": {"oneOf": [_element(kind, _node(one, some, note)) for kind in NON_ROS]},
+        "element": {"oneOf": [_element(kind, _node(one, some, said)) for kind in NON_ROS]},
         "flow": {
-            **_object({"from": _either(END), "to": _either(END), **restrictions, "note": note}),
+            **_object({"from": _either(END), "to": _either(END), **restrictions, **said}),
             "required": ["from", "to"],
             "anyOf": [  # what policies know can only be restricted
                 {"required": ["only"]},
@@ -184,7 +200,7 @@ def _element(kind: str, labels: dict[str, Any]) -> dict[str, Any]:
     return element
 
 
-def _node(one: dict[str, Any], some: dict[str, Any], note: dict[str, Any]) -> dict[str, Any]:
+def _node(one: dict[str, Any], some: dict[str, Any], said: dict[str, Any]) -> dict[str, Any]:
     channels = {"type": "array", "minItems": 1, "items": NAME}
     none = {"const": NONE}
     return _object(
@@ -210,9 +226,10 @@ def _node(one: dict[str, Any], some: dict[str, Any], note: dict[str, Any]) -> di
                 "items": {"type": "string", "pattern": "\\S", "maxLength": LONGEST_GROUP},
                 "description": "Of a source: whom its data are about, such as residents or staff.",
             },
+            "context": {**CONTEXT, "description": "Of a source: where it works, beside what is said of its system."},
             **_processing(),
             "absent": {"type": "string", "minLength": 1, "description": "Why it is not on this robot; stands alone."},
-            "note": note,
+            **said,
         }
     )
 

@@ -32,11 +32,11 @@ class NameReader(FileReader):
     error: type[InputError] = field(default=LabelError, kw_only=True)
 
     def entries_of(self, value: Value, known: tuple[str, ...]) -> Iterable[tuple[str, int, Value]]:
-        """Return the entries of a map but for notes, those with unknown keys reported."""
+        """Return the entries of a map but for notes and authors, those with unknown keys reported."""
         for key, line, child in super().entries_of(value, known):
-            if key != "note":
+            if key not in ("note", "author"):
                 yield key, line, child
-            elif child.kind != "text":
+            elif key == "note" and child.kind != "text":
                 self.problem(line, f"note takes text, not a {child.kind}", "write it, or remove it")
 
     def not_empty(self, value: Value, what: str) -> None:

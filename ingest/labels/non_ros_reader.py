@@ -16,6 +16,7 @@ from rosprivacy.analysis.model import NON_ROS, NonRosFacts, Place
 from rosprivacy.analysis.non_ros import EVERY, RECIPIENTS, TRANSFERS
 from rosprivacy.analysis.written_names import GLOB_SIGNS, LITERAL
 from rosprivacy.ingest.labels.countries import countries
+from rosprivacy.ingest.labels.surroundings import read_country
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -158,11 +159,8 @@ class _Facts:
             self.between = ends
 
     def _take_country(self, value: Value) -> None:
-        if value.text in countries().areas:  # YAML takes NO for 'no', so the text counts
-            self._texts |= countries().place(value.text)
-        else:
-            what = f"{_written(value)} is not an ISO 3166-1 country code"
-            self._reader.problem(value.line, what, countries().hint(value.text))
+        if code := read_country(self._reader, value):
+            self._texts |= countries().place(code)
 
     def _take_text(self, key: str, value: Value) -> None:
         allowed = {"recipient": RECIPIENTS, "transfer": (*TRANSFERS, "none")}.get(key)

@@ -41,7 +41,7 @@ def read_earlier(file: str) -> Earlier:
     InputError
         If it cannot be read, or is no such document; with the first place where it is not, and how many more.
     """
-    data = _bytes(file)
+    data = bytes_of(file, HINT)
     return Earlier(document_of(data, file, HINT), file, hashlib.sha256(data).hexdigest())
 
 
@@ -73,14 +73,26 @@ def document_of(data: bytes, file: str, again: str) -> Mapping[str, Any]:
     return document
 
 
-def _bytes(file: str) -> bytes:
+def bytes_of(file: str, again: str) -> bytes:
+    """Return what stands in a file that the program wrote before.
+
+    Parameters
+    ----------
+    again
+        How to get such a file: the hint.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, or is too large.
+    """
     try:
         path = Path(file)
         if not path.is_file():
-            raise InputError(file, 0, "is not a file" if path.exists() else "not found", HINT)
+            raise InputError(file, 0, "is not a file" if path.exists() else "not found", again)
         if path.stat().st_size > LARGEST:
-            raise InputError(file, 0, f"{path.stat().st_size / 2**20:.0f} MB are too large", HINT)
+            raise InputError(file, 0, f"{path.stat().st_size / 2**20:.0f} MB are too large", again)
         with path.open("rb") as opened:
             return noted(opened, file).read()
     except (OSError, ValueError) as error:
-        raise InputError(file, 0, f"cannot be read: {reason(error)}", HINT) from None
+        raise InputError(file, 0, f"cannot be read: {reason(error)}", again) from None

@@ -19,19 +19,23 @@ if TYPE_CHECKING:
         ListedDecision,
         OpenEntry,
         Reached,
+        RelianceEntry,
         UnknownEnd,
     )
     from rosprivacy.report.contract.stated import (
         Carried,
         CategoryEntry,
+        ContextEntry,
         DerivationEntry,
         NonRosEntry,
         OverruledEntry,
+        PointerEntry,
         ProcessedEntry,
         ProcessingEntry,
         RolesEntry,
         SanitizerEntry,
         SubjectsEntry,
+        SurroundingsEntry,
     )
 
 
@@ -120,10 +124,14 @@ class AnalysisDocument(TypedDict):
     open: list[OpenEntry]
     unknown_ends: NotRequired[list[UnknownEnd]]
     taken_away: NotRequired[list[LedgerRow]]
+    hangs_on: NotRequired[list[RelianceEntry]]
     carries: list[Carried]
     roles: NotRequired[list[RolesEntry]]
     outside: list[NonRosEntry]
     subjects: list[SubjectsEntry]
+    surroundings: NotRequired[list[SurroundingsEntry]]
+    contexts: NotRequired[list[ContextEntry]]
+    look_at: NotRequired[list[PointerEntry]]
     processing: NotRequired[list[ProcessingEntry]]
     processed_for: NotRequired[list[ProcessedEntry]]
     sanitizers: list[SanitizerEntry]

@@ -84,6 +84,12 @@ class LawEntry(TypedDict):
     condition: str
 
 
+class ContextLaw(LawEntry):
+    """What a finding's data may reveal in a context."""
+
+    context: str
+
+
 class WhyEntry(TypedDict):
     """A reason as a key and values, for words of any language."""
 
@@ -93,6 +99,8 @@ class WhyEntry(TypedDict):
 
 class FindingMore(TypedDict, total=False):
     """What only some findings have."""
+
+    in_context: list[ContextLaw]  # absent in earlier versions
 
     reason: str
     because: WhyEntry
@@ -210,6 +218,45 @@ class GlobEntry(PlaceEntry):
     leak: ElementEntry | None
     open: ElementEntry | None
     warning: str
+
+
+class OpeningEntry(TypedDict):
+    """A finding that there would be, or would be worse, if a statement were wrong."""
+
+    kind: str
+    category: str
+    source: ElementEntry
+    leak: ElementEntry
+    dismissed: bool
+    pseudonymised: bool
+    new: bool
+
+
+class OpenedEntry(TypedDict):
+    """An element that would be open if a statement were wrong."""
+
+    element: ElementEntry
+    categories: list[str]
+
+
+class RelianceEntry(TypedDict):
+    """What hangs on one statement of a label file."""
+
+    role: str
+    method: str
+    categories: list[str]
+    file: str
+    line: int
+    glob: bool
+    shipped: bool
+    why: str
+    author: str
+    elements: list[ElementEntry]
+    to: list[ElementEntry]
+    findings: list[OpeningEntry]
+    questions: list[OpenedEntry]
+    refused: str
+    perhaps: bool
 
 
 class LedgerRow(TypedDict):

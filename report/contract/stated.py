@@ -20,8 +20,50 @@ class ProvisionEntry(LawEntry):
     translations: Texts
 
 
+class ContextProvision(ProvisionEntry):
+    """What data of a category may reveal in a context."""
+
+    context: str
+
+
+class ContextEntry(TypedDict):
+    """A context that is stated of a source or of the system."""
+
+    name: str
+    title: str
+    definition: str
+    translations: Texts
+
+
+class PointerEntry(TypedDict):
+    """A provision to look at beside what is followed into paths."""
+
+    provision: str
+    iri: str
+    title: str
+    meaning: str
+    as_of: str
+    applies_from: str
+    country: str
+    address: str
+    categories: list[str]
+    contexts: list[str]
+    translations: Texts
+
+
+class SurroundingsEntry(TypedDict):
+    """Where an element that brings data in works."""
+
+    element: ElementEntry
+    contexts: list[str]
+    country: NotRequired[str]
+
+
 class CategoryEntry(TypedDict):
     """A category that is emitted."""
+
+    in_context: NotRequired[list[ContextProvision]]
+    look_at: NotRequired[list[str]]
 
     name: str
     iri: str

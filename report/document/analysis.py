@@ -8,19 +8,22 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
+from rosprivacy.analysis.contexts import article9_in, revealed
 from rosprivacy.analysis.findings.review_order import Behind
 from rosprivacy.analysis.findings.sanitizing import absent, cleanings, makings
 from rosprivacy.analysis.kernel.ranks import in_words
 from rosprivacy.analysis.legal import turned_special
 from rosprivacy.analysis.model import GOES_NOWHERE, NO_LEAK_NAMED, UNREAD_FILE
 from rosprivacy.analysis.written_names import literal
-from rosprivacy.report.document import ledger
+from rosprivacy.report.document import ledger, reliance
 from rosprivacy.report.document.non_ros import inventory, taken_by_kind, without_backups
+from rosprivacy.report.document.pointers import pointers, situations
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
 
     from rosprivacy.analysis.answer import Analysis, Finding, OpenQuestion, Step
+    from rosprivacy.analysis.contexts import Contexts
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.kernel.overruled import Overruled
     from rosprivacy.analysis.model import Category, Diagnostic, Element, Flow, FlowGraph, Grant, Legal, Reason
@@ -46,6 +49,7 @@ if TYPE_CHECKING:
         OverruledEntry,
         ProvisionEntry,
         SanitizerEntry,
+        SurroundingsEntry,
         Texts,
     )
 
@@ -58,12 +62,14 @@ def analysis_document(answer: Answer) -> AnalysisDocument:
     """Return the analysis as one JSON object; decisions and a fleet's keys are added in ``whole.py``."""
     analysis, taken = answer.shown, answer.taken_away
     categories, hierarchy, graph = answer.vocabulary.categories, answer.vocabulary.hierarchy, analysis.graph
+    at_sources = answer.contexts
+    contexts = at_sources.everywhere
     return {
         "format": FORMAT,
         "verdict": str(analysis.verdict),
         "view": graph.view,
-        "categories": [_category(categories[name], hierarchy) for name in analysis.emitted],
-        "findings": [_finding(finding, categories) for finding in analysis.findings],
+        "categories": [_category(categories[name], hierarchy, contexts) for name in analysis.emitted],
+        "findings": [_finding(finding, at_sources) for finding in analysis.findings],
         "open": _open(answer, analysis.open),
         "unknown_ends": [
             {
@@ -74,6 +80,7 @@ def analysis_document(answer: Answer) -> AnalysisDocument:
             for end in analysis.unknown_ends
         ],
         "taken_away": ledger.rows(taken, element_dict),
+        "hangs_on": reliance.rows(answer.hangs_on, element_dict),
         "carries": [
             {
                 "element": element_dict(carried.element),
@@ -93,6 +100,9 @@ def analysis_document(answer: Answer) -> AnalysisDocument:
             {"element": element_dict(graph.elements[vertex]), "subjects": list(groups)}
             for vertex, groups in sorted(answer.bound.subjects.items())
         ],
+        "surroundings": _surroundings(answer),
+        "contexts": situations(answer.vocabulary, contexts),
+        "look_at": pointers(answer.vocabulary, analysis.emitted, contexts),
         "sanitizers": _sanitizers(analysis),
         "derivations": _derivations(analysis),
         "unreached": _unreached(analysis),
@@ -214,7 +224,21 @@ def _enclaves(graph: FlowGraph) -> list[EnclaveEntry]:
     return [{"enclave": enclave, "nodes": sorted(inside)} for enclave, inside in sorted(nodes.items())]
 
 
-def _category(category: Category, hierarchy: Hierarchy) -> CategoryEntry:
+def _surroundings(answer: Answer) -> list[SurroundingsEntry]:
+    """Where the elements that bring data in work, as people state it of them or of their system."""
+    analysis, bound = answer.shown, answer.bound
+    elements = analysis.graph.elements
+    sources = {element for element, said in analysis.roles.items() if any("source" in of for of in said.values())}
+    rows: list[SurroundingsEntry] = []
+    for vertex, where in sorted(bound.surroundings.items()):
+        if elements[vertex] in sources:
+            rows.append({"element": element_dict(elements[vertex]), "contexts": list(where.contexts)})
+            if where.country:
+                rows[-1]["country"] = where.country
+    return rows
+
+
+def _category(category: Category, hierarchy: Hierarchy, contexts: frozenset[str]) -> CategoryEntry:
     return {
         "name": category.name,
         "iri": category.iri,
@@ -224,9 +248,11 @@ def _category(category: Category, hierarchy: Hierarchy) -> CategoryEntry:
         "data_types": list(category.data_types),
         "identity_factors": list(category.identity_factors),
         "gdpr": category.gdpr,
-        "article9": category.article9,
+        "article9": article9_in(category, contexts),
         "reason": category.reason,
         "law": [_legal(legal) for legal in category.law],
+        "in_context": [{**_legal(legal), "context": legal.context} for legal in revealed(category, contexts)],
+        "look_at": list(category.look_at),
         "translations": _translations(category.translations),
     }
 
@@ -237,9 +263,9 @@ def _translations(texts: Mapping[str, Mapping[str, str]]) -> Texts:
     return {language: said[language] for language in sorted(said) if said[language]}
 
 
-def _law(category: Category) -> list[LawEntry]:
+def _law(law: Iterable[Legal]) -> list[LawEntry]:
     """Return what a person has to look up about a finding's data: no verdict on the system."""
-    return [{"provision": legal.name, "verdict": legal.verdict, "condition": legal.condition} for legal in category.law]
+    return [{"provision": legal.name, "verdict": legal.verdict, "condition": legal.condition} for legal in law]
 
 
 def _legal(legal: Legal) -> ProvisionEntry:
@@ -289,8 +315,9 @@ def _why(why: Reason) -> WhyEntry:
     return {"key": why.key, "values": dict(why.values)}
 
 
-def _finding(finding: Finding, categories: Mapping[str, Category]) -> FindingEntry:
+def _finding(finding: Finding, contexts: Contexts) -> FindingEntry:
     """A finding; its data became a special category at ``special_from``, where that was none before."""
+    categories = contexts.categories
     category, turned = categories[finding.category], turned_special(finding, categories)
     reason: FindingMore = {"reason": finding.reason, "because": _why(finding.why)} if finding.why else {}
     beside: FindingMore = {"beside_pseudonymised": True} if finding.beside else {}
@@ -306,9 +333,12 @@ def _finding(finding: Finding, categories: Mapping[str, Category]) -> FindingEnt
         "disjoint_paths": finding.disjoint_paths,
         "through": [element_dict(element) for element in finding.through],
         "dismissed": finding.dismissed,
-        "article9": category.article9,
+        "article9": contexts.article9(finding),
         "special_from": element_dict(turned) if turned else None,
-        "law": _law(category),
+        "law": _law(category.law),
+        "in_context": [
+            {"context": legal.context, **said} for legal in contexts.revealed(finding) for said in _law((legal,))
+        ],
         **reason,
         "accepted": finding.accepted,
         **beside,

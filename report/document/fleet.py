@@ -36,6 +36,7 @@ def fleet_document(told: AnalysisDocument, view: FleetView, counts: Counts) -> A
     return {
         **told,
         "subjects": _without(told["subjects"], likeness),
+        "surroundings": _without(told["surroundings"], likeness),
         "sanitizers": _without(told["sanitizers"], likeness),
         "derivations": _without(told["derivations"], likeness),
         "unreached": _without(told["unreached"], likeness),

@@ -80,7 +80,13 @@ def _value(value: Any, key: str, index: Index) -> str:
 def _flags(said: Mapping[str, Any], findings: Iterable[Mapping[str, Any]], index: Index) -> Iterator[str]:
     """What an acceptance lacks: a legal basis, a ground for special categories, one of chapter V."""
     held = list(findings)
-    law = {f["category"]: tuple((legal["provision"], legal["verdict"]) for legal in f["law"]) for f in held}
+    law = {f["category"]: tuple(_provisions(f["category"], held)) for f in held}
     for gap in gaps(said["legal_basis"], [(f["kind"], f["category"]) for f in held], law):
         provision = index.provision(gap.category, gap.provision)
         yield index.words(f"d.gap.{gap.lack.name.lower()}", data=index.data(gap.category), provision=provision)
+
+
+def _provisions(category: str, findings: Iterable[Mapping[str, Any]]) -> Iterator[tuple[str, str]]:
+    """What can apply to data of a category, where their sources work too."""
+    rows = (row for f in findings if f["category"] == category for row in (*f["law"], *f.get("in_context", ())))
+    yield from dict.fromkeys((row["provision"], row["verdict"]) for row in rows)

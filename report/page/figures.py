@@ -13,7 +13,7 @@ from rosprivacy.report.page.redacted_pictures import renamed
 from rosprivacy.report.pictures.graphviz import available
 from rosprivacy.report.pictures.looks import INK, LINE_LOOKS, ROLE_LOOKS, SHORTEST, WAY, Look
 from rosprivacy.report.pictures.overview import drawable
-from rosprivacy.report.pictures.phrases import TEXTS, Phrases
+from rosprivacy.report.pictures.phrases import Phrases
 from rosprivacy.report.words.typography import plain
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ def figures(
     entries = [entry for entry in report.entries if entry.id in findings]
     words = report.words
     titles = {kind.name: kind.title for kind in report.kinds}
-    say = Phrases({name: plain(words.places(f"p.{name}")) for name in TEXTS}, titles)
+    say = Phrases.told(words, titles)
     labels = {entry.id: words("f.picture", way=entry.brief) for entry in entries}
     wishes = Wishes(say=say, labels=labels)
     if aliases is not None:

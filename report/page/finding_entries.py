@@ -14,6 +14,7 @@ from rosprivacy.report.naming import key, line, name
 from rosprivacy.report.page.decision_texts import Decision, decision_of
 from rosprivacy.report.page.entries_of_robots import finding_pattern, grouped
 from rosprivacy.report.page.index import anchor, state
+from rosprivacy.report.page.look_at import revealed
 from rosprivacy.report.robots import forms_in_words
 from rosprivacy.report.words.reasons import reason_told
 
@@ -250,6 +251,7 @@ def _notes(finding: Mapping[str, Any], index: Index) -> Iterator[str]:
     words = index.words
     if reason := reason_told(finding, words, index.data):
         yield words("f.because", reason=reason)
+    yield from revealed(finding, index)
     if finding["dismissed"]:
         yield words("f.dismissed", names=words.row(map(name, finding["through"])))
     if finding.get("beside_pseudonymised"):

@@ -16,7 +16,7 @@ from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup, escape
 
 from rosprivacy.report.page.figures import Figures, page_legend
-from rosprivacy.report.page.outline import PARAGRAPHS, SIGNED
+from rosprivacy.report.page.outline import PARAGRAPHS
 from rosprivacy.report.page.spaced_templates import SpacedTemplates
 from rosprivacy.report.pictures.looks import INK
 
@@ -60,7 +60,6 @@ def html(report: Outline, drawn: Figures | None = None) -> str:
         ink=INK,
         looks=page_legend(report.words) if drawn and drawn.of else [],
         paragraphs=PARAGRAPHS,
-        signed=SIGNED,
     )
     return page.strip() + "\n"
 

@@ -100,7 +100,8 @@ class Index:
 
     def provision(self, category: str, named: str) -> str:
         """Return what a provision that is stated of a kind of data is called; its name where it is not known."""
-        stated = self.categories[category]["law"] if category in self.categories else ()
+        known = self.categories.get(category, {})
+        stated = (*known.get("law", ()), *known.get("in_context", ()))
         legal = next((legal for legal in stated if legal["provision"] == named), None)
         return text(legal, "provision", self.words.language) if legal else fit(named)
 

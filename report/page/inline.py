@@ -15,7 +15,7 @@ from rosprivacy.report.pictures.graphviz import Graphviz, Job, TooLongError
 from rosprivacy.report.pictures.narrow import folded
 from rosprivacy.report.pictures.overview import overview
 from rosprivacy.report.pictures.svg import alt_text
-from rosprivacy.report.pictures.views import LONGER, PER_BOX, FindingViews, bounded
+from rosprivacy.report.pictures.views import PER_BOX, FindingViews, bounded, is_cut
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -115,7 +115,7 @@ def picture_of_all(analysis: Analysis, findings: Sequence[Finding], wishes: Wish
 
 
 def _is_whole(picture: Picture, whole: Picture) -> bool:
-    cut = any(note.startswith(LONGER) for note in whole.notes)
+    cut = any(is_cut(note, whole.words) for note in whole.notes)
     return not cut and (len(picture.boxes), len(picture.lines)) == (len(whole.boxes), len(whole.lines))
 
 

@@ -10,8 +10,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.text import fit, printable
+from rosprivacy.ontology.iris import as_published
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import text
+from rosprivacy.report.page.look_at import LookAt, context_of, of_kind
 from rosprivacy.report.words.typography import spaced
 
 if TYPE_CHECKING:
@@ -60,6 +62,10 @@ class Kind:
         Names that it can reach by a path that is to be assessed or accepted.
     open
         How many elements that it gets to are not reviewed.
+    in_context
+        (what a context is called, what such data may reveal there).
+    look_at
+        Further provisions to look at.
     """
 
     name: str
@@ -76,6 +82,8 @@ class Kind:
     entries: tuple[Entry, ...]
     places: tuple[str, ...]
     open: int
+    in_context: tuple[tuple[str, Provision], ...]
+    look_at: tuple[LookAt, ...]
 
     @property
     def anchor(self) -> str:
@@ -106,7 +114,7 @@ def _kind(category: Mapping[str, Any], index: Index, entries: tuple[Entry, ...])
     return Kind(
         name=fit(of),
         title=index.data(of),
-        iri=fit(category["iri"]),
+        iri=fit(as_published(category["iri"])),
         definition=text(category, "definition", language),
         types=tuple(index.words.known(f"type.{kind}", fit(kind)) for kind in category["data_types"]),
         factors=tuple(
@@ -120,6 +128,11 @@ def _kind(category: Mapping[str, Any], index: Index, entries: tuple[Entry, ...])
         entries=entries,
         places=index.names(reached),
         open=count_rows(q for q in index.document["open"] if of in q["categories"]).elements,
+        in_context=tuple(
+            (context_of(legal["context"], index), provision(legal, of, index))
+            for legal in category.get("in_context", ())
+        ),
+        look_at=of_kind(of, index),
     )
 
 

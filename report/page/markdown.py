@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 
-from rosprivacy.report.page.outline import PARAGRAPHS, SIGNED
+from rosprivacy.report.page.outline import PARAGRAPHS
 from rosprivacy.report.page.spaced_templates import SpacedTemplates
 from rosprivacy.report.words.typography import NARROW, WIDE
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 _SPECIAL = re.compile(r"([\\`*_{}\[\]#+!|~$@]|(?<=:)//|(?<=www)\.)", re.IGNORECASE)
 _HTML = {"&": "&amp;", "<": "&lt;", ">": "&gt;"}
 _BREAKS = re.compile(rf"[^\S{WIDE}{NARROW}]+")  # what is no space that keeps to its word
-_LEADING = re.compile(r"^(\s*)(-|=|\d+(?=[.)]))")
+_LEADING = re.compile(r"^(\s*)(-|=)|^(\s*\d+)([.)])")  # of a number, the sign after it: before a digit no \ escapes
 
 
 def markdown(report: Outline) -> str:
@@ -31,7 +31,7 @@ def markdown(report: Outline) -> str:
     text = (
         _environment(report.words.language)
         .get_template("report.md.j2")
-        .render(r=report, t=report.words, paragraphs=PARAGRAPHS, signed=SIGNED)
+        .render(r=report, t=report.words, paragraphs=PARAGRAPHS)
     )
     return re.sub(r"\n{3,}", "\n\n", text).strip() + "\n"
 
@@ -43,12 +43,14 @@ def escaped(value: Any) -> str:
     &lt;b&gt;\[x\](y)\|\`
     >>> print(escaped("https://example.org"), escaped("- a"), escaped("@someone"))
     https:\//example.org \- a \@someone
+    >>> print(escaped("2.079 channels"), escaped("1) a"))
+    2\.079 channels 1\) a
     """
     if isinstance(value, Markup):
         return str(value)
     line = _BREAKS.sub(" ", str(value)).strip()
     line = _SPECIAL.sub(r"\\\1", "".join(_HTML.get(c, c) for c in line))
-    return _LEADING.sub(r"\1\\\2", line)
+    return _LEADING.sub(r"\1\3\\\2\4", line)
 
 
 def code(value: str) -> Markup:

@@ -26,6 +26,7 @@ MOST = 12  # rows; the others are told by their number
 PLACES = 3  # groups of places that the first sentence names
 NAMED = 3  # elements in one row
 VALID = "valid"
+TO_DECIDE = ("open", "decided")  # states of entries
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,9 +90,7 @@ def opening(index: Index, entries: Iterable[Entry], verdict: str, means: str) ->
     Complexity: O(entries).
     """
     words = index.words
-    to_decide = [entry for entry in entries if entry.state in ("open", "decided")]
-    rows = [_row(group, index) for group in grouped(to_decide, _flow)]
-    rows.sort(key=lambda row: not row.waits)
+    rows = [flow for flow in flows(index, entries) if flow.entries[0].state in TO_DECIDE]
     waiting = sum(row.waits for row in rows)
     if not rows:
         return Opening(verdict, (means, *_first_to_review(index)))
@@ -101,8 +100,16 @@ def opening(index: Index, entries: Iterable[Entry], verdict: str, means: str) ->
     return Opening(headline, (*said, *_unreviewed(index)), tuple(rows[:MOST]), len(rows), more)
 
 
+def flows(index: Index, entries: Iterable[Entry]) -> list[ToDecide]:
+    """Return the flows that are decided by themselves, what waits for somebody first, what is accepted last."""
+    decided = [entry for entry in entries if entry.state != "dismissed"]
+    rows = [_row(group, index) for group in grouped(decided, _flow)]
+    return sorted(rows, key=lambda row: (row.entries[0].state not in TO_DECIDE, not row.waits))
+
+
 def _flow(entry: Entry) -> Any:
-    return entry.category, entry.source, entry.leak, entry.robots, entry.pseudonymised, entry.mark
+    same = (entry.category, entry.source, entry.leak, entry.robots, entry.pseudonymised)
+    return same, entry.mark, entry.state in TO_DECIDE
 
 
 def _can(rows: Sequence[ToDecide], index: Index) -> str:

@@ -17,7 +17,9 @@ from rosprivacy.report.document.analysis import files_not_read, lacking
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.finding_order import REVEALS, strength
 from rosprivacy.report.naming import name
-from rosprivacy.report.page import assumed, elements, sanitizers, tables
+from rosprivacy.report.page import assumed, elements, rights, sanitizers, tables
+from rosprivacy.report.page.assessment import Assessment, assessment
+from rosprivacy.report.page.assessment_file import Answers
 from rosprivacy.report.page.closed import Closed, closed
 from rosprivacy.report.page.closing import Closing, closing
 from rosprivacy.report.page.criteria import Criterion, criteria
@@ -26,9 +28,11 @@ from rosprivacy.report.page.finding_entries import Entry, finding_entries
 from rosprivacy.report.page.fleet_section import Fleet, fleet_told
 from rosprivacy.report.page.index import Index, state
 from rosprivacy.report.page.kinds import Kind, kinds
+from rosprivacy.report.page.look_at import LookAt, further
 from rosprivacy.report.page.non_ros import Outside, outside
-from rosprivacy.report.page.opening import Opening, opening
+from rosprivacy.report.page.opening import Opening, flows, opening
 from rosprivacy.report.page.purposes import Row, processed, signed
+from rosprivacy.report.page.reliance import Hanging, hanging
 from rosprivacy.report.page.review import Group, review, unknown_ends
 from rosprivacy.report.words.words import Words
 
@@ -39,14 +43,10 @@ if TYPE_CHECKING:
 
 DECIDE = "decide"  # its heading is what there is to decide
 SECTIONS = (
-    DECIDE, "closing", "changes", "fleet", "findings", "questions", "tables", "outside", "sanitizers", "criteria",
-    "sign", "kinds", "assumptions", "inventory", "method",
+    DECIDE, "closing", "hangs", "changes", "fleet", "findings", "questions", "tables", "rights", "outside",
+    "sanitizers", "risks", "criteria", "sign", "kinds", "assumptions", "inventory", "method",
 )  # fmt: skip
 PARAGRAPHS = 10  # of the method note
-SIGNED = (  # what Article 35(7) asks for, 35(2), 35(9), 36, and who answers for it
-    "purpose", "controller", "basis", "necessity", "risks", "measures", "residual", "advice", "views", "consultation",
-    "name", "date", "signature",
-)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,16 +120,19 @@ class Outline:
     silent: tuple[str, ...]
     recipients: tables.Table
     processed: tuple[Row, ...]
-    signed: Mapping[str, str]
     kinds: tuple[Kind, ...]
     entries: tuple[Entry, ...]
     orphans: tuple[Decision, ...]
+    hanging: tuple[Hanging, ...]
+    look_at: tuple[tuple[str, tuple[LookAt, ...]], ...]
     outside: tuple[Outside, ...]
     cleanings: tuple[sanitizers.Cleaning, ...]
     makings: tuple[sanitizers.Making, ...]
     questions: tuple[Group, ...]
     ends: tuple[Group, ...]
     criteria: tuple[Criterion, ...]
+    rights: tuple[rights.Group, ...]
+    assessment: Assessment
     size: str
     denied: str
     items: tuple[elements.Item, ...]
@@ -150,6 +153,7 @@ def outline(
     earlier: Earlier | None = None,
     redacted: bool = False,
     proposals: Mapping[str, Any] | str = "graph",
+    answers: Answers | None = None,
 ) -> Outline:
     """Return the outline of a report.
 
@@ -165,6 +169,8 @@ def outline(
         Whether names were replaced in the documents; the report then says so.
     proposals
         A mitigation document of the same system, or why there is none, see ``closing``.
+    answers
+        Of the person who assesses, as an earlier report saved them.
 
     Complexity: O(size of the documents), but for the cells of the tables: recipients x categories.
     """
@@ -203,16 +209,19 @@ def outline(
         silent=silent,
         recipients=tables.recipients(index, links),
         processed=processed(index),
-        signed=signed(index),
         kinds=kinds(index, entries),
         entries=entries,
         orphans=orphans(index),
+        hanging=hanging(index),
+        look_at=further(index),
         outside=outside(index),
         cleanings=sanitizers.cleanings(index, entries),
         makings=sanitizers.makings(index),
         questions=review(index),
         ends=unknown_ends(index),
         criteria=criteria(index),
+        rights=rights.rights(index),
+        assessment=assessment(words, flows(index, entries), answers or Answers(), signed(index)),
         size=words(
             "i.intro",
             elements=words.count(document["elements"], "element"),

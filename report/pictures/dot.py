@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.text import printable, shortened
 from rosprivacy.report.pictures.looks import INK, LEAK, LINE_LOOKS, SHAPES, SHORTEST, SOURCE, TEXT, box_look
 from rosprivacy.report.pictures.looks import legend as legend_of
-from rosprivacy.report.pictures.picture import PRIVACY
+from rosprivacy.report.pictures.picture import PRIVACY, RECORD
 from rosprivacy.report.pictures.swatches import FRAME, PACKED, box_style, line_style, swatches
 from rosprivacy.report.pictures.wording import broken, quoted
 
@@ -92,39 +92,40 @@ def _lines(texts: list[str]) -> str:
 def label_lines(picture: Picture, box: Box) -> list[str]:
     """Return what stands on a box: its name or names, the robot where there are several, and its words."""
     robots = len({box.robot for box in picture.boxes if box.robot}) > 1
-    lines = (
-        [shortened(box.robot, 28)] if robots and box.robot and not box.group.startswith(("robot ", box.robot)) else []
-    )
+    grouped = box.group.startswith((picture.say("pic.robot", robot=""), box.robot))
+    lines = [shortened(box.robot, 28)] if robots and box.robot and not grouped else []
     if len(box.names) == 1:
         lines += broken(box.names[0])
     else:
         lines += [shortened(name, 36) for name in box.names[:FOLDED_NAMES]]
         more = len(box.names) - FOLDED_NAMES
-        lines += [f"and {more} more"] if more > 0 else []
+        lines += [picture.say("more", n=more)] if more > 0 else []
     return [*lines, *(line for word in box.words for line in wrap(shortened(word, LONGEST_WORDS), WIDEST_WORDS))]
 
 
 def hover(picture: Picture, box: Box) -> str:
     """Return what is said of a box where there is room: its full name, kind, role."""
     names = ", ".join(shortened(name, 200) for name in box.names[:20])
-    said = [box.kind.replace("-", " "), *([f"robot {shortened(box.robot, 60)}"] if box.robot else [])]
+    said = [picture.say(f"pic.look.{box.kind}") if box.kind != RECORD else box.kind]
+    said += [picture.say("pic.robot", robot=shortened(box.robot, 60))] if box.robot else []
     if picture.view == "privacy":
-        said.append(box_look(picture.view, box.look).words.partition(":")[0])
+        said.append(picture.say(f"pic.look.{box.look}").partition(":")[0].rstrip())
     said += box.words
     if box.open and box.look != "open":
-        said.append("not reviewed for all")
+        said.append(picture.say("pic.partly"))
     return f"{names} ({'; '.join(said)})"
 
 
-def line_hover(line: Line) -> str:
+def line_hover(picture: Picture, line: Line) -> str:
     """Return what is said of a line: its ends, the grants behind it, what goes along it."""
-    arrow = f"{shortened(line.source[2], 100)} to {shortened(line.target[2], 100)}"
-    said = [line.words or LINE_LOOKS[line.look].words, ", ".join(line.roles)]
+    arrow = picture.words("pic.to").join((shortened(line.source[2], 100), shortened(line.target[2], 100)))
+    said = [line.words or picture.say(f"pic.look.{line.look}"), ", ".join(line.roles)]
     if line.carries:
-        said.append(("pseudonymised " if line.pseudonymised else "") + ", ".join(line.carries))
+        carries = ", ".join(line.carries)
+        said.append(picture.say("tty.hidden", kind=carries) if line.pseudonymised else carries)
     said += [shortened(str(place), 100) for place in line.places[:3]]
     if len(line.places) > 3:  # noqa: PLR2004 - as above
-        said.append(f"and {len(line.places) - 3} more lines")
+        said.append(picture.say("policy.more", n=len(line.places) - 3))
     return f"{arrow} ({'; '.join(text for text in said if text)})"
 
 
@@ -163,7 +164,7 @@ def _line(picture: Picture, line: Line, number: int, *, both: bool) -> str:
         *([f"arrowtail={look.head}"] if both and look.head != "normal" else []),
         *([f"weight={STRAIGHT}"] if line.look == SHORTEST else []),
         f"id=e{number}",
-        f"tooltip={quoted(line_hover(line))}",
+        f"tooltip={quoted(line_hover(picture, line))}",
     ]
     source, target, style = picture.keys[line.source], picture.keys[line.target], ", ".join(attributes)
     if not line.words:

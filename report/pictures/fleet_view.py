@@ -9,9 +9,10 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.text import counted
 from rosprivacy.report.pictures.looks import DATA, DERIVATION, LEAK, OPEN, REVIEWED, SANITIZER, SHORTEST, SOURCE, WAY
 from rosprivacy.report.pictures.picture import Box, Line, Picture, sorted_boxes, sorted_lines
+from rosprivacy.report.words.typography import plain
+from rosprivacy.report.words.words import IN_ENGLISH, Words
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -23,18 +24,20 @@ WAYS = (DATA, WAY, SHORTEST)  # the later hides the earlier
 ROLES = (LEAK, SOURCE, DERIVATION, SANITIZER, OPEN, REVIEWED)  # what a box in several roles is coloured by
 
 
-def label(robot: str, likeness: Likeness) -> str:
+def label(robot: str, likeness: Likeness, words: Words = IN_ENGLISH) -> str:
     """Return how the robot that is drawn for a robot is called; the name itself if it stands for no other.
 
     Parameters
     ----------
     robot
         Any of the fleet, or what is no robot.
+    words
+        Of the reader's language.
     """
     drawn = next((first for first, robots in likeness.members.items() if robot in robots), robot)
     drawn = likeness.second.get(drawn, drawn)
     others = likeness.weight(drawn) - 1
-    return f"{drawn} and {others:,} alike" if others > 0 else drawn
+    return plain(words("pic.alike", robot=drawn, n=others)) if others > 0 else drawn
 
 
 def represented(picture: Picture, likeness: Likeness) -> Picture:
@@ -42,7 +45,7 @@ def represented(picture: Picture, likeness: Likeness) -> Picture:
 
     Complexity: O(boxes + lines).
     """
-    labels = {robot: label(robot, likeness) for robot in {box.robot for box in picture.boxes}}
+    labels = {robot: label(robot, likeness, picture.words) for robot in {box.robot for box in picture.boxes}}
 
     def moved(key: Key) -> Key:
         return (labels[key[0]], *key[1:])
@@ -61,8 +64,8 @@ def represented(picture: Picture, likeness: Likeness) -> Picture:
             old_line = lines.get(slot)
             lines[slot] = _joined(old_line, now_line) if old_line else now_line
     standing = sum(likeness.weight(robot) > 1 for robot in likeness.members)
-    all_robots = counted(sum(map(likeness.weight, likeness.members)), "robot")
-    note = f"A fleet of {all_robots}; {counted(standing, 'robot')} drawn for all that are alike"
+    robots = picture.count(sum(map(likeness.weight, likeness.members)), "robot")
+    note = picture.say("pic.fleet", robots=robots, drawn=picture.count(standing, "robot"))
     made = replace(
         picture,
         boxes=sorted_boxes(boxes.values()),

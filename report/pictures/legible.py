@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.text import counted
 from rosprivacy.report.pictures.looks import LEAK, SOURCE
 from rosprivacy.report.pictures.narrow import folded, without_loose_ends
 from rosprivacy.report.pictures.picture import LEGIBLE, PRIVACY
@@ -41,14 +40,13 @@ def legible(picture: Picture, most: int = LEGIBLE) -> tuple[Picture, tuple[str, 
     drawn = {(box.robot, box.kind, name) for box in small.boxes for name in box.names}
     gone = [box for box in picture.boxes if box.key not in drawn]
     counts = {
-        ("source", "sources"): sum(box.look == SOURCE for box in gone),
-        ("leak", "leaks"): sum(box.look == LEAK for box in gone),
-        ("element that nobody reviewed", "elements that nobody reviewed"): sum(box.open for box in gone),
+        "pic.source": sum(box.look == SOURCE for box in gone),
+        "pic.exit": sum(box.look == LEAK for box in gone),
+        "pic.open": sum(box.open for box in gone),
     }
-    said = [counted(number, *nouns) for nouns, number in counts.items() if number]
+    said = [picture.count(number, thing) for thing, number in counts.items() if number]
     if said:
-        small = small.noted(f"Not drawn, of what counts: {', '.join(said)}")
-    elements = counted(len(picture.boxes), "element")
-    boxes = counted(len(small.boxes), "box", "boxes")
-    small = small.noted(f"Drawn smaller: {boxes} for {elements}, channels with the same ends as one; --all draws all")
+        small = small.noted(picture.say("pic.gone", what=", ".join(said)))
+    elements, boxes = picture.count(len(picture.boxes), "element"), picture.count(len(small.boxes), "pic.box")
+    small = small.noted(picture.say("pic.smaller", boxes=boxes, elements=elements))
     return small, tuple(note for note in small.notes if note not in picture.notes)

@@ -117,7 +117,6 @@ LINE_LOOKS = {
     SHORTEST: Look("on the shortest path to a leak", RED, width=4.5),
     OTHER: Look("relationship of this type, no flow", QUIET, head="vee"),
 }
-PSEUDONYMISED = "dashed: only pseudonymised"
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,13 +139,14 @@ def legend(picture: Picture) -> list[Entry]:
     entries = []
     if picture.view == PRIVACY:
         used = {box.look for box in picture.boxes} | ({OPEN} if any(box.open for box in picture.boxes) else set())
-        entries += [Entry(look, look.words, SHAPES["node"]) for name, look in DRAWN_ROLES.items() if name in used]
+        roles = {name: look for name, look in DRAWN_ROLES.items() if name in used}
+        entries += [Entry(look, picture.say(f"pic.look.{name}"), SHAPES["node"]) for name, look in roles.items()]
         blank = Look("", PALE)
-        entries += [Entry(blank, KIND_LOOKS[kind].words, SHAPES[kind]) for kind in kinds]
+        entries += [Entry(blank, picture.say(f"pic.look.{kind}"), SHAPES[kind]) for kind in kinds]
     else:
-        entries += [Entry(KIND_LOOKS[kind], KIND_LOOKS[kind].words, SHAPES[kind]) for kind in kinds]
+        entries += [Entry(KIND_LOOKS[kind], picture.say(f"pic.look.{kind}"), SHAPES[kind]) for kind in kinds]
     drawn = {line.look for line in picture.lines}
-    entries += [Entry(look, look.words) for name, look in LINE_LOOKS.items() if name in drawn]
+    entries += [Entry(look, picture.say(f"pic.look.{name}")) for name, look in LINE_LOOKS.items() if name in drawn]
     if any(line.pseudonymised for line in picture.lines):
-        entries.append(Entry(Look("", INK, style="dashed"), PSEUDONYMISED))
+        entries.append(Entry(Look("", INK, style="dashed"), picture.say("pic.dashed")))
     return entries

@@ -56,7 +56,7 @@ def of_robot(picture: Picture, robot: str) -> Picture:
         raise DrawingError(f"--robot: there is no robot {shown(robot)!r}; {_nearest(robot, robots)}")
     joined = {line.target for line in picture.lines if line.source in own}
     joined |= {line.source for line in picture.lines if line.target in own}
-    return picture.kept(own | joined, _part(picture, own | joined, f"robot {robot} and what it is joined to"))
+    return picture.kept(own | joined, _part(picture, own | joined, picture.say("pic.part.robot", robot=robot)))
 
 
 def around(picture: Picture, names: Iterable[str], steps: int) -> Picture:
@@ -82,14 +82,16 @@ def around(picture: Picture, names: Iterable[str], steps: int) -> Picture:
         what = "in this picture there is no"
         raise DrawingError("\n".join(f"--around: {what} {shown(n)!r}; {_nearest(n, by_name)}" for n in missing))
     kept = within(picture, {key for name in names for key in by_name[name]}, steps)
-    return picture.kept(kept, _part(picture, kept, f"within {counted(steps, 'step')} of {', '.join(names)}"))
+    what = picture.say("pic.part.within", steps=picture.count(steps, "step"), names=", ".join(names))
+    return picture.kept(kept, _part(picture, kept, what))
 
 
 def carrying(picture: Picture, analysis: Analysis) -> Picture:
     """Return what data of the analysis gets to."""
     carried = {one.element.identity for one in analysis.carried}
     kept = {box.key for box in picture.boxes if box.key in carried}
-    return picture.kept(kept, _part(picture, kept, f"what carries {', '.join(analysis.emitted) or 'nothing'}"))
+    kinds = ", ".join(analysis.emitted) or picture.say("pic.empty")
+    return picture.kept(kept, _part(picture, kept, picture.say("pic.part.carries", kinds=kinds)))
 
 
 def within(picture: Picture, starts: Collection[Key], steps: int) -> set[Key]:
@@ -109,7 +111,7 @@ def within(picture: Picture, starts: Collection[Key], steps: int) -> set[Key]:
 
 
 def _part(picture: Picture, kept: Collection[Key], what: str) -> str:
-    return f"Drawn: {what}; {len(kept):,} of {counted(len(picture.boxes), 'element')}"
+    return picture.say("pic.part", what=what, n=len(kept), elements=picture.count(len(picture.boxes), "element"))
 
 
 def _nearest(name: str, names: Iterable[str]) -> str:
@@ -126,7 +128,7 @@ def folded(picture: Picture) -> Picture:
     """
     lines_kept = tuple(line for line in picture.lines if line.look != MATCHES)
     if len(lines_kept) < len(picture.lines):
-        picture = replace(picture, lines=lines_kept).noted("Not drawn: lines from wildcards to what they cover")
+        picture = replace(picture, lines=lines_kept).noted(picture.say("pic.matches"))
     joins: dict[Key, set[tuple[object, ...]]] = defaultdict(set)
     for line in picture.lines:
         joins[line.source].add(("to", line.target, line.look, line.pseudonymised, line.length, line.roles))
@@ -167,7 +169,7 @@ def without_loose_ends(picture: Picture) -> Picture:
     names = sum(len(box.names) for box in picture.boxes if box.key in loose)
     return picture.kept(
         {box.key for box in picture.boxes} - loose,
-        f"Not drawn: {counted(names, 'channel')} that no more than one node names, wildcards apart",
+        picture.count(names, "pic.loose"),
     )
 
 
@@ -185,7 +187,7 @@ def grouped(
     own
         Robot -> its profiles, where there are several robots; what has none is no robot.
     """
-    group_of = _namers(profiles, own or {})[by]
+    group_of = _namers(profiles, own or {}, picture)[by]
     names = {box.key: group_of(box) for box in picture.boxes if by == "robot" or not box.is_channel}
     if by != "robot":
         ends: dict[Key, set[str]] = defaultdict(set)
@@ -198,19 +200,25 @@ def grouped(
     return replace(picture, boxes=tuple(replace(box, group=names.get(box.key, "")) for box in picture.boxes))
 
 
-def _namers(profiles: Iterable[Profile], own: Mapping[str, Iterable[Profile]]) -> Mapping[str, Callable[[Box], str]]:
+def _namers(
+    profiles: Iterable[Profile], own: Mapping[str, Iterable[Profile]], picture: Picture
+) -> Mapping[str, Callable[[Box], str]]:
     enclaves: dict[tuple[str, str], set[str]] = defaultdict(set)
     for name, some in (own or {"": profiles}).items():
         for profile in some:
             enclaves[name, profile.node].add(profile.enclave)
 
     def robot(box: Box) -> str:
-        return f"robot {box.robot}" if box.robot and (not own or box.robot in own) else box.robot
+        named = box.robot and (not own or box.robot in own)
+        return picture.say("pic.robot", robot=box.robot) if named else box.robot
 
     def enclave(box: Box) -> str:
         at = box.robot if own else ""
         found = sorted(enclaves.get((at, box.key[2]), ())) if box.kind == "node" else []
-        return ", ".join([*([robot(box)] if box.robot else []), f"enclave {' and '.join(found)}"]) if found else ""
+        if not found:
+            return ""
+        names = picture.say("pic.enclave", names=picture.words("tty.and").join(found))
+        return ", ".join([*([robot(box)] if box.robot else []), names])
 
     def namespace(box: Box) -> str:
         space = box.key[2].rpartition("/")[0] if box.kind == "node" else ""

@@ -1,4 +1,4 @@
-"""What stands on boxes below their names: in English for ``rosprivacy graph``, in its language in a report."""
+"""What stands on boxes below their names: in its language in a report and in pictures."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.text import shortened
+from rosprivacy.report.words.typography import plain
+from rosprivacy.report.words.words import IN_ENGLISH, Words
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -35,10 +37,18 @@ class Phrases:
         With the keys and places of ``TEXTS``.
     titles
         Category -> what it is called; its name where there is none.
+    words
+        Of the title and the notes of a picture.
     """
 
     texts: Mapping[str, str] = field(default_factory=lambda: TEXTS)
     titles: Mapping[str, str] = field(default_factory=dict)
+    words: Words = IN_ENGLISH
+
+    @classmethod
+    def told(cls, words: Words, titles: Mapping[str, str]) -> Phrases:
+        """Return the words of a report, in its language."""
+        return cls({name: plain(words.places(f"p.{name}")) for name in TEXTS}, titles, words)
 
     def of(self, key: str, categories: Iterable[str], most: int, **more: str) -> str:
         """Return what is said of some categories."""

@@ -11,6 +11,8 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import CHANNELS, KINDS
+from rosprivacy.report.words.typography import plain
+from rosprivacy.report.words.words import IN_ENGLISH, Words
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
@@ -134,6 +136,8 @@ class Picture:
         The shortest ways to leaks in words, for readers who do not see the picture.
     core
         What lies on these ways: no smaller picture leaves it out.
+    words
+        Of the language in which it is told.
     """
 
     view: str
@@ -143,10 +147,19 @@ class Picture:
     notes: tuple[str, ...] = ()
     ways: tuple[str, ...] = ()
     core: frozenset[Key] = frozenset()
+    words: Words = IN_ENGLISH
     keys: Mapping[Key, str] = field(init=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "keys", {box.key: f"n{number}" for number, box in enumerate(self.boxes)})
+
+    def say(self, key: str, **values: object) -> str:
+        """Return a sentence in the picture's language, with plain spaces."""
+        return plain(self.words(key, **values))
+
+    def count(self, number: int, thing: str) -> str:
+        """Return how many of a thing there are, in the picture's language."""
+        return plain(self.words.count(number, thing))
 
     def kept(self, keys: Collection[Key], note: str = "") -> Picture:
         """Return the picture of some boxes and the lines between them."""

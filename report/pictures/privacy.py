@@ -8,17 +8,18 @@ from operator import or_
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import CHANNELS, DISCLOSURE
-from rosprivacy.analysis.text import counted
 from rosprivacy.report.pictures.looks import DERIVATION, LEAK, OPEN, REVIEWED, SANITIZER, SOURCE
 from rosprivacy.report.pictures.phrases import Phrases
 from rosprivacy.report.pictures.picture import Box
 from rosprivacy.report.pictures.wording import listed
+from rosprivacy.report.words.typography import plain
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.report.pictures.picture import Key
+    from rosprivacy.report.words.words import Words
 
 MOST = 4  # categories that are named on a box
 
@@ -100,11 +101,13 @@ class Reached:
         plain, hidden = found.planes(bits)
         return found.names(bits), bool(hidden) and not plain
 
-    def left_out(self, beside: Collection[str] = ()) -> tuple[str, ...]:
+    def left_out(self, words: Words, beside: Collection[str] = ()) -> tuple[str, ...]:
         """Say what is not there: what ends the data, and what it does not get to.
 
         Parameters
         ----------
+        words
+            Of the reader's language.
         beside
             Robots that do not count, see ``views.privacy_view``.
         """
@@ -117,12 +120,13 @@ class Reached:
             else:
                 apart += 1
         ended = list(dict.fromkeys(ended))  # the same on several robots
-        notes = [f"Not drawn: {listed(ended, longest=40)}, which ends what comes to it"] if len(ended) == 1 else []
-        if len(ended) > 1:
-            notes = [f"Not drawn: {listed(ended, longest=40)}, which end what comes to them"]
+        notes = []
+        if ended:
+            names = listed(ended, longest=40, words=words)
+            notes.append(words("pic.ended.one" if len(ended) == 1 else "pic.ended.many", names=names))
         if apart:
-            notes.append(f"Not drawn: {counted(apart, 'element')} that carry none of it")
-        return tuple(notes)
+            notes.append(words.count(apart, "pic.apart"))
+        return tuple(map(plain, notes))
 
     def _box(self, key: Key, vertices: list[int]) -> Box:
         bits = {"present": 0, "begins": 0, "leaks": 0, "arrives": 0, "ends": 0}

@@ -29,17 +29,17 @@ def finished(data: bytes, picture: Picture) -> bytes:
 
 def alt_text(picture: Picture) -> str:
     """Return what a picture shows, for people who do not see it."""
-    ways = [f"Path to a leak: {way}" for way in picture.ways[:MOST_WAYS]]
+    ways = [picture.say("pic.alt.way", way=way) for way in picture.ways[:MOST_WAYS]]
     if len(picture.ways) > MOST_WAYS:
-        ways.append(f"And {len(picture.ways) - MOST_WAYS} more paths")
-    return printable(sentences([*picture.notes, *ways])) or "Nothing is drawn."
+        ways.append(picture.say("pic.alt.more", n=len(picture.ways) - MOST_WAYS))
+    return printable(sentences([*picture.notes, *ways])) or picture.say("pic.alt.nothing")
 
 
 def _described(data: bytes, picture: Picture) -> etree._Element:
     parser = etree.XMLParser(resolve_entities=False, load_dtd=False, remove_comments=True, huge_tree=True)
     root = etree.fromstring(data, parser)
     tips = {picture.keys[box.key]: hover(picture, box) for box in picture.boxes}
-    tips |= {f"e{number}": line_hover(line) for number, (line, _) in enumerate(paired(picture))}
+    tips |= {f"e{number}": line_hover(picture, line) for number, (line, _) in enumerate(paired(picture))}
     for group in list(root.iter(f"{{{NAMESPACE}}}g")):
         unlink(group)
         title = group.find(TITLE)

@@ -17,38 +17,35 @@ from rosprivacy.analysis.answer import Verdict
 from rosprivacy.analysis.findings.flows_to_leaks import FlowsToLeaks, flows_to_leaks
 from rosprivacy.analysis.kernel.states import Net
 from rosprivacy.analysis.model import DISCLOSURE, GOES_NOWHERE, NO_LEAK_NAMED
-from rosprivacy.analysis.text import counted, shortened
+from rosprivacy.analysis.text import shortened
 from rosprivacy.report.element_counts import count_elements
 from rosprivacy.report.pictures.looks import ALLOWED, DATA, DENIED, MATCHES, SHORTEST, WAY
+from rosprivacy.report.pictures.phrases import Phrases
 from rosprivacy.report.pictures.picture import PRIVACY, ROS, Box, Line, Picture, order, sorted_boxes, sorted_lines
 from rosprivacy.report.pictures.privacy import Reached
 from rosprivacy.report.pictures.wording import listed
+from rosprivacy.report.words.typography import plain
+from rosprivacy.report.words.words import IN_ENGLISH, Words
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.answer import Analysis, Finding
     from rosprivacy.analysis.model import Flow, FlowGraph, Grant, Place
-    from rosprivacy.report.pictures.phrases import Phrases
     from rosprivacy.report.pictures.picture import Key
 
-VERDICTS = {
-    Verdict.LEAK: "data can reach a leak",
-    Verdict.UNDETERMINED: "no leak reached, but not everything on the way is reviewed",
-    Verdict.NO_LEAK_FOUND: "no path to a leak found",
-}
 PER_BOX = 12  # flows that are looked at for each box: channels with the same ends will be one
-LACKING = {
-    GOES_NOWHERE: "it goes nowhere but to standard channels, so nothing was followed",
-    NO_LEAK_NAMED: "no label says where it gets out",
-}
-NOTHING = "No data was followed: no label names a source. So this says nothing about the system."
-LONGER = "Not drawn: paths of more"
+LACKING = (GOES_NOWHERE, NO_LEAK_NAMED)
 BOTH_WAYS = {"request", "reply", "call", "execute"}
 
 
 def ros_view(
-    analysis: Analysis, denials: Iterable[Grant] = (), *, standard: bool = False, beside: Collection[str] = ()
+    analysis: Analysis,
+    denials: Iterable[Grant] = (),
+    words: Words = IN_ENGLISH,
+    *,
+    standard: bool = False,
+    beside: Collection[str] = (),
 ) -> Picture:
     """Return the whole system: every element and every grant.
 
@@ -56,6 +53,8 @@ def ros_view(
     ----------
     denials
         Grants of the policies; those that deny are drawn even where nothing allows what they deny.
+    words
+        Of the reader's language.
     standard
         Whether to draw the standard ROS channels too (rule S13).
     beside
@@ -79,12 +78,12 @@ def ros_view(
     undrawn = sum(not _deny(lines, grant, graph, hidden) and grant not in effective for grant in denying)
     for key in boxes.keys() & covered.keys():
         if boxes[key].pattern:
-            words = f"covers {counted(len(covered[key] - {key}), 'name')}"
-            boxes[key] = replace(boxes[key], words=(words,))
-    title = f"ROS graph ({graph.view}): {_inventory([key for key in boxes if key[0] not in beside])}"
+            boxes[key] = replace(boxes[key], words=(words.count(len(covered[key] - {key}), "pic.covers"),))
+    kinds = _inventory([key for key in boxes if key[0] not in beside], words)
+    title = plain(words("pic.ros", view=str(graph.view), kinds=kinds))
     hidden = {key for key in hidden if key[0] not in beside}
-    notes = _left_out(hidden, undrawn, robots=len({element.robot for element in graph.elements}))
-    return Picture(ROS, title, sorted_boxes(boxes.values()), lines.made(), notes)
+    notes = _left_out(hidden, undrawn, words, robots=len({element.robot for element in graph.elements}))
+    return Picture(ROS, title, sorted_boxes(boxes.values()), lines.made(), notes, words=words)
 
 
 def _ends(analysis: Analysis, flow: Flow) -> tuple[Key, Key]:
@@ -106,21 +105,19 @@ def _deny(lines: _Lines, grant: Grant, graph: FlowGraph, hidden: Collection[Key]
     return channel in lines.boxes or channel in hidden
 
 
-def _inventory(keys: Iterable[Key]) -> str:
+def _inventory(keys: Iterable[Key], words: Words) -> str:
     kinds: dict[str, int] = defaultdict(int)
     for key in sorted(keys, key=order):
-        kinds[key[1].replace("-", " ")] += 1
-    plural = {"shared memory": "shared memories"}
-    return ", ".join(counted(number, kind, plural.get(kind, "")) for kind, number in kinds.items()) or "nothing"
+        kinds[key[1]] += 1
+    counts = ", ".join(words.count(number, f"pic.kind.{kind}") for kind, number in kinds.items())
+    return counts or words("pic.empty")
 
 
-def _left_out(hidden: Collection[Key], undrawn: int, *, robots: int) -> tuple[str, ...]:
-    notes = [f"Not drawn: {counted(len(hidden), 'standard ROS channel')}"] if hidden else []
-    if undrawn and robots > 1:
-        notes.append(f"Not drawn: {counted(undrawn, 'DENY', 'DENYs')} that take nothing away")
-    elif undrawn:
-        notes.append(f"Not drawn: {counted(undrawn, 'DENY', 'DENYs')} without a channel of that very name")
-    return tuple(notes)
+def _left_out(hidden: Collection[Key], undrawn: int, words: Words, *, robots: int) -> tuple[str, ...]:
+    notes = [words.count(len(hidden), "pic.standard")] if hidden else []
+    if undrawn:
+        notes.append(words.count(undrawn, "pic.denies.idle" if robots > 1 else "pic.denies"))
+    return tuple(map(plain, notes))
 
 
 @dataclass
@@ -179,21 +176,24 @@ def _place(place: Place) -> tuple[str, int]:
     return place.file, place.line
 
 
-def privacy_view(analysis: Analysis, beside: Collection[str] = ()) -> Picture:
+def privacy_view(analysis: Analysis, beside: Collection[str] = (), say: Phrases | None = None) -> Picture:
     """Return what some category reaches, with the paths to leaks marked.
 
     Parameters
     ----------
     beside
         As in ``ros_view``.
+    say
+        The words, and what kinds of data are called.
 
     Notes
     -----
     Besides what the analysis took: per category with a finding O(flows), see ``flows_to_leaks``.
     """
-    reached = Reached(analysis)
+    say = say or Phrases()
+    words, reached = say.words, Reached(analysis, say=say)
     if not reached.sources():
-        return Picture(PRIVACY, NOTHING, (), ())
+        return Picture(PRIVACY, plain(words("pic.nothing")), (), (), words=words)
     boxes = {box.key: box for box in reached.boxes()}
     net = Net.of(analysis.spread)
     open_findings = [finding for finding in analysis.findings if not finding.dismissed]
@@ -202,20 +202,19 @@ def privacy_view(analysis: Analysis, beside: Collection[str] = ()) -> Picture:
         for flow, length in found.items():
             lengths[flow] = min(length, lengths.get(flow, length))
     lines = data_lines(reached, boxes, range(len(analysis.graph.flows)), lengths, pairs(open_findings))
-    what = listed(analysis.emitted, most=6)
-    findings = counted(len(open_findings), "finding")
+    what = listed(map(say.title, analysis.emitted), most=6, words=words)
     unreviewed = count_elements(q.element for q in analysis.open if q.element.robot not in beside).elements
-    open_count = counted(unreviewed, "element")
-    title = f"Where {what} can go ({analysis.graph.view}): {_verdict(analysis)}"
-    notes = (f"{findings}, {open_count} not reviewed", *reached.left_out(beside))
-    shown = tuple(in_words(finding) for finding in open_findings)
-    ordered = sorted_boxes(boxes.values())
-    return Picture(PRIVACY, title, ordered, lines.made(), notes, shown, core(open_findings))
+    findings, elements = words.count(len(open_findings), "tty.finding"), words.count(unreviewed, "element")
+    title = words("pic.privacy", what=what, view=str(analysis.graph.view), verdict=_verdict(analysis, words))
+    notes = (words("pic.count", findings=findings, elements=elements), *reached.left_out(words, beside))
+    shown = tuple(in_words(finding, say) for finding in open_findings)
+    boxes_drawn, told = sorted_boxes(boxes.values()), tuple(map(plain, notes))
+    return Picture(PRIVACY, plain(title), boxes_drawn, lines.made(), told, shown, core(open_findings), words)
 
 
-def _verdict(analysis: Analysis) -> str:
-    lacks = analysis.verdict is Verdict.UNDETERMINED and not analysis.open
-    return LACKING.get(analysis.lacking, VERDICTS[analysis.verdict]) if lacks else VERDICTS[analysis.verdict]
+def _verdict(analysis: Analysis, words: Words) -> str:
+    lacks = analysis.verdict is Verdict.UNDETERMINED and not analysis.open and analysis.lacking in LACKING
+    return words(f"pic.lacking.{analysis.lacking}" if lacks else f"pic.verdict.{analysis.verdict}")
 
 
 def _ways_to_all(analysis: Analysis, net: Net, findings: Iterable[Finding]) -> Iterator[dict[int, int]]:
@@ -246,7 +245,7 @@ class FindingViews:
     """
 
     def __init__(self, analysis: Analysis, say: Phrases | None = None) -> None:
-        self._analysis, self._say = analysis, say
+        self._analysis, self._say = analysis, say or Phrases()
         self._net = Net.of(analysis.spread)
         self._number = {element: vertex for vertex, element in enumerate(analysis.graph.elements)}
         self._reached: dict[str, Reached] = {}
@@ -279,24 +278,36 @@ class FindingViews:
             keys |= set(_ends(self._analysis, graph.flows[index]))
         boxes = {box.key: box for box in reached.boxes(keys)}
         lines = data_lines(reached, boxes, lengths, lengths, pairs([finding]))
-        form = "pseudonymised " if finding.pseudonymised else ""
-        from_to = f"{shortened(finding.source.name, 60)} to {shortened(finding.leak.name, 60)}"
-        title = f"How {form}{category} can get from {from_to} ({graph.view})"
-        notes = [f"Finding {finding.id}"]
+        words = self._say.words
+        title = words(
+            "pic.finding.of",
+            data=_data(finding, self._say),
+            source=shortened(finding.source.name, 60),
+            leak=shortened(finding.leak.name, 60),
+            view=str(graph.view),
+        )
+        notes = [words("pic.finding", id=finding.id)]
         if finding.dismissed:
-            through = listed((element.name for element in finding.through), longest=60)
-            notes.append(f"Only through {through}, which has a finding of its own")
+            through = listed((element.name for element in finding.through), longest=60, words=words)
+            notes.append(words("pic.through", names=through))
         if finding.disjoint_paths > 1:
-            notes.append(f"{finding.disjoint_paths} paths share no flow")
+            notes.append(words("pic.disjoint", n=finding.disjoint_paths))
         if not found.complete:
-            notes.append(f"{LONGER} than {counted(max(lengths.values()), 'step')}")
+            notes.append(words("pic.longer", steps=words.count(max(lengths.values()), "step")))
+        ways = (in_words(finding, self._say),)
+        told = tuple(map(plain, notes))
         ordered = sorted_boxes(boxes.values())
-        return Picture(PRIVACY, title, ordered, lines.made(), tuple(notes), (in_words(finding),), core([finding]))
+        return Picture(PRIVACY, plain(title), ordered, lines.made(), told, ways, core([finding]), words)
 
 
-def finding_view(analysis: Analysis, finding: Finding, about: int | None = None) -> Picture:
+def is_cut(note: str, words: Words) -> bool:
+    """Return whether a note says that longer paths are not drawn."""
+    return note.startswith(plain(words.places("pic.longer")).partition("{")[0])
+
+
+def finding_view(analysis: Analysis, finding: Finding, about: int | None = None, say: Phrases | None = None) -> Picture:
     """Return the paths of one finding, see ``FindingViews``."""
-    return FindingViews(analysis).of(finding, about)
+    return FindingViews(analysis, say).of(finding, about)
 
 
 def bounded(picture: Picture, most: int) -> Picture:
@@ -307,19 +318,20 @@ def bounded(picture: Picture, most: int) -> Picture:
     if len(picture.boxes) <= most:
         return picture
     lines = [line for line in picture.lines if line.look == SHORTEST]
-    what = "the shortest paths"
+    what = picture.say("pic.shortest")
     for length in sorted({line.length for line in picture.lines if line.length}):
         longer = [line for line in picture.lines if 0 < line.length <= length or line.look == SHORTEST]
         if len(_joined(longer) | picture.core) > most:
             break
-        lines, what = longer, f"the paths of up to {counted(length, 'step')}"
+        lines, what = longer, picture.say("pic.up.to", steps=picture.count(length, "step"))
     kept = _joined(lines) | picture.core
     left = len(picture.boxes) - len(kept)
     if not left and len(lines) == len(picture.lines):
         return picture
-    notes = tuple(note for note in picture.notes if not note.startswith(LONGER))
+    notes = tuple(note for note in picture.notes if not is_cut(note, picture.words))
     known = left and len(notes) == len(picture.notes)
-    note = f"Not drawn: {counted(left, 'element') if known else 'what is'} beside {what}"
+    undrawn = picture.count(left, "element") if known else picture.say("pic.what.is")
+    note = picture.say("pic.beside", what=undrawn, paths=what)
     return replace(picture, notes=notes, lines=tuple(lines)).kept(kept, note)
 
 
@@ -366,7 +378,13 @@ def data_lines(
     return lines
 
 
-def in_words(finding: Finding) -> str:
+def in_words(finding: Finding, say: Phrases | None = None) -> str:
     """Return a finding's shortest path as a sentence."""
-    form = "pseudonymised " if finding.pseudonymised else ""
-    return f"{form}{finding.category}: " + " to ".join(shortened(element.name, 60) for element in finding.witness)
+    say = say or Phrases()
+    names = say.words("pic.to").join(shortened(element.name, 60) for element in finding.witness)
+    return plain(say.words("pic.way", data=_data(finding, say), names=names))
+
+
+def _data(finding: Finding, say: Phrases) -> str:
+    title = say.title(finding.category)
+    return say.words("tty.hidden", kind=title) if finding.pseudonymised else title

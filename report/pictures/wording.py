@@ -6,6 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.text import printable, shortened
+from rosprivacy.report.words.words import IN_ENGLISH, Words
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -43,14 +44,14 @@ def _cut(part: str) -> Iterator[str]:
     yield part
 
 
-def listed(names: Iterable[str], most: int = 3, longest: int = 60) -> str:
+def listed(names: Iterable[str], most: int = 3, longest: int = 60, words: Words = IN_ENGLISH) -> str:
     """Return some names, and how many more there are.
 
     >>> listed(["a", "b", "c", "d", "e"])
     'a, b, c and 2 more'
     """
     every = [shortened(name, longest) for name in names]
-    more = f" and {len(every) - most} more" if len(every) > most else ""
+    more = words("tty.more", n=len(every) - most) if len(every) > most else ""
     return ", ".join(every[:most]) + more
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rdflib import RDF, RDFS, SKOS, XSD, Graph, Literal
+from rdflib import OWL, RDF, RDFS, SKOS, XSD, Graph, Literal
 from rdflib.namespace import PROV
 
 from rosprivacy.analysis.errors import shown
@@ -21,7 +21,6 @@ from rosprivacy.report.rdf.process import Processes
 from rosprivacy.report.rdf.provenance import by_path, provenance
 from rosprivacy.report.rdf.terms import (
     DPV,
-    OWN,
     RISK,
     RP,
     Triple,
@@ -38,6 +37,7 @@ if TYPE_CHECKING:
     from rdflib import URIRef
 
     from rosprivacy.analysis.answer import Analysis, Finding
+    from rosprivacy.analysis.contexts import Contexts
     from rosprivacy.analysis.fleet.patterns import FleetView
     from rosprivacy.analysis.model import Element
     from rosprivacy.report.answer import Answer
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 
 PREFIXES: dict[str, object] = {
     "dpv": DPV, "risk": RISK, "pd": "https://w3id.org/dpv/pd#", "eu-gdpr": "https://w3id.org/dpv/legal/eu/gdpr#",
-    "rp": OWN, "prov": PROV, "rdf": RDF, "rdfs": RDFS, "skos": SKOS, "xsd": XSD,
+    "rp": RP, "owl": OWL, "prov": PROV, "rdf": RDF, "rdfs": RDFS, "skos": SKOS, "xsd": XSD,
 }  # fmt: skip
 ROLES = {
     "source": RP.sourceOf, "leak": RP.leakOf, "sanitizer": RP.sanitizerOf, "conduit": RP.conduitOf,
@@ -74,7 +74,8 @@ def rdf_graph(answer: Answer, when: datetime | None = None, base: str | None = N
     """
     analysis, told = answer.shown, document(answer)
     names = names_of(told, base)
-    things = Things(answer.vocabulary, names, by_path(told["assumptions"], names), answer.stated, answer.subjects)
+    files = by_path(told["assumptions"], names)
+    things = Things(answer.vocabulary, names, files, answer.stated, answer.subjects, answer.surroundings)
     findings = _Findings.of(answer, analysis, names, things)
     graph = Graph(bind_namespaces="none")
     for prefix, namespace in PREFIXES.items():
@@ -125,13 +126,15 @@ class _Findings:
     emitted: Mapping[Element, set[str]]
     unreviewed: frozenset[tuple[object, str]]
     processes: Processes
+    contexts: Contexts
 
     @classmethod
     def of(cls, answer: Answer, analysis: Analysis, names: Names, things: Things) -> _Findings:
         unstated = frozenset((element.shown_as, category) for element, category in analysis.unstated)
         unreviewed = frozenset((q.element.shown_as, category) for q in analysis.open for category in q.categories)
         processes = Processes(answer, names, things, answer.stated, unstated, of_end(answer.processed))
-        return cls(answer, analysis, names, things, answer.accepted, emitted_by(analysis), unreviewed, processes)
+        rest = emitted_by(analysis), unreviewed, processes, answer.contexts
+        return cls(answer, analysis, names, things, answer.accepted, *rest)
 
     def triples(self, finding: Finding) -> Iterator[Triple]:
         """Everything about a finding."""
@@ -158,6 +161,7 @@ class _Findings:
         )
         yield from self.processes.triples(finding, changed)
         yield from self._law(iri, finding)
+        yield from self._contexts(iri, finding)
         yield from self._witness(iri, finding)
         yield from self._paths(iri, finding)
 
@@ -171,6 +175,19 @@ class _Findings:
                 (RP.verdict, [text(legal.verdict)]),
                 (RP.condition, [text(legal.condition, "en")] if legal.condition else []),
                 (RP.statedOf, self.things.categories(names)),
+            )
+
+    def _contexts(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:
+        """What the data may reveal where their source works: a fact about the place, no verdict."""
+        for number, legal in enumerate(self.contexts.revealed(finding), 1):
+            link = below(iri, "context", number)
+            yield iri, RP.inContext, link
+            yield from about(
+                link,
+                (RP.context, [text(legal.context)]),
+                (RP.provision, [self.things.provision(legal)]),
+                (RP.verdict, [text(legal.verdict)]),
+                (RP.condition, [text(legal.condition, "en")]),
             )
 
     def _witness(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:

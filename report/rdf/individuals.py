@@ -17,6 +17,7 @@ from uuid import NAMESPACE_URL, uuid5
 from rdflib import URIRef
 
 from rosprivacy.analysis.errors import InputError, shown
+from rosprivacy.ontology.iris import as_published
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -100,8 +101,8 @@ def below(parent: URIRef, *parts: object) -> URIRef:
 
 
 def foreign(iri: str) -> URIRef:
-    """Return an IRI that an ontology names; what may not stand in one is percent-encoded."""
-    return URIRef(_NOT_IN_IRIS.sub(lambda match: quote(match[0]), iri))
+    """Return an IRI that an ontology names, ours as it is published; what may not stand in one is percent-encoded."""
+    return URIRef(_NOT_IN_IRIS.sub(lambda match: quote(match[0]), as_published(iri)))
 
 
 def files_read(assumptions: Mapping[str, Any]) -> list[tuple[str, str, str]]:

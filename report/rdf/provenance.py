@@ -62,6 +62,7 @@ def provenance(
         (RP.view, [text(document["view"])]),
         (RP.followed, things.categories(analysis.emitted)),
         (RP.found, [names.finding(finding) for finding in analysis.findings]),
+        (RP.lookAt, things.pointed(one["provision"] for one in document["look_at"] if not one["categories"])),
         (RP.openElements, [Literal(count_elements(q.element for q in analysis.open).elements)]),
         (PROV.wasGeneratedBy, [run]),
         (PROV.generatedAtTime, moment),

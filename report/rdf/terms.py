@@ -12,6 +12,7 @@ from rdflib import RDF, XSD, BNode, Literal, Namespace
 from rdflib.namespace import ClosedNamespace
 
 from rosprivacy.analysis.text import utf8
+from rosprivacy.ontology.iris import PUBLISHED
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -21,8 +22,7 @@ if TYPE_CHECKING:
 
 Triple = tuple["Node", "Node", "Node"]
 
-OWN = "urn:x-rosprivacy:"
-RP = Namespace(OWN)
+RP = Namespace(PUBLISHED)
 
 DPV_CLASSES = (
     "ActivityStatus",

@@ -8,18 +8,18 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from rdflib import RDF, SKOS, XSD, Literal
+from rdflib import OWL, RDF, SKOS, XSD, Literal, URIRef
 from rdflib.namespace import PROV
 
+from rosprivacy.analysis.model import Pointer
+from rosprivacy.ontology.iris import STORED
 from rosprivacy.report.rdf.individuals import foreign
 from rosprivacy.report.rdf.terms import DPV, RP, Triple, about, text
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from rdflib import URIRef
-
-    from rosprivacy.analysis.model import Category, Element, Grant, Legal
+    from rosprivacy.analysis.model import Category, Element, Grant, Legal, Surroundings
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.report.rdf.individuals import Names
 
@@ -50,6 +50,8 @@ class Things:
         (robot, kind, name) -> what people stated of an element.
     subjects
         (robot, kind, name) -> groups of persons that the data of a source are about.
+    surroundings
+        (robot, kind, name) -> where an element works.
     """
 
     def __init__(
@@ -59,6 +61,7 @@ class Things:
         files: Mapping[str, tuple[URIRef, ...]],
         stated: Stated,
         subjects: Mapping[tuple[str, str, str], tuple[str, ...]],
+        surroundings: Mapping[tuple[str, str, str], Surroundings],
     ) -> None:
         self._categories = vocabulary.categories
         self._ancestors = vocabulary.hierarchy.ancestors
@@ -66,9 +69,11 @@ class Things:
         self._files = files
         self._stated = stated
         self._subjects = subjects
+        self._surroundings = surroundings
+        self._pointed = {one.name: one for one in vocabulary.pointed.provisions}
         self._elements: dict[URIRef, Element] = {}
         self._lines: dict[URIRef, Grant] = {}
-        self._provisions: dict[URIRef, Legal] = {}
+        self._provisions: dict[URIRef, Legal | Pointer] = {}
         self._named: set[str] = set()
 
     def element(self, element: Element) -> URIRef:
@@ -87,11 +92,17 @@ class Things:
         self._lines.setdefault(iri, grant)
         return iri
 
-    def provision(self, legal: Legal) -> URIRef:
+    def provision(self, legal: Legal | Pointer) -> URIRef:
         """Return the IRI of a provision."""
         iri = foreign(legal.iri)
         self._provisions.setdefault(iri, legal)
         return iri
+
+    def pointed(self, names: Iterable[str]) -> list[URIRef]:
+        """Return the IRIs of provisions to look at; a day from which one applies, and its country, are described."""
+        found = [self._pointed[name] for name in names]
+        self._provisions |= {foreign(one.iri): one for one in found}
+        return [foreign(one.iri) for one in found]
 
     def categories(self, names: Iterable[str]) -> list[URIRef]:
         """Return the IRIs of categories, in order of their names."""
@@ -106,14 +117,18 @@ class Things:
             known = self._stated.get(element.identity, {})
             yield from about(iri, *((term, [text(known[what])]) for what, term in STATED.items() if known.get(what)))
             yield from about(iri, (RP.aboutPersons, map(text, self.subjects(element))))
+            if where := self._surroundings.get(element.identity):
+                country = [text(where.country)] if where.country else []
+                yield from about(iri, (RP.context, map(text, where.contexts)), (RP.country, country))
         for iri, grant in self._lines.items():
             yield from _line(iri, grant, self._files.get(grant.place.file, ()))
-        for iri, legal in self._provisions.items():
-            yield from _provision(iri, legal)
         for name in {up for category in self._named for up in self._ancestors[category]}:
             category = self._categories[name]
             broader = [foreign(self._categories[up].iri) for up in category.broader if up in self._categories]
             yield from _category(category, broader)
+            yield from about(foreign(category.iri), (RP.lookAt, self.pointed(category.look_at)))
+        for iri, legal in self._provisions.items():
+            yield from _provision(iri, legal)
 
 
 def _element(iri: URIRef, element: Element) -> list[Triple]:
@@ -140,13 +155,17 @@ def _line(iri: URIRef, grant: Grant, files: Iterable[URIRef]) -> list[Triple]:
     )
 
 
-def _provision(iri: URIRef, legal: Legal) -> list[Triple]:
+def _provision(iri: URIRef, legal: Legal | Pointer) -> list[Triple]:
+    applies, country = (legal.applies, legal.country) if isinstance(legal, Pointer) else ("", "")
     return about(
         iri,
         (RDF.type, [RP.LegalProvision]),
         (RP.identifier, [text(legal.name)]),
         (SKOS.definition, [text(legal.meaning, "en")]),
         (RP.asOf, [Literal(legal.as_of, datatype=XSD.date)]),
+        (RP.appliesFrom, [Literal(applies, datatype=XSD.date)] if applies else []),
+        (RP.country, [text(country)] if country else []),
+        (OWL.sameAs, _stored(legal.iri)),
     )
 
 
@@ -160,4 +179,10 @@ def _category(category: Category, broader: list[URIRef]) -> list[Triple]:
         (SKOS.broader, broader),
         (SKOS.broadMatch, map(foreign, category.within)),
         (SKOS.exactMatch, map(foreign, category.same_as)),
+        (OWL.sameAs, _stored(category.iri)),
     )
+
+
+def _stored(iri: str) -> list[URIRef]:
+    """What a term of ours is called in documents and databases; nothing of what is not ours."""
+    return [URIRef(iri)] if iri.startswith(STORED) else []

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from rosprivacy.analysis.answer import Analysis
-    from rosprivacy.analysis.model import Diagnostic, Legal
+    from rosprivacy.analysis.model import Diagnostic, Legal, Pointer
     from rosprivacy.report.answer import Answer
 
 SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
@@ -62,7 +62,11 @@ def _log(answer: Answer, root: Path) -> dict[str, Any]:
     analysis, categories, assumptions = answer.shown, answer.vocabulary.categories, answer.assumptions
     files, diagnostics = Files(root), answer.diagnostics
     law = {name: strongest_first(categories[name].law) for name in analysis.emitted}
-    taxa = sorted({legal.iri: legal for said in law.values() for legal in said}.values(), key=lambda legal: legal.name)
+    contexts, pointed = answer.contexts, answer.vocabulary.pointed
+    said: list[Legal | Pointer] = [legal for several in law.values() for legal in several]
+    for finding in analysis.findings:
+        said += (*contexts.revealed(finding), *pointed.of_finding(finding.kind))
+    taxa = sorted({legal.iri: legal for legal in said}.values(), key=lambda legal: legal.name)
     found = (rule_of(finding.kind) for finding in analysis.findings)
     not_read = [FILES_NOT_READ] if unread(diagnostics) else []
     not_named = [NO_LEAK] if analysis.lacking == NO_LEAK_NAMED else []
@@ -77,6 +81,8 @@ def _log(answer: Answer, root: Path) -> dict[str, Any]:
         rules={name: number for number, name in enumerate(rules)},
         between=flows_between(analysis),
         accepted=answer.accepted,
+        contexts=contexts,
+        pointed=pointed,
     )
     results = list(_within(islice(made.all(), MAX_RESULTS)))
     notices = [*_about(analysis, results), *_said((*diagnostics, *analysis.diagnostics), files)]
@@ -120,7 +126,7 @@ def _within(results: Iterable[dict[str, Any]]) -> Iterator[dict[str, Any]]:
         yield {**result, "codeFlows": kept} if kept else {k: v for k, v in result.items() if k != "codeFlows"}
 
 
-def _taxonomy(taxa: Sequence[Legal]) -> dict[str, Any]:
+def _taxonomy(taxa: Sequence[Legal | Pointer]) -> dict[str, Any]:
     """The provisions that results point to, each with its meaning and the date of the law (rule S12)."""
     return {
         "name": LAW,

@@ -23,7 +23,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from rosprivacy.analysis.answer import Analysis, Finding, OpenQuestion
-    from rosprivacy.analysis.model import Category, Element, Flow, Legal, Place
+    from rosprivacy.analysis.contexts import Contexts
+    from rosprivacy.analysis.model import Category, Element, Flow, Legal, Place, Pointer
+    from rosprivacy.ontology.pointed import Pointed
     from rosprivacy.report.places import Places
 
 ROOT = "%SRCROOT%"
@@ -64,6 +66,10 @@ class Results:
         The flows behind the steps of further paths.
     accepted
         Id of a finding -> why a person accepted it.
+    contexts
+        Of the sources.
+    pointed
+        The provisions that a kind of finding is about.
     """
 
     analysis: Analysis
@@ -75,6 +81,8 @@ class Results:
     rules: Mapping[str, int]
     between: Mapping[Any, Flow]
     accepted: Mapping[str, str]
+    contexts: Contexts
+    pointed: Pointed
 
     def all(self) -> Iterator[dict[str, Any]]:
         """One result per finding, the dismissed ones last, then one per node to review next (rules S10, S11).
@@ -92,7 +100,7 @@ class Results:
 
     def _finding(self, finding: Finding) -> dict[str, Any]:
         rule = rule_of(finding.kind)
-        law = self.law.get(finding.category, ())
+        law = (*self.law.get(finding.category, ()), *self.contexts.revealed(finding))
         place = self.places.of_finding(finding)
         result: dict[str, Any] = {
             "ruleId": rule.id,
@@ -105,8 +113,9 @@ class Results:
         }
         if related := self._related(finding, place):
             result["relatedLocations"] = related
-        if law:
-            distinct = {legal.iri: legal for legal in law}.values()
+        at_stake: list[Legal | Pointer] = [*law, *self.pointed.of_finding(finding.kind)]
+        distinct = {one.iri: one for one in at_stake}.values()
+        if distinct:
             result["taxa"] = [reference(legal, self.taxa[legal.iri]) for legal in distinct]
         if finding.id in self.accepted:
             why = prose(self.accepted[finding.id])
@@ -116,7 +125,7 @@ class Results:
             "pseudonymised": finding.pseudonymised,
             "dismissed": finding.dismissed,
             "disjointPaths": finding.disjoint_paths,
-            "article9": self.categories[finding.category].article9,
+            "article9": self.contexts.article9(finding),
             "law": [{"provision": legal.name, "verdict": legal.verdict, "condition": legal.condition} for legal in law],
         }
         return result
@@ -177,7 +186,7 @@ class Results:
         ]
 
 
-def reference(legal: Legal, number: int) -> dict[str, Any]:
+def reference(legal: Legal | Pointer, number: int) -> dict[str, Any]:
     """Return a provision as a reference to its taxon."""
     return {"id": legal.name, "index": number, "toolComponent": {"name": LAW, "index": 0}}
 

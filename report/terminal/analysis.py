@@ -24,6 +24,7 @@ from rosprivacy.report.terminal.globs import glob_lines, glob_warnings
 from rosprivacy.report.terminal.labels import absent_lines, overruled_lines, standard_lines
 from rosprivacy.report.terminal.ledger import hanging_lines, ledger_lines, taken_away_lines
 from rosprivacy.report.terminal.next_step import next_lines
+from rosprivacy.report.terminal.reliance import reliance_lines
 from rosprivacy.report.terminal.restriction import asked_at_verdict, asked_lines
 from rosprivacy.report.terminal.review import review_lines
 from rosprivacy.report.terminal.unknown_ends import end_lines, ends_at_verdict
@@ -91,6 +92,7 @@ def _lines(report: Mapping[str, Any], words: Words, *, verbose: bool, quiet: boo
     yield from review_lines(report, words, verbose=verbose)
     yield from end_lines(report, most, words)
     yield from denied_lines(report, words, most=most)
+    yield from reliance_lines(report, words, verbose=verbose)
     if verbose:
         yield from ledger_lines(report, words)
         yield from glob_lines(report, words)

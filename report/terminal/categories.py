@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import ARTICLE_10
 from rosprivacy.analysis.text import blanked
+from rosprivacy.ontology.iris import as_published
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -104,7 +105,7 @@ def details(vocabulary: Vocabulary, category: Category, language: str = "en") ->
         ("data", ", ".join(category.data_types)),
         ("factors", ", ".join(category.identity_factors)),
         ("label", category.label),
-        ("iri", category.iri),
+        ("iri", as_published(category.iri)),
         ("same", ", ".join(category.same_as)),
         ("within", ", ".join(category.within)),
         ("note", category.note),

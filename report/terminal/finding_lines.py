@@ -15,6 +15,7 @@ from rosprivacy.analysis.text import blanked
 from rosprivacy.report.finding_order import in_order
 from rosprivacy.report.naming import key, shown_name
 from rosprivacy.report.terminal.called_alike import kind_in
+from rosprivacy.report.terminal.context_lines import context_lines, further_lines, pointer_lines
 from rosprivacy.report.terminal.decision_lines import decision_lines
 from rosprivacy.report.terminal.fleet import on_robots, robots_of
 from rosprivacy.report.terminal.restriction import may_be_asked
@@ -100,7 +101,9 @@ def law_lines(
     report: Mapping[str, Any], findings: Iterable[Mapping[str, Any]], words: Words = IN_ENGLISH
 ) -> Iterator[Line]:
     """Return what a person has to look up about each kind of data that arrives somewhere, once for each kind."""
-    by_kind = {finding["category"]: finding for finding in in_order(findings)}
+    told = in_order(findings)
+    by_kind = {finding["category"]: finding for finding in told}
+    findings_of = {kind: [finding for finding in told if finding["category"] == kind] for kind in by_kind}
     if not by_kind:
         return
     kinds = {category["name"]: category for category in report["categories"]}
@@ -109,11 +112,14 @@ def law_lines(
     for category, finding in sorted(by_kind.items()):
         for legal in _law(finding, kinds, words):
             yield f"   {words('tty.law.line', kind=category, **legal)}", "magenta"
+        yield from context_lines(kinds.get(category, {}), findings_of[category], words)
+        yield from pointer_lines(report, category, words)
         if finding["article9"] == "unknown":
             yield f"   {words('tty.law.unknown', kind=category)}", "yellow"
         if finding["article9"] == "no":
             reason = _text(kinds[category], "reason", words) if category in kinds else ""
             yield f"   {words('tty.law.no', kind=category, reason=reason)}", "dim"
+    yield from further_lines(report, words)
 
 
 def _law(finding: Mapping[str, Any], kinds: Mapping[str, Mapping[str, Any]], words: Words) -> Iterator[dict[str, str]]:

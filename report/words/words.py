@@ -15,6 +15,9 @@ from rosprivacy.report.words import (
     words_cnil_de,
     words_cnil_en,
     words_cnil_fr,
+    words_pictures_de,
+    words_pictures_en,
+    words_pictures_fr,
     words_terminal_de,
     words_terminal_en,
     words_terminal_fr,
@@ -29,9 +32,9 @@ if TYPE_CHECKING:
 DATE = 3  # parts of one
 _ARTICLE = re.compile(r"(?P<article>\d+)(?:\((?P<paragraph>\d+)\))?(?:\((?P<point>[a-z])\))?")
 TABLES = {
-    "en": ENGLISH | words_cnil_en.WORDS | words_terminal_en.WORDS,
-    "de": GERMAN | words_cnil_de.WORDS | words_terminal_de.WORDS,
-    "fr": FRENCH | words_cnil_fr.WORDS | words_terminal_fr.WORDS,
+    "en": ENGLISH | words_cnil_en.WORDS | words_terminal_en.WORDS | words_pictures_en.WORDS,
+    "de": GERMAN | words_cnil_de.WORDS | words_terminal_de.WORDS | words_pictures_de.WORDS,
+    "fr": FRENCH | words_cnil_fr.WORDS | words_terminal_fr.WORDS | words_pictures_fr.WORDS,
 }
 
 

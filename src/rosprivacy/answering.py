@@ -9,6 +9,7 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.contexts import Contexts
 from rosprivacy.analysis.findings.findings import Options, analyse
 from rosprivacy.analysis.findings.processed import lacks, processed
 from rosprivacy.analysis.fleet.patterns import FleetView
@@ -17,6 +18,7 @@ from rosprivacy.analysis.model import unread
 from rosprivacy.assumptions import assumptions_of
 from rosprivacy.decided import accepts, joined_to, law_of
 from rosprivacy.ingest.labels.shipped import infrastructure_of
+from rosprivacy.question import in_contexts
 from rosprivacy.result import Result
 
 if TYPE_CHECKING:
@@ -37,6 +39,8 @@ def answer(system: System, question: Question) -> Result:
     InputErrors
         If labels contradict each other.
     """
+    at_sources = Contexts.of(system.graph, system.bound, system.vocabulary.categories)
+    question = in_contexts(question, at_sources.everywhere)
     groups = Groups(system.likeness) if system.is_fleet and not question.every_finding else None
     options = Options(
         categories=question.asked,
@@ -71,9 +75,10 @@ def concluded(
         As of ``Answer``.
     """
     rows = processed(analysis, system.bound, system.vocabulary.hierarchy)
-    said = lacks(rows, law_of(system.vocabulary, analysis.emitted))
-    analysis = replace(analysis, diagnostics=(*analysis.diagnostics, *said))
-    joined = joined_to(question.decisions, analysis, system.vocabulary, question.asked, system.likeness, view)
+    at_sources = Contexts.of(system.graph, system.bound, system.vocabulary.categories)
+    law = law_of(system.vocabulary, analysis.emitted, at_sources.everywhere)
+    analysis = replace(analysis, diagnostics=(*analysis.diagnostics, *lacks(rows, law)))
+    joined = joined_to(question.decisions, analysis, law, question.asked, system.likeness, view)
     return Result(
         analysis,
         system.bound,
@@ -84,6 +89,7 @@ def concluded(
         view,
         counts,
         infrastructure_of((question.element for question in analysis.open), system.vocabulary),
+        accepts=options.accepts,
         policies=system.policies,
         labels=system.labels,
         options=options,

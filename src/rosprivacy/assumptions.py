@@ -48,7 +48,7 @@ def assumptions_of(rests_on: Mapping[str, Any], analysis: Analysis, question: Qu
 def _of_question(analysis: Analysis, question: Question) -> dict[str, Any]:
     """What is assumed whatever is read."""
     settings, vocabulary = question.settings, question.vocabulary
-    broader = may_be(vocabulary, settings, analysis.emitted)
+    broader = may_be(vocabulary, settings, analysis.emitted, question.contexts)
     return {
         "rosprivacy": __version__,
         "view": analysis.graph.view,

@@ -9,18 +9,20 @@ import os
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.contexts import revealed
 from rosprivacy.analysis.decisions import Case, decided
 from rosprivacy.analysis.fleet.likeness import NO_ROBOTS, pattern_of
 from rosprivacy.analysis.remembered import About
 from rosprivacy.clock import judged_on, today
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable
+    from collections.abc import Callable, Collection, Iterable, Mapping
 
     from rosprivacy.analysis.answer import Analysis, Finding
     from rosprivacy.analysis.decisions import Decided, Decisions
     from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.analysis.fleet.patterns import FleetView
+    from rosprivacy.analysis.legal_bases import Verdicts
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.settings import Settings
 
@@ -47,15 +49,20 @@ def not_revived(decisions: Decisions, latest: str) -> Decisions:
 def joined_to(
     decisions: Decisions | None,
     analysis: Analysis,
-    vocabulary: Vocabulary,
+    law: Mapping[str, Verdicts],
     asked: Collection[str] | None,
     likeness: Likeness = NO_ROBOTS,
     view: FleetView | None = None,
 ) -> Decided | None:
-    """Join decisions to findings; where only some categories were asked for, none is called orphaned."""
+    """Join decisions to findings; where only some categories were asked for, none is called orphaned.
+
+    Parameters
+    ----------
+    law
+        Of ``law_of``.
+    """
     if decisions is None:
         return None
-    law = law_of(vocabulary, analysis.emitted)
 
     def case_of(finding: Finding) -> Case:
         return in_fleet(Case.of(finding), likeness)
@@ -78,10 +85,12 @@ def about_today(analysis: Analysis, view: FleetView | None) -> dict[str, About]:
     return found | {p.id: about(p.finding, everywhere if p.across else p.robots) for p in view.patterns}
 
 
-def law_of(vocabulary: Vocabulary, categories: Iterable[str]) -> dict[str, tuple[tuple[str, str], ...]]:
-    """Return what can apply to data of some categories: (provision, verdict)."""
+def law_of(vocabulary: Vocabulary, categories: Iterable[str], contexts: Collection[str] = ()) -> dict[str, Verdicts]:
+    """Return what can apply to data of some categories, in some contexts too: (provision, verdict)."""
+    kinds = [vocabulary.categories[name] for name in categories]
     return {
-        name: tuple((legal.name, legal.verdict) for legal in vocabulary.categories[name].law) for name in categories
+        kind.name: tuple((legal.name, legal.verdict) for legal in (*kind.law, *revealed(kind, contexts)))
+        for kind in kinds
     }
 
 

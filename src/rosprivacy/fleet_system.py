@@ -142,7 +142,7 @@ class Reader:
 
     def member(self, robot: Robot) -> Member:
         """Return a robot with its graph."""
-        key = (robot.policies, robot.labels, robot.own, robot.strip, robot.add)
+        key = (robot.policies, robot.labels, robot.own, robot.strip, robot.add, robot.surroundings)
         if key not in self._members:
             self._members[key] = self._made(robot)
         member = self._members[key]
@@ -175,7 +175,7 @@ class Reader:
         graph, full = stripped(build(run, settings.view, settings.bounds), robot.strip or robot.add)
         extended = extend(graph, files)
         diagnostics += (*remarks(extended, files), *careful_notices(extended.careful))
-        bound = bind(extended, files, settings.bounds)
+        bound = bind(extended, files, settings.bounds, robot.surroundings)
         part = with_grants(Part.of(extended, bound), lambda grant: as_written(grant, robot.add))
         return Member(robot, policies, part, full, graph.profiles, tuple(files), tuple(dict.fromkeys(diagnostics)))
 

@@ -51,6 +51,8 @@ class Style:
         Whether names of elements, files, robots and persons are replaced; of a report.
     base
         What the IRIs of linked data begin with; by default a UUID of the system.
+    assessment
+        File of the answers that an earlier report saved; of a page, Markdown and Word.
     """
 
     verbose: bool = False
@@ -61,6 +63,7 @@ class Style:
     since: str | None = None
     redact: bool = False
     base: str | None = None
+    assessment: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -178,8 +181,10 @@ def _html(answer: Answer, style: Style) -> str:
 
 
 def _outline(answer: Answer, style: Style) -> tuple[Outline, Aliases | None]:
+    from rosprivacy.report.page.assessment_file import read_answers
     from rosprivacy.report.page.outline import outline
 
+    answers = read_answers(style.assessment) if style.assessment else None
     told, earlier, proposals, aliases = _told(answer, style, answer.proposals())
     report = outline(
         told,
@@ -189,6 +194,7 @@ def _outline(answer: Answer, style: Style) -> tuple[Outline, Aliases | None]:
         earlier=earlier,
         redacted=style.redact,
         proposals=proposals,
+        answers=None if style.redact else answers,  # free text names whom it wants
     )
     return report, aliases
 

@@ -6,9 +6,10 @@ In: what a user names. Out: ``Question``, for ``answering``.
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.contexts import article9_in
 from rosprivacy.analysis.errors import InputErrors, OntologyError, shown
 from rosprivacy.analysis.model import ARTICLE_9_VERDICTS, MAY_REVEAL
 from rosprivacy.clock import judged_on
@@ -16,7 +17,7 @@ from rosprivacy.decided import decisions_of
 from rosprivacy.ontology.vocabulary import load
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Collection, Iterable, Iterator
 
     from rosprivacy.analysis.decisions import Decisions
     from rosprivacy.analysis.model import Category
@@ -42,6 +43,8 @@ class Question:
         Day on which adequacy decisions hold or have ended, ``YYYY-MM-DD``.
     every
         Make every finding of a fleet, not one of each pattern.
+    contexts
+        Where the system works that is asked, as far as it matters for what is asked.
     """
 
     settings: Settings
@@ -50,6 +53,7 @@ class Question:
     decisions: Decisions | None
     today: str
     every: bool = False
+    contexts: frozenset[str] = frozenset()
 
     @property
     def every_finding(self) -> bool:
@@ -71,21 +75,34 @@ def question_of(settings: Settings) -> Question:
     return Question(settings, vocabulary, asked, decisions, settings.today or judged_on(os.environ))
 
 
-def asked_for(vocabulary: Vocabulary, settings: Settings) -> frozenset[str] | None:
+def in_contexts(question: Question, contexts: Collection[str]) -> Question:
+    """Return the question with the categories that fall under Article 9 only where the system works.
+
+    A filter for Article 9 keeps a kind as soon as one source's context makes it one that may reveal (S11).
+    """
+    if question.asked is None or not question.settings.article9 or not contexts:
+        return question
+    asked = asked_for(question.vocabulary, question.settings, contexts)
+    return replace(question, asked=asked, contexts=frozenset(contexts))
+
+
+def asked_for(vocabulary: Vocabulary, settings: Settings, contexts: Collection[str] = ()) -> frozenset[str] | None:
     """Return the categories that the answer is about; None for all.
 
     These are what the filters name, narrower kinds, and what is broader than one of them (so all kinds that overlap
     what is asked for): data of these may be of the kind asked for (S7, S11).
     """
-    named = _named(vocabulary, settings)
+    named = _named(vocabulary, settings, contexts)
     if named is None:
         return None
     return frozenset(named).union(*(vocabulary.hierarchy.broader(name) for name in named))
 
 
-def may_be(vocabulary: Vocabulary, settings: Settings, emitted: Iterable[str]) -> dict[str, list[str]]:
+def may_be(
+    vocabulary: Vocabulary, settings: Settings, emitted: Iterable[str], contexts: Collection[str] = ()
+) -> dict[str, list[str]]:
     """Return the emitted categories that the answer is about only since they may be what is asked for -> what of it."""
-    named = _named(vocabulary, settings)
+    named = _named(vocabulary, settings, contexts)
     if named is None:
         return {}
     above = {name: vocabulary.hierarchy.ancestors[name] for name in named}
@@ -95,7 +112,7 @@ def may_be(vocabulary: Vocabulary, settings: Settings, emitted: Iterable[str]) -
     return {name: kinds for name, kinds in found.items() if kinds}
 
 
-def _named(vocabulary: Vocabulary, settings: Settings) -> set[str] | None:
+def _named(vocabulary: Vocabulary, settings: Settings, contexts: Collection[str]) -> set[str] | None:
     """What the filters name, with narrower kinds; None where there is no filter."""
     if not (settings.categories or settings.article9 or settings.data_types or settings.identity_factors):
         return None
@@ -117,7 +134,7 @@ def _named(vocabulary: Vocabulary, settings: Settings) -> set[str] | None:
     problems += _unknown(settings.identity_factors, factors, "--identity-factor", "identity factor")
     if problems:
         raise InputErrors(problems)
-    return {name for name in asked if _chosen(vocabulary.categories[name], settings)}
+    return {name for name in asked if _chosen(vocabulary.categories[name], settings, contexts)}
 
 
 def _unknown(named: Iterable[str], known: set[str], option: str, what: str) -> Iterator[OntologyError]:
@@ -128,12 +145,12 @@ def _unknown(named: Iterable[str], known: set[str], option: str, what: str) -> I
             yield OntologyError(option, 0, f"unknown {what} {shown(name)!r}", hint)
 
 
-def _chosen(category: Category, settings: Settings) -> bool:
+def _chosen(category: Category, settings: Settings, contexts: Collection[str]) -> bool:
     """Whether the filters keep a category; what is not known of it is kept, since silence would look like an answer."""
     return (
         _meets(category.data_types, settings.data_types)
         and _meets(category.identity_factors, settings.identity_factors)
-        and (not settings.article9 or category.article9 in _levels(settings))
+        and (not settings.article9 or article9_in(category, contexts) in _levels(settings))
     )
 
 

@@ -36,6 +36,7 @@ class Shown(TypedDict, total=False):
     since: str | None
     redact: bool
     base: str | None
+    assessment: str | None
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -110,6 +111,7 @@ class Result(Answer):
         since: str | None = None,
         redact: bool = False,
         base: str | None = None,
+        assessment: str | None = None,
     ) -> str | bytes:
         """Return the answer in a format, as the command line writes it: text, and of ``docx`` bytes.
 
@@ -127,6 +129,8 @@ class Result(Answer):
             File of an earlier analysis, to tell what changed.
         base
             Of linked data: what the IRIs of elements and findings begin with; by default a UUID of the system.
+        assessment
+            Of a report: file of the answers that an earlier page saved.
 
         Raises
         ------
@@ -141,7 +145,14 @@ class Result(Answer):
         no-leak-found: no way to a leak, everything on the way is reviewed
         """
         style = Style(
-            verbose=verbose, quiet=quiet, language=language, title=title, since=since, redact=redact, base=base
+            verbose=verbose,
+            quiet=quiet,
+            language=language,
+            title=title,
+            since=since,
+            redact=redact,
+            base=base,
+            assessment=assessment,
         )
         return written(self, format, style)
 

@@ -33,6 +33,7 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "answer": MODEL | {"kernel"},
         "decisions": MODEL | {"answer"},
         "legal": MODEL | {"answer"},
+        "contexts": MODEL | {"answer"},
         "findings": FACTS,
         "fleet": FACTS | {"findings"},
         "mitigation": FACTS | {"findings"},

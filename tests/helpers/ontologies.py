@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from rdflib.term import Node
 
 FOLDER = ROOT / "ontology"
-SHIPPED = ("categories", "law", "elements", "dpv")
-RP = Namespace("urn:x-rosprivacy:")
+SHIPPED = ("categories", "law", "other_law", "contexts", "elements", "dpv")
+RP = Namespace("https://w3id.org/rosprivacy#")
 
 
 @cache

@@ -21,7 +21,7 @@ NODES = tuple(f"/n{i}" for i in range(5))
 TOPICS = ("/a", "/b", "/c", "/a*", "/parameter_events")
 ROLES = (
     "{source: [Video]}", "{source: [Voice], leak: [Video]}", "{leak: [Biometric]}", "{leak: [Video, Voice]}",
-    "{sanitizer: {Video: pseudonymise}}", "{sanitizer: {Voice: drop}}", "conduit",
+    "{sanitizer: {Video: pseudonymise}, note: a filter, author: Ada Judge}", "{sanitizer: {Voice: drop}}", "conduit",
     "{derives: [{from: Video, to: FaceTemplate}]}",
 )  # fmt: skip
 WHY = (  # of the system, of nodes, of the storage
@@ -36,7 +36,13 @@ WHY = (  # of the system, of nodes, of the storage
     ((), "legal_basis: [6(1)(a), 9(2)(a)]", ", legal_basis: [6(1)(b), 46(2)(c)]"),
     (("purpose: safety",), "purpose: lighting, legal_basis: {FaceTemplate: 9(2)(h)}", ""),
 )
-CHANNEL = ("mundane", "sensitive", "{only: [Video]}", "{never: [Voice]}")
+CHANNEL = ("mundane", "sensitive", "{only: [Video], note: checked}", "{never: [Voice]}")
+
+
+SURROUNDINGS: tuple[tuple[list[str], str], ...] = (  # of the system, of one source
+    ([], ""), (["context: [care]"], ""), (["context: [union, care]", "country: FR"], "context: school, "),
+    (["country: DE"], "context: [worship, workplace], "), ([], "context: public-space, "),
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -76,10 +82,12 @@ def written(draw: st.DrawFn) -> Written:
     top, of_node, of_disk = draw(st.sampled_from(WHY))
     for name in [name for name in sorted(roles) if of_node and roles[name].endswith("}")][:2]:
         roles[name] = f"{roles[name][:-1]}, {of_node}}}"
-    lines = ["labels: 1", *top, "nodes:", *(f"  {name}: {said}" for name, said in sorted(roles.items()))]
+    where, own = SURROUNDINGS[(len(roles) + len(accepted)) % len(SURROUNDINGS)]  # no draw more
+    lines = ["labels: 1", *top, *where, "nodes:", *(f"  {name}: {said}" for name, said in sorted(roles.items()))]
     lines += ["channels:", *(f"  {name}: {said}" for name, said in channels.items())] if channels else []
     lines += ["elements:", f"  disk: {{kind: storage, country: {country}, retention: P3D{of_disk}}}"]
     lines += ["flows:", f"  - {{from: {behind}, to: disk}}"]
+    lines = [line.replace("  /n0: {", f"  /n0: {{{own}") for line in lines]
     return Written(policy(*profiles.values()), "\n".join([*lines, ""]), tuple(sorted(accepted)))
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.ontology.vocabulary import load
 from tests.helpers.command import Cli, cli, refused
 
@@ -72,7 +73,7 @@ class TestNames:
         assert cli(*command, cwd=tmp_path).returncode == 1
         (line,) = refused(cli(*command, "--ontology", "a.ttl", cwd=tmp_path))
         assert line == (
-            f"a.ttl:{A_LINE}: <urn:e:A> has the name 'voice', and so has <urn:x-rosprivacy:Voice>, "
+            f"a.ttl:{A_LINE}: <urn:e:A> has the name 'voice', and so has <https://w3id.org/rosprivacy#Voice>, "
             "which comes with the program; take another name"
         )
 
@@ -82,7 +83,7 @@ class TestNames:
             ('skos:altLabel "face embedding"@en', "face embedding", "FaceTemplate"),
             ('skos:altLabel "Stimme"@de', "Stimme", "Voice"),
             ('skos:altLabel "STIMME"@sv', "STIMME", "Voice"),
-            ('skos:altLabel "urn:x-rosprivacy:voice"', "urn:x-rosprivacy:voice", "Voice"),
+            ('skos:altLabel "urn:x-rosprivacy:voice"', "https://w3id.org/rosprivacy#voice", "Voice"),
             ('skos:prefLabel "voix"@fr', "voix", "Voice"),
         ],
     )
@@ -91,12 +92,14 @@ class TestNames:
     ) -> None:
         (line,) = said(cli, tmp_path, A.replace("skos:def", f"{statement} ; skos:def"))
         assert line.startswith(f"a.ttl:{A_LINE}: <urn:e:A> has the name '{name}', ")
-        assert f"<urn:x-rosprivacy:{other}>, which comes with the program; " in line
+        assert f"<https://w3id.org/rosprivacy#{other}>, which comes with the program; " in line
 
     @pytest.mark.parametrize(("old", "new"), [('"Aa"', '"video"'), (":A ", "<urn:e:sub/VIDEO> ")])
     def test_of_labels_and_iris_too(self, cli: Cli, tmp_path: Path, old: str, new: str) -> None:
         (line,) = said(cli, tmp_path, A.replace(old, new))
-        assert re.match(rf"a\.ttl:{A_LINE}: <urn:e:.*> has the name '(?i:video)', .*<urn:x-rosprivacy:Video>", line)
+        assert re.match(
+            rf"a\.ttl:{A_LINE}: <urn:e:.*> has the name '(?i:video)', .*<https://w3id.org/rosprivacy#Video>", line
+        )
 
     @pytest.mark.parametrize("both", ["one", "two"])
     def test_two_kinds_of_users_with_one_name(self, cli: Cli, tmp_path: Path, both: str) -> None:
@@ -113,8 +116,8 @@ class TestNames:
         (line,) = said(cli, tmp_path, A.replace("skos:def", "skos:exactMatch pd:FacialPrint ; skos:def"))
         assert line == (
             f"a.ttl:{A_LINE}: <urn:e:A> has the exact match <https://w3id.org/dpv/pd#FacialPrint>, and so has "
-            "<urn:x-rosprivacy:FaceTemplate>, which comes with the program; write skos:broader with the other kind, "
-            "or take it away"
+            "<https://w3id.org/rosprivacy#FaceTemplate>, which comes with the program; write skos:broader with "
+            "the other kind, or take it away"
         )
 
     def test_names_of_one_kind_may_be_alike(self, cli: Cli, tmp_path: Path) -> None:
@@ -138,18 +141,38 @@ class TestHierarchy:
         ("statement", "what", "instead"),
         [
             (":A skos:narrower :B", "says skos:narrower <urn:e:B>", "skos:broader on the narrower kind"),
-            (":A skos:narrower rp:Video", "says skos:narrower <urn:x-rosprivacy:Video>", "on the narrower kind"),
+            (
+                ":A skos:narrower rp:Video",
+                "says skos:narrower <https://w3id.org/rosprivacy#Video>",
+                "on the narrower kind",
+            ),
             (":A skos:narrowerTransitive :B", "says skos:narrowerTransitive <urn:e:B>", "on the narrower kind"),
-            (":A skos:broaderTransitive rp:Video", "says skos:broaderTransitive <urn:", "on the narrower kind"),
-            (":A rdfs:subClassOf rp:Video", "says rdfs:subClassOf <urn:x-rosprivacy:Video>", "on the narrower kind"),
-            (":A skos:broadMatch rp:Video", "says skos:broadMatch <urn:x-rosprivacy:Video>", "write skos:broader"),
+            (":A skos:broaderTransitive rp:Video", "says skos:broaderTransitive <https:", "on the narrower kind"),
+            (
+                ":A rdfs:subClassOf rp:Video",
+                "says rdfs:subClassOf <https://w3id.org/rosprivacy#Video>",
+                "on the narrower kind",
+            ),
+            (
+                ":A skos:broadMatch rp:Video",
+                "says skos:broadMatch <https://w3id.org/rosprivacy#Video>",
+                "write skos:broader",
+            ),
             (":A skos:broadMatch :B", "says skos:broadMatch <urn:e:B>", "write skos:broader"),
-            (":A skos:narrowMatch rp:Video", "says skos:narrowMatch <urn:", "write skos:broader"),
-            (":A skos:exactMatch rp:Video", "says skos:exactMatch <urn:x-rosprivacy:Video>", "write skos:broader"),
-            (":A skos:closeMatch rp:Video", "says skos:closeMatch <urn:x-rosprivacy:Video>", "write skos:broader"),
-            (":A owl:sameAs rp:Video", "says owl:sameAs <urn:x-rosprivacy:Video>", "write skos:broader"),
-            ("pd:Salary skos:broader rp:Video", "says skos:broader <urn:", "kind of this file"),
-            (":C skos:broader rp:Video", "says skos:broader <urn:x-rosprivacy:Video>", "a skos:Concept"),
+            (":A skos:narrowMatch rp:Video", "says skos:narrowMatch <https:", "write skos:broader"),
+            (
+                ":A skos:exactMatch rp:Video",
+                "says skos:exactMatch <https://w3id.org/rosprivacy#Video>",
+                "write skos:broader",
+            ),
+            (
+                ":A skos:closeMatch rp:Video",
+                "says skos:closeMatch <https://w3id.org/rosprivacy#Video>",
+                "write skos:broader",
+            ),
+            (":A owl:sameAs rp:Video", "says owl:sameAs <https://w3id.org/rosprivacy#Video>", "write skos:broader"),
+            ("pd:Salary skos:broader rp:Video", "says skos:broader <https:", "kind of this file"),
+            (":C skos:broader rp:Video", "says skos:broader <https://w3id.org/rosprivacy#Video>", "a skos:Concept"),
         ],
     )
     def test_what_is_not_followed_is_refused_with_its_line(
@@ -171,7 +194,7 @@ class TestHierarchy:
     )
     def test_nothing_shipped_is_spoken_about(self, cli: Cli, tmp_path: Path, statement: str) -> None:
         (line,) = said(cli, tmp_path, f"{A}{B}{statement} .\n")
-        assert line.startswith(f"a.ttl:{LAST}: <urn:x-rosprivacy:")
+        assert line.startswith(f"a.ttl:{LAST}: <https://w3id.org/rosprivacy#")
         assert "comes with the program and cannot be changed; " in line
         assert "skos:broader" in line
 
@@ -200,3 +223,28 @@ class TestHierarchy:
         files = ("--ontology", "a.ttl", "--ontology", "b.ttl")
         done = cli("analyze", "p.policy.xml", "-l", "l.yaml", *files, cwd=tmp_path)
         assert (done.returncode, done.stderr) == (1, "")
+
+
+CARE = "rp:context rp:CareContext ; rp:provision rp:GDPR-88"
+REVEAL = 'rp:verdict "may-reveal" ; rp:condition "x"@en'
+
+
+@pytest.mark.parametrize(
+    ("said", "message"),
+    [
+        (f"rp:inContext [ rp:context rp:Market ; rp:provision rp:GDPR-88 ; {REVEAL} ]", "a context that is not known"),
+        (f'rp:inContext [ {CARE} ; rp:verdict "always" ]', "something else of a context than what may be revealed"),
+        (f"rp:inContext [ rp:context rp:CareContext ; {REVEAL} ]", "what no known provision speaks of"),
+        ("rp:lookAt rp:NoLaw", "points at a provision that is not known"),
+    ],
+)
+def test_contexts_and_pointers_that_are_none(tmp_path: Path, said: str, message: str) -> None:
+    file = tmp_path / "mine.ttl"
+    file.write_text(
+        f'{HEAD}\n:Bed a skos:Concept ; rp:label "Bed" ; skos:broader rp:Location ; skos:prefLabel "bed sensor"@en ;\n'
+        f'  skos:definition "Who lies in a bed."@en ; {said} .\n',
+        "utf-8",
+    )
+    with pytest.raises(InputErrors) as raised:
+        load(ontologies=[str(file)])
+    assert message in str(raised.value)

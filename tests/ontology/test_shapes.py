@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from rdflib import URIRef
 
 PREFIXES = """
-@prefix rp: <urn:x-rosprivacy:> . @prefix pd: <https://w3id.org/dpv/pd#> . @prefix : <urn:example:> .
+@prefix rp: <https://w3id.org/rosprivacy#> . @prefix pd: <https://w3id.org/dpv/pd#> . @prefix : <urn:example:> .
 @prefix skos: <http://www.w3.org/2004/02/skos/core#> . @prefix xsd: <http://www.w3.org/2001/XMLSchema#> .
 """
 OWN = """
@@ -100,7 +100,11 @@ class TestShapes:
             (":Shoe a", "[] a", "has no IRI of its own"),
             # all together
             ("rp:PhysicalCharacteristic", ":Shoe , rp:PhysicalCharacteristic", "is broader than itself"),
-            ("rp:PhysicalCharacteristic", "rp:Physical", "has the unknown parent <urn:x-rosprivacy:Physical>"),
+            (
+                "rp:PhysicalCharacteristic",
+                "rp:Physical",
+                "has the unknown parent <https://w3id.org/rosprivacy#Physical>",
+            ),
             (
                 "rp:PhysicalCharacteristic",
                 "pd:Behavioral",

@@ -1,12 +1,8 @@
 "use strict";
 (() => {
   const contents = document.querySelector("#contents details");
-  const wide = matchMedia("(min-width: 68rem)");
-  const unfold = () => { contents.open = wide.matches; };
-  wide.addEventListener("change", unfold);
+  contents.open = matchMedia("(min-width: 68rem)").matches;
   addEventListener("beforeprint", () => { contents.open = true; });
-  addEventListener("afterprint", unfold);
-  unfold();
   const form = document.getElementById("filters");
   const ways = [...document.querySelectorAll("article.way")].map((way) => ({
     way, text: way.textContent.toLowerCase(), ...way.dataset,
@@ -63,4 +59,27 @@
     search.addEventListener("input", find);
     find();
   }
+  document.documentElement.classList.add("js");
+  const fields = [...document.querySelectorAll("textarea[data-field]")];
+  let changed = false;
+  for (const field of fields) {
+    field.addEventListener("input", () => {
+      changed = true;
+      field.nextElementSibling.textContent = field.value;
+    });
+  }
+  addEventListener("beforeunload", (event) => { if (changed) event.preventDefault(); });
+  const save = document.getElementById("save");
+  save.parentElement.hidden = false;
+  save.addEventListener("click", () => {
+    const filled = fields.filter((field) => field.value.trim()).map((field) => [field.dataset.field, field.value]);
+    const answers = Object.fromEntries(filled.sort(([one], [other]) => (one < other ? -1 : 1)));
+    const text = `${JSON.stringify({ format: "rosprivacy.assessment/1", answers }, null, 2)}\n`;
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(new Blob([text], { type: "application/json" }));
+    link.download = "assessment.json";
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href));
+    changed = false;
+  });
 })();

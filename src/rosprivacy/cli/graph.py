@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from rosprivacy.cli.inputs import Inputs, reads_system
-from rosprivacy.cli.options import Output
+from rosprivacy.cli.options import Language, Output
 from rosprivacy.cli.output import emit, not_for_a_terminal
 from rosprivacy.report.pictures.picture import LEGIBLE
 
@@ -168,6 +168,7 @@ def graph(
         bool,
         typer.Option("--draw-standard-channels", help="Draw the standard ROS channels too.", rich_help_panel=DRAWN),
     ] = False,
+    lang: Annotated[Language, typer.Option(help="Language of titles, notes and legend.")] = Language.en,
 ) -> None:
     """Draw the ROS graph, or where personal data can go in it. Gives no verdict: exit code 0 once it is drawn."""
     part = Part(finding, robot, around, steps, most, fold=fold, loose_ends=loose_ends)
@@ -175,13 +176,13 @@ def graph(
     form = _format(format, output)
     not_for_a_terminal(form.upper() if form is not PictureFormat.mermaid else "a drawing", output)
     result, own = _drawn_of(inputs)
-    picture = _view(result, show, part, carried_only=bool(inputs.categories), standard=draw_standard_channels)
+    picture = _view(result, show, part, lang, carried_only=bool(inputs.categories), standard=draw_standard_channels)
     if result.fleet and not finding:
         from rosprivacy.report.pictures.fleet_view import label, represented
 
         picture = represented(picture, result.fleet.likeness)
-        own = {label(name, result.fleet.likeness): profiles for name, profiles in own.items()}
-        part = replace(part, robot=label(robot, result.fleet.likeness) if robot else None)
+        own = {label(name, result.fleet.likeness, picture.words): profiles for name, profiles in own.items()}
+        part = replace(part, robot=label(robot, result.fleet.likeness, picture.words) if robot else None)
     picture = _narrowed(picture, part)
     if not everything and not part.chosen and form is not PictureFormat.graphml:
         picture = _legible(picture)
@@ -228,17 +229,24 @@ def _format(given: PictureFormat | None, output: Path | None) -> PictureFormat:
     raise typer.BadParameter(f"what format is {output.name}? Name it with --format: {', '.join(PictureFormat)}")
 
 
-def _view(result: Result, show: Shown, part: Part, *, carried_only: bool, standard: bool) -> Picture:
+def _view(
+    result: Result, show: Shown, part: Part, language: Language, *, carried_only: bool, standard: bool
+) -> Picture:
     from rosprivacy.report.pictures import narrow, views
+    from rosprivacy.report.pictures.phrases import Phrases
+    from rosprivacy.report.words.words import Words
 
+    words, kinds = Words(language.value), result.vocabulary.categories
+    titles = {name: category.text("title", language.value) for name, category in kinds.items()}
+    say = Phrases() if language is Language.en else Phrases.told(words, titles)
     beside = result.fleet.likeness.second if result.fleet else ()
     if show is Shown.privacy:
         if part.finding:
             about = views.PER_BOX * part.most if part.most else None
-            return views.finding_view(result.analysis, narrow.the_finding(result.analysis, part.finding), about)
-        return views.privacy_view(result.analysis, beside)
+            return views.finding_view(result.analysis, narrow.the_finding(result.analysis, part.finding), about, say)
+        return views.privacy_view(result.analysis, beside, say)
     denials = [grant for policy in result.policies for grant in policy.grants if not grant.allow]
-    picture = views.ros_view(result.analysis, denials, standard=standard, beside=beside)
+    picture = views.ros_view(result.analysis, denials, words, standard=standard, beside=beside)
     return narrow.carrying(picture, result.analysis) if carried_only else picture
 
 

@@ -46,6 +46,14 @@ def report(
             help="Tell what changed since this document of 'analyze --format json'.",
         ),
     ] = None,
+    assessment: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE.json",
+            show_default=False,
+            help="Fill in the answers that the page of an earlier report saved.",
+        ),
+    ] = None,
     redact: Annotated[
         bool,
         typer.Option("--redact", help="Replace names of elements, files, robots and persons, to show it to others."),
@@ -62,6 +70,12 @@ def report(
     if format is ReportFormat.docx:
         not_for_a_terminal("a Word document", output)
     result = inputs.result(inputs.settings)
-    style = Style(language=lang.value, title=title, since=str(since) if since else None, redact=redact)
+    style = Style(
+        language=lang.value,
+        title=title,
+        since=str(since) if since else None,
+        redact=redact,
+        assessment=str(assessment) if assessment else None,
+    )
     report = written(result, format.value, style)
     emit(report.encode() if isinstance(report, str) else report, output)  # it says of itself that it is UTF-8

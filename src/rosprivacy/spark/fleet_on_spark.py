@@ -137,7 +137,8 @@ def result(task: Task, found: Found, told: Shown, question: Question) -> Result:
     bounds = (
         f"analysed in parts, {found.open:,} open elements in the whole fleet: ways and distances are the shortest "
         "among the robots that are shown, and what is told element by element is told of these: open elements, "
-        "unknown ends, what is denied, sanitized, derived, taken away, stated of purposes and bases, or not stated"
+        "unknown ends, what is denied, sanitized, derived, taken away, stated of purposes and bases, or not stated, "
+        "and what the answer hangs on"
     )
     joins = joins_nothing(task.fleet, task.groups, found.told.met)
     said = (*found.told.diagnostics, *joins, Diagnostic(Place("--engine spark", 0), Severity.NOTICE, bounds))

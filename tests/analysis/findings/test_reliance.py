@@ -13,7 +13,7 @@ from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.example import ARCHIVE, CAMERA, DISK, FACES, FILTER, FILTERED, ROSOUT, factory
 from rosprivacy.analysis.findings import reliance
 from rosprivacy.analysis.findings.findings import Options, analyse
-from rosprivacy.analysis.findings.reliance import BRINGS_IN, Opening, reliances
+from rosprivacy.analysis.findings.reliance import BRINGS_IN, Opening, Reliance, reliances
 from rosprivacy.analysis.model import GLOB, NOWHERE, Place, Statement
 from tests.helpers.lined_systems import stated
 from tests.helpers.more_systems import ranked, wildcards
@@ -22,9 +22,10 @@ from tests.helpers.systems import systems
 if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.decisions import Case
-    from rosprivacy.analysis.model import Bound
+    from rosprivacy.analysis.model import Bound, FlowGraph
 
 Found = dict[tuple[str, ...], tuple[bool, bool]]
+One = tuple[Any, ...]
 
 
 def answered(analysis: Analysis) -> tuple[Found, set[tuple[Any, str]]]:
@@ -39,34 +40,50 @@ def answered(analysis: Analysis) -> tuple[Found, set[tuple[Any, str]]]:
     return found, {(q.element.shown_as, c) for q in analysis.open for c in q.categories}
 
 
-def without(bound: Bound, statement: Statement) -> Bound:
+def one(statement: Statement, graph: FlowGraph, *ends: int) -> One:
+    """A glob is one statement with all that it is about; a name is one for each name."""
+    return (statement, *(() if statement.glob else (graph.elements[v].name for v in ends)))
+
+
+def without(graph: FlowGraph, bound: Bound, lost: One) -> Bound:
+    ends = [(flow.source, flow.target) for flow in graph.flows]
     return replace(
         bound,
-        elements={v: tuple(s for s in said if s != statement) for v, said in bound.elements.items()},
-        flows={i: tuple(s for s in said if s != statement) for i, said in bound.flows.items()},
+        elements={v: tuple(s for s in said if one(s, graph, v) != lost) for v, said in bound.elements.items()},
+        flows={i: tuple(s for s in said if one(s, graph, *ends[i]) != lost) for i, said in bound.flows.items()},
     )
 
 
-def by_brute_force(graph: Any, bound: Bound, hierarchy: Any, options: Options) -> dict[Statement, Any]:
+def by_brute_force(graph: Any, bound: Bound, hierarchy: Any, options: Options) -> dict[One, Any]:
     """Statement -> what comes about without it; None where the labels contradict each other then."""
     before, asked = answered(analyse(graph, bound, hierarchy, options))
-    result: dict[Statement, Any] = {}
-    for said in (*bound.elements.values(), *bound.flows.values()):
+    result: dict[One, Any] = {}
+    at = [((v,), said) for v, said in bound.elements.items()]
+    along = [((graph.flows[i].source, graph.flows[i].target), said) for i, said in bound.flows.items()]
+    for ends, said in (*at, *along):
         for statement in said:
             if statement.role in BRINGS_IN or statement.place == NOWHERE:
                 continue
+            key = one(statement, graph, *ends)
             try:
-                after, questions = answered(analyse(graph, without(bound, statement), hierarchy, options))
+                after, questions = answered(analyse(graph, without(graph, bound, key), hierarchy, options))
             except InputErrors:
-                result[statement] = None
+                result[key] = None
                 continue
             worse = {
                 key: state
                 for key, state in after.items()
                 if key not in before or any(now and not then for now, then in zip(state, before[key], strict=True))
             }
-            result[statement] = (worse, questions - asked)
+            result[key] = (worse, questions - asked)
     return result
+
+
+def named(row: Reliance) -> One:
+    """The same of a row; the sides of a wildcard have one name."""
+    if row.statement.glob:
+        return (row.statement,)
+    return (row.statement, row.elements[0].name, *(element.name for element in row.to))
 
 
 def compared(system: Any, options: Options) -> int:
@@ -76,7 +93,7 @@ def compared(system: Any, options: Options) -> int:
         analysis = analyse(graph, bound, hierarchy, options)
     except InputErrors:
         return 0
-    rows = {row.statement: row for row in reliances(analysis, bound, hierarchy, options.accepts)}
+    rows = {named(row): row for row in reliances(analysis, bound, hierarchy, options.accepts)}
     for statement, expected in by_brute_force(graph, bound, hierarchy, options).items():
         row = rows.get(statement)
         if expected is None:

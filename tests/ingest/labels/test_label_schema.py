@@ -19,14 +19,20 @@ from tests.helpers.label_files import read, told, validator
 
 FULL: dict[str, Any] = {
     "labels": 1,
+    "author": "A. Person",
     "nodes": {
         "/a": "conduit",
-        "/b": {"source": ["Video"], "leak": ["Voice"], "conduit": ["Location"], "subjects": ["staff"], "note": "x"},
+        "/b": {"source": ["Video"], "leak": ["Voice"], "conduit": ["Location"], "subjects": ["staff"], "note": "x",
+               "author": "B"},
         "/c": {"source": {"Video": ["/t"]}, "sanitizer": {"Voice": "drop", "Health": None}},
         "/d": {"sanitizer": ["Video"], "derives": [{"from": "Video", "to": "FaceTemplate"}]},
         "/e": None,
     },
-    "channels": {"/t": "mundane", "/u": {"only": ["Video"], "never": ["Voice"], "note": "x"}, "/v": None},
+    "channels": {
+        "/t": "mundane",
+        "/u": {"only": ["Video"], "never": ["Voice"], "note": "x", "author": "B"},
+        "/v": None,
+    },
     "topics": {"/t": "sensitive"},
     "services": {"*": {"never": ["Video"]}},
     "actions": {},
@@ -54,6 +60,7 @@ OTHERS: tuple[Any, ...] = (
     {"/x": "conduit"}, {"/x": "mundane"}, {"x": 1}, {"from": "Video", "to": "Voice"},
     [{"from": "Video", "to": "Voice"}], {"from": "/a", "to": "/b", "only": ["Video"]}, {"only": ["Video"]},
     {"leak": ["Video"]}, {"leak": []}, {"note": "x"},
+    {"author": "x"}, {"author": " "}, {"author": 1},
 )  # fmt: skip
 
 

@@ -69,7 +69,18 @@ def said_by_people(value: Any) -> Iterator[str]:
     elif isinstance(value, dict):
         ours = "reason" if "choice" not in value else ""  # of a finding, not of a decision
         for key, one in value.items():
-            if key in {"subjects", "reason", "owner", "ticket", "why", "operator", "name", "note", "model"} - {ours}:
+            if key in {
+                "subjects",
+                "reason",
+                "owner",
+                "ticket",
+                "why",
+                "operator",
+                "name",
+                "note",
+                "author",
+                "model",
+            } - {ours}:
                 texts = [one] if isinstance(one, str) else one if isinstance(one, list) else ()
                 yield from (text for text in texts if isinstance(text, str))
             yield from said_by_people(one)

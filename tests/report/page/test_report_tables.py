@@ -91,7 +91,7 @@ def test_decisions_stand_beside_their_way_with_what_they_lack() -> None:
         assert "no exception of Article 9(2) is recorded" in text  # Article 6 alone does not do for a special category
         assert "to be mitigated" in text
         assert "matches no path any more" in text
-        assert "1 path to assess accepted by a person's decision; section 3 shows each" in text
+        assert "1 path to assess accepted by a person's decision; section 4 shows each" in text
     assert {what: number for number, what in report.numbers}["paths to assess"] == 2
 
 

@@ -15,6 +15,7 @@ from rosprivacy.analysis.errors import DrawingError
 from rosprivacy.analysis.model import Element, Flow, FlowGraph, Grant, Place
 from rosprivacy.report.pictures import narrow, views
 from rosprivacy.report.pictures.dot import dot
+from rosprivacy.report.words.words import IN_ENGLISH
 from tests.helpers.graphs import care_home, factory
 from tests.helpers.paths import TESTS
 from tests.helpers.pictures import hostile, names_of, pictures, ros
@@ -143,7 +144,7 @@ def test_a_denial_that_is_not_drawn_is_counted() -> None:
 def test_where_no_source_is_named_the_picture_says_that_it_says_nothing() -> None:
     system = System(2, 1, [(0, 2), (2, 1)], {1: [statement("leak", "Face")]}, {})
     picture = views.privacy_view(system.analyse())
-    assert picture.title == views.NOTHING
+    assert picture.title == IN_ENGLISH("pic.nothing")
     assert not picture.boxes
 
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 PREFIXES = """
 PREFIX dpv: <https://w3id.org/dpv#> PREFIX rdfs: <http://www.w3.org/2000/01/rdf-schema#>
-PREFIX rp: <urn:x-rosprivacy:> PREFIX skos: <http://www.w3.org/2004/02/skos/core#>
+PREFIX rp: <https://w3id.org/rosprivacy#> PREFIX skos: <http://www.w3.org/2004/02/skos/core#>
 """
 KIND = "?f a rp:Finding ; rp:category/skos:prefLabel ?kind ; rp:concerns ?p ."
 RECEIVES = "?r a dpv:Recipient ; rdfs:label ?who . ?p dpv:hasRecipient ?r ."

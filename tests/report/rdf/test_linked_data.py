@@ -19,7 +19,7 @@ from rosprivacy.ingest.database.loading import load
 from rosprivacy.private_neo4j import connection
 from rosprivacy.queries.library import find
 from rosprivacy.queries.run import run
-from rosprivacy.report.rdf.terms import OWN, RP
+from rosprivacy.report.rdf.terms import RP
 from tests.helpers.graphs import care_home, rows_of
 from tests.helpers.paths import ROOT
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 CONDITION = (
     "biometric data count here only when they are processed to identify a person uniquely or to confirm who a person "
-    "is (Article 4(14), recital 51); a template that is kept to recognise somebody again is presumed to be"
+    "is (Article 4(14), recital 51); a template that is kept to recognise somebody again usually is"
 )
 CARE = "examples/care-home/care-home"
 PAGE = ROOT / "docs" / "linked-data.md"
@@ -97,13 +97,13 @@ def row(graph: Graph, finding: Node, law: Node) -> tuple[str, ...]:
         return "" if node is None else str(node)
 
     return (
-        value(finding, RP.category).removeprefix(OWN),
+        value(finding, RP.category).removeprefix(str(RP)),
         value(finding, RP.dataSource, RP.name),
         value(finding, RP.leak, RP.name),
         value(law, RP.provision, RP.identifier),
         value(law, RP.verdict),
         value(law, RP.condition),
-        value(law, RP.statedOf).removeprefix(OWN),
+        value(law, RP.statedOf).removeprefix(str(RP)),
     )
 
 

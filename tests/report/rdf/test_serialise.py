@@ -107,9 +107,7 @@ def holds(graph: Graph, name: str) -> None:
     assert values(graph, RP.SourceFile, RP.file) == values(graph, RP.Finding, RP.accepted) == {name}
     assert name in values(graph, RP.Assumption, RP.value)
     assert len(graph) == triples_of_a_tame_name()
-    assert all(
-        str(node).startswith(("urn:x-rosprivacy:", "urn:uuid:", "urn:test:Kind", "http")) for node in uris(graph)
-    )
+    assert all(str(node).startswith(("urn:uuid:", "urn:test:Kind", "http")) for node in uris(graph))
 
 
 @FORMS

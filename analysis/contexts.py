@@ -1,0 +1,152 @@
+"""What data may reveal where they are brought in: contexts of sources make the law of a kind more exact (Article 9(1)).
+
+In: categories with what the ontology states of contexts, and the contexts of a finding's source. Out: what its data may
+reveal there, with the provision that says so. A context never weakens what is stated of a kind; it is no verdict.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.model import ARTICLE_9_VERDICTS, MAY_REVEAL, SPECIAL
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Mapping
+
+    from rosprivacy.analysis.answer import Finding
+    from rosprivacy.analysis.hierarchy import Hierarchy
+    from rosprivacy.analysis.model import Bound, Category, FlowGraph, Legal
+
+_WEAKER = ARTICLE_9_VERDICTS[ARTICLE_9_VERDICTS.index(MAY_REVEAL) :]
+
+
+def surrounded(categories: Mapping[str, Category], hierarchy: Hierarchy) -> dict[str, Category]:
+    """Return the categories with what contexts and pointers say of broader ones, which holds of narrower ones too.
+
+    What a context says of a kind can hold of a broader one too, since data of that may be of the narrower kind (rule
+    S7); a pointer to law cannot.
+
+    >>> from rosprivacy.analysis.example import CATEGORIES
+    >>> from rosprivacy.analysis.hierarchy import Hierarchy
+    >>> both = surrounded(CATEGORIES, Hierarchy.of(CATEGORIES.values()))
+    >>> both["FaceTemplate"].in_context == CATEGORIES["FaceTemplate"].in_context
+    True
+    """
+    near: dict[str, dict[str, None]] = {name: {} for name in categories}
+    for name in categories:
+        for above in hierarchy.ancestors[name]:
+            near[name][above] = None
+            near[above][name] = None
+    return {
+        name: replace(
+            category,
+            in_context=_stated(categories[other] for other in sorted(near[name])),
+            look_at=tuple(sorted({at for above in hierarchy.ancestors[name] for at in categories[above].look_at})),
+        )
+        for name, category in categories.items()
+    }
+
+
+def _stated(categories: Iterable[Category]) -> tuple[Legal, ...]:
+    """What is stated of some categories, each statement once, with the first of them."""
+    found: dict[tuple[str, str, str], Legal] = {}
+    for category in categories:
+        for legal in category.in_context:
+            stated = legal if legal.stated_of else replace(legal, stated_of=category.name)
+            found.setdefault((legal.context, legal.name, legal.condition), stated)
+    return tuple(found[key] for key in sorted(found))
+
+
+def revealed(category: Category, contexts: Collection[str]) -> tuple[Legal, ...]:
+    """Return what data of a category may reveal in some contexts, beyond what is stated of the category anywhere.
+
+    >>> from rosprivacy.analysis.example import CATEGORIES
+    >>> revealed(CATEGORIES["Video"], ())
+    ()
+    """
+    known = {legal.name for legal in category.law if legal.verdict in SPECIAL}
+    return tuple(legal for legal in category.in_context if legal.context in contexts and legal.name not in known)
+
+
+def article9_in(category: Category, contexts: Collection[str]) -> str:
+    """Return the verdict under Article 9(1) that holds in some contexts: that of the category, or a stronger one.
+
+    >>> from rosprivacy.analysis.example import CATEGORIES
+    >>> article9_in(CATEGORIES["Video"], ())
+    'no'
+    """
+    if category.article9 in _WEAKER and any(legal.special for legal in revealed(category, contexts)):
+        return MAY_REVEAL
+    return category.article9
+
+
+@dataclass(frozen=True, slots=True)
+class Contexts:
+    """The contexts of a system's sources.
+
+    Attributes
+    ----------
+    by_source
+        (robot, kind, name) -> contexts.
+    """
+
+    by_source: Mapping[tuple[str, str, str], frozenset[str]]
+    categories: Mapping[str, Category]
+
+    @classmethod
+    def of(
+        cls, graph: FlowGraph, bound: Bound, categories: Mapping[str, Category], *, together: bool = False
+    ) -> Contexts:
+        """Take what labels state.
+
+        Parameters
+        ----------
+        together
+            Where several robots have an element of one name, its contexts are those of all: a finding of a fleet
+            stands for all of them.
+
+        Examples
+        --------
+        >>> from rosprivacy.analysis.example import CATEGORIES, factory
+        >>> Contexts.of(*factory()[:2], CATEGORIES).everywhere
+        frozenset()
+        """
+        own = {graph.elements[vertex].identity: where.contexts for vertex, where in bound.surroundings.items()}
+        of_name: dict[tuple[str, ...], frozenset[str]] = {}
+        for (robot, *name), contexts in own.items():
+            key = ("" if together else robot, *name)
+            of_name[key] = of_name.get(key, frozenset()).union(contexts)
+        elements = (element.identity for element in graph.elements if not element.is_channel) if own else ()
+        keys = {one: of_name.get(("" if together else one[0], *one[1:]), frozenset()) for one in elements}
+        return cls(keys, categories)
+
+    @property
+    def everywhere(self) -> frozenset[str]:
+        """Those of all sources."""
+        return frozenset[str]().union(*self.by_source.values())
+
+    def revealed(self, finding: Finding) -> tuple[Legal, ...]:
+        """Return what the data of a finding may reveal where they are brought in, beside what holds everywhere.
+
+        >>> from rosprivacy.analysis.example import CATEGORIES, factory
+        >>> from rosprivacy.analysis.findings.findings import analyse
+        >>> faces, *_ = analyse(*factory()).findings
+        >>> Contexts({}, CATEGORIES).revealed(faces)
+        ()
+        """
+        return revealed(self.categories[finding.category], self._at(finding))
+
+    def article9(self, finding: Finding) -> str:
+        """Return the strongest verdict under Article 9(1) on the data of a finding, where they are brought in.
+
+        >>> from rosprivacy.analysis.example import CATEGORIES, factory
+        >>> from rosprivacy.analysis.findings.findings import analyse
+        >>> faces, *_ = analyse(*factory()).findings
+        >>> Contexts({}, CATEGORIES).article9(faces)
+        'conditional'
+        """
+        return article9_in(self.categories[finding.category], self._at(finding))
+
+    def _at(self, finding: Finding) -> frozenset[str]:
+        return self.by_source.get(finding.source.identity, frozenset())

@@ -1,0 +1,79 @@
+"""Law that is pointed at beside what is followed into paths, and what data may reveal in a context, in words.
+
+In: an ``Index``. Out: rows for the law box of a kind, for an entry, for the list at the end of the paths. No verdict.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.text import fit
+from rosprivacy.report.looked_at import looked_at, of_every_system
+from rosprivacy.report.naming import text
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from rosprivacy.report.page.index import Index
+
+
+@dataclass(frozen=True, slots=True)
+class LookAt:
+    """One provision to look at, with its dates."""
+
+    name: str
+    title: str
+    meaning: str
+    dates: str
+
+
+def of_kind(category: str, index: Index) -> tuple[LookAt, ...]:
+    """Return the provisions that a kind of data points at."""
+    rows = looked_at(index.document, index.words.language)
+    return tuple(_told((row for row in rows if category in row["categories"]), index))
+
+
+def further(index: Index) -> tuple[tuple[str, tuple[LookAt, ...]], ...]:
+    """Return what contexts and every system point at: (who calls for it, provisions)."""
+    rows, words = looked_at(index.document, index.words.language), index.words
+    found = [(words("look.system"), tuple(_told(of_every_system(rows), index)))]
+    for context in index.document.get("contexts", ()):
+        called = (row for row in rows if context["name"] in row["contexts"])
+        heading = words("look.context", context=text(context, "title", words.language))
+        found.append((heading, tuple(_told(called, index))))
+    return tuple((heading, several) for heading, several in found if several)
+
+
+def context_of(name: str, index: Index) -> str:
+    """Return what a context is called."""
+    known = (one for one in index.document.get("contexts", ()) if one["name"] == name)
+    return next((text(one, "title", index.words.language) for one in known), fit(name))
+
+
+def revealed(finding: Mapping[str, Any], index: Index) -> Iterator[str]:
+    """Yield what the data of a finding may reveal where they are brought in: context, provision, reason."""
+    of_category = {
+        (row["context"], row["provision"], row["condition"]): row
+        for row in index.categories[finding["category"]].get("in_context", ())
+    }
+    for said in finding.get("in_context", ()):
+        row = of_category.get((said["context"], said["provision"], said["condition"]))
+        if row:
+            language = index.words.language
+            yield index.words(
+                "f.context",
+                context=context_of(said["context"], index),
+                provision=text(row, "provision", language),
+                reason=text(row, "condition", language),
+            )
+
+
+def _told(rows: Iterable[Mapping[str, Any]], index: Index) -> Iterator[LookAt]:
+    words, language = index.words, index.words.language
+    for row in rows:
+        dates = [words("law.as.of", date=words.date(row["as_of"]))]
+        if row["applies_from"]:
+            dates.append(words("look.applies", date=words.date(row["applies_from"])))
+        provision, title, meaning = (text(row, what, language) for what in ("provision", "title", "meaning"))
+        yield LookAt(provision, title, meaning, "; ".join(dates))

@@ -1,0 +1,102 @@
+"""What the answer hangs on: what there would be if one statement of a label file were wrong, for the report.
+
+In: an ``Index``. Out: rows, a user's statements before shipped ones, those on which most hangs first.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.text import fit
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from rosprivacy.report.page.index import Index
+
+FEW = 8  # elements that a row names, of each sort; the document has all
+
+
+@dataclass(frozen=True, slots=True)
+class Hanging:
+    """One statement.
+
+    Attributes
+    ----------
+    where, line
+        The elements that it is about; file and line.
+    said, by, why
+        What it says, who says so, with which reason; the last two may be empty.
+    findings, questions
+        What there would be without it.
+    shipped
+        Whether it is not the user's.
+    """
+
+    where: str
+    line: str
+    said: str
+    by: str
+    why: str
+    findings: tuple[str, ...]
+    questions: tuple[str, ...]
+    shipped: bool
+
+
+def hanging(index: Index) -> tuple[Hanging, ...]:
+    """Return the statements on which something hangs; older documents have none."""
+    return tuple(_hanging(row, index) for row in index.document.get("hangs_on", ()))
+
+
+def _hanging(row: Mapping[str, Any], index: Index) -> Hanging:
+    words = index.words
+    ends = (_some(index.names(row[end]), index) for end in ("elements", "to") if row[end])
+    return Hanging(
+        where=" → ".join(words.row(names) for names in ends),
+        line=f"{fit(row['file'])}:{row['line']}",
+        said=_said(row, index),
+        by=fit(row["author"]),
+        why=fit(row["why"]),
+        findings=_some(list(_findings(row, index)), index),
+        questions=_some(list(_questions(row, index)), index),
+        shipped=row["shipped"],
+    )
+
+
+def _said(row: Mapping[str, Any], index: Index) -> str:
+    words = index.words
+    role = "absent" if row["method"] == "absent" else row["role"]
+    said = words(f"u.{role}")
+    if row["role"] == "sanitizer" and role != "absent":
+        method = words(f"method.{row['method']}")
+        said = f"{said} ({method})"
+    said = words.pair(said, index.all_data(row["categories"])) if row["categories"] else said
+    return words("k.glob", said=said) if row["glob"] else said
+
+
+def _findings(row: Mapping[str, Any], index: Index) -> Iterator[str]:
+    words = index.words
+    if row["refused"]:
+        yield words("u.refused", why=fit(row["refused"]))
+    if row["perhaps"]:
+        yield words("k.perhaps")
+    for opening in row["findings"]:
+        data = index.data(opening["category"], pseudonymised=opening["pseudonymised"])
+        ends = [words.row(index.names([opening[end]])) for end in ("source", "leak")]
+        told = words.pair(data, " → ".join(ends))
+        more = [] if opening["kind"] == "disclosure" else [words(f"finding.{opening['kind']}")]
+        more += [words("u.dismissed")] if opening["dismissed"] else []
+        more += [] if opening["new"] else [words("u.worse")]
+        yield f"{told} ({words.row(more)})" if more else told
+
+
+def _questions(row: Mapping[str, Any], index: Index) -> Iterator[str]:
+    for one in row["questions"]:
+        yield f"{index.words.row(index.names([one['element']]))} ({index.all_data(one['categories'])})"
+
+
+def _some(texts: Sequence[str], index: Index) -> tuple[str, ...]:
+    distinct = tuple(dict.fromkeys(texts))  # the legs of a service have one name
+    more = [index.words("more", n=len(distinct) - FEW)] if len(distinct) > FEW else []
+    return (*distinct[:FEW], *more)

@@ -1,0 +1,100 @@
+"""The rights of the persons: for each group of them, where data about them can lie (Articles 15, 17 and 20).
+
+In: an ``Index``. Out: rows of plain texts. A storage or recipient counts for a group if data of a kind that the group's
+sources bring in, or that can be made of it, can get there; how long it is kept is 'not known' where nobody states it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.text import fit
+from rosprivacy.report.naming import key
+from rosprivacy.report.page.non_ros import STORAGE, country, kept
+from rosprivacy.report.page.tables import OUTSIDE, can_come_from
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from rosprivacy.report.naming import Key
+    from rosprivacy.report.page.index import Index
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where data of a group can lie: a storage, an external recipient, or an element that lets data out."""
+
+    name: str
+    kind: str
+    data: str
+    kept: str
+    who: str
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """A group of persons, and the places; none where no path of their data was found to one."""
+
+    name: str
+    places: tuple[Place, ...]
+
+
+def rights(index: Index) -> tuple[Group, ...]:
+    """Return the groups that labels name, then the persons that they do not name.
+
+    Complexity: O(groups x (storages + findings) x kinds of data).
+    """
+    sources = index.of_role.get("source", {})
+    groups: dict[str, set[Key]] = {}
+    for source in sources:
+        for name in index.subjects.get(source, ()):
+            groups.setdefault(name, set()).add(source)
+    told = [Group(fit(name), tuple(_places(members, index))) for name, members in sorted(groups.items())]
+    silent = {source for source in sources if source not in index.subjects}
+    if silent:
+        told.append(Group(index.words("subject.unknown"), tuple(_places(silent, index))))
+    return tuple(told)
+
+
+def _places(members: set[Key], index: Index) -> Iterator[Place]:
+    """Storages first, then who receives data."""
+    there = sorted(_kinds(members, index).items(), key=lambda one: (one[0][1] != STORAGE, one[0]))
+    alike: dict[tuple[str, Place], list[Mapping[str, Any]]] = {}
+    for place, kinds in there:
+        element = index.elements[place]
+        alike.setdefault((element["name"], _place(element, kinds, index)), []).append(element)
+    for (_, made), elements in alike.items():
+        yield replace(made, name=index.words.row(index.names(elements)))
+
+
+def _kinds(members: set[Key], index: Index) -> dict[Key, dict[str, None]]:
+    """Place -> the kinds of the members' data that can get there."""
+    origins = can_come_from(index)
+    found: dict[Key, dict[str, None]] = {}
+    for finding in index.findings:
+        if key(finding["source"]) in members:
+            found.setdefault(key(finding["leak"]), {})[finding["category"]] = None
+    for place, row in index.outside.items():
+        for category in row["holds"] if row["element"]["kind"] in OUTSIDE else ():
+            if members & origins.get(category, set()):
+                found.setdefault(place, {})[category] = None
+    return found
+
+
+def _place(element: Mapping[str, Any], kinds: dict[str, None], index: Index) -> Place:
+    words, row = index.words, index.outside.get(key(element), {})
+    durations = {category: kept(row, category, index) if row.get("retention") else "" for category in kinds}
+    stated = {duration for duration in durations.values() if duration}
+    if not stated:
+        said = words("rt.unknown")
+    elif len(set(durations.values())) == 1:
+        said = stated.pop()
+    else:
+        said = "; ".join(
+            words("o.of", data=index.data(category), duration=duration or words("rt.unknown"))
+            for category, duration in durations.items()
+        )
+    who = [fit(row["operator"])] if row.get("operator") else []
+    who += [country(row, index)] if row.get("country") else []
+    return Place("", words.kind(element), index.all_data(kinds), said, words.row(who) or words("rt.unknown"))

@@ -1,0 +1,106 @@
+"""Where a system or a source works: ``context`` and ``country`` of label and fleet files (issue 17, points 2 and 5)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+import rosprivacy
+from rosprivacy.ingest.labels.label_file import parse_labels
+from rosprivacy.ontology.vocabulary import load
+from tests.helpers.fleet_files import policy
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+POLICY = policy("/cam>/a<", "/keys>/a<", "/sink><a".replace("<a", "</a"))
+LABELS = """labels: 1
+{top}
+nodes:
+  /cam: {{source: [Video]{own}}}
+  /keys: {{source: [OperatorInput]}}
+  /sink: {{leak: [Video, OperatorInput]}}
+"""
+
+
+def told(folder: Path, top: str = "", own: str = "", **more: object) -> dict[str, object]:
+    (folder / "p.xml").write_text(POLICY, "utf-8")
+    (folder / "l.yaml").write_text(LABELS.format(top=top, own=own), "utf-8")
+    return rosprivacy.analyze(str(folder / "p.xml"), str(folder / "l.yaml"), **more).document()  # type: ignore[arg-type]
+
+
+def contexts(document: dict[str, object]) -> dict[str, set[str]]:
+    rows: list[dict[str, object]] = document["findings"]  # type: ignore[assignment]
+    return {str(f["category"]): {one["context"] for one in f["in_context"]} for f in rows}  # type: ignore[attr-defined]
+
+
+def test_of_the_system_it_holds_for_every_source(tmp_path: Path) -> None:
+    document = told(tmp_path, top="context: care\ncountry: DE")
+    assert contexts(document) == {"Video": {"care"}, "OperatorInput": {"care"}}
+    assert [(row["contexts"], row["country"]) for row in document["surroundings"]] == [(["care"], "DE")] * 2  # type: ignore[attr-defined]
+
+
+def test_of_a_source_it_holds_there_beside_that_of_the_system(tmp_path: Path) -> None:
+    assert contexts(told(tmp_path, top="context: [union]", own=", context: [school]")) == {
+        "Video": {"school", "union"},
+        "OperatorInput": {"union"},
+    }
+
+
+def test_without_one_nothing_is_said(tmp_path: Path) -> None:
+    document = told(tmp_path)
+    assert contexts(document) == {"Video": set(), "OperatorInput": set()}
+    assert document["contexts"] == []
+
+
+def test_article_9_asks_for_what_may_reveal_where_the_system_works(tmp_path: Path) -> None:
+    """A wrong 'nothing found' is the worst: the filter takes the context into account."""
+    assert [f["category"] for f in told(tmp_path, article9=True)["findings"]] == ["Video"]  # type: ignore[attr-defined]
+    found = told(tmp_path, top="context: care", article9=True)["findings"]
+    assert [(f["category"], f["article9"]) for f in found] == [  # type: ignore[attr-defined]
+        ("OperatorInput", "may-reveal"),
+        ("Video", "may-reveal"),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("top", "message"),
+    [
+        ("context: [carre]", "l.yaml:2: unknown context 'carre'; did you mean care?"),
+        ("context: [market]", "l.yaml:2: unknown context 'market'; "),
+        ("context: []", "l.yaml:2: context names nothing; write some of care, "),
+        ("context: {care: yes}", "l.yaml:2: "),
+        ("country: UK", "l.yaml:2: 'UK' is not an ISO 3166-1 country code; did you mean GB?"),
+    ],
+)
+def test_what_is_no_context_and_no_country_is_an_error(top: str, message: str) -> None:
+    with pytest.raises(rosprivacy.InputErrors) as raised:
+        parse_labels(LABELS.format(top=top, own=""), load(), name="l.yaml")
+    assert message in str(raised.value)
+
+
+def test_a_fleet_file_states_it_of_all_of_a_model_and_of_a_robot(tmp_path: Path) -> None:
+    """Robots that work elsewhere are not alike, and what is said of each survives (rule S10)."""
+    told(tmp_path)
+    (tmp_path / "f.yaml").write_text(
+        "fleet: 1\ncontext: workplace\ncountry: FR\nmodels:\n  m: {policies: p.xml, labels: l.yaml, context: [care]}\n"
+        "robots:\n  a: {model: m}\n  b: {model: m, context: school, country: DE}\n"
+        "  c: {policies: p.xml, labels: l.yaml}\n"
+        "elements:\n  mic: {kind: device, source: [Voice], subjects: [guests], context: [worship]}\n"
+        "flows:\n  - {from: mic, to: 'a:/sink'}\n",
+        "utf-8",
+    )
+    document = rosprivacy.analyze_fleet(str(tmp_path / "f.yaml")).document()
+    found = {
+        (row["element"]["robot"], row["element"]["name"]): (row["contexts"], row.get("country"))
+        for row in document["surroundings"]
+    }
+    assert found["a", "/cam"] == (["care", "workplace"], "FR")
+    assert found["b", "/cam"] == (["care", "school", "workplace"], "DE")
+    assert found["c", "/cam"] == (["workplace"], "FR")
+    assert found["shared", "mic"] == (["workplace", "worship"], None)
+    assert [row["subjects"] for row in document["subjects"]] == [["guests"]]
+    videos = [f for f in document["findings"] if f["category"] == "Video"]
+    (video,) = {tuple(sorted(one["context"] for one in f["in_context"])) for f in videos}
+    assert video == ("care", "school", "workplace")  # of the robots that the pattern stands for
