@@ -330,7 +330,8 @@ def test_the_rows_for_the_database_have_every_fact_that_the_fleet_states() -> No
         question = question_of(Settings())
         system = fleet_system(FLEET, question)
         result = answer(system, question)
-        rows = [row for robot in rows_of_fleet(system, question, result) for row in (robot.properties, *robot.elements)]
+        robots = list(rows_of_fleet(system, question, result))
+    rows = [row for robot in robots for row in (robot.properties, *robot.elements)]
     written_as = "\n".join(strings(rows))
     document = result.document()
     for what in (
