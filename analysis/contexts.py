@@ -120,8 +120,8 @@ class Contexts:
         for (robot, *name), contexts in own.items():
             key = ("" if together else robot, *name)
             of_name[key] = of_name.get(key, frozenset()).union(contexts)
-        for name, contexts in bound.elsewhere.items() if together else ():
-            of_name["", *name] = of_name.get(("", *name), frozenset()).union(contexts)
+        for of_kind, more in bound.elsewhere.items() if together else ():
+            of_name["", *of_kind] = of_name.get(("", *of_kind), frozenset()).union(more)
         elements = (element.identity for element in graph.elements if not element.is_channel) if of_name else ()
         keys = {one: of_name.get(("" if together else one[0], *one[1:]), frozenset()) for one in elements}
         return cls(keys, categories, frozenset[str]().union(*of_name.values()))
