@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.legal_bases import CHAPTER_V
+from rosprivacy.analysis.model import THIRD_COUNTRY
 from rosprivacy.analysis.text import fit, printable
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import key, name, text
@@ -207,7 +209,10 @@ def _bases(findings: Sequence[Mapping[str, Any]], index: Index) -> list[str]:
     ends = [index.processed_for.get((key(finding["leak"]), finding["category"]), {}) for finding in findings]
     decided = [basis for finding in findings for basis in _decided(finding, "legal_basis")]
     stated = [basis for end in ends for basis in end.get("legal_bases", ())]
-    return [index.words.basis(printable(basis)) for basis in dict.fromkeys((*decided, *stated))]
+    bases = dict.fromkeys((*decided, *stated))
+    leaves = any(finding["kind"] == THIRD_COUNTRY for finding in findings)
+    lacks = bases and leaves and not any(basis.startswith(CHAPTER_V) for basis in bases)
+    return [*map(index.words.basis, map(printable, bases)), *([index.words("b.basis.chapter_v")] if lacks else [])]
 
 
 def _owners(findings: Iterable[Mapping[str, Any]]) -> list[str]:

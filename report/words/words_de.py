@@ -154,6 +154,7 @@ WORDS = {
     "b.law.third-country-transfer": "Kapitel V (Artikel 44 bis 49)",
     "b.basis": "Rechtsgrundlage",
     "b.basis.none": "keine festgehalten",
+    "b.basis.chapter_v": "keine nach Kapitel V",
     "b.recipient": "Empfänger",
     "b.owner": "Zuständig",
     "b.owner.none": "niemand benannt",

@@ -179,6 +179,7 @@ WORDS = {
     "b.law.third-country-transfer": "chapter V (Articles 44 to 49)",
     "b.basis": "Legal basis",
     "b.basis.none": "none recorded",
+    "b.basis.chapter_v": "none of chapter V",
     "b.recipient": "Recipient",
     "b.owner": "Who decides",
     "b.owner.none": "nobody is named",

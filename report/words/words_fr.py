@@ -159,6 +159,7 @@ _TYPED = {
     "b.law.third-country-transfer": "chapitre V (articles 44 à 49)",
     "b.basis": "Base juridique",
     "b.basis.none": "aucune consignée",
+    "b.basis.chapter_v": "aucune au titre du chapitre V",
     "b.recipient": "Destinataire",
     "b.owner": "Qui décide",
     "b.owner.none": "personne n'est nommé",

@@ -141,3 +141,14 @@ def test_many_are_counted_and_those_below_told() -> None:
     assert len(opening.rows) == 12
     assert opening.more == "11 more are listed below, among the paths to assess."
     assert "face template can get to r0:/to0, r1:/to1, r2:/to2, and 17 more;" in opening.said[0]
+
+
+def test_a_transfer_that_rests_on_article_6_alone_says_what_it_lacks() -> None:  # law.md, 0.5
+    document = dict(hospital().document())
+    row = next(row for row in told(document).opening.rows if row.leak == "hospital:fleet cloud")
+    assert dict(row.facts)["Legal basis"] == "6(1)(e), 9(2)(h), 9(3), none of chapter V"
+    (stated,) = [r for r in document["processed_for"] if r["element"]["name"] == "fleet cloud"]
+    based = {**stated, "legal_bases": [*stated["legal_bases"], "46(2)(c)"]}
+    document["processed_for"] = [based if r is stated else r for r in document["processed_for"]]
+    row = next(row for row in told(document).opening.rows if row.leak == "hospital:fleet cloud")
+    assert "none of chapter V" not in dict(row.facts)["Legal basis"]
