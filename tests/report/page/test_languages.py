@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import json
 import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 import rosprivacy
+from rosprivacy.analysis.errors import InputError
+from rosprivacy.analysis.model import REASONS
 from rosprivacy.ingest.labels.countries import countries
 from rosprivacy.report.page.article30 import record
 from rosprivacy.report.page.markdown import markdown
@@ -18,6 +21,7 @@ from rosprivacy.report.words.words import TABLES, Words
 from tests.helpers.graphs import care_home, hospital
 from tests.helpers.languages import OTHERS, english_in
 from tests.helpers.pages import earlier, page, told
+from tests.helpers.paths import ROOT
 from tests.helpers.reports import care, run, with_decisions, with_outside
 from tests.helpers.turtlebot import COSTMAP, MEMORY, TURTLEBOT3
 
@@ -184,3 +188,14 @@ def test_french_spaces_keep_to_their_marks() -> None:
         assert "\\xa0" not in text
         assert "\\u202f" not in text
     assert Words("fr").number(12345) == "12\u202f345"
+
+
+def test_the_published_schema_names_every_reason() -> None:
+    schema = json.loads((ROOT / "docs" / "analysis.schema.json").read_text("utf-8"))
+    because = schema["$defs"]["finding"]["properties"]["because"]
+    assert set(because["properties"]["key"]["enum"]) == REASONS.keys()
+
+
+def test_an_unknown_language_is_refused() -> None:
+    with pytest.raises(InputError, match="unknown language 'xx'; one of en, de, fr"):
+        care_home().to("html", language="xx")
