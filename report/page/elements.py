@@ -55,7 +55,10 @@ class Enclave:
 def items(index: Index) -> tuple[Item, ...]:
     """Return the elements that data gets to, in the order of the document."""
     said: dict[Any, dict[str, list[str]]] = {}
-    there = {key(row["element"]): {*row["categories"], *row["pseudonymised"]} for row in index.document["carries"]}
+    there = {  # with broader kinds: of these the document names the narrowest
+        key(row["element"]): {up for name in (*row["categories"], *row["pseudonymised"]) for up in index.upwards(name)}
+        for row in index.document["carries"]
+    }
     makes = {(key(row["element"]), row["from"]) for row in index.document["derivations"] if row["reached"]}
     for (element, category), roles in index.roles.items():
         for role in roles:
