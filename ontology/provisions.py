@@ -6,6 +6,7 @@ In: a language. Out: ``Provision`` facts. rdflib reads them, which is heavy: imp
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from importlib.resources import files
 from typing import TYPE_CHECKING
 
@@ -44,14 +45,20 @@ class Provision:
     address: str
 
 
+@cache
+def law() -> Graph:
+    """Return what the shipped files of the law say; they are read once."""
+    text = "\n".join((files(__package__) / file).read_text("utf-8") for file in FILES)
+    return read(text, "the shipped law")
+
+
 def provisions(language: str = ENGLISH) -> tuple[Provision, ...]:
     """Return all of them, in the order of their identifiers.
 
     >>> [one.title for one in provisions("de") if one.name == "Art. 32 DSGVO"]
     ['Sicherheit der Verarbeitung']
     """
-    text = "\n".join((files(__package__) / file).read_text("utf-8") for file in FILES)
-    graph = read(text, "the shipped law")
+    graph = law()
     subjects = set(graph.subjects(RDF.type, RP.LegalProvision))
     return tuple(
         Provision(

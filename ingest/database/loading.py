@@ -264,7 +264,7 @@ def _write_vocabulary(transaction: ManagedTransaction, vocabulary: Vocabulary) -
         for iri, legal in law
     ]
     run(transaction, cypher.create_relationships(FALLS_UNDER), rows=under)
-    at = [(c.iri, pointed[name].iri) for c in categories.values() for name in c.look_at]
+    at = [(c.iri, pointed[name].iri) for c in categories.values() for name in c.look_at if name in pointed]
     links = [{"source": source, "target": target, "properties": {}} for source, target in at]
     run(transaction, cypher.create_relationships(LOOK_AT), rows=links)
 

@@ -12,6 +12,7 @@ from rosprivacy.analysis.model import MAY_REVEAL
 from rosprivacy.analysis.text import fit, printable
 from rosprivacy.report.document.ledger import hanging
 from rosprivacy.report.naming import infrastructure_file, name
+from rosprivacy.report.page.entries_of_robots import grouped
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -82,10 +83,11 @@ def _standard(index: Index) -> str:
 def _stopped(index: Index) -> Iterator[str]:
     """Standard channels at which data stops, those of which a glob says otherwise, and what labels take away."""
     words, said = index.words, index.document["assumptions"]
-    for row in said.get("standard_channels_reached", ()):
-        yield words("a.standard.reached", element=name(row["element"]), data=index.all_data(row["categories"]))
-    for element in said.get("standard_channels_unchanged", ()):
-        yield words("a.standard.unchanged", element=name(element))
+    for rows in grouped(said.get("standard_channels_reached", ()), lambda row: tuple(row["categories"])):
+        names = words.row(index.names([row["element"] for row in rows]))
+        yield words("a.standard.reached", element=names, data=index.all_data(rows[0]["categories"]))
+    if unchanged := said.get("standard_channels_unchanged", ()):
+        yield words("a.standard.unchanged", element=words.row(index.names(unchanged)))
     for row in said.get("absent", ()):
         yield words("a.absent", element=name(row["element"]), why=printable(row["why"]))
     if rows := hanging(index.document):

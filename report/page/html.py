@@ -47,11 +47,11 @@ def html(report: Outline, drawn: Figures | None = None) -> str:
 
     Complexity: O(size of the outline and the pictures).
     """
-    environment, css, js = _environment(report.words.language)
+    environment, css, js = environment_of(report.words.language)
     page = environment.get_template("report.html.j2").render(
         r=report,
-        t=_Escaped(report.words),
-        policy=f"default-src 'none'; style-src '{_hash(css)}'; script-src '{_hash(js)}'; img-src data:; "
+        t=in_html(report.words),
+        policy=f"default-src 'none'; style-src '{hashed(css)}'; script-src '{hashed(js)}'; img-src data:; "
         "base-uri 'none'; form-action 'none'",
         css=Markup(css),  # noqa: S704 - our own file
         js=Markup(js),  # noqa: S704 - our own file
@@ -64,9 +64,14 @@ def html(report: Outline, drawn: Figures | None = None) -> str:
     return page.strip() + "\n"
 
 
+def in_html(words: Words) -> _Escaped:
+    """Return the words of a language as HTML."""
+    return _Escaped(words)
+
+
 @cache
-def _environment(language: str) -> tuple[Environment, str, str]:
-    """The templates, the style, the script."""
+def environment_of(language: str) -> tuple[Environment, str, str]:
+    """Return the templates of a language, the style, the script."""
     loader = SpacedTemplates(language)
     environment = Environment(
         loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
@@ -75,6 +80,6 @@ def _environment(language: str) -> tuple[Environment, str, str]:
     return environment, css, js
 
 
-def _hash(text: str) -> str:
-    """The name of a text in a Content Security Policy."""
+def hashed(text: str) -> str:
+    """Return the name of a text in a Content Security Policy."""
     return f"sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}"

@@ -68,21 +68,22 @@ def _places(members: set[Key], index: Index) -> Iterator[Place]:
         yield replace(made, name=index.words.row(index.names(elements)))
 
 
-def _kinds(members: set[Key], index: Index) -> dict[Key, dict[str, None]]:
-    """Place -> the kinds of the members' data that can get there."""
+def _kinds(members: set[Key], index: Index) -> dict[Key, dict[str, bool]]:
+    """Place -> the kinds of the members' data that can get there, and whether these come pseudonymised only."""
     origins = can_come_from(index)
-    found: dict[Key, dict[str, None]] = {}
+    found: dict[Key, dict[str, bool]] = {}
     for finding in index.findings:
         if key(finding["source"]) in members:
-            found.setdefault(key(finding["leak"]), {})[finding["category"]] = None
+            here, category = found.setdefault(key(finding["leak"]), {}), finding["category"]
+            here[category] = here.get(category, True) and finding["pseudonymised"]
     for place, row in index.outside.items():
         for category in row["holds"] if row["element"]["kind"] in OUTSIDE else ():
             if members & origins.get(category, set()):
-                found.setdefault(place, {})[category] = None
+                found.setdefault(place, {}).setdefault(category, False)
     return found
 
 
-def _place(element: Mapping[str, Any], kinds: dict[str, None], index: Index) -> Place:
+def _place(element: Mapping[str, Any], kinds: Mapping[str, bool], index: Index) -> Place:
     words, row = index.words, index.outside.get(key(element), {})
     durations = {category: kept(row, category, index) if row.get("retention") else "" for category in kinds}
     stated = {duration for duration in durations.values() if duration}
@@ -97,4 +98,5 @@ def _place(element: Mapping[str, Any], kinds: dict[str, None], index: Index) -> 
         )
     who = [fit(row["operator"])] if row.get("operator") else []
     who += [country(row, index)] if row.get("country") else []
-    return Place("", words.kind(element), index.all_data(kinds), said, words.row(who) or words("rt.unknown"))
+    data = words.row(index.data(category, pseudonymised=hidden) for category, hidden in kinds.items())
+    return Place("", words.kind(element), data, said, words.row(who) or words("rt.unknown"))

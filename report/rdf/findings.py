@@ -9,12 +9,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rdflib import OWL, RDF, RDFS, SKOS, XSD, Graph, Literal
+from rdflib import DCTERMS, OWL, RDF, RDFS, SKOS, XSD, Graph, Literal
 from rdflib.namespace import PROV
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.findings.processed import of_end
 from rosprivacy.report.document.whole import document
+from rosprivacy.report.rdf.concepts import texts
 from rosprivacy.report.rdf.facts import changes, emitted_by, kinds_along, label_of, legal_of
 from rosprivacy.report.rdf.individuals import below, names_of
 from rosprivacy.report.rdf.process import Processes
@@ -45,7 +46,7 @@ if TYPE_CHECKING:
 
 PREFIXES: dict[str, object] = {
     "dpv": DPV, "risk": RISK, "pd": "https://w3id.org/dpv/pd#", "eu-gdpr": "https://w3id.org/dpv/legal/eu/gdpr#",
-    "rp": RP, "owl": OWL, "prov": PROV, "rdf": RDF, "rdfs": RDFS, "skos": SKOS, "xsd": XSD,
+    "rp": RP, "owl": OWL, "dcterms": DCTERMS, "prov": PROV, "rdf": RDF, "rdfs": RDFS, "skos": SKOS, "xsd": XSD,
 }  # fmt: skip
 ROLES = {
     "source": RP.sourceOf, "leak": RP.leakOf, "sanitizer": RP.sanitizerOf, "conduit": RP.conduitOf,
@@ -173,7 +174,7 @@ class _Findings:
                 link,
                 (RP.provision, [self.things.provision(legal)]),
                 (RP.verdict, [text(legal.verdict)]),
-                (RP.condition, [text(legal.condition, "en")] if legal.condition else []),
+                (RP.condition, texts(legal.condition, legal.translations, "condition")),
                 (RP.statedOf, self.things.categories(names)),
             )
 
@@ -187,7 +188,7 @@ class _Findings:
                 (RP.context, [text(legal.context)]),
                 (RP.provision, [self.things.provision(legal)]),
                 (RP.verdict, [text(legal.verdict)]),
-                (RP.condition, [text(legal.condition, "en")]),
+                (RP.condition, texts(legal.condition, legal.translations, "condition")),
             )
 
     def _witness(self, iri: URIRef, finding: Finding) -> Iterator[Triple]:

@@ -8,18 +8,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from rdflib import OWL, RDF, SKOS, XSD, Literal, URIRef
+from rdflib import RDF, Literal, URIRef
 from rdflib.namespace import PROV
 
-from rosprivacy.analysis.model import Pointer
-from rosprivacy.ontology.iris import STORED
+from rosprivacy.report.rdf.concepts import category_triples, provision_triples
 from rosprivacy.report.rdf.individuals import foreign
-from rosprivacy.report.rdf.terms import DPV, RP, Triple, about, text
+from rosprivacy.report.rdf.terms import RP, Triple, about, text
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from rosprivacy.analysis.model import Category, Element, Grant, Legal, Surroundings
+    from rosprivacy.analysis.model import Element, Grant, Legal, Pointer, Surroundings
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.report.rdf.individuals import Names
 
@@ -100,7 +99,7 @@ class Things:
 
     def pointed(self, names: Iterable[str]) -> list[URIRef]:
         """Return the IRIs of provisions to look at; a day from which one applies, and its country, are described."""
-        found = [self._pointed[name] for name in names]
+        found = [self._pointed[name] for name in names if name in self._pointed]
         self._provisions |= {foreign(one.iri): one for one in found}
         return [foreign(one.iri) for one in found]
 
@@ -125,10 +124,9 @@ class Things:
         for name in {up for category in self._named for up in self._ancestors[category]}:
             category = self._categories[name]
             broader = [foreign(self._categories[up].iri) for up in category.broader if up in self._categories]
-            yield from _category(category, broader)
+            yield from category_triples(category, broader)
             yield from about(foreign(category.iri), (RP.lookAt, self.pointed(category.look_at)))
-        for iri, legal in self._provisions.items():
-            yield from _provision(iri, legal)
+        yield from provision_triples(self._provisions.values())
 
 
 def _element(iri: URIRef, element: Element) -> list[Triple]:
@@ -153,36 +151,3 @@ def _line(iri: URIRef, grant: Grant, files: Iterable[URIRef]) -> list[Triple]:
         (RP.profile, [text(grant.node)]),
         (RP.inFile, files),
     )
-
-
-def _provision(iri: URIRef, legal: Legal | Pointer) -> list[Triple]:
-    applies, country = (legal.applies, legal.country) if isinstance(legal, Pointer) else ("", "")
-    return about(
-        iri,
-        (RDF.type, [RP.LegalProvision]),
-        (RP.identifier, [text(legal.name)]),
-        (SKOS.definition, [text(legal.meaning, "en")]),
-        (RP.asOf, [Literal(legal.as_of, datatype=XSD.date)]),
-        (RP.appliesFrom, [Literal(applies, datatype=XSD.date)] if applies else []),
-        (RP.country, [text(country)] if country else []),
-        (OWL.sameAs, _stored(legal.iri)),
-    )
-
-
-def _category(category: Category, broader: list[URIRef]) -> list[Triple]:
-    return about(
-        foreign(category.iri),
-        (RDF.type, [SKOS.Concept, *([DPV.SpecialCategoryPersonalData] if category.article9 == "always" else [])]),
-        (SKOS.prefLabel, [text(category.title, "en")]),
-        (SKOS.definition, [text(category.definition, "en")]),
-        (RP.identityFactor, map(text, category.identity_factors)),
-        (SKOS.broader, broader),
-        (SKOS.broadMatch, map(foreign, category.within)),
-        (SKOS.exactMatch, map(foreign, category.same_as)),
-        (OWL.sameAs, _stored(category.iri)),
-    )
-
-
-def _stored(iri: str) -> list[URIRef]:
-    """What a term of ours is called in documents and databases; nothing of what is not ours."""
-    return [URIRef(iri)] if iri.startswith(STORED) else []

@@ -188,7 +188,7 @@ WORDS = {
     "b.picture.part": "Die kürzesten Wege der ersten {n} von {all} Punkten; die anderen haben unten je ein Bild",
     # --- the rights of the persons
     "h.rights": "Rechte der betroffenen Personen: wo ihre Daten liegen können",
-    "rt.intro": "Wer auf Auskunft, Löschung oder Datenübertragbarkeit in Anspruch genommen wird (Artikel 15, 17 und 20), muss wissen, wo die Daten liegen. Zu jeder Kategorie betroffener Personen nennen die Tabellen die Speicher, Empfänger und Austrittspunkte, an die Daten über sie gelangen können.",
+    "rt.intro": "Wer auf Auskunft, Löschung oder Datenübertragbarkeit in Anspruch genommen wird (Artikel 15, 17 und 20), muss wissen, wo die Daten liegen. Zu jeder Kategorie betroffener Personen nennen die Tabellen die Speicher, Empfänger und Ausgänge, an die Daten über sie gelangen können.",
     "rt.of": "Daten über: {group}",
     "rt.where": "Wo",
     "rt.who": "Wer es betreibt, und wo",
@@ -210,6 +210,18 @@ WORDS = {
     "sign.file": "Die Antworten stammen aus",
     "sign.unmatched": "Antworten, zu denen nichts mehr passt",
     "sign.unmatched.means": "Diese Antworten betreffen Wege oder Felder, die dieser Bericht nicht hat. Sie werden mit den anderen wieder gespeichert; wer sie leert, verwirft sie.",
+    # --- the summary for works councils
+    "wc.title": "Zusammenfassung für den Betriebsrat",
+    "wc.intro": "Die Programme der Roboter dürfen einander nur schicken, was ihre Policies erlauben. Diese Seite sagt, wohin Daten von Personen nach diesen Policies und den Angaben zu den Programmen gelangen können. Sie sagt nicht, dass Daten dorthin gehen, oder wie oft. Welche Personen Beschäftigte sind, müssen Menschen sagen; auch Personen, zu denen nichts angegeben ist, können Beschäftigte sein.",
+    "wc.where": "Wessen Daten wohin gelangen können, und wie lange sie aufbewahrt werden",
+    "wc.groups": "Alle Kategorien betroffener Personen, die Angaben nennen",
+    "wc.to": "Können gelangen an",
+    "wc.kinds": "Was das für Daten sind",
+    "wc.measures": "Was zu ihrem Schutz getan wird",
+    "wc.open": "Was noch zu entscheiden ist",
+    "wc.point.one": "{n} Punkt ist noch zu entscheiden.",
+    "wc.point.many": "{n} Punkte sind noch zu entscheiden.",
+    "wc.law": "Wo nachzusehen ist: Artikel 88 DSGVO, § 26 BDSG, § 87 Absatz 1 Nummer 6 BetrVG.",
     # --- Article 9
     "article9.short": "Artikel 9 Absatz 1",
     "article9.always": "gilt für solche Daten",

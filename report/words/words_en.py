@@ -241,6 +241,18 @@ WORDS = {
     "sign.file": "The answers come from",
     "sign.unmatched": "Answers that match nothing any more",
     "sign.unmatched.means": "These answers are about paths or fields that this report does not have. They are saved again with the others; empty them to drop them.",
+    # --- the summary for works councils
+    "wc.title": "Summary for the works council",
+    "wc.intro": "The robots' programs may send each other only what their policies allow. This page tells where data of persons can get to under these policies and what people said of the programs. It does not say that data go there, or how often. Which of the groups are employees is for people to say; persons of whom nothing is stated can be employees too.",
+    "wc.where": "Whose data can get where, and how long they are kept",
+    "wc.groups": "All groups of persons that labels name",
+    "wc.to": "Can get to",
+    "wc.kinds": "What these data are",
+    "wc.measures": "What is done to protect them",
+    "wc.open": "What is still to be decided",
+    "wc.point.one": "{n} point has still to be decided.",
+    "wc.point.many": "{n} points have still to be decided.",
+    "wc.law": "Where to look: Article 88 GDPR, and the national law on data of employees and on works councils.",
     # --- Article 9
     "article9.short": "Article 9(1)",
     "article9.always": "applies to such data",

@@ -192,7 +192,7 @@ _TYPED = {
     "b.picture": "Les plus courts chemins de ce qui est à décider, en une image",
     "b.picture.part": "Les plus courts chemins des {n} premiers points sur {all} ; les autres ont chacun une image plus bas",
     # --- the rights of the persons
-    "h.rights": "Droits des personnes : où leurs données peuvent se trouver",
+    "h.rights": "Droits des personnes concernées : où leurs données peuvent se trouver",
     "rt.intro": "Qui est saisi d'une demande d'accès, d'effacement ou de portabilité (articles 15, 17 et 20) doit savoir où se trouvent les données. Pour chaque catégorie de personnes concernées, les tableaux nomment les stockages, destinataires et points de sortie que leurs données peuvent atteindre.",
     "rt.of": "Données concernant : {group}",
     "rt.where": "Où",
@@ -215,6 +215,18 @@ _TYPED = {
     "sign.file": "Les réponses proviennent de",
     "sign.unmatched": "Réponses qui ne correspondent plus à rien",
     "sign.unmatched.means": "Ces réponses concernent des chemins ou des champs que ce rapport n'a pas. Elles sont enregistrées de nouveau avec les autres ; videz-les pour les supprimer.",
+    # --- the summary for works councils
+    "wc.title": "Résumé pour le comité social et économique",
+    "wc.intro": "Les programmes des robots ne peuvent s'envoyer que ce que leurs politiques permettent. Cette page dit où des données de personnes peuvent arriver selon ces politiques et les annotations des programmes. Elle ne dit pas que des données y vont, ni à quelle fréquence. Quelles personnes sont des salariés, c'est à des personnes de le dire ; celles dont rien n'est indiqué peuvent aussi en être.",
+    "wc.where": "Les données de qui peuvent aller où, et combien de temps elles sont conservées",
+    "wc.groups": "Toutes les catégories de personnes que les annotations nomment",
+    "wc.to": "Peuvent atteindre",
+    "wc.kinds": "Ce que sont ces données",
+    "wc.measures": "Ce qui est fait pour les protéger",
+    "wc.open": "Ce qui reste à décider",
+    "wc.point.one": "{n} point reste à décider.",
+    "wc.point.many": "{n} points restent à décider.",
+    "wc.law": "Où regarder : article 88 du RGPD, code du travail (article L. 2312-38).",
     # --- Article 9
     "article9.short": "Article 9, par. 1",
     "article9.always": "s'applique à ces données",

@@ -28,7 +28,9 @@ if TYPE_CHECKING:
 LANGUAGES = ("en", "de", "fr")
 
 # What is text; the table below has one row for each, and 'docx'.
-TextFormat = Literal["text", "json", "sarif", "cnil-pia", "turtle", "json-ld", "html", "markdown", "article30"]
+TextFormat = Literal[
+    "text", "json", "sarif", "cnil-pia", "turtle", "json-ld", "html", "markdown", "article30", "works-council",
+]  # fmt: skip
 
 NAMED = 3  # policies in the title of a report
 
@@ -180,6 +182,12 @@ def _html(answer: Answer, style: Style) -> str:
     return html(told, figures(answer.analysis, told, aliases))
 
 
+def _works_council(answer: Answer, style: Style) -> str:
+    from rosprivacy.report.page.works_council import works_council
+
+    return works_council(_outline(answer, style)[0])
+
+
 def _outline(answer: Answer, style: Style) -> tuple[Outline, Aliases | None]:
     from rosprivacy.report.page.assessment_file import read_answers
     from rosprivacy.report.page.outline import outline
@@ -243,5 +251,6 @@ FORMATS = {
         Format("markdown", ".md", _markdown),
         Format("docx", ".docx", _docx),
         Format("article30", ".csv", _article30),
+        Format("works-council", ".html", _works_council),
     )
 }

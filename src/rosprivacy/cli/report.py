@@ -20,6 +20,7 @@ class ReportFormat(StrEnum):
     markdown = "markdown"
     docx = "docx"
     article30 = "article30"
+    works_council = "works-council"
 
 
 @reads_system()
@@ -30,7 +31,8 @@ def report(
         typer.Option(
             "--format",
             "-f",
-            help="A page, a text, a Word document, or rows for the record of processing (Article 30 GDPR).",
+            help="A page, a text, a Word document, rows for the record of processing (Article 30 GDPR), "
+            "or one page for works councils.",
         ),
     ] = ReportFormat.html,
     output: Output = None,
@@ -65,7 +67,7 @@ def report(
     """
     from rosprivacy.formats import Style, written
 
-    if format is ReportFormat.html:
+    if format in (ReportFormat.html, ReportFormat.works_council):
         not_for_a_terminal("a page", output)
     if format is ReportFormat.docx:
         not_for_a_terminal("a Word document", output)

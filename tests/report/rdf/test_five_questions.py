@@ -20,7 +20,7 @@ PREFIXES = """
 PREFIX dpv: <https://w3id.org/dpv#> PREFIX rdfs: <http://www.w3.org/2000/01/rdf-schema#>
 PREFIX rp: <https://w3id.org/rosprivacy#> PREFIX skos: <http://www.w3.org/2004/02/skos/core#>
 """
-KIND = "?f a rp:Finding ; rp:category/skos:prefLabel ?kind ; rp:concerns ?p ."
+KIND = "?f a rp:Finding ; rp:category/skos:prefLabel ?kind ; rp:concerns ?p . FILTER (LANG(?kind) = 'en')"
 RECEIVES = "?r a dpv:Recipient ; rdfs:label ?who . ?p dpv:hasRecipient ?r ."
 
 

@@ -102,7 +102,7 @@ def row(graph: Graph, finding: Node, law: Node) -> tuple[str, ...]:
         value(finding, RP.leak, RP.name),
         value(law, RP.provision, RP.identifier),
         value(law, RP.verdict),
-        value(law, RP.condition),
+        next((str(c) for c in graph.objects(law, RP.condition) if c.language == "en"), ""),  # type: ignore[attr-defined]
         value(law, RP.statedOf).removeprefix(str(RP)),
     )
 

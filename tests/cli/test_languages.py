@@ -1,0 +1,28 @@
+"""Which commands speak the reader's language, and which still speak English only: a list that has to be kept true."""
+
+from __future__ import annotations
+
+from typer.main import get_command
+
+from rosprivacy.cli.app import app
+
+STILL_ENGLISH = {
+    "db": "a server",
+    "decide": "what was recorded",
+    "diff": "what changed; 'report --since' tells it in a language",
+    "fleet": "which robots are alike",
+    "labels": "review lists and label files",
+    "load": "counts",
+    "mitigate": "proposals; the report tells them in a language",
+    "query": "rows of a database, with the heads of the queries",
+    "unload": "counts",
+    "why-not": "the answer",
+}
+# Where there is '--lang', messages about files and of errors stay English, as does the note of a very large layout.
+
+
+def test_every_command_that_prints_an_answer_takes_a_language_or_is_listed() -> None:
+    commands = get_command(app).commands  # type: ignore[attr-defined]
+    speak = {name for name, command in commands.items() if any(one.name == "lang" for one in command.params)}
+    assert speak == {"analyze", "categories", "graph", "law", "report", "show"}
+    assert commands.keys() - speak == STILL_ENGLISH.keys()
