@@ -39,7 +39,10 @@ def test_the_inventory_says_the_same(told: Outline) -> None:
     items = {item.name: item for item in told.items}
     assert items["/uplink"].data == "face template, video of persons (said to be cleaned there), voice"
     assert "cleans video of persons" in items["/uplink"].said  # not of location, which does not get there
-    assert items["/person_tracker"].said == ("makes other data of location", "passes on location, person track")
+    assert items["/person_tracker"].said == (
+        "reviewed, passes on location, person track",
+        "makes other data of location",
+    )
 
 
 def test_all_who_read_beside_a_sanitizer_are_named(told: Outline, document: dict[str, Any]) -> None:
