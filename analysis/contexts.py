@@ -89,10 +89,13 @@ class Contexts:
     ----------
     by_source
         (robot, kind, name) -> contexts.
+    everywhere
+        Those of all sources.
     """
 
     by_source: Mapping[tuple[str, str, str], frozenset[str]]
     categories: Mapping[str, Category]
+    everywhere: frozenset[str] = frozenset()
 
     @classmethod
     def of(
@@ -117,14 +120,11 @@ class Contexts:
         for (robot, *name), contexts in own.items():
             key = ("" if together else robot, *name)
             of_name[key] = of_name.get(key, frozenset()).union(contexts)
-        elements = (element.identity for element in graph.elements if not element.is_channel) if own else ()
+        for of_kind, more in bound.elsewhere.items() if together else ():
+            of_name["", *of_kind] = of_name.get(("", *of_kind), frozenset()).union(more)
+        elements = (element.identity for element in graph.elements if not element.is_channel) if of_name else ()
         keys = {one: of_name.get(("" if together else one[0], *one[1:]), frozenset()) for one in elements}
-        return cls(keys, categories)
-
-    @property
-    def everywhere(self) -> frozenset[str]:
-        """Those of all sources."""
-        return frozenset[str]().union(*self.by_source.values())
+        return cls(keys, categories, frozenset[str]().union(*of_name.values()))
 
     def revealed(self, finding: Finding) -> tuple[Legal, ...]:
         """Return what the data of a finding may reveal where they are brought in, beside what holds everywhere.

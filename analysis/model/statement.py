@@ -226,6 +226,8 @@ class Bound:
         By vertex: whom the data of a source are about, sorted. It changes no flow.
     surroundings
         By vertex: where an element works, its own with those of its system. It changes no flow.
+    elsewhere
+        (kind, name) -> contexts of elements on robots for which those of the graph stand, and which are not in it.
     processing
         By vertex: what the data there are processed for, and on which basis.
     of_robots
@@ -240,6 +242,7 @@ class Bound:
     surroundings: Mapping[int, Surroundings] = field(default_factory=dict)
     processing: Mapping[int, Processing] = field(default_factory=dict)
     of_robots: Mapping[str, Processing] = field(default_factory=dict)
+    elsewhere: Mapping[tuple[str, str], frozenset[str]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

@@ -39,7 +39,7 @@ def answer(system: System, question: Question) -> Result:
     InputErrors
         If labels contradict each other.
     """
-    at_sources = Contexts.of(system.graph, system.bound, system.vocabulary.categories)
+    at_sources = Contexts.of(system.graph, system.bound, system.vocabulary.categories, together=system.is_fleet)
     question = in_contexts(question, at_sources.everywhere)
     groups = Groups(system.likeness) if system.is_fleet and not question.every_finding else None
     options = Options(
@@ -75,7 +75,7 @@ def concluded(
         As of ``Answer``.
     """
     rows = processed(analysis, system.bound, system.vocabulary.hierarchy)
-    at_sources = Contexts.of(system.graph, system.bound, system.vocabulary.categories)
+    at_sources = Contexts.of(system.graph, system.bound, system.vocabulary.categories, together=system.is_fleet)
     law = law_of(system.vocabulary, analysis.emitted, at_sources.everywhere)
     analysis = replace(analysis, diagnostics=(*analysis.diagnostics, *lacks(rows, law)))
     joined = joined_to(question.decisions, analysis, law, question.asked, system.likeness, view)

@@ -152,7 +152,7 @@ def fleet_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
 
 PER_ROBOT = (  # of the robots that are shown
     "carries", "roles", "open", "outside", "unreached", "denied", "sanitizers", "derivations", "taken_away", "subjects",
-    "processing",
+    "processing", "surroundings",
 )  # fmt: skip
 ASSUMED_PER_ROBOT = ("backups_taken_as_none", "taken_away_by", "standard_channels_reached")
 

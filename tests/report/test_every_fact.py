@@ -13,9 +13,13 @@ from urllib.parse import quote
 import pytest
 
 import rosprivacy
+from rosprivacy.answering import answer
+from rosprivacy.fleet_system import fleet_system, rows_of_fleet
 from rosprivacy.formats import FORMATS, Style, written
 from rosprivacy.private_neo4j import connection
+from rosprivacy.question import question_of
 from rosprivacy.report.words.words import Words
+from rosprivacy.settings import Settings
 from tests.helpers.paths import ROOT
 from tests.helpers.word import text_of
 
@@ -41,12 +45,17 @@ POLICY = """<policy version="0.2.0"><enclaves><enclave path="/"><profiles>
 </profiles></enclave></enclaves></policy>
 """
 LABELS = """labels: 1
+controller: Haven Home gGmbH
+dpo: Ada Officer
+purpose: help of residents
+legal_basis: [6(1)(e), 9(2)(h)]
 nodes:
   /camera: {source: [Video], subjects: [residents, visitors]}
   /microphone: {source: [Voice], subjects: [nurses]}
   /blur: {sanitizer: [Video]}
 elements:
-  archive disk: {kind: storage, country: IE, operator: Disk Keepers, retention: {Video: P41D}, encrypted: true}
+  archive disk: {kind: storage, country: IE, operator: Disk Keepers, contract: Article 28 of 2026,
+    retention: {Video: P41D}, encrypted: true}
   cloud: {kind: external-system, country: US, operator: Cloud Movers, recipient: joint-controller, transfer: derogation}
 limits: {Video: P30D}
 flows:
@@ -67,6 +76,21 @@ def line_iri(place: str) -> str:
 
 def of_elements(*keys: str) -> Callable[[Document], list[str]]:
     return lambda document: [row[key] for row in document["outside"] for key in keys if row.get(key)]
+
+
+def processed(*keys: str, leaving: bool = False) -> Callable[[Document], list[str]]:
+    """What is stated of data where they begin and end; or only where they leave."""
+
+    def said(document: Document) -> list[str]:
+        leaks = [(finding["leak"]["name"], finding["category"]) for finding in document["findings"]]
+        rows = [
+            r
+            for r in document.get("processed_for", ())
+            if not leaving or (r["element"]["name"], r["category"]) in leaks
+        ]
+        return [one for row in rows for key in keys for one in row[key]]
+
+    return said
 
 
 def durations(document: Document) -> list[str]:
@@ -136,6 +160,19 @@ FACTS = {
         dict.fromkeys(RDF, same) | dict.fromkeys(PAGE, lambda role: WORDS(f"recipient.{role}")),
     ),
     "basis": Fact(of_elements("transfer"), dict.fromkeys(("cnil-pia", *RDF), same)),
+    "contract": Fact(of_elements("contract"), dict.fromkeys((*RDF, *PAGE), same)),
+    "controller and officer": Fact(
+        processed("controllers", "officers"), dict.fromkeys((*PAGE, *RDF, "article30", "cnil-pia"), same)
+    ),
+    "purpose": Fact(processed("purposes"), dict.fromkeys((*PAGE, "cnil-pia"), same)),
+    "purpose where data leave": Fact(
+        processed("purposes", leaving=True), dict.fromkeys((*PAGE, *RDF, "article30", "cnil-pia"), same)
+    ),
+    "legal basis": Fact(processed("legal_bases"), dict.fromkeys((*PAGE, "cnil-pia"), WORDS.basis)),
+    "legal basis where data leave": Fact(
+        processed("legal_bases", leaving=True),
+        dict.fromkeys((*PAGE, "article30", "cnil-pia"), WORDS.basis) | dict.fromkeys(RDF, same),
+    ),
     "subjects": Fact(subjects, dict.fromkeys((*PAGE, "article30"), same)),
     "decision with reason and basis": Fact(decided("reason", "owner", "legal_basis", accepted=True), DECIDED),
     "decision that accepts nothing": Fact(decided("reason", "owner"), dict.fromkeys(("text", *PAGE), same)),
@@ -232,7 +269,6 @@ def fleet(tmp_path_factory: pytest.TempPathFactory) -> Result:
 def stored(neo4j_server: Connection, tmp_path_factory: pytest.TempPathFactory) -> Result:
     from rosprivacy.ingest.database.loading import load
     from rosprivacy.robot_system import robot_of
-    from rosprivacy.settings import Settings
     from rosprivacy.stored_system import answer_stored
 
     folder = robot_in(tmp_path_factory.mktemp("stored"))
@@ -249,7 +285,6 @@ def stored(neo4j_server: Connection, tmp_path_factory: pytest.TempPathFactory) -
 @pytest.fixture(scope="module")
 def on_spark() -> Result:
     pytest.importorskip("pyspark", reason="without the [spark] extra")
-    from rosprivacy.settings import Settings
     from rosprivacy.spark.fleet_on_spark import run_on_spark
 
     with chdir(ROOT), pytest.MonkeyPatch.context() as patch:
@@ -285,4 +320,31 @@ def test_the_systems_have_every_fact(robot: Result, fleet: Result) -> None:
     known = {what for what, fact in FACTS.items() if list(fact.values(robot.document()))}
     assert known == set(FACTS)
     of_the_fleet = {what for what, fact in FACTS.items() if list(fact.values(fleet.document()))}
-    assert of_the_fleet >= {"retention", "country", "operator", "role", "decision with reason and basis"}
+    assert of_the_fleet >= {"retention", "country", "operator", "role", "decision with reason and basis", "contract",
+        "controller and officer", "purpose where data leave", "legal basis where data leave", "subjects"}  # fmt: skip
+
+
+def test_the_rows_for_the_database_have_every_fact_that_the_fleet_states() -> None:
+    """What ``rosprivacy load`` writes of the robots and of what they share."""
+    with chdir(ROOT):
+        question = question_of(Settings())
+        system = fleet_system(FLEET, question)
+        result = answer(system, question)
+        robots = list(rows_of_fleet(system, question, result))
+    rows = [row for robot in robots for row in (robot.properties, *robot.elements)]
+    written_as = "\n".join(strings(rows))
+    document = result.document()
+    for what in (
+        "retention",
+        "country",
+        "operator",
+        "role",
+        "contract",
+        "subjects",
+        "controller and officer",
+        "purpose",
+    ):
+        for value in FACTS[what].values(document):
+            assert value in written_as, f"{what}: {value}"
+    for basis in FACTS["legal basis"].values(document):
+        assert basis in written_as

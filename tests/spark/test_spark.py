@@ -118,6 +118,28 @@ def test_the_document_of_random_fleets(tmp_path: Path, monkeypatch: pytest.Monke
     assert seen >= 4
 
 
+WORK = """fleet: 1
+context: workplace
+models: {m: {policies: p.xml, labels: l.yaml}, n: {policies: p.xml, labels: l.yaml, context: care}}
+groups: [{robots: 2, model: m}, {robots: 3, model: n}]
+"""
+
+
+@pytest.mark.usefixtures("session")
+def test_where_robots_work_that_are_not_shown_counts_too(fleet_file: str) -> None:
+    """A pattern stands for robots in care and in a factory; the filter for Article 9 knows of both (issue 17)."""
+    write(fleet_file, WORK)
+    write("l.yaml", "labels: 1\nnodes: {/keys: {source: [OperatorInput]}, /uplink: {leak: [OperatorInput]}}\n")
+    write("p.xml", policy("/keys>/keys", "/uplink</keys"))
+    for asked in (Settings(), Settings(article9=True)):
+        expected, got = answer_fleet(fleet_file, asked).document(), run_on_spark(fleet_file, asked).document()
+        (finding,) = got["findings"]
+        assert [said["context"] for said in finding["in_context"]] == ["care", "workplace"]
+        assert finding["article9"] == "may-reveal"
+        for key in ("verdict", "findings", "contexts", "look_at"):
+            assert got[key] == expected[key]
+
+
 @pytest.mark.usefixtures("session")
 def test_decisions_are_refused(fleet_file: str) -> None:
     with pytest.raises(InputError, match=r"^--decisions: on Spark no decisions are taken into account"):

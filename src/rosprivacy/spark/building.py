@@ -63,6 +63,8 @@ class Told:
         Places of flows that a label file says more of.
     met
         Where the flows of the fleet file begin and end.
+    contexts
+        (kind, name, context) of its elements: a pattern stands for robots that are not shown, too.
     """
 
     problems: tuple[Problem, ...] = ()
@@ -76,6 +78,7 @@ class Told:
     named: Mapping[tuple[Lines, int], Mapping[str, int]] = field(default_factory=dict)
     restated: tuple[Place, ...] = ()
     met: frozenset[Met] = frozenset()
+    contexts: frozenset[tuple[str, str, str]] = frozenset()
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,6 +132,11 @@ def told_of(one: Some, members: Sequence[Member]) -> Told:
         found=tuple((bool(sources), bool(targets)) for sources, targets in one.ends),
         restated=one.restated,
         met=one.met,
+        contexts=frozenset(
+            (element.kind, element.name, context)
+            for element, where in one.part.surroundings.items()
+            for context in where.contexts
+        ),
     )
 
 
@@ -154,6 +162,7 @@ def joined(one: Told, other: Told) -> Told:
         named=ends,
         restated=(*one.restated, *other.restated),
         met=one.met | other.met,
+        contexts=one.contexts | other.contexts,
     )
 
 

@@ -6,7 +6,7 @@ In: a fleet file. Out: a ``Result`` like that of ``answer_fleet``, in whose grap
 from __future__ import annotations
 
 import os
-from contextlib import chdir
+from contextlib import chdir, suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -24,8 +24,9 @@ from rosprivacy.ingest.fleet.alike_robots import alike
 from rosprivacy.ingest.fleet.fleet_file import read_fleet
 from rosprivacy.ingest.fleet.joins import joins_nothing
 from rosprivacy.ingest.labels.countries import countries
+from rosprivacy.ingest.labels.label_file import read_labels
 from rosprivacy.ontology.vocabulary import load
-from rosprivacy.question import question_of
+from rosprivacy.question import in_contexts, question_of
 from rosprivacy.spark.distributed import Task, analyse_in_parts
 from rosprivacy.spark.parquet import check_new, write
 from rosprivacy.spark.session import scatter, session
@@ -38,7 +39,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from rosprivacy.ingest.fleet.dds_domains import Member
-    from rosprivacy.ingest.fleet.fleet_file import Robot
+    from rosprivacy.ingest.fleet.fleet_file import Fleet, Robot
     from rosprivacy.question import Question
     from rosprivacy.result import Result
     from rosprivacy.settings import Settings
@@ -73,6 +74,7 @@ def run_on_spark(file: str, settings: Settings, master: str | None = None, resul
     question = question_of(plain)
     vocabulary = question.vocabulary
     fleet = read_fleet(file, vocabulary, include_root=settings.include_root, bounds=settings.bounds)
+    question = in_contexts(question, contexts_of(fleet, question))
     task = Task(
         fleet, alike(fleet), settings.view, partial(file_reader, plain, str(Path.cwd()), fleet.root),
         vocabulary.hierarchy, question.asked, question.today,
@@ -89,6 +91,23 @@ def run_on_spark(file: str, settings: Settings, master: str | None = None, resul
             plan, units = plan_of(task, found, answer, plain)
             write(spark, results, units, plan, answer.document())
         return answer
+
+
+def contexts_of(fleet: Fleet, question: Question) -> frozenset[str]:
+    """Return the contexts that a filter for Article 9 has to know before anything is followed.
+
+    Label files that cannot be read say nothing here: the workers say what is wrong with them.
+    """
+    if question.asked is None or not question.settings.article9:
+        return frozenset()
+    robots = (*fleet.robots, *fleet.infrastructure)
+    found = {name for robot in robots for name in robot.surroundings.contexts}
+    found |= {name for entry in fleet.entries for name in entry.contexts}
+    for file in sorted({file for robot in robots for file in (*robot.labels, *robot.own)}):
+        with suppress(InputErrors):
+            labels = read_labels(file, question.vocabulary, bounds=question.settings.bounds)
+            found |= {*labels.surroundings.contexts, *(name for entry in labels.entries for name in entry.contexts)}
+    return frozenset(found.union(fleet.surroundings.contexts))
 
 
 def _note_what_workers_read(found: Found) -> None:

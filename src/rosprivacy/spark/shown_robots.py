@@ -19,7 +19,7 @@ from rosprivacy.ingest.fleet.fleet_graph import place_chosen
 from rosprivacy.spark.units import split
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.findings.concerns import Concern
@@ -63,6 +63,7 @@ def shown(task: Task, found: Found, paths: str, max_paths: int) -> Shown:
     members = {group.robots[0].id: read(group.robots[0]) for group in groups}
     placed = place_chosen(task.fleet, groups, members, task.view)
     placed = replace(placed, bound=limited(placed, found.shared))
+    placed = replace(placed, bound=surrounded(placed, found.told.contexts))
 
     def choose(spread: Spread, kinds: Sequence[Concern], mask: int) -> Wanted:
         del kinds, mask
@@ -88,3 +89,11 @@ def limited(placed: Placed, shared: Mapping[Element, NonRosFacts]) -> Bound:
     elements = placed.graph.elements
     outside = {vertex: shared.get(elements[vertex], facts) for vertex, facts in placed.bound.outside.items()}
     return replace(placed.bound, outside=outside)
+
+
+def surrounded(placed: Placed, contexts: Iterable[tuple[str, str, str]]) -> Bound:
+    """Return what is said, with the contexts of robots that are not placed: a finding stands for these too."""
+    said: dict[tuple[str, str], set[str]] = defaultdict(set)
+    for kind, name, context in sorted(contexts):
+        said[kind, name].add(context)
+    return replace(placed.bound, elsewhere={key: frozenset(names) for key, names in said.items()})

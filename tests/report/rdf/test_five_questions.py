@@ -8,7 +8,6 @@ import pytest
 
 import rosprivacy
 from rosprivacy.report.rdf.findings import rdf_graph
-from tests.helpers.graphs import care_home
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
@@ -40,8 +39,8 @@ def test_who_receives_which_kind_and_as_what(fleet: Graph) -> None:
     where = f"{RECEIVES} OPTIONAL {{ ?r a dpv:DataProcessor . BIND('processor' AS ?role) }}"
     assert asked(fleet, "?kind ?who ?role", where) == {
         ("location", "Example Robotics Inc.", "processor"),
-        ("location", "whoever receives what screen lets out", ""),
-        ("video of persons", "whoever receives what reviewer lets out", ""),
+        ("location", "St. Example Hospital", ""),
+        ("video of persons", "Example Vision GmbH", "processor"),
     }
 
 
@@ -61,11 +60,25 @@ def test_how_long_it_is_kept_where(fleet: Graph) -> None:
     }
 
 
-def test_whose_data_they_are() -> None:
+def test_whose_data_they_are(fleet: Graph) -> None:
     """Article 30(1)(c): as the labels of the sources name them."""
-    told = asked(rdf_graph(care_home()), "?kind ?persons", "?p dpv:hasDataSubject/rdfs:label ?persons .")
-    assert {kind for kind, _ in told} == {"face template", "video of persons", "voice"}
-    assert {persons for _, persons in told} == {"residents", "staff", "visitors"}
+    told = asked(fleet, "?kind ?persons", "?f rp:concerns/dpv:hasDataSubject/rdfs:label ?persons .")
+    assert told >= {("video of persons", persons) for persons in ("patients", "staff", "visitors")}
+    assert {persons for kind, persons in told if kind == "location"} == {"staff", "visitors"}
+
+
+def test_who_is_responsible_what_for_and_on_which_basis(fleet: Graph) -> None:
+    """Article 30(1)(a) and (b): of the recipient itself where it is stated, else of the sources, else of the fleet."""
+    where = """?f rp:concerns ?p . ?f rp:leak/rp:name ?at . ?p dpv:hasDataController/rdfs:label ?who ;
+        dpv:hasPurpose/rdfs:label ?why ; dpv:hasLegalBasis ?term ; rp:statedLegalBasis ?basis ."""
+    told = asked(fleet, "?kind ?at ?who ?why ?basis", where)
+    assert {who for *_, who, _, _ in told} == {"St. Example Hospital"}
+    bucket = {(why, basis) for kind, at, _, why, basis in told if (kind, at) == ("video of persons", "footage bucket")}
+    assert bucket == {("proof of accidents", basis) for basis in ("6(1)(f)", "9(2)(f)")}
+    screen = {why for _, at, _, why, _ in told if at == "screen"}
+    assert screen == {"showing the way"}
+    cloud = {why for _, at, _, why, _ in told if at == "fleet cloud"}
+    assert cloud == {"delivery of meals and medicines", "guidance of visitors", "cleaning of rooms"}
 
 
 def test_what_can_fall_under_article_9_or_10_and_how_far(fleet: Graph) -> None:
