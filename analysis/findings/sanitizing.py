@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.model import Method
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator, Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
     from rosprivacy.analysis.kernel.spread import Spread
-    from rosprivacy.analysis.model import Bound, Element, FlowGraph
+    from rosprivacy.analysis.model import Bound, Element, FlowGraph, Place
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +32,10 @@ class Cleaning:
         What leaves the element all the same, as it is and pseudonymised: sorted names.
     beside
         Elements that read the same channels and do not clean it: what the sanitizer takes out, they get.
+    cleaning_beside
+        Elements that read the same channels and are said to clean it, too.
+    places
+        The lines of the labels that say so.
     """
 
     element: Element
@@ -42,6 +46,8 @@ class Cleaning:
     leaves: tuple[str, ...]
     pseudonymised: tuple[str, ...]
     beside: tuple[Element, ...]
+    cleaning_beside: tuple[Element, ...] = ()
+    places: tuple[Place, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +78,8 @@ def cleanings(spread: Spread, wanted: Collection[str]) -> tuple[Cleaning, ...]:
         leaves = spread.planes(spread.leaves.get(vertex, 0) & mask)
         for category in (name for name in spread.categories if name in wanted and "sanitizer" in decided[name].roles):
             both = spread.both(category)
+            beside, cleaning = around.beside(vertex, category, both)
+            places = {statement.place for statement in decided[category].by_role("sanitizer")}
             rows.append(
                 Cleaning(
                     element=spread.graph.elements[vertex],
@@ -81,7 +89,9 @@ def cleanings(spread: Spread, wanted: Collection[str]) -> tuple[Cleaning, ...]:
                     reached=bool(spread.arrives.get(vertex, 0) & both),
                     leaves=leaves[0],
                     pseudonymised=leaves[1],
-                    beside=tuple(around.beside(vertex, category, both)),
+                    beside=beside,
+                    cleaning_beside=cleaning,
+                    places=tuple(sorted(places, key=lambda place: (place.file, place.line))),
                 )
             )
     return tuple(rows)
@@ -130,17 +140,17 @@ class _Around:
         self._into: Mapping[int, list[int]] | None = None
         self._out: Mapping[int, list[int]] = {}
 
-    def beside(self, vertex: int, category: str, bits: int) -> Iterator[Element]:
-        """Elements that get the category from a channel from which the vertex gets it, sanitizers of it left out."""
+    def beside(self, vertex: int, category: str, bits: int) -> tuple[tuple[Element, ...], tuple[Element, ...]]:
+        """Elements that get the category from a channel from which the vertex gets it: those that clean it last."""
         elements = self._spread.graph.elements
         channels = self._walk([vertex], bits, back=True)
         readers = {v for v in self._walk(sorted(channels), bits, back=False) if not elements[v].is_channel} - {vertex}
-        named = set()
+        named: tuple[dict[object, Element], dict[object, Element]] = ({}, {})
         for reader in sorted(readers):
             fact = self._spread.facts.get(reader, {}).get(category)
-            if (fact is None or not fact.method) and elements[reader].shown_as not in named:
-                named.add(elements[reader].shown_as)
-                yield elements[reader]
+            cleans = fact is not None and bool(fact.method)
+            named[cleans].setdefault(elements[reader].shown_as, elements[reader])
+        return tuple(named[0].values()), tuple(named[1].values())
 
     def _walk(self, begin: Sequence[int], bits: int, *, back: bool) -> set[int]:
         """Channels before an element, or what comes after channels: only other channels lie between (rule S4)."""

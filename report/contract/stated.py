@@ -136,6 +136,8 @@ class SanitizerEntry(TypedDict):
     leaves: list[str]
     leaves_pseudonymised: list[str]
     beside: list[ElementEntry]
+    cleaning_beside: NotRequired[list[ElementEntry]]
+    places: NotRequired[list[PlaceEntry]]
 
 
 DerivationEntry = TypedDict(

@@ -197,6 +197,8 @@ def _sanitizers(analysis: Analysis) -> list[SanitizerEntry]:
             "leaves": list(cleaning.leaves),
             "leaves_pseudonymised": list(cleaning.pseudonymised),
             "beside": [element_dict(element) for element in cleaning.beside],
+            "cleaning_beside": [element_dict(element) for element in cleaning.cleaning_beside],
+            "places": [{"file": place.file, "line": place.line} for place in cleaning.places],
         }
         for cleaning in cleanings(analysis.spread, analysis.emitted)
     ]

@@ -15,7 +15,11 @@ from rosprivacy.report.page.entries_of_robots import grouped, weight
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from rosprivacy.report.naming import Key
     from rosprivacy.report.page.index import Index
+
+
+PASSES = ("conduit", "sanitizer")  # what is said of data that may never get there
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,9 +55,16 @@ class Enclave:
 def items(index: Index) -> tuple[Item, ...]:
     """Return the elements that data gets to, in the order of the document."""
     said: dict[Any, dict[str, list[str]]] = {}
+    there = {  # with broader kinds: of these the document names the narrowest
+        key(row["element"]): {up for name in (*row["categories"], *row["pseudonymised"]) for up in index.upwards(name)}
+        for row in index.document["carries"]
+    }
+    makes = {(key(row["element"]), row["from"]) for row in index.document["derivations"] if row["reached"]}
     for (element, category), roles in index.roles.items():
         for role in roles:
-            said.setdefault(element, {}).setdefault(role, []).append(category)
+            noise = role in PASSES and category not in there.get(element, ())  # nothing of it gets there
+            if not noise and (role != "derivation" or (element, category) in makes):
+                said.setdefault(element, {}).setdefault(role, []).append(category)
     open_at = {element for element, _ in index.unreviewed}
 
     def same(row: Mapping[str, Any]) -> Any:
@@ -73,10 +84,16 @@ def _item(group: list[Mapping[str, Any]], said: Mapping[Any, Any], open_at: set[
         name=name(element) if robots == 1 else fit(element["name"]),
         kind=words.kind(element),
         robots=robots,
-        data=words.row([*map(index.data, row["categories"]), *hidden]),
+        data=words.row([*(_held(at, category, index) for category in row["categories"]), *hidden]),
         said=tuple(words(f"role.{role}", data=index.all_data(c)) for role, c in said.get(at, {}).items()),
         reviewed=at not in open_at,
     )
+
+
+def _held(at: Key, category: str, index: Index) -> str:
+    """A kind of data that gets there; and that it is said to be cleaned there, where it is."""
+    data = index.data(category)
+    return index.words("i.cleaned", data=data) if (at, category) in index.cleaned else data
 
 
 def rest(index: Index) -> tuple[tuple[str, tuple[str, ...]], ...]:

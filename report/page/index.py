@@ -39,6 +39,12 @@ class Index:
         return {(key(said["element"]), said["category"]): said["roles"] for said in self.document["roles"]}
 
     @cached_property
+    def cleaned(self) -> dict[tuple[Key, str], Mapping[str, Any]]:
+        """(element, category) that gets there and is said to be cleaned there -> what is said."""
+        reached = (row for row in self.document["sanitizers"] if row["reached"])
+        return {(key(row["element"]), row["category"]): row for row in reached}
+
+    @cached_property
     def of_role(self) -> dict[str, dict[Key, list[str]]]:
         """Role -> element -> categories."""
         found: dict[str, dict[Key, list[str]]] = {}

@@ -31,7 +31,7 @@ class Cleaning:
     unreached
         Kinds that never get there.
     beside
-        Who reads the same channels and gets the data as they are.
+        Who reads the same channels and gets the data as they are; after these, who is said to clean them, too.
     past
         Entries of these kinds whose path does not lead through the element: (anchor, number).
     """
@@ -97,9 +97,17 @@ def _cleaning(group: list[Mapping[str, Any]], past: _Past, index: Index) -> Clea
         weak=row["method"] == "pseudonymise",
         unreached=index.all_data(unreached),
         leaves=words.row(leaves),
-        beside=index.names([element for r in group for element in r["beside"]]),
+        beside=(
+            *index.names([element for r in group for element in r["beside"]]),
+            *(words("s.cleans.too", element=name) for name in index.names(_cleaning_too(group))),
+        ),
         past=past.of({whole(r["element"]) for r in group}, reached),
     )
+
+
+def _cleaning_too(group: Iterable[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+    """Older documents do not name them."""
+    return [element for row in group for element in row.get("cleaning_beside", ())]
 
 
 def makings(index: Index) -> tuple[Making, ...]:

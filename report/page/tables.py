@@ -121,8 +121,17 @@ def _gets(
             hidden = f", {words('cell.hidden')}" if all(finding["pseudonymised"] for finding in some) else ""
             text = words(said) if said else words.count(len(some), "way")
             return Cell(text + hidden, links.to(some), strong=stands == "open")
-    held = any(category in index.outside.get(key(element), {}).get("holds", ()) for element in group)
-    return Cell(words("cell.gets" if held else "cell.no"))
+    if any(category in index.outside.get(key(element), {}).get("holds", ()) for element in group):
+        return Cell(words("cell.gets"))
+    cleaned = [row for element in group if (row := index.cleaned.get((key(element), category)))]
+    return Cell(_cleaned(cleaned[0], index) if cleaned else words("cell.no"))
+
+
+def _cleaned(row: Mapping[str, Any], index: Index) -> str:
+    """That data gets to an element and is said to be cleaned there: no path, on a label's word."""
+    method = index.words(f"method.{row['method']}" if row["stated"] else "method.unstated")
+    lines = index.words.row(f"{fit(place['file'])}:{place['line']}" for place in row.get("places", ()))
+    return index.words("cell.cleaned", how=index.words.row(filter(None, (method, lines))))
 
 
 def subjects(index: Index, links: Links) -> tuple[Table, tuple[str, ...]]:

@@ -762,4 +762,7 @@ WORDS = {
     "u.refused": "ohne sie widersprechen sich die übrigen Angaben: {why}",
     "u.dismissed": "nur über einen anderen Empfänger",
     "u.worse": "heute nur pseudonymisiert oder nur über einen anderen Empfänger",
+    "cell.cleaned": "gelangt dorthin; wird dort laut Angabe geschützt: {how}",
+    "s.cleans.too": "{element} (schützt laut Angabe ebenfalls)",
+    "i.cleaned": "{data} (dort laut Angabe geschützt)",
 }

@@ -889,4 +889,7 @@ WORDS = {
     "u.refused": "without it the other labels contradict each other: {why}",
     "u.dismissed": "through another recipient only",
     "u.worse": "today only pseudonymised, or only through another recipient",
+    "cell.cleaned": "reaches it; said to be cleaned there: {how}",
+    "s.cleans.too": "{element} (said to clean it, too)",
+    "i.cleaned": "{data} (said to be cleaned there)",
 }

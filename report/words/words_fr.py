@@ -767,6 +767,9 @@ _TYPED = {
     "u.refused": "sans elle, les autres annotations se contredisent : {why}",
     "u.dismissed": "seulement par un autre destinataire",
     "u.worse": "aujourd'hui seulement pseudonymisées, ou seulement par un autre destinataire",
+    "cell.cleaned": "y parvient ; y serait traité selon l'annotation : {how}",
+    "s.cleans.too": "{element} (les traite aussi, selon l'annotation)",
+    "i.cleaned": "{data} (traité à cet endroit selon l'annotation)",
 }
 
 WORDS = {key: spaced(text, "fr") for key, text in _TYPED.items()}

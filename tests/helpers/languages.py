@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import re
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rosprivacy.report.words.typography import plain
 from rosprivacy.report.words.words import TABLES
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Collection, Iterator, Mapping
 
 OTHERS = ("de", "fr")
 _FUNCTION_WORDS = re.compile(
@@ -46,3 +46,29 @@ def english_in(text: str, language: str, names: Collection[str] = ()) -> list[st
         left = left.replace(name, "…")
     words = [left[max(0, found.start() - 30) : found.end() + 30] for found in _FUNCTION_WORDS.finditer(left)]
     return [*words, *(part for part in _english(language) if part in left)]
+
+
+PEOPLES = {  # keys of a document under which texts of users stand
+    "subjects", "reason", "owner", "ticket", "why", "operator", "name", "note", "model", "dpo", "officers",
+    "controller", "controllers", "contract", "contracts", "purpose", "purposes", "author",
+}  # fmt: skip
+
+
+def users_texts(document: Mapping[str, Any]) -> list[str]:
+    """Return what users wrote: groups of persons, decisions, purposes, notes, operators; and names."""
+    return [text for text in _said({key: document[key] for key in document if key != "categories"}) if text]
+
+
+def _said(value: Any) -> Iterator[str]:
+    if isinstance(value, list):
+        for one in value:
+            yield from _said(one)
+    elif isinstance(value, dict):
+        ours = "reason" if "choice" not in value else ""  # of a finding, not of a decision
+        for key, one in value.items():
+            yield from _strings(one) if key in PEOPLES - {ours} else _said(one)
+
+
+def _strings(value: Any) -> Iterator[str]:
+    inner = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
+    yield from [value] if isinstance(value, str) else (text for one in inner for text in _strings(one))

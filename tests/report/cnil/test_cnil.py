@@ -34,7 +34,7 @@ from tests.helpers.additions import ADD_STORAGE
 from tests.helpers.answers import accepting, answer_of, as_json
 from tests.helpers.graphs import care_home as analysed_care_home
 from tests.helpers.graphs import factory, hospital
-from tests.helpers.languages import OTHERS, english_in
+from tests.helpers.languages import OTHERS, english_in, users_texts
 from tests.helpers.paths import ROOT
 from tests.helpers.sarif import HOSTILE, analyze, checked, log_of, physical, small_system, way
 from tests.helpers.systems import HIERARCHY, PARENTS, System, analysed, systems
@@ -458,7 +458,7 @@ def names_in(result: Result) -> list[str]:
     elements = {element.name for element in result.analysis.graph.elements}
     groups = {group for groups in result.subjects.values() for group in groups}
     files = {entry["file"] for kind in ("policies", "labels", "fleet") for entry in result.assumptions.get(kind) or ()}
-    return [*elements, *groups, *files, *result.vocabulary.categories]
+    return [*elements, *groups, *files, *result.vocabulary.categories, *users_texts(result.document())]
 
 
 SYSTEMS: dict[str, Callable[[], Result]] = {

@@ -4,25 +4,26 @@ from __future__ import annotations
 
 import csv
 import io
+import json
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 
 import rosprivacy
+from rosprivacy.analysis.errors import InputError
+from rosprivacy.analysis.model import REASONS
 from rosprivacy.ingest.labels.countries import countries
 from rosprivacy.report.page.article30 import record
 from rosprivacy.report.page.markdown import markdown
 from rosprivacy.report.words.words import TABLES, Words
 from tests.helpers.graphs import care_home, hospital
-from tests.helpers.languages import OTHERS, english_in
+from tests.helpers.languages import OTHERS, english_in, users_texts
 from tests.helpers.pages import earlier, page, told
+from tests.helpers.paths import ROOT
 from tests.helpers.reports import care, run, with_decisions, with_outside
 from tests.helpers.turtlebot import COSTMAP, MEMORY, TURTLEBOT3
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 SYSTEM = """labels: 1
 elements:
@@ -61,31 +62,6 @@ def reasons(folder: Path, today: str = "") -> dict[str, Any]:
     return done.document()
 
 
-def said_by_people(value: Any) -> Iterator[str]:
-    """Texts of a document that users wrote: groups of persons, decisions, notes, operators; and names."""
-    if isinstance(value, list):
-        for one in value:
-            yield from said_by_people(one)
-    elif isinstance(value, dict):
-        ours = "reason" if "choice" not in value else ""  # of a finding, not of a decision
-        for key, one in value.items():
-            if key in {
-                "subjects",
-                "reason",
-                "owner",
-                "ticket",
-                "why",
-                "operator",
-                "name",
-                "note",
-                "author",
-                "model",
-            } - {ours}:
-                texts = [one] if isinstance(one, str) else one if isinstance(one, list) else ()
-                yield from (text for text in texts if isinstance(text, str))
-            yield from said_by_people(one)
-
-
 def prose(document: dict[str, Any], language: str, **options: Any) -> str:
     """What a reader of the page reads, without names and what is marked as English."""
     whole = page(document, language, **options)
@@ -101,10 +77,6 @@ def turtlebot(folder: Path) -> dict[str, Any]:
     if not corpus:
         pytest.skip("no corpus: set ROSPRIVACY_CORPUS")
     return rosprivacy.analyze([str(Path(corpus, TURTLEBOT3))], [str(folder / "tb3.labels.yaml")]).document()
-
-
-def users_texts(document: dict[str, Any]) -> list[str]:
-    return [text for text in said_by_people({key: document[key] for key in document if key != "categories"}) if text]
 
 
 @pytest.mark.parametrize("language", OTHERS)
@@ -184,3 +156,14 @@ def test_french_spaces_keep_to_their_marks() -> None:
         assert "\\xa0" not in text
         assert "\\u202f" not in text
     assert Words("fr").number(12345) == "12\u202f345"
+
+
+def test_the_published_schema_names_every_reason() -> None:
+    schema = json.loads((ROOT / "docs" / "analysis.schema.json").read_text("utf-8"))
+    because = schema["$defs"]["finding"]["properties"]["because"]
+    assert set(because["properties"]["key"]["enum"]) == REASONS.keys()
+
+
+def test_an_unknown_language_is_refused() -> None:
+    with pytest.raises(InputError, match="unknown language 'xx'; one of en, de, fr"):
+        care_home().to("html", language="xx")

@@ -46,7 +46,9 @@ def test_who_gets_which_kind() -> None:
             "video of persons": "1 path to assess, pseudonymised", "voice": no,
         },
         "/uplink": {
-            "face template": "1 path to assess", "location": no, "person track": no, "video of persons": no,
+            "face template": "1 path to assess", "location": no, "person track": no,
+            "video of persons": "reaches it; said to be cleaned there: aggregates, "
+            "examples/care-home/care-home.labels.yaml:22",
             "voice": "1 path to assess",
         },
     }  # fmt: skip

@@ -1,0 +1,53 @@
+"""What reaches an element and is said to be cleaned there is told as exactly that, wherever it is told (rule S8)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from rosprivacy.report.page.outline import outline
+from tests.helpers.graphs import care_home
+
+if TYPE_CHECKING:
+    from rosprivacy.report.page.outline import Outline
+
+LINE = "care-home.labels.yaml:22"
+
+
+@pytest.fixture(scope="module")
+def document() -> dict[str, Any]:
+    return care_home().document()
+
+
+@pytest.fixture(scope="module")
+def told(document: dict[str, Any]) -> Outline:
+    return outline(document, "en")
+
+
+def test_the_table_of_recipients_does_not_say_no_path(told: Outline) -> None:
+    """Raw video of residents enters the node that talks to the cloud; one label says that it is aggregated there."""
+    (uplink,) = (row for row in told.recipients.rows if row.name == "/uplink")
+    cells = dict(zip(told.recipients.columns, (cell.text for cell in uplink.cells), strict=True))
+    video = cells["video of persons"]
+    assert video.startswith("reaches it; said to be cleaned there: aggregates, ")
+    assert video.endswith(LINE)
+    assert cells["location"] == "no path found"  # a sanitizer of it, too, but none of it gets there
+
+
+def test_the_inventory_says_the_same(told: Outline) -> None:
+    items = {item.name: item for item in told.items}
+    assert items["/uplink"].data == "face template, video of persons (said to be cleaned there), voice"
+    assert "cleans video of persons" in items["/uplink"].said  # not of location, which does not get there
+    assert items["/person_tracker"].said == (
+        "reviewed, passes on location, person track",
+        "makes other data of location",
+    )
+
+
+def test_all_who_read_beside_a_sanitizer_are_named(told: Outline, document: dict[str, Any]) -> None:
+    rows = {row.name: row.beside for row in told.cleanings}
+    assert rows["/blur"] == ("/face_recognizer (said to clean it, too)", "/uplink (said to clean it, too)")
+    (blur,) = (row for row in document["sanitizers"] if row["element"]["name"] == "/blur")
+    assert [row["name"] for row in blur["cleaning_beside"]] == ["/face_recognizer", "/uplink"]
+    assert [place["line"] for place in blur["places"]] == [12]
