@@ -326,7 +326,7 @@ def test_it_prints_whole_on_a4(browser: WebDriver, pages: dict[str, Path], name:
 
 
 PICTURE = """
-const picture = document.querySelector("figure.picture svg"); picture.scrollIntoView();
+const picture = document.querySelector("article figure.picture svg"); picture.scrollIntoView();
 const box = picture.getBoundingClientRect(), frame = picture.parentElement.getBoundingClientRect();
 const letters = [...picture.querySelectorAll("text")].map((text) => text.getBoundingClientRect().height);
 return [box.width, box.right, frame.right, Math.min(...letters), picture.getAttribute("aria-label")];
