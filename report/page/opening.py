@@ -14,7 +14,7 @@ from rosprivacy.analysis.legal_bases import CHAPTER_V
 from rosprivacy.analysis.model import THIRD_COUNTRY
 from rosprivacy.analysis.text import fit, printable
 from rosprivacy.report.element_counts import count_rows
-from rosprivacy.report.naming import key, name, text
+from rosprivacy.report.naming import key, name
 from rosprivacy.report.page.entries_of_robots import grouped
 from rosprivacy.report.page.non_ros import country
 
@@ -201,7 +201,7 @@ def _provisions(findings: Iterable[Mapping[str, Any]], index: Index) -> Iterator
     for finding in findings:
         yield index.words(f"b.law.{finding['kind']}")
         for legal in finding["law"]:
-            yield text(legal, "provision", index.words.language)
+            yield index.provision(finding["category"], legal["provision"])
 
 
 def _bases(findings: Sequence[Mapping[str, Any]], index: Index) -> list[str]:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 OTHERS = ("de", "fr")
 _FUNCTION_WORDS = re.compile(
     r"(?<![\w/.-])(the|of|is|are|which|and|with|for|from|by|not|that|this|be|been|kept|to|it|its|has|as|who|what|"
-    r"no basis|can|gets|reaches|without|review(?:ed)?|find(?:s|ings?)|path)(?![\w/-])",
+    r"GDPR|no basis|can|gets|reaches|without|review(?:ed)?|find(?:s|ings?)|path)(?![\w/-])",
     re.IGNORECASE,
 )
 _PLACE = re.compile(r"\{\w+\}")
