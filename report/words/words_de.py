@@ -140,7 +140,7 @@ WORDS = {
     "b.decided.many": "{n} weitere sind entschieden und noch nicht umgesetzt.",
     "b.carry.one": "{n} Punkt ist entschieden und noch nicht umgesetzt",
     "b.carry.many": "{n} Punkte sind entschieden und noch nicht umgesetzt",
-    "b.can": "{data}: möglich an {leak}",
+    "b.can": "{data}: kann an {leak} gelangen",
     "b.places.one": "andere Daten an {n} weiteren Ort",
     "b.places.many": "andere Daten an {n} weitere Orte",
     "b.open": "Nicht geprüft, obwohl personenbezogene Daten dorthin gelangen können: {open}. Es kann also mehr zu entscheiden geben.",
