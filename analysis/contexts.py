@@ -49,21 +49,24 @@ def surrounded(categories: Mapping[str, Category], hierarchy: Hierarchy) -> dict
 
 
 def _stated(categories: Iterable[Category]) -> tuple[Legal, ...]:
-    """What is stated of some categories, each statement once, with the first of them."""
+    """What is stated of some categories themselves, each statement once, with the first of them."""
     found: dict[tuple[str, str, str], Legal] = {}
     for category in categories:
         for legal in category.in_context:
-            stated = legal if legal.stated_of else replace(legal, stated_of=category.name)
-            found.setdefault((legal.context, legal.name, legal.condition), stated)
+            if legal.stated_of in ("", category.name):  # else it came from a kind near it
+                stated = replace(legal, stated_of=category.name)
+                found.setdefault((legal.context, legal.name, legal.condition), stated)
     return tuple(found[key] for key in sorted(found))
 
 
 def revealed(category: Category, contexts: Collection[str]) -> tuple[Legal, ...]:
     """Return what data of a category may reveal in some contexts, beyond what is stated of the category anywhere.
 
-    >>> from rosprivacy.analysis.example import CATEGORIES
-    >>> revealed(CATEGORIES["Video"], ())
-    ()
+    >>> from rosprivacy.analysis.example import CATEGORIES, LAW
+    >>> at_care = replace(LAW, verdict=MAY_REVEAL, context="care")
+    >>> video = replace(CATEGORIES["Video"], in_context=(at_care,))
+    >>> revealed(video, ["care"]) == (at_care,), revealed(video, ["school"])
+    (True, ())
     """
     known = {legal.name for legal in category.law if legal.verdict in SPECIAL}
     return tuple(legal for legal in category.in_context if legal.context in contexts and legal.name not in known)
@@ -132,8 +135,8 @@ class Contexts:
         >>> from rosprivacy.analysis.example import CATEGORIES, factory
         >>> from rosprivacy.analysis.findings.findings import analyse
         >>> faces, *_ = analyse(*factory()).findings
-        >>> Contexts({}, CATEGORIES).revealed(faces)
-        ()
+        >>> len(Contexts({}, CATEGORIES).revealed(faces))
+        0
         """
         return revealed(self.categories[finding.category], self._at(finding))
 
