@@ -114,7 +114,12 @@ def test_it_says_as_much_of_as_many_things_under_the_same_ids(system: str) -> No
 
 @pytest.mark.parametrize(
     ("system", "base"),
-    [("care-home", None), ("fleet", None), ("care-home", "urn:x-rosprivacy:"), ("fleet", "https://w3id.org/rosprivacy#")],
+    [
+        ("care-home", None),
+        ("fleet", None),
+        ("care-home", "urn:x-rosprivacy:"),
+        ("fleet", "https://w3id.org/rosprivacy#"),
+    ],
 )
 def test_the_shapes_hold(system: str, base: str | None) -> None:
     """Also with a base that terms of others, or ours, begin with."""
