@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mkdocs.structure.files import File
+from ontology_page import ontology_page
 
 import rosprivacy
 
@@ -26,6 +27,7 @@ BESIDE = {
     "CONTRIBUTING.md": "contributing.md",
     "CHANGELOG.md": "changelog.md",
 }
+ONTOLOGY = "ontology.md"  # on the site it stands for the folder of the Turtle files
 MODEL = ("category", "diagnostic", "element", "flow", "policy", "statement")
 FACTS = (
     "rosprivacy.analysis.answer",
@@ -39,6 +41,7 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     for name, page in BESIDE.items():
         files.append(File.generated(config, page, content=linked((ROOT / name).read_text("utf-8"), "")))
     files.append(File.generated(config, "reference.md", content=reference()))
+    files.append(File.generated(config, ONTOLOGY, content=ontology_page()))
     return files
 
 
@@ -57,14 +60,15 @@ def on_page_markdown(markdown: str, **_: object) -> str:
 
 def linked(text: str, folder: str) -> str:
     """Return a page of a folder of the repository with links as they are on the site."""
+    pages = {**BESIDE, "ontology": ONTOLOGY}
 
     def as_on_site(link: re.Match[str]) -> str:
         said, target, anchor = link.groups(default="")
         if ":" in target:
             return link[0]
         path = posixpath.normpath(posixpath.join(folder, target))
-        if path in BESIDE:
-            return f"[{said}]({BESIDE[path]}{anchor})"
+        if path in pages:
+            return f"[{said}]({pages[path]}{anchor})"
         if path.startswith("docs/"):
             return f"[{said}]({path.removeprefix('docs/')}{anchor})"
         return said if (ROOT / path).exists() else link[0]

@@ -59,6 +59,16 @@ def test_the_reference_tells_every_public_name(site: Path) -> None:
         assert f'id="{where}.{name}"' in text, name
 
 
+def test_the_ontology_is_a_page_that_redirects_can_lead_to(site: Path) -> None:
+    """https://w3id.org/rosprivacy#Video -> ontology.html#Video; the words of exported files too."""
+    text = (site / "ontology.html").read_text("utf-8")
+    for term in ("Video", "GDPR-9-1", "CareContext", "verdict-may-reveal", "fallsUnder", "Finding", "Role"):
+        assert f'id="{term}"' in text, term
+    for page in ("index.html", "linked-data.html"):
+        assert 'href="ontology.html"' in (site / page).read_text("utf-8"), page
+    assert not [*site.glob("*.py"), *site.glob("*.j2")]
+
+
 @pytest.mark.parametrize("link", ["[x](nowhere.md)", "[x](../nowhere.md)", "[x](labels.md#nowhere)"])
 def test_a_dead_link_fails(link: str, tmp_path: Path) -> None:
     shutil.copytree(ROOT, tmp_path / "copy", symlinks=True, ignore=NO_PART)

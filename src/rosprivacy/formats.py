@@ -50,7 +50,7 @@ class Style:
     since
         Document of an earlier analysis, to tell what changed; of a page and of Markdown.
     redact
-        Whether names of elements, files, robots and persons are replaced; of a report.
+        Whether names of elements, files, robots and persons are replaced; of a report and of linked data.
     base
         What the IRIs of linked data begin with; by default a UUID of the system.
     assessment
@@ -128,9 +128,11 @@ def _json(answer: Answer, _: Style) -> str:
 def _linked_data(form: str) -> Callable[[Answer, Style], str]:
     def write(answer: Answer, style: Style) -> str:
         from rosprivacy.report.rdf.findings import rdf_graph
+        from rosprivacy.report.rdf.redacted import redacted_graph
         from rosprivacy.report.rdf.serialise import SERIALISERS
 
-        return SERIALISERS[form](rdf_graph(answer, source_date(os.environ), style.base))
+        graph_of = redacted_graph if style.redact else rdf_graph
+        return SERIALISERS[form](graph_of(answer, source_date(os.environ), style.base))
 
     return write
 
@@ -228,8 +230,8 @@ def _told(
     earlier = read_earlier(style.since) if style.since else None
     if not style.redact:
         return told, earlier, proposals, None
-    from rosprivacy.report.page.redact import redacted
     from rosprivacy.report.page.redacted_pictures import aliases_of
+    from rosprivacy.report.redact import redacted
 
     beside = [earlier.document] if earlier else []
     also = [proposals] if not isinstance(proposals, str) else []

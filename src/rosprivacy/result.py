@@ -123,8 +123,10 @@ class Result(Answer):
             Of text: every open element and notice, or the verdict only.
         language
             Of text, a report and the answers for the CNIL's tool: ``en``, ``de`` or ``fr``.
-        title, redact
-            Of a report: name of the system; replace names of elements, files, robots and persons.
+        title
+            Of a report: name of the system.
+        redact
+            Of a report and of linked data: replace names of elements, files, robots and persons.
         since
             File of an earlier analysis, to tell what changed.
         base

@@ -18,10 +18,10 @@ from rosprivacy.report.page.figures import figures
 from rosprivacy.report.page.html import html
 from rosprivacy.report.page.markdown import markdown
 from rosprivacy.report.page.outline import Outline, outline
-from rosprivacy.report.page.redact import redacted
 from rosprivacy.report.pictures.dot import dot
 from rosprivacy.report.pictures.fleet_view import label, represented
 from rosprivacy.report.pictures.picture import PRIVACY, Box, Line, Picture
+from rosprivacy.report.redact import redacted
 from rosprivacy.report.robots import note
 from tests.helpers.answers import as_json
 from tests.helpers.graphs import hospital

@@ -76,6 +76,13 @@ def analyze(
             "system.",
         ),
     ] = None,
+    redact: Annotated[
+        bool,
+        typer.Option(
+            "--redact",
+            help="Of Turtle and JSON-LD: replace names of elements, files, robots and persons, to show it to others.",
+        ),
+    ] = False,
     article9: Annotated[
         bool,
         typer.Option(
@@ -137,10 +144,12 @@ def analyze(
     _check(inputs, engine, save_graph=bool(save_graph), per_policy=per_policy, of_spark=bool(master or results))
     if base is not None and format not in LINKED_DATA:
         raise typer.BadParameter("--base is for --format turtle and json-ld")
+    if redact and format not in LINKED_DATA:
+        raise typer.BadParameter("--redact is for --format turtle and json-ld; 'report' has it too")
     if lang and format not in IN_LANGUAGES:
         raise typer.BadParameter("--lang is for --format text and cnil-pia")
     language = (lang or Language.en).value
-    style = Style(verbose=verbose, quiet=quiet, colour=output is None, language=language, base=base)
+    style = Style(verbose=verbose, quiet=quiet, colour=output is None, language=language, base=base, redact=redact)
     if per_policy:
         raise typer.Exit(_each_alone(inputs, settings, format, style, output, fail_on))
     if results and output:

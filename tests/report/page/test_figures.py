@@ -16,13 +16,13 @@ from rosprivacy.report.page.html import html
 from rosprivacy.report.page.inline import Wishes, picture_of, pictures_of
 from rosprivacy.report.page.outline import outline
 from rosprivacy.report.page.page_svg import DRAWS, SAYS, page_svg
-from rosprivacy.report.page.redact import redacted
 from rosprivacy.report.page.redacted_pictures import aliases_of, renamed
 from rosprivacy.report.pictures import dot as dot_module
 from rosprivacy.report.pictures import graphviz
 from rosprivacy.report.pictures.looks import ROLE_LOOKS
 from rosprivacy.report.pictures.privacy import Reached
 from rosprivacy.report.pictures.views import FindingViews, finding_view
+from rosprivacy.report.redact import redacted
 from rosprivacy.report.words.words import Words
 from tests.helpers.graphs import care_home, factory
 from tests.helpers.pictures import hostile

@@ -19,7 +19,7 @@ from rosprivacy.report.compare.changes import changes
 from rosprivacy.report.page import article30
 from rosprivacy.report.page.html import html
 from rosprivacy.report.page.markdown import markdown
-from rosprivacy.report.page.redact import redacted
+from rosprivacy.report.redact import redacted
 from tests.helpers.reports import HOSTILE, care, fleet, hostile, run, with_decisions, with_outside
 
 if TYPE_CHECKING:

@@ -36,15 +36,21 @@ NAMED = {
 
 def redacted(documents: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     """Return copies of documents without names. Complexity: O(their size)."""
-    names = _Names()
-    for document in documents:
-        _document(document, names.see)
-    names.settle()
+    names = replacements(documents)
     return [_document(document, names.replaced) for document in documents]
 
 
-class _Names:
-    """Replacements, numbered in the order of the names."""
+def replacements(documents: Sequence[Mapping[str, Any]]) -> Replacements:
+    """Return what stands for each name of documents."""
+    names = Replacements()
+    for document in documents:
+        _document(document, names.see)
+    names.settle()
+    return names
+
+
+class Replacements:
+    """What stands for names, numbered in their order; those that are seen later, after those that are settled."""
 
     def __init__(self) -> None:
         self._known: dict[str, set[str]] = defaultdict(set)
@@ -58,7 +64,9 @@ class _Names:
     def settle(self) -> None:
         """Number what was seen."""
         for kind, names in self._known.items():
-            self._numbers |= {(kind, name): number for number, name in enumerate(sorted(names), 1)}
+            before = {name for name in names if (kind, name) in self._numbers}
+            fresh = enumerate(sorted(names - before), len(before) + 1)
+            self._numbers |= {(kind, name): number for number, name in fresh}
 
     def replaced(self, kind: str, name: str) -> str:
         """Return what stands for a name."""
