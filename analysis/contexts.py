@@ -61,9 +61,11 @@ def _stated(categories: Iterable[Category]) -> tuple[Legal, ...]:
 def revealed(category: Category, contexts: Collection[str]) -> tuple[Legal, ...]:
     """Return what data of a category may reveal in some contexts, beyond what is stated of the category anywhere.
 
-    >>> from rosprivacy.analysis.example import CATEGORIES
-    >>> revealed(CATEGORIES["Video"], ())
-    ()
+    >>> from dataclasses import replace
+    >>> from rosprivacy.analysis.example import CATEGORIES, LAW
+    >>> video = replace(CATEGORIES["Video"], in_context=(replace(LAW, context="care"),))
+    >>> [[legal.context for legal in revealed(video, contexts)] for contexts in (["care"], ["school"])]
+    [['care'], []]
     """
     known = {legal.name for legal in category.law if legal.verdict in SPECIAL}
     return tuple(legal for legal in category.in_context if legal.context in contexts and legal.name not in known)

@@ -271,7 +271,7 @@ def _basis(element: Element, known: Known) -> Html:
         return joined(Html(", "), told("cnil.inside"))
     if facts and facts.area == ADEQUATE and not facts.basis:
         return joined(Html(", "), told("cnil.adequate"))
-    basis = known.of(element, "basis")
+    basis = facts.transfer if facts else ""
     in_words = (
         basis if told.words.language == "en" and basis != NO_BASIS else told.words.known(f"transfer.{basis}", basis)
     )
