@@ -40,6 +40,7 @@ class Lack(StrEnum):
     REVEALS = "states no ground under Article 9(2), and {category} may reveal what is named in {provision}"
     SECRECY = "rests on Article 9(2)(h) and does not state that 9(3) is met, professional secrecy"
     ARTICLE_10 = "names no law that authorises data of Article 10 (10), and {category} can be such data"
+    OCCASIONAL = "rests on a derogation (Article 49) for a transfer out of the EEA: is it occasional?"
     CHAPTER_V = (
         "is about a transfer out of the EEA and states no basis of chapter V (45, 46, 47 or 49), which Article 6 is not"
     )
@@ -73,7 +74,9 @@ def gaps(stated: Sequence[str], accepted: Iterable[tuple[str, str]], law: Mappin
     Notes
     -----
     Article 6(1) always; 9(2) where data fall or may fall under Article 9(1), and 9(3) beside 9(2)(h); the law that
-    authorises data of Article 10; a basis of chapter V (Article 44) for a transfer, which Article 6 does not cure.
+    authorises data of Article 10; a basis of chapter V (Article 44) for a transfer, which Article 6 does not cure. A
+    transfer on Article 49 alone is asked about: that is for specific situations (recital 111), and robots that send
+    all the time are none.
 
     Examples
     --------
@@ -93,8 +96,11 @@ def gaps(stated: Sequence[str], accepted: Iterable[tuple[str, str]], law: Mappin
         yield Gap(Lack.SECRECY)
     if "10" not in stated:
         yield from (Gap(Lack.ARTICLE_10, category) for category in kinds if _article10(law.get(category, ())))
-    if any(kind == THIRD_COUNTRY for kind, _ in held) and not _any(stated, *CHAPTER_V):
-        yield Gap(Lack.CHAPTER_V)
+    if any(kind == THIRD_COUNTRY for kind, _ in held):
+        if not _any(stated, *CHAPTER_V):
+            yield Gap(Lack.CHAPTER_V)
+        elif not _any(stated, *(article for article in CHAPTER_V if article != "49")):
+            yield Gap(Lack.OCCASIONAL)
 
 
 def transfer_of(basis: str) -> str:

@@ -13,7 +13,7 @@ from rosprivacy.analysis.model import NOWHERE, NonRosFacts, Reason, Statement
 from rosprivacy.analysis.model import reason as why
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Mapping, Sequence
 
     from rosprivacy.analysis.durations import Duration
     from rosprivacy.analysis.hierarchy import Hierarchy
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 INSIDE, ADEQUATE, PARTLY, THIRD = "eea", "adequate", "partly", "third"  # where a country lies, GDPR chapter V
-ADEQUACY = "adequacy"
-TRANSFERS = (  # bases of a transfer: GDPR Article 45, 46(2)(a) to (f), 46(3), 49
+ADEQUACY, DEROGATION, OCCASIONAL = "adequacy", "derogation", "occasional-derogation"
+TRANSFERS = (  # bases of a transfer: GDPR Article 45, 46(2)(a) to (f), 46(3), 49; with 49, that it is occasional
     ADEQUACY,
     "public-instrument",
     "binding-corporate-rules",
@@ -30,7 +30,8 @@ TRANSFERS = (  # bases of a transfer: GDPR Article 45, 46(2)(a) to (f), 46(3), 4
     "code-of-conduct",
     "certification",
     "authorised-clauses",
-    "derogation",
+    DEROGATION,
+    OCCASIONAL,
 )
 RECIPIENTS = ("controller", "joint-controller", "processor", "third-party")
 BY_KIND = (-1, 0)  # the rank of what is taken by kind: below every label
@@ -57,15 +58,34 @@ def by_kind(element: Element) -> tuple[Statement, ...]:
     return (Statement(role, (), BY_KIND, NOWHERE),) if role else ()
 
 
-def country_unknown(element: Element, facts: NonRosFacts) -> bool:
-    """Return whether nobody can say if data there has left the EEA (rule S11).
+def unanswered(elements: Sequence[Element], outside: Mapping[int, NonRosFacts]) -> dict[int, tuple[str, ...]]:
+    """Return what has to be known of elements outside ROS and nobody states, by vertex (rule S11).
+
+    >>> from rosprivacy.analysis.model import Element
+    >>> unanswered([Element("storage", "disk")], {0: NonRosFacts()})
+    {0: ('country',)}
+    """
+    asked = ((vertex, not_stated(elements[vertex], facts)) for vertex, facts in outside.items())
+    return {vertex: missing for vertex, missing in asked if missing}
+
+
+def not_stated(element: Element, facts: NonRosFacts) -> tuple[str, ...]:
+    """Return what has to be known of where data there goes and nobody states (rule S11).
+
+    The country where there has to be one and no transfer is stated: nobody can say if data there has left the EEA.
+    Of a transfer on a derogation whether it is occasional: Article 49 is for specific situations (recital 111), and
+    robots that send all the time are none. ``occasional-derogation`` is a person's word that it is.
 
     >>> from rosprivacy.analysis.model import Element
     >>> disk = Element("storage", "disk")
-    >>> country_unknown(disk, NonRosFacts()), country_unknown(disk, NonRosFacts(country="DE"))
-    (True, False)
+    >>> not_stated(disk, NonRosFacts()), not_stated(disk, NonRosFacts(country="DE", area=INSIDE))
+    (('country',), ())
+    >>> [not_stated(disk, NonRosFacts(country="CN", area=THIRD, transfer=basis)) for basis in (DEROGATION, OCCASIONAL)]
+    [('occasional',), ()]
     """
-    return element.kind in PLACED and not facts.country and not facts.transfer
+    if facts.transfer == DEROGATION and facts.area not in (INSIDE, ADEQUATE):
+        return ("occasional",)
+    return ("country",) if element.kind in PLACED and not facts.country and not facts.basis else ()
 
 
 def kept_too_long(facts: NonRosFacts, category: str, hierarchy: Hierarchy) -> Reason | None:
@@ -157,13 +177,13 @@ def transferred(facts: NonRosFacts) -> Reason | None:
     >>> transferred(NonRosFacts(country="CN", area=THIRD, transfer="standard-clauses")) is None
     True
     """
-    if facts.area not in (PARTLY, THIRD) or (facts.transfer and (facts.area, facts.transfer) != (THIRD, ADEQUACY)):
+    if facts.area not in (PARTLY, THIRD) or (facts.basis and (facts.area, facts.basis) != (THIRD, ADEQUACY)):
         return None
     if facts.area == PARTLY:
         return Reason.of(why.PARTLY_ADEQUATE, country=facts.country, recipients=facts.adequacy)
     ended, never = (
         (why.STATED_NO_LONGER_ADEQUATE, why.STATED_NOT_ADEQUATE)
-        if facts.transfer
+        if facts.basis
         else (why.NO_LONGER_ADEQUATE, why.NOT_ADEQUATE)
     )
     if facts.until:

@@ -173,7 +173,7 @@ def _stated(facts: NonRosFacts) -> Iterator[tuple[str, str]]:
         "encrypted": "" if facts.encrypted is None else ("yes" if facts.encrypted else "no"),
         "operator": facts.operator,
         "role": facts.recipient,
-        "basis": facts.transfer,
+        "basis": facts.basis,
         "contract": facts.contract,
     }
     yield from ((what, value) for what, value in said.items() if value)

@@ -31,7 +31,7 @@ from rosprivacy.analysis.kernel.search import START, Search, path_to, present, s
 from rosprivacy.analysis.kernel.states import Net
 from rosprivacy.analysis.model import DISCLOSURE, PATHS_NOT_COUNTED, Diagnostic, Element, Place, Severity
 from rosprivacy.analysis.modes import Paths
-from rosprivacy.analysis.non_ros import country_unknown, on_day
+from rosprivacy.analysis.non_ros import on_day, unanswered
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
@@ -115,8 +115,7 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
     net = Net.of(spread)
     work = _Work(options.bounds)
     findings = tuple(_findings(net, mask, kinds, options, work))
-    unknown = {v for v, facts in bound.outside.items() if country_unknown(graph.elements[v], facts)}
-    questions = open_questions(net, mask, unknown)
+    questions = open_questions(net, mask, unanswered(graph.elements, bound.outside))
     lacks = grounds(spread, mask).lacking
     leak = any(finding.stands for finding in findings)
     return Analysis(

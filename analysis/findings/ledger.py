@@ -18,7 +18,7 @@ from rosprivacy.analysis.findings.closures import ABSENT, PERHAPS, Closure, behi
 from rosprivacy.analysis.findings.concerns import concerns
 from rosprivacy.analysis.kernel.roles import NOTHING_SAID
 from rosprivacy.analysis.model import Place, Statement
-from rosprivacy.analysis.non_ros import country_unknown
+from rosprivacy.analysis.non_ros import unanswered
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -131,7 +131,7 @@ def _leaks(spread: Spread, bound: Bound, hierarchy: Hierarchy) -> dict[int, int]
 def _unlabelled(spread: Spread, bound: Bound, asked: int) -> dict[int, int]:
     """Vertex -> the bits for which it is or would be open (rule S11)."""
     elements = spread.graph.elements
-    unknown = {v for v, facts in bound.outside.items() if country_unknown(elements[v], facts)}
+    unknown = unanswered(elements, bound.outside)
     covered = {v: bits for v, bits in spread.covered.items() if v not in unknown}
     return {v: asked & ~covered.get(v, 0) for v in range(len(elements))}
 

@@ -7,6 +7,7 @@ open nodes and leaks of the category as ends.
 from __future__ import annotations
 
 from dataclasses import replace
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.answer import OpenQuestion
@@ -18,8 +19,10 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.kernel.states import Net
 
+NOTHING: Mapping[int, tuple[str, ...]] = MappingProxyType({})
 
-def open_questions(net: Net, mask: int, unknown: Collection[int] = ()) -> tuple[OpenQuestion, ...]:
+
+def open_questions(net: Net, mask: int, unknown: Mapping[int, tuple[str, ...]] = NOTHING) -> tuple[OpenQuestion, ...]:
     """Return the elements that a category reaches and no label covers, in the order of review.
 
     Parameters
@@ -29,7 +32,7 @@ def open_questions(net: Net, mask: int, unknown: Collection[int] = ()) -> tuple[
     mask
         Bits of the categories that the answer is about.
     unknown
-        Vertices whose country has to be known and is not: open for all that gets there.
+        Vertex -> what has to be known of it and is not stated (``non_ros.unanswered``): open for all that gets there.
 
     Returns
     -------
@@ -59,7 +62,7 @@ def open_questions(net: Net, mask: int, unknown: Collection[int] = ()) -> tuple[
         if not bits:
             continue
         frontier = not element.is_channel and bool(first.get(vertex, 0) & bits)
-        missing = ("country",) if vertex in unknown else ()
+        missing = unknown.get(vertex, ())
         question = OpenQuestion(element, spread.names(bits), nearest.level(vertex, bits) or 0, frontier, missing)
         known = merged.get(element.shown_as)  # the other side of a wildcard
         if known:
@@ -70,7 +73,7 @@ def open_questions(net: Net, mask: int, unknown: Collection[int] = ()) -> tuple[
 
 
 def open_bits(spread: Spread, unknown: Collection[int]) -> dict[int, int]:
-    """Return what is at elements without a label that covers it, or where it is not known in which country it is.
+    """Return what is at elements without a label that covers it, or of which something has to be known and is not.
 
     >>> from rosprivacy.analysis.example import DISK, NAMES, factory
     >>> from rosprivacy.analysis.kernel.spreading import spread

@@ -21,7 +21,7 @@ from rosprivacy.analysis.findings.open_questions import open_bits
 from rosprivacy.analysis.findings.reach import Places, Reach
 from rosprivacy.analysis.kernel import spreading
 from rosprivacy.analysis.model import NOWHERE, Bound, Statement
-from rosprivacy.analysis.non_ros import country_unknown
+from rosprivacy.analysis.non_ros import unanswered
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -205,7 +205,7 @@ class _Work:
         spread = analysis.spread
         asked = sum(spread.both(category) for category in analysis.emitted)
         elements = spread.graph.elements
-        unknown = {v for v, facts in bound.outside.items() if country_unknown(elements[v], facts)}
+        unknown = set(unanswered(elements, bound.outside))
         if not asked:
             return None
         places = Places.of(spread, bound, hierarchy, asked, accepts)

@@ -99,6 +99,9 @@ class Statement:
 NOWHERE = Place("", 0)
 
 
+NO_BASIS = "none"  # in place of the basis of a transfer
+
+
 @dataclass(frozen=True, slots=True)
 class NonRosFacts:
     """What is stated about a non-ROS element (rule S9).
@@ -128,7 +131,8 @@ class NonRosFacts:
     recipient
         One of ``RECIPIENTS``.
     transfer
-        Basis of a transfer out of the EEA, one of ``TRANSFERS``, as a person states it.
+        Basis of a transfer out of the EEA, one of ``TRANSFERS``, as a person states it; ``NO_BASIS`` where a person
+        states that there is none.
     contract
         On what it is operated for the controller, such as a contract under Article 28, in a person's words.
     place
@@ -148,6 +152,11 @@ class NonRosFacts:
     transfer: str = ""
     contract: str = ""
     place: Place = NOWHERE
+
+    @property
+    def basis(self) -> str:
+        """The stated basis of a transfer; empty where none is stated, and where it is stated that there is none."""
+        return "" if self.transfer == NO_BASIS else self.transfer
 
 
 CONTEXTS = ("care", "public-space", "school", "union", "workplace", "worship")  # those of ontology/contexts.ttl

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.durations import ordered, parse
-from rosprivacy.analysis.model import NonRosFacts, Place
+from rosprivacy.analysis.model import NO_BASIS, NonRosFacts, Place
 from rosprivacy.analysis.non_ros import EVERY, RECIPIENTS, TRANSFERS
 from rosprivacy.ingest.labels.countries import countries
 
@@ -49,7 +49,7 @@ def facts_of(said: Mapping[str, Any], categories: Collection[str]) -> NonRosFact
         raise ValueError(f"country {country!r} is not an ISO 3166-1 code; {countries().hint(country)}")
     if recipient and recipient not in RECIPIENTS:
         raise ValueError(f"recipient {recipient!r} is none of {', '.join(RECIPIENTS)}")
-    if transfer and transfer not in (*TRANSFERS, "none"):
+    if transfer and transfer not in (*TRANSFERS, NO_BASIS):
         raise ValueError(f"transfer {transfer!r} is none of {', '.join(TRANSFERS)}")
     encrypted = said.get("encrypted")
     if not (encrypted is None or isinstance(encrypted, bool)):
@@ -61,7 +61,7 @@ def facts_of(said: Mapping[str, Any], categories: Collection[str]) -> NonRosFact
         encrypted=encrypted,
         operator=_text(said, "operator"),
         recipient=recipient,
-        transfer="" if transfer == "none" else transfer,
+        transfer=transfer,
         contract=_text(said, "contract"),
         place=Place(_text(said, "file"), int(said.get("line") or 0)),
         **(countries().place(country) if country else {}),

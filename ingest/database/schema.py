@@ -128,7 +128,7 @@ ELEMENT = NodeKind(
         Property("operator", STRING, "outside ROS: who runs it"),
         Property("recipient", STRING, "outside ROS: controller, joint-controller, processor or third-party"),
         Property("contract", STRING, "outside ROS: on what it is operated, such as a contract under Article 28"),
-        Property("transfer", STRING, "outside ROS: basis of a transfer out of the EEA"),
+        Property("transfer", STRING, "outside ROS: basis of a transfer out of the EEA; `none` if that is stated"),
         Property("file", STRING, "outside ROS: where it is stated"),
         Property("line", INTEGER, "outside ROS: where it is stated"),
     ),

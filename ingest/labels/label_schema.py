@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.model import CLEANS, CONTEXTS, NON_ROS
+from rosprivacy.analysis.model import CLEANS, CONTEXTS, NO_BASIS, NON_ROS
 from rosprivacy.analysis.non_ros import RECIPIENTS, TRANSFERS
 from rosprivacy.ingest.labels.label_reader import LONGEST_GROUP, NONE, SAYS_NOTHING
 from rosprivacy.ingest.labels.name_reader import END_KINDS
@@ -179,7 +179,7 @@ def _element(kind: str, labels: dict[str, Any]) -> dict[str, Any]:
         "operator": {"type": "string", "minLength": 1, "description": "Who runs it."},
         "recipient": {"enum": list(RECIPIENTS)},
         "contract": {"type": "string", "pattern": "\\S", "description": "Such as Article 28, with its date."},
-        "transfer": {"enum": [*TRANSFERS, "none"], "description": "Basis of a transfer out of the EEA."},
+        "transfer": {"enum": [*TRANSFERS, NO_BASIS], "description": "Basis of a transfer out of the EEA."},
     }
     if kind == "storage":
         facts |= {

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Protocol
 from rosprivacy.analysis.durations import Duration, ordered
 from rosprivacy.analysis.durations import parse as parse_duration
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.model import NON_ROS, NonRosFacts, Place
+from rosprivacy.analysis.model import NO_BASIS, NON_ROS, NonRosFacts, Place
 from rosprivacy.analysis.non_ros import EVERY, RECIPIENTS, TRANSFERS
 from rosprivacy.analysis.written_names import GLOB_SIGNS, LITERAL
 from rosprivacy.ingest.labels.countries import countries
@@ -163,12 +163,12 @@ class _Facts:
             self._texts |= countries().place(code)
 
     def _take_text(self, key: str, value: Value) -> None:
-        allowed = {"recipient": RECIPIENTS, "transfer": (*TRANSFERS, "none")}.get(key)
+        allowed = {"recipient": RECIPIENTS, "transfer": (*TRANSFERS, NO_BASIS)}.get(key)
         usable = value.kind == "text" and value.text.strip() and value.text.isprintable()
         if not usable or (allowed and value.text not in allowed):
             hint = f"one of {', '.join(allowed)}" if allowed else "write its name"
             self._reader.problem(value.line, f"{key}: {_written(value)}", hint)
-        elif (key, value.text) != ("transfer", "none"):
+        else:
             self._texts[key] = value.text
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import InputError, shown
 from rosprivacy.analysis.legal_bases import transfer_of
 from rosprivacy.analysis.model import NOWHERE, Place, Processing
-from rosprivacy.analysis.non_ros import EVERY
+from rosprivacy.analysis.non_ros import DEROGATION, EVERY, OCCASIONAL
 from rosprivacy.ingest.reading.legal_basis import read_bases
 
 if TYPE_CHECKING:
@@ -67,6 +67,8 @@ def with_transfer(reader: NameReader, value: Value, facts: NonRosFacts, bases: B
     if any(category != EVERY and any(map(transfer_of, some)) for category, some in bases):
         hint = f"write transfer: {named[0]}"
         reader.problem(line, "a basis of a transfer for one kind of data; it is stated of the whole element", hint)
+    elif facts.transfer == OCCASIONAL and named == [DEROGATION]:
+        return facts
     elif len(named) > 1 or (written is not None and written.text != named[0]):
         also = f", and transfer says {shown(written.text)}" if written is not None else ""
         what = f"legal_basis names {' and '.join(named)}{also}"

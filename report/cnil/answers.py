@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.model import KINDS, MAY_REVEAL
+from rosprivacy.analysis.model import KINDS, MAY_REVEAL, NO_BASIS
 from rosprivacy.analysis.non_ros import ADEQUATE, INSIDE, retention_of
 from rosprivacy.report.cnil.lawfulness import purposes_of
 from rosprivacy.report.cnil.markup import Html, bullets, escaped, harmless, joined, paragraph, prose, strong
@@ -269,10 +269,12 @@ def _basis(element: Element, known: Known) -> Html:
     facts, told = known.analysis.outside.get(element), known.told
     if facts and facts.area == INSIDE:
         return joined(Html(", "), told("cnil.inside"))
-    if facts and facts.area == ADEQUATE and not facts.transfer:
+    if facts and facts.area == ADEQUATE and not facts.basis:
         return joined(Html(", "), told("cnil.adequate"))
-    basis = known.of(element, "basis")
-    in_words = basis if told.words.language == "en" else told.words.known(f"transfer.{basis}", basis)
+    basis = facts.transfer if facts else ""
+    in_words = (
+        basis if told.words.language == "en" and basis != NO_BASIS else told.words.known(f"transfer.{basis}", basis)
+    )
     return joined(Html("; "), _stated("cnil.basis", in_words, told))
 
 

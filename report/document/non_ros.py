@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.non_ros import TAKEN, country_unknown, limited
+from rosprivacy.analysis.non_ros import TAKEN, limited, not_stated
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Analysis
@@ -73,10 +73,10 @@ def _durations(stated: tuple[tuple[str, Any], ...]) -> dict[str, str]:
 
 
 def _not_known(element: Element, facts: NonRosFacts, holds: tuple[str, ...], hierarchy: Hierarchy) -> NonRosNotKnown:
-    """What the answer could not judge: the country, or a retention without a limit to hold it against."""
+    """What the answer could not judge: what nobody states, or a retention without a limit to hold it against."""
     found: NonRosNotKnown = {}
-    if country_unknown(element, facts):
-        found["missing"] = ["country"]
+    if missing := not_stated(element, facts):
+        found["missing"] = list(missing)
     judged = element.kind == "storage" and facts.retention
     if judged and (without := [name for name in holds if not limited(facts, name, hierarchy)]):
         found["without_limit"] = without

@@ -13,7 +13,8 @@ from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.decisions import State
-from rosprivacy.analysis.non_ros import INSIDE, PARTLY, THIRD
+from rosprivacy.analysis.model import NO_BASIS
+from rosprivacy.analysis.non_ros import ADEQUATE, INSIDE, PARTLY, THIRD
 from rosprivacy.analysis.text import fit
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import key, name, whole
@@ -175,9 +176,10 @@ def _country(row: Mapping[str, Any], index: Index) -> str:
 
 
 def _transfer(row: Mapping[str, Any], index: Index) -> str:
-    """The safeguard of a transfer, or that none is stated; nothing where nothing leaves the EEA."""
-    area, words = row.get("area"), index.words
-    basis = words.known(f"transfer.{row['transfer']}", row["transfer"]) if row.get("transfer") else ""
+    """The safeguard of a transfer, that there is none, or that none is stated; nothing where nothing leaves the EEA."""
+    area, stated, words = row.get("area"), row.get("transfer", ""), index.words
+    stated = "" if area == ADEQUATE and stated == NO_BASIS else stated
+    basis = words.known(f"transfer.{stated}", stated) if stated else ""
     if not area or area == INSIDE:
         return basis if not area else ""
     if area in ABROAD and not basis:
@@ -187,7 +189,8 @@ def _transfer(row: Mapping[str, Any], index: Index) -> str:
 
 def _transfer_unknown(row: Mapping[str, Any]) -> bool:
     """Whether a person has to say what data leaves the EEA on, or whether it does."""
-    return not row.get("transfer") and row.get("area", ABROAD[-1]) in ABROAD
+    stated = row.get("transfer") and (row["transfer"] != NO_BASIS or row.get("area"))
+    return not stated and row.get("area", ABROAD[-1]) in ABROAD
 
 
 def _bases(findings: Sequence[Mapping[str, Any]]) -> Iterator[str]:

@@ -139,4 +139,5 @@ def _open(answer: URIRef, number: int, question: OpenQuestion, things: Things) -
         (RP.openFor, things.categories(question.categories)),
         (RP.distance, [Literal(question.distance)]),
         (RP.frontier, [Literal(question.frontier)]),
+        (RP.notStated, map(text, question.missing)),
     )

@@ -31,6 +31,10 @@ if TYPE_CHECKING:
 ROOT = "%SRCROOT%"
 LAW = "data-protection-law"
 MAX_RELATED = 100
+MISSING = {
+    "country": "nobody states its country",
+    "occasional": "the transfer rests on a derogation (Article 49): is it occasional?",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,7 +140,8 @@ class Results:
         unknown = "whether it may carry that" if element.is_channel else "what it does with that"
         what = f"{named(element)} gets {kinds}, and no label says {unknown}."
         if question.missing:
-            what = f"{named(element)} gets {kinds}, and nobody states its {' or '.join(question.missing)}."
+            what = f"{named(element)} gets {kinds}, and {' and '.join(MISSING[name] for name in question.missing)}"
+            what = what if what.endswith("?") else f"{what}."
         digest = hashlib.sha256("\0".join(("unreviewed", *element.shown_as)).encode()).hexdigest()[:16]
         return {
             "ruleId": rule.id,

@@ -46,8 +46,7 @@ def review_text(question: Mapping[str, Any], brings: Mapping[Any, Sequence[str]]
     own = brings.get(key(question["element"]), ())
     through = question.get("through")
     parts = [words("tty.comes.through", kinds=kinds, element=shown_name(through)) if through else kinds]
-    missing = (words.known(f"tty.missing.{what}", what) for what in question.get("missing", ()))
-    parts += [words("tty.missing", what=what) for what in missing]
+    parts += [words(f"tty.missing.{what}") for what in question.get("missing", ())]
     parts += [words("tty.brings", own=", ".join(own), kinds=kinds)] if own else []
     behind = [words.count(question["closes"], "tty.otheropen")] if question.get("closes") else []
     behind += [words.count(question["leaks"], "tty.exit")] if question.get("leaks") else []

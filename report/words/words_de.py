@@ -512,6 +512,7 @@ WORDS = {
     "d.gap.secrecy": "Die Entscheidung beruht auf Artikel 9 Absatz 2 Buchst. h, und dass Artikel 9 Absatz 3 (Geheimhaltungspflicht) erfüllt ist, ist nicht festgehalten.",
     "d.gap.article_10": "{data}: Solche Daten können Daten nach Artikel 10 sein, und das Recht, das sie erlaubt, ist nicht festgehalten.",
     "d.gap.chapter_v": "Die Daten verlassen den EWR, und es ist keine Grundlage nach Kapitel V (Artikel 45, 46, 47 oder 49) festgehalten; Artikel 6 allein erlaubt es nicht.",
+    "d.gap.occasional": "Für die Übermittlung stützt sich die Entscheidung auf eine Ausnahme (Artikel 49). Erfolgt die Übermittlung nur gelegentlich?",
     "d.changed.path": "Seit der Entscheidung geändert: Der kürzeste Weg war {before} und ist jetzt {now}.",
     "d.changed.view": "Seit der Entscheidung geändert: Die Sicht auf die Policies war '{before}' und ist jetzt '{now}'.",
     "d.changed.disjoint_paths": "Seit der Entscheidung geändert: Es gab {before} getrennte Wege, jetzt gibt es {now}.",
@@ -583,6 +584,7 @@ WORDS = {
     "c.through": "Kommt über",
     "c.closes": "Nur darüber erreichbar",
     "missing.country": "Land",
+    "missing.occasional": "Ausnahme (Artikel 49), ob die Übermittlung nur gelegentlich erfolgt",
     # --- criteria
     "w.intro": "Artikel 35 DSGVO verlangt eine Folgenabschätzung, wenn eine Verarbeitung voraussichtlich ein hohes Risiko zur Folge hat. Die neun Kriterien sind die der Leitlinien WP 248 Rev. 01, die der EDSA bestätigt hat. In der Regel verlangen zwei davon eine Folgenabschätzung; eines kann genügen, zwei müssen nicht dazu führen. Wer trotz erfüllter Kriterien keine durchführt, muss begründen können, warum. Zu beachten ist auch die Liste der Aufsichtsbehörde nach Artikel 35 Absatz 4. Das Programm zeigt, was es sieht; es sagt nie, dass keine Folgenabschätzung nötig sei.",
     "t.criteria": "Die neun Kriterien von WP 248 Rev. 01",
@@ -701,6 +703,8 @@ WORDS = {
     "transfer.certification": "genehmigter Zertifizierungsmechanismus (Artikel 46 Absatz 2 Buchst. f)",
     "transfer.authorised-clauses": "von der Aufsichtsbehörde genehmigte Vertragsklauseln (Artikel 46 Absatz 3)",
     "transfer.derogation": "Ausnahme für bestimmte Fälle (Artikel 49)",
+    "transfer.occasional-derogation": "Ausnahme für bestimmte Fälle (Artikel 49), als gelegentlich angegeben",
+    "transfer.none": "keine Grundlage, so angegeben",
     # --- the record of processing
     "r.unbased.partly": "{country}: keine Grundlage angegeben (der Angemessenheitsbeschluss gilt nur für einige Empfänger)",
     "r.unbased.third": "{country}: keine Grundlage angegeben (ein Angemessenheitsbeschluss ist nicht bekannt)",

@@ -579,6 +579,7 @@ WORDS = {
     "d.gap.secrecy": "It rests on Article 9(2)(h), and that Article 9(3), professional secrecy, is met is not recorded.",
     "d.gap.article_10": "{data} can be data of Article 10, and the law that authorises them is not recorded.",
     "d.gap.chapter_v": "The data leave the EEA, and no basis of chapter V (Articles 45, 46, 47 or 49) is recorded; Article 6 alone does not permit it.",
+    "d.gap.occasional": "For the transfer it rests on a derogation (Article 49). Is the transfer occasional?",
     "d.changed.path": "Changed since it was decided: the shortest path was {before}, and is {now}.",
     "d.changed.view": "Changed since it was decided: then the view of the policies was '{before}', now it is '{now}'.",
     "d.changed.disjoint_paths": "Changed since it was decided: there were {before} separate paths, and there are {now}.",
@@ -664,6 +665,7 @@ WORDS = {
     "c.through": "Comes through",
     "c.closes": "Only past it",
     "missing.country": "country",
+    "missing.occasional": "derogation (Article 49), whether the transfer is occasional",
     # --- criteria
     "w.intro": "Article 35 GDPR asks for an assessment where a processing is likely to result in a high risk. The nine criteria are those of the guidelines WP 248 rev.01, which the EDPB endorsed. As a rule two of them call for an assessment; one can be enough, and two need not be. Who makes none where some are met has to be able to say why. Also look at the list of your authority under Article 35(4). The program shows what it sees; it never says that no assessment is needed.",
     "t.criteria": "The nine criteria of WP 248 rev.01",
@@ -828,6 +830,8 @@ WORDS = {
     "transfer.certification": "certification (Article 46(2)(f))",
     "transfer.authorised-clauses": "clauses that an authority authorised (Article 46(3))",
     "transfer.derogation": "derogation (Article 49)",
+    "transfer.occasional-derogation": "derogation (Article 49), stated to be occasional",
+    "transfer.none": "no basis, as stated",
     # --- the record of processing
     "r.unbased.partly": "{country}: no basis is stated (the adequacy decision covers some recipients only)",
     "r.unbased.third": "{country}: no basis is stated (no adequacy decision is known)",

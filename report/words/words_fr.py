@@ -517,6 +517,7 @@ _TYPED = {
     "d.gap.secrecy": "La décision repose sur l'article 9, paragraphe 2, point h), et il n'est pas enregistré que l'article 9, paragraphe 3 (secret professionnel), est respecté.",
     "d.gap.article_10": "{data} : ces données peuvent relever de l'article 10, et le droit qui les autorise n'est pas enregistré.",
     "d.gap.chapter_v": "Les données quittent l'EEE, et aucune base du chapitre V (articles 45, 46, 47 ou 49) n'est enregistrée ; l'article 6 seul ne le permet pas.",
+    "d.gap.occasional": "Pour le transfert, la décision repose sur une dérogation (article 49). Le transfert est-il occasionnel ?",
     "d.changed.path": "Modifié depuis la décision : le chemin le plus court était {before}, il est maintenant {now}.",
     "d.changed.view": "Modifié depuis la décision : la vue des politiques était « {before} », elle est maintenant « {now} ».",
     "d.changed.disjoint_paths": "Modifié depuis la décision : il y avait {before} chemins séparés, il y en a maintenant {now}.",
@@ -588,6 +589,7 @@ _TYPED = {
     "c.through": "Arrive par",
     "c.closes": "Atteint seulement par là",
     "missing.country": "pays",
+    "missing.occasional": "dérogation (article 49), caractère occasionnel du transfert",
     # --- criteria
     "w.intro": "L'article 35 du RGPD demande une analyse d'impact lorsqu'un traitement est susceptible d'engendrer un risque élevé. Les neuf critères sont ceux des lignes directrices WP 248 rév. 01, que le CEPD a approuvées. En règle générale, deux d'entre eux appellent une analyse ; un seul peut suffire, et deux n'y conduisent pas forcément. Qui n'en fait pas alors que des critères sont remplis doit pouvoir dire pourquoi. Voir aussi la liste de votre autorité de contrôle au titre de l'article 35, paragraphe 4. Le programme montre ce qu'il voit ; il ne dit jamais qu'aucune analyse n'est nécessaire.",
     "t.criteria": "Les neuf critères de WP 248 rév. 01",
@@ -706,6 +708,8 @@ _TYPED = {
     "transfer.certification": "mécanisme de certification approuvé (article 46, paragraphe 2, point f))",
     "transfer.authorised-clauses": "clauses contractuelles autorisées par l'autorité de contrôle (article 46, paragraphe 3)",
     "transfer.derogation": "dérogation pour des situations particulières (article 49)",
+    "transfer.occasional-derogation": "dérogation pour des situations particulières (article 49), transfert indiqué comme occasionnel",
+    "transfer.none": "aucune base, ainsi indiqué",
     # --- the record of processing
     "r.unbased.partly": "{country} : aucune base indiquée (la décision d'adéquation ne vaut que pour certains destinataires)",
     "r.unbased.third": "{country} : aucune base indiquée (aucune décision d'adéquation n'est connue)",

@@ -44,10 +44,18 @@ def test_what_can_fall_under_article_9_and_what_may_reveal_it_are_told_apart() -
     assert "Video may reveal what is named in GDPR Art. 9(1)" in lacks(["6(1)(f)"], "Video")[0]
 
 
-@pytest.mark.parametrize("basis", ["45", "46(2)(c)", "46(3)", "47", "49(1)(a)"])
+@pytest.mark.parametrize("basis", ["45", "46(2)(c)", "46(3)", "47"])
 def test_only_chapter_v_permits_a_transfer(basis: str) -> None:
     (line,) = lacks(["6(1)(f)"], "LicencePlate", THIRD_COUNTRY)
     assert line == (
         "is about a transfer out of the EEA and states no basis of chapter V (45, 46, 47 or 49), which Article 6 is not"
     )
     assert lacks(["6(1)(f)", basis], "LicencePlate", THIRD_COUNTRY) == []
+
+
+def test_a_derogation_alone_is_asked_about() -> None:
+    """Article 49 is for specific situations; recital 111."""
+    (line,) = lacks(["6(1)(f)", "49(1)(b)"], "LicencePlate", THIRD_COUNTRY)
+    assert line == "rests on a derogation (Article 49) for a transfer out of the EEA: is it occasional?"
+    assert lacks(["6(1)(f)", "46(2)(c)", "49(1)(b)"], "LicencePlate", THIRD_COUNTRY) == []
+    assert lacks(["6(1)(f)", "49(1)(b)"], "LicencePlate") == []

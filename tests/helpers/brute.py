@@ -369,7 +369,7 @@ class Brute:
     def abroad(self, vertex: int) -> bool:
         """S10: outside the EEA without a stated basis."""
         facts = self.outside[vertex][1] if vertex in self.outside else None
-        return facts is not None and facts.area in ABROAD and not facts.transfer
+        return facts is not None and facts.area in ABROAD and facts.transfer in ("", "none")
 
     def findings(
         self, accepted: Callable[[str, int, int, bool], bool] = lambda _c, _s, _l, _h: False
@@ -410,9 +410,17 @@ class Brute:
         return found
 
     def covered(self, vertex: int, category: str) -> bool:
-        """S11; who makes a category of another is covered for both; where a country has to be known, it is."""
+        """S11; who makes a category of another is covered for both; where a country has to be known, it is;
+        where a transfer rests on a derogation, nobody says that it is occasional."""
         kind, facts = self.outside.get(vertex, ("", None))
-        if kind in ("storage", "external-system") and facts is not None and not facts.country and not facts.transfer:
+        if (
+            kind in ("storage", "external-system")
+            and facts is not None
+            and not facts.country
+            and facts.transfer in ("", "none")
+        ):
+            return False
+        if facts is not None and facts.transfer == "derogation" and facts.area in ("", *ABROAD):
             return False
         said = [s for s in self.holding(vertex, category) if not s.role.startswith("no-")]
         return bool(said) or any(

@@ -121,7 +121,8 @@ def facts(draw: st.DrawFn, names: tuple[str, ...]) -> tuple[str, NonRosFacts]:
     country = draw(st.sampled_from(["", "DE", "KR", "US", "CN"]))
     return draw(st.sampled_from(("storage", "storage", *NON_ROS))), NonRosFacts(
         draw(stated), draw(stated), draw(st.sampled_from([None, None, True, False, parse("P30D")])),
-        transfer=draw(st.sampled_from(["", "", "standard-clauses"])), place=NOWHERE, encrypted=None,
+        transfer=draw(st.sampled_from(["", "", "none", "standard-clauses", "derogation"])),
+        place=NOWHERE, encrypted=None,
         **(countries().place(country) if country else {}),
     )  # fmt: skip
 

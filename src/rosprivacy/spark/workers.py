@@ -17,7 +17,7 @@ from rosprivacy.analysis.findings.grounds import Grounds, grounds
 from rosprivacy.analysis.findings.open_questions import open_bits
 from rosprivacy.analysis.fleet.counts import Counts, counted
 from rosprivacy.analysis.kernel.spreading import fill, meaning
-from rosprivacy.analysis.non_ros import country_unknown, on_day
+from rosprivacy.analysis.non_ros import on_day, unanswered
 from rosprivacy.analysis.parts.border import Bringer, PartNetwork
 from rosprivacy.analysis.parts.part_pairs import Class, Crossing
 from rosprivacy.analysis.parts.part_patterns import End, Source, Within
@@ -265,7 +265,7 @@ def _open(
 def open_elements(piece: Piece, found: Spread, mask: int) -> dict[Element, tuple[str, ...]]:
     """Return the open elements of a piece, without its border, and the categories for which they are (rule S11)."""
     elements, border = piece.graph.elements, set(piece.border)
-    unknown = {v for v, facts in piece.bound.outside.items() if country_unknown(elements[v], facts)}
+    unknown = unanswered(elements, piece.bound.outside)
     merged: dict[tuple[str, str, str, str], tuple[Element, tuple[str, ...]]] = {}
     for vertex, bits in sorted(open_bits(found, unknown).items()):
         element, names = elements[vertex], found.names(bits & mask)

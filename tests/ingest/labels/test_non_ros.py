@@ -243,7 +243,51 @@ class TestThirdCountries:
         assert [(q.element.name, q.missing) for q in result.analysis.open] == [
             (result.analysis.open[0].element.name, ("country",))
         ]
-        assert not analysed(text % "transfer: derogation").analysis.open
+        assert not analysed(text % "transfer: standard-clauses").analysis.open
+
+    @pytest.mark.parametrize("place", ["", "country: US, ", "country: CN, "])
+    @pytest.mark.parametrize("stated", ["transfer: derogation", "legal_basis: [49(1)(b)]"])
+    def test_a_derogation_is_no_basis_for_what_goes_on(self, place: str, stated: str) -> None:
+        """Rule S11; Article 49 is for specific situations, recital 111: no finding, but a question."""
+        analysis = analysed(CLOUD % f"conduit: [PersonalData], {place}{stated}").analysis
+        assert not analysis.findings
+        assert [(q.element.name, q.missing) for q in analysis.open] == [("cloud", ("occasional",))]
+        assert analysis.verdict == "undetermined"
+
+    @pytest.mark.parametrize(
+        "stated",
+        [
+            "country: CN, transfer: occasional-derogation",
+            "country: CN, transfer: occasional-derogation, legal_basis: [49(1)(b)]",
+            "country: CN, transfer: standard-clauses",
+            "country: DE, transfer: derogation",  # nothing leaves the EEA
+            "country: KR, transfer: derogation",  # an adequacy decision covers it
+        ],
+    )
+    def test_a_person_answers_whether_it_is_occasional(self, stated: str) -> None:
+        analysis = analysed(CLOUD % f"conduit: [PersonalData], {stated}").analysis
+        assert (analysis.findings, analysis.open, analysis.verdict) == ((), (), "no-leak-found")
+
+    def test_the_question_stands_in_every_format(self) -> None:
+        result = analysed(CLOUD % "conduit: [PersonalData], country: CN, transfer: derogation")
+        document = result.document()
+        (row,) = document["outside"]
+        assert (row["missing"], row["file"], row["line"]) == (["occasional"], "l.yaml", 9)
+        assert [question.get("missing") for question in document["open"]] == [["occasional"]]
+        assert "it rests on a derogation (Article 49): is it occasional?" in result.to("text")
+        assert "derogation (Article 49), whether the transfer is occasional: not stated" in result.to("markdown")
+        assert "the transfer rests on a derogation (Article 49): is it occasional? The analysis" in result.to("sarif")
+        assert 'rp:notStated "occasional"' in result.to("turtle")
+
+    def test_that_there_is_no_basis_is_a_statement(self) -> None:
+        """A finding all the same, and told as stated."""
+        said, silent = (analysed(CLOUD % f"country: CN{more}") for more in (", transfer: none", ""))
+        assert [f.kind for f in said.analysis.findings] == [f.kind for f in silent.analysis.findings]
+        assert [result.document()["outside"][0].get("transfer") for result in (said, silent)] == ["none", None]
+        (row,) = (row for row in said.to("article30").splitlines() if "cloud" in row)
+        assert "CN: no basis, as stated" in row
+        assert "basis of a transfer: no basis, as stated" in said.to("cnil-pia")
+        assert "basis of a transfer: not stated" in silent.to("cnil-pia")
 
     def test_without_a_finding_the_verdict_is_undetermined(self) -> None:
         text = (BUCKET % "retention: P1D").replace("country: DE, ", "")
