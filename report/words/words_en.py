@@ -459,6 +459,10 @@ WORDS = {
     "f.disclosure": "{data} can get from {source} to {leak}, which lets it out.",
     "f.storage-limitation": "{data} from {source} is kept at {leak}: without a stated end, or too long.",
     "f.third-country-transfer": "{data} from {source} can get to {leak}, outside the EEA, without a stated basis.",
+    "f.made.disclosure": "{data}, made of {of} of {source} at {makers}, can get to {leak}, which lets it out.",
+    "f.made.storage-limitation": "{data}, made of {of} of {source} at {makers}, is kept at {leak}: without a stated end, or too long.",
+    "f.made.third-country-transfer": "{data}, made of {of} of {source} at {makers}, can get to {leak}, outside the EEA, without a stated basis.",
+    "f.made": "{data}, made of {of} at {makers}",
     "f.single": "{data} is brought in and let out at {source} itself.",
     "f.pseudonymised": (
         "On these paths the data arrives pseudonymised only. That is still personal data for whoever can tell the persons "

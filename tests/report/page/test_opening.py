@@ -152,3 +152,22 @@ def test_a_transfer_that_rests_on_article_6_alone_says_what_it_lacks() -> None: 
     document["processed_for"] = [based if r is stated else r for r in document["processed_for"]]
     row = next(row for row in told(document).opening.rows if row.leak == "hospital:fleet cloud")
     assert "none of chapter V" not in dict(row.facts)["Legal basis"]
+
+
+def test_what_is_made_on_the_way_is_said_to_be_made_there_and_not_to_come_from_the_source() -> None:
+    """users.md, A8.7: the camera has no face templates."""
+    report = told(care())
+    assert report.opening.rows[0].what == "face template, made of video of persons at /face_recognizer"
+    assert report.opening.rows[1].what == "voice"
+    (faces,) = [entry for kind in report.kinds for entry in kind.entries if entry.category == "FaceTemplate"]
+    assert faces.sentence == (
+        "Face template, made of video of persons of /camera at /face_recognizer, can get to /uplink, which lets it out."
+    )
+    (heading,) = page(care()).xpath("//section[@id='decide']//li[1]/h3")
+    assert heading.text_content() == "face template, made of video of persons at /face_recognizer: /camera → /uplink"
+    for language, said in {
+        "de": "bei /face_recognizer erzeugt aus Daten von /camera",
+        "fr": "produites par /face_recognizer à partir de données de /camera",
+    }.items():
+        entries = [entry for kind in told(care(), language=language).kinds for entry in kind.entries]
+        assert any(said in entry.sentence for entry in entries)
