@@ -467,7 +467,9 @@ WORDS = {
     "f.pseudonymised": (
         "On these paths the data arrives pseudonymised only. That is still personal data for whoever can tell the persons "
         "(recital 26 GDPR). To be answered: can this recipient do so, alone or with what others hold? For you as controller they remain "
-        "personal data (Articles 13 and 14)."
+        "personal data (Articles 13 and 14). What a label calls pseudonymised counts here as reduced and still personal. Whether it is "
+        "pseudonymisation in the sense of Article 4(5), with the additional information kept separately, a person has to judge; "
+        "blurring a picture usually is not."
     ),
     "f.dismissed": "Every path to it goes through {names}, which has an entry of its own. Assess that one first.",
     "f.beside": "Past it, the data gets there pseudonymised only: that is an entry of its own.",
