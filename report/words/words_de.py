@@ -452,6 +452,7 @@ WORDS = {
     "p.look.open": "nicht geprüft: leitet weiter, was ankommt, soweit bekannt",
     "p.look.shortest": "Schritt des kürzesten Weges",
     "p.look.way": "Schritt eines längeren Weges",
+    "p.look.cleaned": "mit Querstrich: Daten gelangen dorthin und enden dort laut Angabe",
     "p.look.hidden": "nur pseudonymisierte Daten",
     "f.now": "ab hier: {data}",
     "f.data": "{data} (pseudonymisiert)",

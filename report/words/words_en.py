@@ -517,6 +517,7 @@ WORDS = {
     "p.look.open": "not reviewed: passes on what it gets, as far as is known",
     "p.look.shortest": "step of the shortest path",
     "p.look.way": "step of a longer path",
+    "p.look.cleaned": "ends in a bar: data gets there, and is said to be cleaned there",
     "p.look.hidden": "only pseudonymised data",
     "f.now": "from here: {data}",
     "f.data": "{data} (pseudonymised)",

@@ -457,6 +457,7 @@ _TYPED = {
     "p.look.open": "non examiné : transmet ce qui arrive, pour autant qu'on le sache",
     "p.look.shortest": "étape du chemin le plus court",
     "p.look.way": "étape d'un chemin plus long",
+    "p.look.cleaned": "fin en barre : des données y arrivent et y prennent fin, selon l'annotation",
     "p.look.hidden": "seulement des données pseudonymisées",
     "f.now": "à partir d'ici : {data}",
     "f.data": "{data} (pseudonymisées)",

@@ -71,6 +71,7 @@ WORDS = {
     "pic.look.allowed": "erlaubt, in Richtung der Daten",
     "pic.look.matches": "der Platzhalter deckt es ab",
     "pic.look.denied": "verweigert",
+    "pic.look.cleaned": "Daten gelangen dorthin und enden dort laut Angabe",
     "pic.look.data": "hier können Daten gehen",
     "pic.look.way": "auf einem Weg zu einem Ausgang",
     "pic.look.shortest": "auf dem kürzesten Weg zu einem Ausgang",

@@ -71,6 +71,7 @@ WORDS = {
     "pic.look.allowed": "allowed, in the direction of the data",
     "pic.look.matches": "the wildcard covers it",
     "pic.look.denied": "denied",
+    "pic.look.cleaned": "data gets there, and is said to be cleaned there",
     "pic.look.data": "data can go here",
     "pic.look.way": "on a path to a leak",
     "pic.look.shortest": "on the shortest path to a leak",

@@ -73,6 +73,7 @@ _TYPED = {
     "pic.look.allowed": "permis, dans le sens des données",
     "pic.look.matches": "le caractère générique le couvre",
     "pic.look.denied": "refusé",
+    "pic.look.cleaned": "des données y arrivent et y prennent fin, selon l'annotation",
     "pic.look.data": "des données peuvent passer ici",
     "pic.look.way": "sur un chemin vers un point de sortie",
     "pic.look.shortest": "sur le plus court chemin vers un point de sortie",
