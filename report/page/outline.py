@@ -47,6 +47,7 @@ SECTIONS = (
     "sanitizers", "risks", "criteria", "sign", "kinds", "assumptions", "inventory", "method",
 )  # fmt: skip
 PARAGRAPHS = 10  # of the method note
+EXPLAINED = ("profile", "enclave", "label", "wildcard", "request")  # before they first come, beside the view
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,6 +96,8 @@ class Outline:
         What closes these paths; None where there are none.
     numbers
         (number, what it counts).
+    glossary
+        (word, what it means), of words that come before the section on the method (users.md, B7).
     """
 
     words: Words
@@ -110,6 +113,7 @@ class Outline:
     closing: Closing | None
     means: tuple[str, ...]
     numbers: tuple[tuple[int, str], ...]
+    glossary: tuple[tuple[str, str], ...]
     assumptions: tuple[str, ...]
     files: tuple[assumed.File, ...]
     remarks: tuple[assumed.Remark, ...]
@@ -199,6 +203,7 @@ def outline(
         closing=closes,
         means=tuple(_means(index, names)),
         numbers=tuple(_numbers(index)),
+        glossary=tuple((words(f"w.{word}"), words(f"w.{word}.means")) for word in (document["view"], *EXPLAINED)),
         assumptions=tuple(assumed.assumed(index)),
         files=assumed.files(index),
         remarks=assumed.remarks(index),

@@ -283,6 +283,23 @@ WORDS = {
     "look.context": "In this context: {context}",
     "look.applies": "applies from {date}",
     "f.context": "In the context of the source ({context}), the data may reveal what {provision} speaks of: {reason}.",
+    # --- words, where they first come
+    "w.heading": "Words",
+    "w.see": "How this report was made is told in section {section}.",
+    "w.declared": "declared",
+    "w.declared.means": "the view of this report: each node does what its own profile allows, and nothing else",
+    "w.enforced": "enforced",
+    "w.enforced.means": "the view of this report: each node may do what any profile of its enclave allows",
+    "w.profile": "profile",
+    "w.profile.means": "what the policy allows one node",
+    "w.enclave": "enclave",
+    "w.enclave.means": "profiles that share one key: the middleware enforces what they allow together, not each by itself",
+    "w.label": "label",
+    "w.label.means": "what a person states of an element in a label file",
+    "w.wildcard": "wildcard",
+    "w.wildcard.means": "a name in the policy with a sign such as *, which stands for all names that fit it",
+    "w.request": "request, response",
+    "w.request.means": "what is sent to those who serve a service or an action, and what they send back",
     # --- assumptions
     "a.view.declared": "View 'declared': each node does what its own profile in the policy says, and nothing else.",
     "a.view.enforced": (

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rosprivacy.report.words.typography import plain
 from tests.helpers.graphs import hospital
 from tests.helpers.pages import page, texts, told
 from tests.helpers.reports import care, decide, fleet, run, with_decisions, with_outside
@@ -171,3 +172,26 @@ def test_what_is_made_on_the_way_is_said_to_be_made_there_and_not_to_come_from_t
     }.items():
         entries = [entry for kind in told(care(), language=language).kinds for entry in kind.entries]
         assert any(said in entry.sentence for entry in entries)
+
+
+def test_words_are_explained_before_they_first_come() -> None:
+    """users.md, B7: declared, profile, enclave, label, wildcard, request; the method stands far below."""
+    document = care()
+    for language, words in {
+        "en": ["declared", "profile", "enclave", "label", "wildcard", "request, response"],
+        "de": ["declared", "Profil", "Enklave", "Angabe (Label)", "Platzhalter", "Anfrage, Antwort"],
+        "fr": ["declared", "profil", "enclave", "annotation", "caractère générique", "requête, réponse"],
+    }.items():
+        report = told(document, language=language)
+        assert report.sections[0][0] == "decide"
+        root = page(document, language=language)
+        assert root.xpath("//section[@id='decide']//dfn/text()") == words
+        (link,) = root.xpath("//section[@id='decide']//a[@href='#method']")
+        assert str(report.number("method")) in link.text_content()
+        for text in texts(document, language=language):
+            assert all(plain(means) in text for _, means in report.glossary)
+    enforced = told({**document, "view": "enforced"})
+    assert enforced.glossary[0] == (
+        "enforced",
+        "the view of this report: each node may do what any profile of its enclave allows",
+    )
