@@ -14,6 +14,7 @@ from rosprivacy.analysis.model import SPECIAL
 from rosprivacy.analysis.text import fit
 from rosprivacy.report.compare.changes import ASKED, Changes, changes
 from rosprivacy.report.document.analysis import files_not_read, lacking
+from rosprivacy.report.document.ledger import by_globs
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.finding_order import REVEALS, strength
 from rosprivacy.report.naming import name
@@ -303,6 +304,8 @@ def _numbers(index: Index) -> Iterator[tuple[int, str]]:
     yield strengths[REVEALS], words("n.reveals")
     yield len({tuple(finding["leak"].items()) for finding in to_assess}), words("n.recipients")
     yield count_rows(index.document["open"]).elements, words("n.open")
+    if globbed := count_rows(by_globs(index.document)).elements:
+        yield globbed, words("n.glob")
     for what in ("accepted", "dismissed"):
         number = sum(bool(finding.get(what)) for finding in index.findings)
         if number:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rosprivacy.report.document.ledger import by_globs
 from rosprivacy.report.words.typography import plain
 from tests.helpers.graphs import hospital
 from tests.helpers.pages import page, texts, told
@@ -195,3 +196,13 @@ def test_words_are_explained_before_they_first_come() -> None:
         "enforced",
         "the view of this report: each node may do what any profile of its enclave allows",
     )
+
+
+def test_not_reviewed_is_exact_and_what_only_globs_review_is_counted_beside_it() -> None:
+    """users.md, A8.8: '0 elements not reviewed' is not that a person looked at each."""
+    numbers = {what: number for number, what in told(care()).numbers}
+    assert numbers["elements not reviewed: data gets there, and no label or glob answers for it"] == 0
+    assert numbers["elements that count as reviewed only by a glob, for some data at least"] == 3
+    globbed = {row["element"]["name"] for row in by_globs(care())}
+    assert globbed == {"/camera/*", "/camera/image", "/camera/blurred"}  # "/camera/*": sensitive
+    assert not any("only by a glob" in what for _, what in told(run(2)).numbers)  # no glob in these labels
