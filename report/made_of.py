@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
+    from rosprivacy.analysis.answer import Finding
+    from rosprivacy.analysis.model import Element as GraphElement
     from rosprivacy.report.words.words import Words
 
 Element = TypeVar("Element")
@@ -40,6 +42,20 @@ def made_of(finding: Mapping[str, Any]) -> tuple[str, list[Mapping[str, Any]]]:
     """
     kinds = [*(step["category"] for step in finding["steps"]), finding["category"]]
     return kinds[0], makers(finding["witness"], kinds)
+
+
+def making(finding: Finding) -> tuple[str, list[GraphElement]]:
+    """Return the same of a finding that is no document yet.
+
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.findings.findings import analyse
+    >>> faces, *_ = analyse(*factory()).findings
+    >>> kind, by = making(faces)
+    >>> kind, [element.name for element in by]
+    ('Video', ['/face_id'])
+    """
+    kinds = [*(step.category for step in finding.steps), finding.category]
+    return kinds[0], makers(finding.witness, kinds)
 
 
 def data_made(

@@ -19,6 +19,7 @@ from rosprivacy.analysis.kernel.states import Net
 from rosprivacy.analysis.model import DISCLOSURE, GOES_NOWHERE, NO_LEAK_NAMED
 from rosprivacy.analysis.text import shortened
 from rosprivacy.report.element_counts import count_elements
+from rosprivacy.report.made_of import making
 from rosprivacy.report.pictures.looks import ALLOWED, CLEANED, DATA, DENIED, MATCHES, SHORTEST, WAY
 from rosprivacy.report.pictures.phrases import Phrases
 from rosprivacy.report.pictures.picture import PRIVACY, ROS, Box, Line, Picture, order, sorted_boxes, sorted_lines
@@ -284,13 +285,7 @@ class FindingViews:
         boxes = {box.key: box for box in reached.boxes(keys)}
         lines = data_lines(reached, boxes, lengths, lengths, pairs([finding]))
         words = self._say.words
-        title = words(
-            "pic.finding.of",
-            data=_data(finding, self._say),
-            source=shortened(finding.source.name, 60),
-            leak=shortened(finding.leak.name, 60),
-            view=str(graph.view),
-        )
+        title = self._title(finding)
         notes = [words("pic.finding", id=finding.id)]
         if finding.dismissed:
             through = listed((element.name for element in finding.through), longest=60, words=words)
@@ -303,6 +298,19 @@ class FindingViews:
         told = tuple(map(plain, notes))
         ordered = sorted_boxes(boxes.values())
         return Picture(PRIVACY, plain(title), ordered, lines.made(), told, ways, core([finding]), words)
+
+    def _title(self, finding: Finding) -> str:
+        """How its data can get there; what is made on the way, its source never has."""
+        of, by = making(finding)
+        made = {"of": self._say.title(of), "makers": listed((e.name for e in by), longest=60, words=self._say.words)}
+        return self._say.words(
+            "pic.finding.made" if by else "pic.finding.of",
+            data=_data(finding, self._say),
+            source=shortened(finding.source.name, 60),
+            leak=shortened(finding.leak.name, 60),
+            view=str(self._analysis.graph.view),
+            **(made if by else {}),
+        )
 
 
 def is_cut(note: str, words: Words) -> bool:

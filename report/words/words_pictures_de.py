@@ -20,6 +20,7 @@ WORDS = {
     "pic.denies.many": "Nicht gezeichnet: {n} DENYs ohne Kanal genau dieses Namens",
     "pic.privacy": "Wohin diese Daten gelangen können ({view}): {what}; {verdict}",
     "pic.count": "{findings}, nicht geprüft: {elements}",
+    "pic.finding.made": "{data}, bei {makers} erzeugt aus Daten von {source} (Art: {of}): wie sie zu {leak} gelangen können ({view})",
     "pic.finding.of": "{data}: wie sie von {source} zu {leak} gelangen können ({view})",
     "pic.finding": "Befund {id}",
     "pic.through": "Nur über {names}, wozu es einen eigenen Befund gibt",

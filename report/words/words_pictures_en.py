@@ -20,6 +20,7 @@ WORDS = {
     "pic.denies.many": "Not drawn: {n} DENYs without a channel of that very name",
     "pic.privacy": "Where {what} can go ({view}): {verdict}",
     "pic.count": "{findings}, {elements} not reviewed",
+    "pic.finding.made": "How {data}, made of {of} of {source} at {makers}, can get to {leak} ({view})",
     "pic.finding.of": "How {data} can get from {source} to {leak} ({view})",
     "pic.finding": "Finding {id}",
     "pic.through": "Only through {names}, which has a finding of its own",

@@ -22,6 +22,7 @@ _TYPED = {
     "pic.denies.many": "Non dessinés : {n} DENY sans canal de ce nom précis",
     "pic.privacy": "Où ces données peuvent aller ({view}) : {what} ; {verdict}",
     "pic.count": "{findings}, non examinés : {elements}",
+    "pic.finding.made": "{data}, produites par {makers} à partir de données de {source} (type : {of}) : comment elles peuvent aller à {leak} ({view})",
     "pic.finding.of": "{data} : comment elles peuvent aller de {source} à {leak} ({view})",
     "pic.finding": "Constat {id}",
     "pic.through": "Uniquement par {names}, qui a son propre constat",
