@@ -1,6 +1,6 @@
 // name: sanitizers
 // kind: table
-// description: Which sanitizers clean which kind of data, how, and who else reads the same channels uncleaned?
+// description: Which sanitizers clean which kind of data, how, and who else reads the same channels, cleaning or not?
 // param robot: robot, only this robot; all of them if it is empty, default ""
 // returns robot: string, name of the robot
 // returns sanitizer: string, name of the sanitizer
@@ -11,6 +11,7 @@
 // returns label: string, file:line of the label that decides
 // returns channels: list of string, channels from which it reads the category and that others read too
 // returns others: list of string, who gets the category from these channels beside it
+// returns cleaning: list of string, those of the others that are said to clean it, too: only the rest get it as it is
 // order: robot, sanitizer, category
 MATCH (:DataCategory)<-[:SANITIZES]-(e:Element)
 WHERE $robot = '' OR e.robot = $robot
@@ -34,17 +35,22 @@ CALL (e, kind) {
   MATCH (channel)-[f:FLOWS_TO WHERE kind IN f.passes]->()
         ((:Wildcard)-[g:FLOWS_TO WHERE kind IN g.passes]->()){0,1}(o:Element WHERE NOT o:Topic|Service|Action)
   WHERE o <> e
-  RETURN channel.name AS channel, o.name AS other
+  RETURN channel.name AS channel, o.name AS other, kind IN coalesce(o.sanitizes, []) AS cleans
 UNION
-  RETURN null AS channel, null AS other
+  RETURN null AS channel, null AS other, false AS cleans
 }
-WITH e, kind, arriving, method, stated, label, channel, other ORDER BY channel
+WITH e, kind, arriving, method, stated, label, channel, other, cleans ORDER BY channel
 WITH e, kind, kind IN arriving AS gets, method, stated, label, collect(DISTINCT channel) AS channels,
-     collect(other) AS names
+     collect(other) AS names, collect(CASE WHEN cleans THEN other END) AS too
 CALL (names) {
   UNWIND names AS other
   WITH DISTINCT other ORDER BY other
   RETURN collect(other) AS others
 }
-RETURN e.robot AS robot, e.name AS sanitizer, kind AS category, gets, method, stated, label, channels, others
+CALL (too) {
+  UNWIND too AS other
+  WITH DISTINCT other ORDER BY other
+  RETURN collect(other) AS cleaning
+}
+RETURN e.robot AS robot, e.name AS sanitizer, kind AS category, gets, method, stated, label, channels, others, cleaning
 ORDER BY robot, sanitizer, category

@@ -15,6 +15,7 @@ from rosprivacy.report.cnil.lawfulness import purposes_of
 from rosprivacy.report.cnil.markup import Html, bullets, escaped, harmless, joined, paragraph, prose, strong
 from rosprivacy.report.cnil.told import NAMES
 from rosprivacy.report.element_counts import count_elements
+from rosprivacy.report.made_of import making
 from rosprivacy.report.words.reasons import why_told
 from rosprivacy.report.words.typography import plain
 
@@ -294,12 +295,14 @@ def threats(known: Known) -> list[str]:
 
 def _threat(finding: Finding, known: Known) -> str:
     told = known.told
-    what = told.bare(
-        "cnil.threat",
-        data=told.data(finding.category, pseudonymised=finding.pseudonymised),
-        source=told.name(finding.source),
-        leak=told.name(finding.leak),
-    )
+    data = told.data(finding.category, pseudonymised=finding.pseudonymised)
+    ends = {"source": told.name(finding.source), "leak": told.name(finding.leak)}
+    of, by = making(finding)
+    if by:
+        made = {"of": told.data(of), "makers": ", ".join(map(told.name, by))}
+        what = told.bare("cnil.threat.made", data=data, **made, **ends)
+    else:
+        what = told.bare("cnil.threat", data=data, **ends)
     why = f"; {harmless(plain(why_told(finding.why, told.words, told.data)))}" if finding.why else ""
     accepted = known.accepted.get(finding.id)
     decided = f", {told.bare('cnil.accepted', why=accepted)}" if accepted else ""

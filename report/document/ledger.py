@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.answer import Verdict
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.findings.closures import ABSENT
-from rosprivacy.analysis.findings.ledger import BY
+from rosprivacy.analysis.findings.ledger import BY, REVIEW
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
     Shown = Callable[[Element], ElementEntry]
 
+ANSWERING = (REVIEW, "mundane", "sanitizer")  # what takes the question away whether an element was reviewed
 WORD_OF_A_LABEL = ("mundane", "only", "never", "sanitizer", ABSENT)
 
 
@@ -83,6 +84,11 @@ def hanging(document: Mapping[str, Any]) -> list[tuple[str, Mapping[str, Any]]]:
         for place in row["places"]:
             first.setdefault(f"{shown(place['file'])}:{place['line']}", row)
     return list(first.items())
+
+
+def by_globs(document: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    """Return the rows of elements that count as reviewed, for some data, by no name: only globs of labels say so."""
+    return [row for row in document["taken_away"] if row["glob"] and row["by"] in ANSWERING and not row["to"]]
 
 
 def counts(taken: Collection[TakenAway]) -> dict[str, int]:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.report.page.inline import Inline, Wishes, picture_of_all, pictures_of
 from rosprivacy.report.page.redacted_pictures import renamed
 from rosprivacy.report.pictures.graphviz import available
-from rosprivacy.report.pictures.looks import INK, LINE_LOOKS, ROLE_LOOKS, SHORTEST, WAY, Look
+from rosprivacy.report.pictures.looks import CLEANED, INK, LINE_LOOKS, ROLE_LOOKS, SHORTEST, WAY, Look
 from rosprivacy.report.pictures.overview import drawable
 from rosprivacy.report.pictures.phrases import Phrases
 from rosprivacy.report.words.typography import plain
@@ -103,5 +103,5 @@ def _overview(analysis: Analysis, report: Outline, wishes: Wishes) -> tuple[Inli
 def page_legend(words: Words) -> list[tuple[Look, bool, str]]:
     """Return what the pictures of a page mean: a look, whether it is that of a box or of a line, and words."""
     boxes = [(look, True, words(f"p.look.{name}")) for name, look in ROLE_LOOKS.items()]
-    lines = [(LINE_LOOKS[name], False, words(f"p.look.{name}")) for name in (SHORTEST, WAY)]
+    lines = [(LINE_LOOKS[name], False, words(f"p.look.{name}")) for name in (SHORTEST, WAY, CLEANED)]
     return [*boxes, *lines, (Look("", INK, style="dashed"), False, words("p.look.hidden"))]

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.text import fit
 from rosprivacy.report.finding_order import in_order
+from rosprivacy.report.made_of import made_of
 from rosprivacy.report.naming import key, line, name
 from rosprivacy.report.page.decision_texts import Decision, decision_of
 from rosprivacy.report.page.entries_of_robots import finding_pattern, grouped
@@ -243,7 +244,12 @@ def _sentence(finding: Mapping[str, Any], index: Index) -> str:
     data = index.data(finding["category"], pseudonymised=finding["pseudonymised"])
     ends = {"source": name(finding["source"]), "leak": name(finding["leak"])}
     alone = finding["kind"] == "disclosure" and len(finding["witness"]) == 1
-    said = index.words("f.single" if alone else f"f.{finding['kind']}", data=data, **ends)
+    of, makers = made_of(finding)
+    if makers:
+        made = {"of": index.data(of), "makers": index.words.row(map(name, makers))}
+        said = index.words(f"f.made.{finding['kind']}", data=data, **made, **ends)
+    else:
+        said = index.words("f.single" if alone else f"f.{finding['kind']}", data=data, **ends)
     return said[:1].upper() + said[1:]
 
 

@@ -14,6 +14,7 @@ from rosprivacy.analysis.legal_bases import CHAPTER_V
 from rosprivacy.analysis.model import THIRD_COUNTRY
 from rosprivacy.analysis.text import fit, printable
 from rosprivacy.report.element_counts import count_rows
+from rosprivacy.report.made_of import data_made
 from rosprivacy.report.naming import key, name
 from rosprivacy.report.page.entries_of_robots import grouped
 from rosprivacy.report.page.non_ros import country
@@ -39,6 +40,8 @@ class ToDecide:
     ----------
     waits
         Whether nobody has decided yet, or the decision no longer holds.
+    what
+        The data, with what they are made of and where, if they are.
     kinds
         Of the findings, in words.
     entries
@@ -51,6 +54,7 @@ class ToDecide:
 
     waits: bool
     data: str
+    what: str
     source: str
     leak: str
     article9: str
@@ -152,11 +156,16 @@ def _row(group: Sequence[Entry], index: Index) -> ToDecide:
     findings = [index.by_id[entry.id] for entry in group]
     first, entry = findings[0], group[0]
     many = len(entry.robots) > 1
+
+    def called(element: Mapping[str, Any]) -> str:
+        return _name(element, index, many=many)
+
     return ToDecide(
         waits=any(_waits(finding, index) for finding in findings),
         data=entry.data,
-        source=_name(first["source"], index, many=many),
-        leak=_name(first["leak"], index, many=many),
+        what=data_made(first, entry.data, index.words, index.data, called),
+        source=called(first["source"]),
+        leak=called(first["leak"]),
         article9=entry.article9,
         kinds=tuple(index.words(f"finding.{finding['kind']}") for finding in findings),
         spread=entry.spread,

@@ -14,6 +14,7 @@ from rosprivacy.analysis.model import SPECIAL
 from rosprivacy.analysis.text import fit
 from rosprivacy.report.compare.changes import ASKED, Changes, changes
 from rosprivacy.report.document.analysis import files_not_read, lacking
+from rosprivacy.report.document.ledger import by_globs
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.finding_order import REVEALS, strength
 from rosprivacy.report.naming import name
@@ -47,6 +48,7 @@ SECTIONS = (
     "sanitizers", "risks", "criteria", "sign", "kinds", "assumptions", "inventory", "method",
 )  # fmt: skip
 PARAGRAPHS = 10  # of the method note
+EXPLAINED = ("profile", "enclave", "label", "wildcard", "request")  # before they first come, beside the view
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,6 +97,8 @@ class Outline:
         What closes these paths; None where there are none.
     numbers
         (number, what it counts).
+    glossary
+        (word, what it means), of words that come before the section on the method (users.md, B7).
     """
 
     words: Words
@@ -110,6 +114,7 @@ class Outline:
     closing: Closing | None
     means: tuple[str, ...]
     numbers: tuple[tuple[int, str], ...]
+    glossary: tuple[tuple[str, str], ...]
     assumptions: tuple[str, ...]
     files: tuple[assumed.File, ...]
     remarks: tuple[assumed.Remark, ...]
@@ -199,6 +204,7 @@ def outline(
         closing=closes,
         means=tuple(_means(index, names)),
         numbers=tuple(_numbers(index)),
+        glossary=tuple((words(f"w.{word}"), words(f"w.{word}.means")) for word in (document["view"], *EXPLAINED)),
         assumptions=tuple(assumed.assumed(index)),
         files=assumed.files(index),
         remarks=assumed.remarks(index),
@@ -298,6 +304,8 @@ def _numbers(index: Index) -> Iterator[tuple[int, str]]:
     yield strengths[REVEALS], words("n.reveals")
     yield len({tuple(finding["leak"].items()) for finding in to_assess}), words("n.recipients")
     yield count_rows(index.document["open"]).elements, words("n.open")
+    if globbed := count_rows(by_globs(index.document)).elements:
+        yield globbed, words("n.glob")
     for what in ("accepted", "dismissed"):
         number = sum(bool(finding.get(what)) for finding in index.findings)
         if number:

@@ -107,11 +107,12 @@ ROLE_LOOKS = {
 DRAWN_ROLES = {**ROLE_LOOKS, END: Look("ends what comes to it", GREEN, width=1.5, double=True)}
 
 ALLOWED, MATCHES, DENIED = "allowed", "matches", "denied"
-DATA, WAY, SHORTEST, OTHER = "data", "way", "shortest", "other"
+CLEANED, DATA, WAY, SHORTEST, OTHER = "cleaned", "data", "way", "shortest", "other"
 LINE_LOOKS = {
     ALLOWED: Look("allowed, in the direction of the data", INK),
     MATCHES: Look("the wildcard covers it", INK, style="dotted"),
     DENIED: Look("denied", QUIET, style="dashed", head="tee"),
+    CLEANED: Look("data gets there, said to be cleaned there", INK, width=0.8, head="tee"),
     DATA: Look("data can go here", INK),
     WAY: Look("on a path to a leak", RED, width=2.2),
     SHORTEST: Look("on the shortest path to a leak", RED, width=4.5),

@@ -89,8 +89,8 @@ class Line:
     Attributes
     ----------
     look
-        ``allowed``, ``matches`` or ``denied``; in the privacy view ``data``, ``way`` (to a leak) or ``shortest``;
-        ``other`` for what a query gives that is no flow.
+        ``allowed``, ``matches`` or ``denied``; in the privacy view ``data``, ``way`` (to a leak), ``shortest``
+        or ``cleaned`` (it ends there, as a label says); ``other`` for what a query gives that is no flow.
     roles
         Of the flows, sorted.
     carries

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from functools import reduce
+from functools import cached_property, reduce
 from operator import or_
 from typing import TYPE_CHECKING
 
@@ -100,6 +100,22 @@ class Reached:
             bits &= taken
         plain, hidden = found.planes(bits)
         return found.names(bits), bool(hidden) and not plain
+
+    @cached_property
+    def cleaned(self) -> dict[int, tuple[str, ...]]:
+        """The flows along which data only gets to where a label says that it is cleaned -> the kinds.
+
+        Complexity: O(flows), once.
+        """
+        found = {index: self._cleaned_along(index) for index in range(len(self.graph.flows))}
+        return {index: kinds for index, kinds in found.items() if kinds}
+
+    def _cleaned_along(self, index: int) -> tuple[str, ...]:
+        facts = self._found.facts.get(self.graph.flows[index].target)
+        if not facts or self.along(index)[0]:
+            return ()
+        arriving = self._found.names(self._found.along(index) & self._mask)
+        return tuple(category for category in arriving if category in facts and "sanitizer" in facts[category].roles)
 
     def left_out(self, words: Words, beside: Collection[str] = ()) -> tuple[str, ...]:
         """Say what is not there: what ends the data, and what it does not get to.

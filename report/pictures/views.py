@@ -19,7 +19,8 @@ from rosprivacy.analysis.kernel.states import Net
 from rosprivacy.analysis.model import DISCLOSURE, GOES_NOWHERE, NO_LEAK_NAMED
 from rosprivacy.analysis.text import shortened
 from rosprivacy.report.element_counts import count_elements
-from rosprivacy.report.pictures.looks import ALLOWED, DATA, DENIED, MATCHES, SHORTEST, WAY
+from rosprivacy.report.made_of import making
+from rosprivacy.report.pictures.looks import ALLOWED, CLEANED, DATA, DENIED, MATCHES, SHORTEST, WAY
 from rosprivacy.report.pictures.phrases import Phrases
 from rosprivacy.report.pictures.picture import PRIVACY, ROS, Box, Line, Picture, order, sorted_boxes, sorted_lines
 from rosprivacy.report.pictures.privacy import Reached
@@ -154,22 +155,27 @@ class _Lines:
         self.lines[source, target, look] = replace(new, places=tuple(sorted(places, key=_place)))
 
     def made(self) -> tuple[Line, ...]:
-        """The lines; data that goes to a leak hides data that goes the same line to none."""
-        ranks = {DATA: 0, WAY: 1, SHORTEST: 2}
+        """The lines; data that goes to a leak hides data that goes the same line to none, and this what ends there."""
+        ranks = {CLEANED: 0, DATA: 1, WAY: 2, SHORTEST: 3}
         best: dict[tuple[Key, Key, str], Line] = {}
         for (source, target, look), line in sorted(self.lines.items()):
             slot = (source, target, look if look not in ranks else "")
             old = best.get(slot)
             if old:
                 upper, lower = (line, old) if ranks[look] > ranks[old.look] else (old, line)
-                line = replace(  # noqa: PLW2901 - the same line, with what else goes along it
-                    upper,
-                    roles=tuple(sorted({*upper.roles, *lower.roles})),
-                    carries=tuple(sorted({*upper.carries, *lower.carries})),
-                    places=tuple(sorted({*upper.places, *lower.places}, key=_place)),
-                )
+                line = upper if lower.look == CLEANED else _with(upper, lower)  # noqa: PLW2901 - the same line
             best[slot] = line
         return sorted_lines(best.values())
+
+
+def _with(line: Line, other: Line) -> Line:
+    """A line with what else goes along it."""
+    return replace(
+        line,
+        roles=tuple(sorted({*line.roles, *other.roles})),
+        carries=tuple(sorted({*line.carries, *other.carries})),
+        places=tuple(sorted({*line.places, *other.places}, key=_place)),
+    )
 
 
 def _place(place: Place) -> tuple[str, int]:
@@ -279,13 +285,7 @@ class FindingViews:
         boxes = {box.key: box for box in reached.boxes(keys)}
         lines = data_lines(reached, boxes, lengths, lengths, pairs([finding]))
         words = self._say.words
-        title = words(
-            "pic.finding.of",
-            data=_data(finding, self._say),
-            source=shortened(finding.source.name, 60),
-            leak=shortened(finding.leak.name, 60),
-            view=str(graph.view),
-        )
+        title = self._title(finding)
         notes = [words("pic.finding", id=finding.id)]
         if finding.dismissed:
             through = listed((element.name for element in finding.through), longest=60, words=words)
@@ -298,6 +298,19 @@ class FindingViews:
         told = tuple(map(plain, notes))
         ordered = sorted_boxes(boxes.values())
         return Picture(PRIVACY, plain(title), ordered, lines.made(), told, ways, core([finding]), words)
+
+    def _title(self, finding: Finding) -> str:
+        """How its data can get there; what is made on the way, its source never has."""
+        of, by = making(finding)
+        made = {"of": self._say.title(of), "makers": listed((e.name for e in by), longest=60, words=self._say.words)}
+        return self._say.words(
+            "pic.finding.made" if by else "pic.finding.of",
+            data=_data(finding, self._say),
+            source=shortened(finding.source.name, 60),
+            leak=shortened(finding.leak.name, 60),
+            view=str(self._analysis.graph.view),
+            **(made if by else {}),
+        )
 
 
 def is_cut(note: str, words: Words) -> bool:
@@ -356,7 +369,7 @@ def data_lines(
     lengths: Mapping[int, int],
     shortest: Collection[tuple[Key, Key]],
 ) -> _Lines:
-    """Return what goes along some flows.
+    """Return what goes along some flows, and between the boxes what ends where it gets, as a label says (users.md, A2).
 
     Parameters
     ----------
@@ -375,6 +388,9 @@ def data_lines(
         look = DATA if index not in lengths else SHORTEST if ends in shortest else WAY
         length = lengths.get(index, 0)
         lines.add(*ends, look, flow.role, flow.grants, carries, pseudonymised=pseudonymised, length=length)
+    for index, cleaned in reached.cleaned.items():
+        flow = reached.graph.flows[index]
+        lines.add(*_ends(reached.analysis, flow), CLEANED, flow.role, flow.grants, cleaned)
     return lines
 
 

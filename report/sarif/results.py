@@ -13,6 +13,7 @@ from rosprivacy.analysis.answer import Verdict
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.legal import turned_special
 from rosprivacy.analysis.model import MAY_REVEAL, NO_LEAK_NAMED
+from rosprivacy.report.made_of import making
 from rosprivacy.report.places import NOWHERE, of_step, to_review
 from rosprivacy.report.sarif.artifacts import uri_of
 from rosprivacy.report.sarif.flows import flows_of, logical, named, prose, text
@@ -204,7 +205,10 @@ def _fingerprints(digest: str) -> dict[str, str]:
 def _message(finding: Finding, law: Sequence[Legal], turned: Element | None, place: Place) -> str:
     """What a viewer shows; some show the first sentence only."""
     category, source, leak = text(finding.category), named(finding.source), named(finding.leak)
+    of, by = making(finding)
     said = [f"{category} can get from {source} to {leak}: a path to assess."]
+    if made := ", ".join(map(named, by)):
+        said = [f"{category}, made of {text(of)} of {source} at {made}, can get to {leak}: a path to assess."]
     if len(finding.witness) == 1:
         said = [f"{source} brings {category} in and lets it out itself: a path to assess."]
     if finding.reason:

@@ -13,6 +13,7 @@ from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import CHANNELS
 from rosprivacy.analysis.text import blanked
 from rosprivacy.report.finding_order import in_order
+from rosprivacy.report.made_of import data_made
 from rosprivacy.report.naming import key, shown_name
 from rosprivacy.report.terminal.called_alike import kind_in
 from rosprivacy.report.terminal.context_lines import context_lines, further_lines, pointer_lines
@@ -153,7 +154,8 @@ def policies_in(report: Mapping[str, Any]) -> str:
 def _title(report: Mapping[str, Any], finding: Mapping[str, Any], words: Words) -> str:
     data = _data(finding["category"], words, pseudonymised=finding["pseudonymised"])
     asked = may_be_asked(report, finding["category"], words)
-    what = words(f"tty.kind.{finding['kind']}", data=f"{data}{asked}")
+    made = data_made(finding, f"{data}{asked}", words, str, shown_name)
+    what = words(f"tty.kind.{finding['kind']}", data=made)
     return words.pair(what, f"{shown_name(finding['source'])} -> {shown_name(finding['leak'])}")
 
 

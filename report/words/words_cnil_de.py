@@ -49,6 +49,7 @@ WORDS = {
     "cnil.threat.open": "{elements}: personenbezogene Daten gelangen dorthin, nicht geprüft",
     "cnil.threat.unencrypted": "gespeicherte Daten nicht verschlüsselt: {element}",
     "cnil.threat": "{data}: kann von {source} zu {leak} gelangen",
+    "cnil.threat.made": "{data}, bei {makers} erzeugt aus Daten von {source} (Art: {of}): kann zu {leak} gelangen",
     "cnil.threat.id": "zu prüfender Weg {id}",
     "cnil.accepted": "akzeptiert: {why}",
     "cnil.until": "bis {date}",

@@ -49,6 +49,7 @@ WORDS = {
     "cnil.threat.open": "{elements} reached by personal data and not reviewed",
     "cnil.threat.unencrypted": "data at rest not encrypted: {element}",
     "cnil.threat": "{data} can get from {source} to {leak}",
+    "cnil.threat.made": "{data}, made of {of} of {source} at {makers}, can get to {leak}",
     "cnil.threat.id": "path to assess {id}",
     "cnil.accepted": "accepted: {why}",
     "cnil.until": "until {date}",

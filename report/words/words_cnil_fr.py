@@ -51,6 +51,7 @@ _TYPED = {
     "cnil.threat.open": "{elements} que des données à caractère personnel atteignent, sans examen",
     "cnil.threat.unencrypted": "données non chiffrées au repos : {element}",
     "cnil.threat": "{data} : peut aller de {source} à {leak}",
+    "cnil.threat.made": "{data} (données produites par {makers} à partir de données de {source}, type : {of}) : peut aller à {leak}",
     "cnil.threat.id": "chemin à évaluer {id}",
     "cnil.accepted": "accepté : {why}",
     "cnil.until": "jusqu'au {date}",

@@ -144,7 +144,8 @@ WORDS = {
     "n.special": "of them with data that fall under Article 9 or 10 GDPR, always or on a condition",
     "n.reveals": "of them with data that may reveal what Article 9 or 10 names, or of which that is not known",
     "n.recipients": "places that data can reach",
-    "n.open": "elements not reviewed",
+    "n.open": "elements not reviewed: data gets there, and no label or glob answers for it",
+    "n.glob": "elements that count as reviewed only by a glob, for some data at least",
     "n.accepted": "accepted by decision",
     "n.dismissed": "paths only through another recipient",
     "t.kinds": "Kinds of personal data in the system",
@@ -283,6 +284,23 @@ WORDS = {
     "look.context": "In this context: {context}",
     "look.applies": "applies from {date}",
     "f.context": "In the context of the source ({context}), the data may reveal what {provision} speaks of: {reason}.",
+    # --- words, where they first come
+    "w.heading": "Words",
+    "w.see": "How this report was made is told in section {section}.",
+    "w.declared": "declared",
+    "w.declared.means": "the view of this report: each node does what its own profile allows, and nothing else",
+    "w.enforced": "enforced",
+    "w.enforced.means": "the view of this report: each node may do what any profile of its enclave allows",
+    "w.profile": "profile",
+    "w.profile.means": "what the policy allows one node",
+    "w.enclave": "enclave",
+    "w.enclave.means": "profiles that share one key: the middleware enforces what they allow together, not each by itself",
+    "w.label": "label",
+    "w.label.means": "what a person states of an element in a label file",
+    "w.wildcard": "wildcard",
+    "w.wildcard.means": "a name in the policy with a sign such as *, which stands for all names that fit it",
+    "w.request": "request, response",
+    "w.request.means": "what is sent to those who serve a service or an action, and what they send back",
     # --- assumptions
     "a.view.declared": "View 'declared': each node does what its own profile in the policy says, and nothing else.",
     "a.view.enforced": (
@@ -459,11 +477,17 @@ WORDS = {
     "f.disclosure": "{data} can get from {source} to {leak}, which lets it out.",
     "f.storage-limitation": "{data} from {source} is kept at {leak}: without a stated end, or too long.",
     "f.third-country-transfer": "{data} from {source} can get to {leak}, outside the EEA, without a stated basis.",
+    "f.made.disclosure": "{data}, made of {of} of {source} at {makers}, can get to {leak}, which lets it out.",
+    "f.made.storage-limitation": "{data}, made of {of} of {source} at {makers}, is kept at {leak}: without a stated end, or too long.",
+    "f.made.third-country-transfer": "{data}, made of {of} of {source} at {makers}, can get to {leak}, outside the EEA, without a stated basis.",
+    "f.made": "{data}, made of {of} at {makers}",
     "f.single": "{data} is brought in and let out at {source} itself.",
     "f.pseudonymised": (
         "On these paths the data arrives pseudonymised only. That is still personal data for whoever can tell the persons "
         "(recital 26 GDPR). To be answered: can this recipient do so, alone or with what others hold? For you as controller they remain "
-        "personal data (Articles 13 and 14)."
+        "personal data (Articles 13 and 14). What a label calls pseudonymised counts here as reduced and still personal. Whether it is "
+        "pseudonymisation in the sense of Article 4(5), with the additional information kept separately, a person has to judge; "
+        "blurring a picture usually is not."
     ),
     "f.dismissed": "Every path to it goes through {names}, which has an entry of its own. Assess that one first.",
     "f.beside": "Past it, the data gets there pseudonymised only: that is an entry of its own.",
@@ -511,6 +535,7 @@ WORDS = {
     "p.look.open": "not reviewed: passes on what it gets, as far as is known",
     "p.look.shortest": "step of the shortest path",
     "p.look.way": "step of a longer path",
+    "p.look.cleaned": "ends in a bar: data gets there, and is said to be cleaned there",
     "p.look.hidden": "only pseudonymised data",
     "f.now": "from here: {data}",
     "f.data": "{data} (pseudonymised)",

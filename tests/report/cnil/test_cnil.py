@@ -258,6 +258,13 @@ def test_threats_are_paths_to_assess(care_home: Tool) -> None:
     )
 
 
+def test_a_threat_does_not_say_that_a_source_has_what_is_made_of_its_data(care_home: Tool) -> None:
+    """users.md, A8.7."""
+    assert care_home.answers[322]["list"][0].startswith(
+        "FaceTemplate, made of Video of /camera at /face_recognizer, can get to /uplink (path to assess "
+    )
+
+
 def test_what_is_not_reviewed_is_said_where_it_matters() -> None:
     tool = imported(file_of(["factory/before.policy.xml"], ["factory/run1.labels.yaml"]))
     assert re.search(r"none found under the labels given; not reviewed: \d+ elements", seen(tool, 121))

@@ -212,7 +212,7 @@ def test_what_has_no_alias_has_no_name() -> None:
 def test_the_legend_explains_every_role_in_both_languages() -> None:
     for language in ("en", "de"):
         looks = page_legend(Words(language))
-        assert len(looks) == len(ROLE_LOOKS) + 3
+        assert len(looks) == len(ROLE_LOOKS) + 4
         assert len({words for _, _, words in looks}) == len({look for look, _, _ in looks}) == len(looks)
     result = care_home()
     told = outline(result.document(), "en")

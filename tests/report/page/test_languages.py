@@ -17,6 +17,7 @@ from rosprivacy.analysis.model import REASONS
 from rosprivacy.ingest.labels.countries import countries
 from rosprivacy.report.page.article30 import record
 from rosprivacy.report.page.markdown import markdown
+from rosprivacy.report.words.typography import plain
 from rosprivacy.report.words.words import TABLES, Words
 from tests.helpers.graphs import care_home, hospital
 from tests.helpers.languages import OTHERS, english_in, users_texts
@@ -167,3 +168,17 @@ def test_the_published_schema_names_every_reason() -> None:
 def test_an_unknown_language_is_refused() -> None:
     with pytest.raises(InputError, match="unknown language 'xx'; one of en, de, fr"):
         care_home().to("html", language="xx")
+
+
+@pytest.mark.parametrize(
+    ("language", "said"),
+    [
+        ("en", "pseudonymisation in the sense of Article 4(5)"),
+        ("de", "Pseudonymisierung im Sinne von Artikel 4 Nummer 5 DSGVO"),
+        ("fr", "pseudonymisation au sens de l'article 4, point 5), du RGPD"),
+    ],
+)
+def test_a_pseudonymised_path_claims_no_pseudonymisation_of_article_4_5(language: str, said: str) -> None:
+    """law.md, 3.1: a blurred picture has no additional information that is kept separately."""
+    entries = [entry for kind in told(care_home().document(), language=language).kinds for entry in kind.entries]
+    assert {entry.leak for entry in entries if any(said in plain(note) for note in entry.notes)} == {"/recorder"}

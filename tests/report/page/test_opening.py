@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rosprivacy.report.document.ledger import by_globs
+from rosprivacy.report.words.typography import plain
 from tests.helpers.graphs import hospital
 from tests.helpers.pages import page, texts, told
 from tests.helpers.reports import care, decide, fleet, run, with_decisions, with_outside
@@ -152,3 +154,55 @@ def test_a_transfer_that_rests_on_article_6_alone_says_what_it_lacks() -> None: 
     document["processed_for"] = [based if r is stated else r for r in document["processed_for"]]
     row = next(row for row in told(document).opening.rows if row.leak == "hospital:fleet cloud")
     assert "none of chapter V" not in dict(row.facts)["Legal basis"]
+
+
+def test_what_is_made_on_the_way_is_said_to_be_made_there_and_not_to_come_from_the_source() -> None:
+    """users.md, A8.7: the camera has no face templates."""
+    report = told(care())
+    assert report.opening.rows[0].what == "face template, made of video of persons at /face_recognizer"
+    assert report.opening.rows[1].what == "voice"
+    (faces,) = [entry for kind in report.kinds for entry in kind.entries if entry.category == "FaceTemplate"]
+    assert faces.sentence == (
+        "Face template, made of video of persons of /camera at /face_recognizer, can get to /uplink, which lets it out."
+    )
+    (heading,) = page(care()).xpath("//section[@id='decide']//li[1]/h3")
+    assert heading.text_content() == "face template, made of video of persons at /face_recognizer: /camera → /uplink"
+    for language, said in {
+        "de": "bei /face_recognizer erzeugt aus Daten von /camera",
+        "fr": "produites par /face_recognizer à partir de données de /camera",
+    }.items():
+        entries = [entry for kind in told(care(), language=language).kinds for entry in kind.entries]
+        assert any(said in entry.sentence for entry in entries)
+
+
+def test_words_are_explained_before_they_first_come() -> None:
+    """users.md, B7: declared, profile, enclave, label, wildcard, request; the method stands far below."""
+    document = care()
+    for language, words in {
+        "en": ["declared", "profile", "enclave", "label", "wildcard", "request, response"],
+        "de": ["declared", "Profil", "Enklave", "Angabe (Label)", "Platzhalter", "Anfrage, Antwort"],
+        "fr": ["declared", "profil", "enclave", "annotation", "caractère générique", "requête, réponse"],
+    }.items():
+        report = told(document, language=language)
+        assert report.sections[0][0] == "decide"
+        root = page(document, language=language)
+        assert root.xpath("//section[@id='decide']//dfn/text()") == words
+        (link,) = root.xpath("//section[@id='decide']//a[@href='#method']")
+        assert str(report.number("method")) in link.text_content()
+        for text in texts(document, language=language):
+            assert all(plain(means) in text for _, means in report.glossary)
+    enforced = told({**document, "view": "enforced"})
+    assert enforced.glossary[0] == (
+        "enforced",
+        "the view of this report: each node may do what any profile of its enclave allows",
+    )
+
+
+def test_not_reviewed_is_exact_and_what_only_globs_review_is_counted_beside_it() -> None:
+    """users.md, A8.8: '0 elements not reviewed' is not that a person looked at each."""
+    numbers = {what: number for number, what in told(care()).numbers}
+    assert numbers["elements not reviewed: data gets there, and no label or glob answers for it"] == 0
+    assert numbers["elements that count as reviewed only by a glob, for some data at least"] == 3
+    globbed = {row["element"]["name"] for row in by_globs(care())}
+    assert globbed == {"/camera/*", "/camera/image", "/camera/blurred"}  # "/camera/*": sensitive
+    assert not any("only by a glob" in what for _, what in told(run(2)).numbers)  # no glob in these labels

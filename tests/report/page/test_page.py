@@ -96,7 +96,7 @@ def harmless_page(root: Any) -> None:
         "html", "head", "body", "meta", "link", "title", "style", "script", "a", "div", "header", "p", "h1", "h2", "h3",
         "h4", "nav", "ol", "ul", "li", "main", "section", "article", "footer", "span", "bdi", "dl", "dt", "dd", "table",
         "caption", "thead", "tbody", "tr", "th", "td", "form", "fieldset", "legend", "label", "input", "select",
-        "option", "button", "details", "summary", "textarea", "noscript", "figure", "img", "br", "b", "code",
+        "option", "button", "details", "summary", "textarea", "noscript", "figure", "img", "br", "b", "code", "dfn",
     }  # fmt: skip
     assert len(list(root.iter("script"))) == len(list(root.iter("style"))) == 1
     assert not [name for node in root.iter() for name in node.attrib if name.startswith("on")]

@@ -15,6 +15,8 @@ from rosprivacy.analysis.errors import DrawingError
 from rosprivacy.analysis.model import Element, Flow, FlowGraph, Grant, Place
 from rosprivacy.report.pictures import narrow, views
 from rosprivacy.report.pictures.dot import dot
+from rosprivacy.report.pictures.mermaid import mermaid
+from rosprivacy.report.pictures.overview import overview
 from rosprivacy.report.words.words import IN_ENGLISH
 from tests.helpers.graphs import care_home, factory
 from tests.helpers.paths import TESTS
@@ -120,6 +122,33 @@ def test_what_pseudonymises_stays_and_what_it_sends_is_dashed() -> None:
     after = {(line.source[2], line.target[2]): line.pseudonymised for line in picture.lines}
     assert after["/blur", "/camera/blurred"]
     assert not after["/camera/image", "/blur"]
+
+
+def test_what_gets_to_where_it_is_said_to_be_cleaned_is_drawn_and_ends_in_a_bar() -> None:
+    """users.md, A2: raw video enters the node that talks to the cloud, and one label says that it stays there."""
+    care = care_home().analysis
+    shown = [views.privacy_view(care), views.finding_view(care, care.findings[0]), overview(care, care.findings)]
+    for picture in shown:
+        (line,) = (line for line in picture.lines if line.look == "cleaned")
+        assert (line.source[2], line.target[2], line.carries) == ("/camera/image", "/uplink", ("Video",))
+        assert [place.line for place in line.places] == [98]
+        ends = f"{picture.keys[line.source]} -> {picture.keys[line.target]} "
+        (drawn,) = (row for row in dot(picture).splitlines() if ends in row)
+        assert "arrowhead=tee" in drawn
+        assert "penwidth=0.8" in drawn
+        assert "said to be cleaned there" in dot(picture)
+        assert f"{picture.keys[line.source]} --x {picture.keys[line.target]}" in mermaid(picture)
+    assert "cleaned" not in lines_of(views.privacy_view(factory(2).analysis)).values()
+
+
+def test_the_picture_of_a_finding_says_where_its_data_is_made() -> None:
+    """users.md, A8.7: the camera has no face templates."""
+    care = care_home().analysis
+    titles = [views.finding_view(care, finding).title for finding in care.findings]
+    assert titles[0] == (
+        "How FaceTemplate, made of Video of /camera at /face_recognizer, can get to /uplink (declared)"
+    )
+    assert "How Voice can get from /microphone to /uplink (declared)" in titles
 
 
 def test_findings_of_other_kinds_have_ways_and_words_of_their_own() -> None:

@@ -112,6 +112,12 @@ def test_where_data_become_special_is_said(care_home: dict[str, Any]) -> None:
     assert "/face_recognizer makes such data of other data." in care_home["results"][0]["message"]["text"]
 
 
+def test_what_is_made_on_the_way_does_not_come_from_the_source(care_home: dict[str, Any]) -> None:
+    said = [result["message"]["text"].partition(":")[0] for result in care_home["results"]]
+    assert said[0] == "FaceTemplate, made of Video of /camera at /face_recognizer, can get to /uplink"
+    assert "Voice can get from /microphone to /uplink" in said
+
+
 def test_the_labels_at_both_ends_are_related(care_home: dict[str, Any]) -> None:
     for result in care_home["results"]:
         assert [r["message"]["text"].split(" is labelled ")[1] for r in result["relatedLocations"]] == [

@@ -51,7 +51,7 @@ def test_the_first_line_is_the_verdict(care_home: dict[str, Any]) -> None:
 
 def test_a_witness_is_drawn_hop_by_hop_with_element_role_and_line(care_home: dict[str, Any]) -> None:
     lines = report(care_home)
-    start = lines.index("1. FaceTemplate: /camera -> /uplink   [59dc667b0ca44e0f]")
+    start = lines.index("1. FaceTemplate, made of Video at /face_recognizer: /camera -> /uplink   [59dc667b0ca44e0f]")
     assert lines[start + 1 : start + 8] == [
         "   /camera  (node, source of Video)",
         "     | publishes  care-home.policy.xml:10",
