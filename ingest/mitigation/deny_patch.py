@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Grant, Policy
 
 GROUPS = {kind: group for group, (kind, _) in ROLES.items()}
+TEMPORARY = "rosprivacy-patch-"  # beginning of the folder in which a changed policy is read
 Key = tuple[bool, str, str, str, str, str, bool]
 
 
@@ -118,7 +119,7 @@ def _key(grant: Grant) -> Key:
 
 def _grants(policy: Policy, texts: Mapping[str, bytes]) -> Counter[Key] | None:
     """What a changed policy grants, read like any other; None if it can no longer be read."""
-    with tempfile.TemporaryDirectory(prefix="rosprivacy-patch-") as folder:
+    with tempfile.TemporaryDirectory(prefix=TEMPORARY) as folder:
         paths = {name: os.path.abspath(name) for name in texts}  # noqa: PTH100 - by its text, as includes are resolved
         root = os.path.commonpath([os.path.dirname(path) for path in paths.values()])  # noqa: PTH120
         for name, path in paths.items():

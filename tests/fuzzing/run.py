@@ -103,7 +103,9 @@ class Run:
         if found := COVERED.findall(text):
             counts.coverage, counts.corpus = map(int, found[-1])
         if process.returncode:
-            (self.folder / "faults" / f"{target}-process.log").write_text(text[-20_000:], "utf-8")
+            faults = self.folder / "faults"
+            faults.mkdir(exist_ok=True)
+            (faults / f"{target}-process.log").write_text(text[-20_000:], "utf-8")
             counts.fault(f"{target}-process", f"the process ended with {process.returncode}")
         self.targets.setdefault(target, Counts()).add(counts)
         self.save()

@@ -9,10 +9,12 @@ import os
 import resource
 import signal
 import sys
+import tempfile
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
+from rosprivacy.ingest.mitigation.deny_patch import TEMPORARY
 from rosprivacy.report.pictures.graphviz import WORKER
 from tests.fuzz_corpus import Guard
 from tests.helpers.paths import ROOT
@@ -47,7 +49,10 @@ class Watch:
 
     def __init__(self, folder: Path, outside: Path, cache: Path) -> None:
         allowed = (folder, cache, *OUR_OWN, *(path for path in map(Path, sys.path) if path.name == "site-packages"))
-        self._allowed = tuple(os.path.realpath(path) for path in allowed)
+        self._allowed = (
+            *(os.path.realpath(path) for path in allowed),
+            os.path.realpath(tempfile.gettempdir()) + os.sep + TEMPORARY,  # a patch is tried there, on a copy
+        )
         self._folder = os.path.realpath(folder) + os.sep
         self.guard = Guard(outside)
         self.broken: list[str] = []
