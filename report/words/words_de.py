@@ -214,7 +214,7 @@ WORDS = {
     "sign.unmatched.means": "Diese Antworten betreffen Wege oder Felder, die dieser Bericht nicht hat. Sie werden mit den anderen wieder gespeichert; wer sie leert, verwirft sie.",
     # --- the summary for works councils
     "wc.title": "Zusammenfassung für den Betriebsrat",
-    "wc.intro": "Die Programme der Roboter dürfen einander nur schicken, was ihre Policies erlauben. Diese Seite sagt, wohin Daten von Personen nach diesen Policies und den Angaben zu den Programmen gelangen können. Sie sagt nicht, dass Daten dorthin gehen, oder wie oft. Welche Personen Beschäftigte sind, müssen Menschen sagen; auch Personen, zu denen nichts angegeben ist, können Beschäftigte sein.",
+    "wc.intro": "Policies sagen, was die Programme der Roboter einander schicken dürfen; ob sie durchgesetzt werden, ist diesem Programm nicht bekannt. Diese Seite sagt, wohin Daten von Personen nach diesen Policies und den Angaben zu den Programmen gelangen können. Sie sagt nicht, dass Daten dorthin gehen, oder wie oft. Welche Personen Beschäftigte sind, müssen Menschen sagen; auch Personen, zu denen nichts angegeben ist, können Beschäftigte sein.",
     "wc.where": "Wessen Daten wohin gelangen können, und wie lange sie aufbewahrt werden",
     "wc.groups": "Alle Kategorien betroffener Personen, die Angaben nennen",
     "wc.to": "Können gelangen an",

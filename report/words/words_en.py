@@ -245,7 +245,7 @@ WORDS = {
     "sign.unmatched.means": "These answers are about paths or fields that this report does not have. They are saved again with the others; empty them to drop them.",
     # --- the summary for works councils
     "wc.title": "Summary for the works council",
-    "wc.intro": "The robots' programs may send each other only what their policies allow. This page tells where data of persons can get to under these policies and what people said of the programs. It does not say that data go there, or how often. Which of the groups are employees is for people to say; persons of whom nothing is stated can be employees too.",
+    "wc.intro": "Policies say what the robots' programs may send each other; whether they are enforced is not known to this program. This page tells where data of persons can get to under these policies and what people said of the programs. It does not say that data go there, or how often. Which of the groups are employees is for people to say; persons of whom nothing is stated can be employees too.",
     "wc.where": "Whose data can get where, and how long they are kept",
     "wc.groups": "All groups of persons that labels name",
     "wc.to": "Can get to",

@@ -219,7 +219,7 @@ _TYPED = {
     "sign.unmatched.means": "Ces réponses concernent des chemins ou des champs que ce rapport n'a pas. Elles sont enregistrées de nouveau avec les autres ; videz-les pour les supprimer.",
     # --- the summary for works councils
     "wc.title": "Résumé pour le comité social et économique",
-    "wc.intro": "Les programmes des robots ne peuvent s'envoyer que ce que leurs politiques permettent. Cette page dit où des données de personnes peuvent arriver selon ces politiques et les annotations des programmes. Elle ne dit pas que des données y vont, ni à quelle fréquence. Quelles personnes sont des salariés, c'est à des personnes de le dire ; celles dont rien n'est indiqué peuvent aussi en être.",
+    "wc.intro": "Des politiques disent ce que les programmes des robots peuvent s'envoyer ; ce programme ne sait pas si elles sont appliquées. Cette page dit où des données de personnes peuvent arriver selon ces politiques et les annotations des programmes. Elle ne dit pas que des données y vont, ni à quelle fréquence. Quelles personnes sont des salariés, c'est à des personnes de le dire ; celles dont rien n'est indiqué peuvent aussi en être.",
     "wc.where": "Les données de qui peuvent aller où, et combien de temps elles sont conservées",
     "wc.groups": "Toutes les catégories de personnes que les annotations nomment",
     "wc.to": "Peuvent atteindre",
