@@ -210,7 +210,8 @@ def _provisions(findings: Iterable[Mapping[str, Any]], index: Index) -> Iterator
     for finding in findings:
         yield index.words(f"b.law.{finding['kind']}")
         for legal in finding["law"]:
-            yield index.provision(finding["category"], legal["provision"])
+            cited = index.provision(finding["category"], legal["provision"])
+            yield cited.partition(" (")[0]  # without its title, which stands where the law is told
 
 
 def _bases(findings: Sequence[Mapping[str, Any]], index: Index) -> list[str]:
