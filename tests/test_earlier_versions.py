@@ -76,7 +76,7 @@ def test_the_files_are_of_that_version(file: Path, key: str) -> None:
 # A home map is no kind of location any more, and the example states who operates a bucket, a screen and a review.
 THE_LAW_IN_A_FLEET = {
     "asked otherwise: law_as_of: 2026-04-30 before, 2026-11-21 now",
-    "elements: 6 changed",
+    "elements: 7 changed",
     "  ~ node cleaner:/navigator",
     "      carries: + Location",
     "      labels: - conduit of HomeMap",

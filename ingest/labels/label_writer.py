@@ -7,7 +7,7 @@ comment that was there is still there, and nothing but the lines has come.
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from ruamel.yaml.comments import CommentedMap
@@ -82,9 +82,18 @@ def _by_hand(file: str, problem: str) -> LabelError:
 
 def _facts(entries: Iterable[Entry]) -> list[Any]:
     """Entries wherever they stand."""
-    return [
-        replace(e, place=_NOWHERE, statements=tuple(replace(s, place=_NOWHERE) for s in e.statements)) for e in entries
-    ]
+    return [_nowhere(entry) for entry in entries]
+
+
+def _nowhere(fact: Any) -> Any:
+    """A fact with all that is in it, without the lines of the file."""
+    if isinstance(fact, Place):
+        return _NOWHERE
+    if isinstance(fact, tuple):
+        return tuple(map(_nowhere, fact))
+    if is_dataclass(fact) and not isinstance(fact, type):
+        return replace(fact, **{part.name: _nowhere(getattr(fact, part.name)) for part in fields(fact)})
+    return fact
 
 
 def _names(entries: Iterable[Entry], lines: Iterable[NewLine]) -> list[Any]:

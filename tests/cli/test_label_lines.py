@@ -175,7 +175,22 @@ def test_without_a_file_to_write_into_it_is_refused(cli: Cli, factory: tuple[str
     assert cli("labels", "--init", factory[0], "-l", factory[1]).returncode == 2
 
 
-@pytest.mark.parametrize("text", [OURS, OURS.replace("\n", "\r\n"), "labels: 1\nnodes: {/a: conduit}\n", "labels: 1\n"])
+STATED = """labels: 1
+context: [care]
+purpose: {Video: safety}
+nodes:
+  /a: {source: [Video], purpose: help, legal_basis: [6(1)(f)], note: why, author: B}
+elements:
+  disk:
+    kind: storage
+    legal_basis: {Video: [6(1)(a)]}
+flows: [{from: /a, to: disk}]
+"""
+
+
+@pytest.mark.parametrize(
+    "text", [OURS, OURS.replace("\n", "\r\n"), STATED, "labels: 1\nnodes: {/a: conduit}\n", "labels: 1\n"]
+)
 def test_nothing_is_lost_and_nothing_but_the_lines_comes(text: str) -> None:
     lines = [NewLine("nodes", "/new", "why: # so"), NewLine("topics", "=/*"), NewLine("actions", "/go", "", "mundane")]
     new = with_lines("l.yaml", text, lines, load())
