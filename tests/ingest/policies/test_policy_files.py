@@ -120,6 +120,7 @@ def no_right_to(path: Path, below: Path) -> Iterator[None]:
             place.chmod(mode)
 
 
+@pytest.mark.xdist_group("nobody")  # folders that all workers share are opened for a while
 @pytest.mark.parametrize("forbidden", ["down/p.xml", "down"])
 def test_a_policy_that_may_not_be_read_is_refused(tmp_path: Path, forbidden: str) -> None:
     file = policy(tmp_path / "down" / "p.xml")
@@ -129,6 +130,7 @@ def test_a_policy_that_may_not_be_read_is_refused(tmp_path: Path, forbidden: str
     assert line.startswith(f"{file}: ")
 
 
+@pytest.mark.xdist_group("nobody")  # folders that all workers share are opened for a while
 @pytest.mark.parametrize("forbidden", ["down/node.xml", "down"])
 def test_an_include_that_may_not_be_read_is_refused(tmp_path: Path, forbidden: str) -> None:
     write(tmp_path / "down" / "node.xml", FRAGMENT)
