@@ -8,7 +8,6 @@ Prints medians and ratios; ends with 1 if the bound is missed.
 
 from __future__ import annotations
 
-import json
 import os
 import sys
 from pathlib import Path
@@ -16,7 +15,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from measure import compared, corpus, print_header, print_line, side_by_side
-from turtlebot import POLICY, STEP_5, label_file, six_lists
+from turtlebot import POLICY, labels_of
 
 from rosprivacy.analysis.findings.findings import analyse
 from rosprivacy.analysis.findings.ledger import ledger
@@ -48,13 +47,11 @@ def measured(what: str, policy: str, labels: str) -> Line:
 def main() -> int:
     """Print the table; return the exit code."""
     policies = corpus()
-    base = json.loads(policies.joinpath(STEP_5).read_text("utf-8"))
     print_header()
     missed = 0
     with TemporaryDirectory() as folder:
         for count in (1, len(KINDS)):
-            file = Path(folder) / f"{count}.yaml"
-            file.write_text(label_file({name: six_lists(base, i) for i, name in enumerate(KINDS[:count])}), "utf-8")
+            file = labels_of(KINDS[:count], Path(folder))
             what = f"TurtleBot3, {count} kinds of data"
             missed += not print_line(measured(what, str(policies / POLICY), str(file))).met
     os.chdir(EXAMPLES / "care-home")

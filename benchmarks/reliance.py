@@ -8,7 +8,6 @@ examples. Prints medians and ratios; ends with 1 if the bound is missed.
 
 from __future__ import annotations
 
-import json
 import os
 import sys
 from pathlib import Path
@@ -17,7 +16,7 @@ from typing import TYPE_CHECKING
 
 from ledger import EXAMPLES, KINDS
 from measure import compared, corpus, print_header, print_line, side_by_side
-from turtlebot import POLICY, STEP_5, chosen_categories, label_file, six_lists
+from turtlebot import POLICY, chosen_categories, labels_of
 
 from rosprivacy.analysis.findings.findings import analyse
 from rosprivacy.analysis.findings.reliance import reliances
@@ -46,13 +45,11 @@ def measured(what: str, policy: str, labels: str, bound: float | None = BOUND) -
 def main() -> int:
     """Print the table; return the exit code."""
     policies = corpus()
-    base = json.loads(policies.joinpath(STEP_5).read_text("utf-8"))
     print_header()
     missed = 0
     with TemporaryDirectory() as folder:
         for names in (KINDS[:1], KINDS, chosen_categories(24)[0]):
-            file = Path(folder) / f"{len(names)}.yaml"
-            file.write_text(label_file({name: six_lists(base, i) for i, name in enumerate(names)}), "utf-8")
+            file = labels_of(names, Path(folder))
             what = f"TurtleBot3, {len(names)} kinds of data"
             missed += not print_line(measured(what, str(policies / POLICY), str(file))).met
     os.chdir(EXAMPLES / "care-home")

@@ -11,7 +11,7 @@ import json
 import sys
 from typing import TYPE_CHECKING
 
-from measure import REPOSITORY, compared, run, run_each, side_by_side
+from measure import REPOSITORY, compared, corpus, run, run_each, side_by_side
 from more_categories import extra_names
 
 from rosprivacy.ontology.vocabulary import load
@@ -88,6 +88,14 @@ def six_lists(base: SixLists, number: int) -> SixLists:
         lists["mundane"].remove(channel)
         lists["sensitive"].append(channel)
     return lists
+
+
+def labels_of(names: list[str], folder: Path) -> Path:
+    """Write a label file that says of each of some kinds of data what the paper's own file says, a little varied."""
+    base = json.loads(corpus().joinpath(STEP_5).read_text("utf-8"))
+    file = folder / f"{len(names)}.yaml"
+    file.write_text(label_file({name: six_lists(base, number) for number, name in enumerate(names)}), "utf-8")
+    return file
 
 
 def label_file(lists: dict[str, SixLists]) -> str:

@@ -25,7 +25,7 @@ SHOWN = 20  # steps; the others are told by their number
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
+class Proposed:
     """One change: what to do, at which policy lines, and what else to know of it."""
 
     text: str
@@ -51,7 +51,7 @@ class Closing:
     """
 
     said: tuple[str, ...]
-    changes: tuple[Change, ...] = ()
+    changes: tuple[Proposed, ...] = ()
     more: str = ""
     instead: tuple[str, ...] = ()
     stays: tuple[Entry, ...] = ()
@@ -100,15 +100,14 @@ def _said(last: Mapping[str, Any], steps: list[Any], index: Index) -> Iterator[s
     yield words("z.proven", verdict=words(f"code.{last['verdict_then']}"))
     less = list(dict.fromkeys(name(row["element"]) for row in last["affected"]))
     if less:
-        more = [words("more", n=len(less) - NAMED)] if len(less) > NAMED else []
-        yield words("z.less", names=words.row([*less[:NAMED], *more]))
+        yield words("z.less", names=words.row(words.first(less, NAMED)))
 
 
-def _change(step: Mapping[str, Any], index: Index) -> Change:
+def _change(step: Mapping[str, Any], index: Index) -> Proposed:
     places = [line(grant) for grant in step["policy"]]
     unique = tuple(dict.fromkeys(places))
     text = _TEXTS[step["kind"]](step, index)
-    return Change(text, unique[:LINES], len(unique[LINES:]), tuple(_notes(step, index)))
+    return Proposed(text, unique[:LINES], len(unique[LINES:]), tuple(_notes(step, index)))
 
 
 def _filter(step: Mapping[str, Any], index: Index) -> str:

@@ -38,8 +38,7 @@ def criteria(index: Index) -> tuple[Criterion, ...]:
 
 
 def _row(texts: list[str], index: Index) -> str:
-    more = [index.words("more", n=len(texts) - NAMED)] if len(texts) > NAMED else []
-    return index.words.row([*texts[:NAMED], *more])
+    return index.words.row(index.words.first(texts, NAMED))
 
 
 def _makes(index: Index) -> str:

@@ -11,6 +11,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.text import fit
+from rosprivacy.report.looked_at import looked_at
 from rosprivacy.report.naming import key, text
 from rosprivacy.report.page.entries_of_robots import names_of
 
@@ -32,6 +33,11 @@ class Index:
     def categories(self) -> dict[str, Mapping[str, Any]]:
         """By name."""
         return {category["name"]: category for category in self.document["categories"]}
+
+    @cached_property
+    def looked_at(self) -> list[Mapping[str, Any]]:
+        """The provisions to look at that a reader of this language sees."""
+        return looked_at(self.document, self.words.language)
 
     @cached_property
     def roles(self) -> dict[tuple[Key, str], list[str]]:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.text import fit
-from rosprivacy.report.looked_at import looked_at, of_every_system
+from rosprivacy.report.looked_at import of_every_system
 from rosprivacy.report.naming import text
 
 if TYPE_CHECKING:
@@ -30,13 +30,12 @@ class LookAt:
 
 def of_kind(category: str, index: Index) -> tuple[LookAt, ...]:
     """Return the provisions that a kind of data points at."""
-    rows = looked_at(index.document, index.words.language)
-    return tuple(_told((row for row in rows if category in row["categories"]), index))
+    return tuple(_told((row for row in index.looked_at if category in row["categories"]), index))
 
 
 def further(index: Index) -> tuple[tuple[str, tuple[LookAt, ...]], ...]:
     """Return what contexts and every system point at: (who calls for it, provisions)."""
-    rows, words = looked_at(index.document, index.words.language), index.words
+    rows, words = index.looked_at, index.words
     found = [(words("look.system"), tuple(_told(of_every_system(rows), index)))]
     for context in index.document.get("contexts", ()):
         called = (row for row in rows if context["name"] in row["contexts"])

@@ -148,8 +148,7 @@ def _first_to_review(index: Index) -> Iterator[str]:
 
 
 def _some(names: Sequence[str], index: Index) -> str:
-    more = [index.words("more", n=len(names) - NAMED)] if len(names) > NAMED else []
-    return index.words.row([*names[:NAMED], *more])
+    return index.words.row(index.words.first(names, NAMED))
 
 
 def _row(group: Sequence[Entry], index: Index) -> ToDecide:

@@ -38,7 +38,7 @@ from rosprivacy.report.page.review import Group, review, unknown_ends
 from rosprivacy.report.words.words import Words
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
 
     from rosprivacy.report.compare.earlier import Earlier
 
@@ -47,6 +47,7 @@ SECTIONS = (
     DECIDE, "closing", "hangs", "changes", "fleet", "findings", "questions", "tables", "rights", "outside",
     "sanitizers", "risks", "criteria", "sign", "kinds", "assumptions", "inventory", "method",
 )  # fmt: skip
+NAMED = 3  # robots or policies in the title
 PARAGRAPHS = 10  # of the method note
 EXPLAINED = ("profile", "enclave", "label", "wildcard", "request")  # before they first come, beside the view
 
@@ -136,7 +137,7 @@ class Outline:
     questions: tuple[Group, ...]
     ends: tuple[Group, ...]
     criteria: tuple[Criterion, ...]
-    rights: tuple[rights.Group, ...]
+    rights: tuple[rights.Persons, ...]
     assessment: Assessment
     size: str
     denied: str
@@ -246,9 +247,12 @@ def _title(index: Index) -> str:
     robots = [] if index.alike else index.robots()
     said = index.document["assumptions"]["fleet" if index.alike else "policies"]
     names = robots or list(dict.fromkeys(entry["file"].rsplit("/", 1)[-1] for entry in said))
-    few = 3
-    more = [index.words("more", n=len(names) - few)] if len(names) > few else []
-    return index.words.row([*map(fit, names[:few]), *more])
+    return title_of(names, index.words)
+
+
+def title_of(names: Sequence[str], words: Words) -> str:
+    """Return what a report is called by the names of its robots or policies; empty without any."""
+    return words.row(words.first([fit(name) for name in names], NAMED))
 
 
 def _law(assumptions: Mapping[str, Any], words: Words) -> str:

@@ -98,5 +98,4 @@ def _questions(row: Mapping[str, Any], index: Index) -> Iterator[str]:
 
 def _some(texts: Sequence[str], index: Index) -> tuple[str, ...]:
     distinct = tuple(dict.fromkeys(texts))  # the legs of a service have one name
-    more = [index.words("more", n=len(distinct) - FEW)] if len(distinct) > FEW else []
-    return (*distinct[:FEW], *more)
+    return index.words.first(distinct, FEW)

@@ -33,14 +33,14 @@ class Place:
 
 
 @dataclass(frozen=True, slots=True)
-class Group:
+class Persons:
     """A group of persons, and the places; none where no path of their data was found to one."""
 
     name: str
     places: tuple[Place, ...]
 
 
-def rights(index: Index) -> tuple[Group, ...]:
+def rights(index: Index) -> tuple[Persons, ...]:
     """Return the groups that labels name, then the persons that they do not name.
 
     Complexity: O(groups x (storages + findings) x kinds of data).
@@ -50,10 +50,10 @@ def rights(index: Index) -> tuple[Group, ...]:
     for source in sources:
         for name in index.subjects.get(source, ()):
             groups.setdefault(name, set()).add(source)
-    told = [Group(fit(name), tuple(_places(members, index))) for name, members in sorted(groups.items())]
+    told = [Persons(fit(name), tuple(_places(members, index))) for name, members in sorted(groups.items())]
     silent = {source for source in sources if source not in index.subjects}
     if silent:
-        told.append(Group(index.words("subject.unknown"), tuple(_places(silent, index))))
+        told.append(Persons(index.words("subject.unknown"), tuple(_places(silent, index))))
     return tuple(told)
 
 

@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Category, Legal
     from rosprivacy.ontology.vocabulary import Vocabulary
 
-LANGUAGES = ("en", "de", "fr")
 WORDS = {
     "en": {
         "definition": "Definition", "names": "Also", "broader": "Broader", "narrower": "Narrower",

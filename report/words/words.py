@@ -27,7 +27,7 @@ from rosprivacy.report.words.words_en import WORDS as ENGLISH
 from rosprivacy.report.words.words_fr import WORDS as FRENCH
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Mapping, Sequence
 
 DATE = 3  # parts of one
 _ARTICLE = re.compile(r"(?P<article>\d+)(?:\((?P<paragraph>\d+)\))?(?:\((?P<point>[a-z])\))?")
@@ -110,6 +110,14 @@ class Words:
     def row(self, texts: Iterable[str]) -> str:
         """Return texts in a row."""
         return ", ".join(texts)
+
+    def first(self, texts: Sequence[str], most: int) -> tuple[str, ...]:
+        """Return the first of some texts, and how many more there are.
+
+        >>> Words("en").first(["/a", "/b", "/c"], 2), Words("en").first(["/a", "/b"], 2)
+        (('/a', '/b', 'and 1 more'), ('/a', '/b'))
+        """
+        return (*texts[:most], *([self("more", n=len(texts) - most)] if len(texts) > most else ()))
 
     def known(self, key: str, otherwise: str) -> str:
         """Return the word for a value of the contract, or the value itself if there is none yet."""

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 
 from rosprivacy.analysis.errors import InputError, shown
 from rosprivacy.clock import source_date, today
+from rosprivacy.report.words import LANGUAGES
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -25,14 +26,10 @@ if TYPE_CHECKING:
 
     Aliases = Mapping[Key, tuple[str, str]]
 
-LANGUAGES = ("en", "de", "fr")
-
 # What is text; the table below has one row for each, and 'docx'.
 TextFormat = Literal[
     "text", "json", "sarif", "cnil-pia", "turtle", "json-ld", "html", "markdown", "article30", "works-council",
 ]  # fmt: skip
-
-NAMED = 3  # policies in the title of a report
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,7 +161,7 @@ def _article30(answer: Answer, style: Style) -> str:
 def _markdown(answer: Answer, style: Style) -> str:
     from rosprivacy.report.page.markdown import markdown
 
-    return markdown(_outline(answer, style)[0])
+    return markdown(_outline(answer, style, answer.proposals())[0])
 
 
 def _docx(answer: Answer, style: Style) -> bytes:
@@ -172,7 +169,7 @@ def _docx(answer: Answer, style: Style) -> bytes:
     from rosprivacy.report.docx.document import word_document
     from rosprivacy.report.page.markdown import markdown
 
-    told = _outline(answer, style)[0]
+    told = _outline(answer, style, answer.proposals())[0]
     return word_document(markdown(told), told.title, style.language, today(os.environ))
 
 
@@ -180,22 +177,22 @@ def _html(answer: Answer, style: Style) -> str:
     from rosprivacy.report.page.figures import figures
     from rosprivacy.report.page.html import html
 
-    told, aliases = _outline(answer, style)
+    told, aliases = _outline(answer, style, answer.proposals())
     return html(told, figures(answer.analysis, told, aliases))
 
 
 def _works_council(answer: Answer, style: Style) -> str:
     from rosprivacy.report.page.works_council import works_council
 
-    return works_council(_outline(answer, style)[0])
+    return works_council(_outline(answer, style, "graph")[0])  # it tells no changes: none are looked for
 
 
-def _outline(answer: Answer, style: Style) -> tuple[Outline, Aliases | None]:
+def _outline(answer: Answer, style: Style, proposals: Mapping[str, Any] | str) -> tuple[Outline, Aliases | None]:
     from rosprivacy.report.page.assessment_file import read_answers
     from rosprivacy.report.page.outline import outline
 
     answers = read_answers(style.assessment) if style.assessment else None
-    told, earlier, proposals, aliases = _told(answer, style, answer.proposals())
+    told, earlier, proposals, aliases = _told(answer, style, proposals)
     report = outline(
         told,
         style.language,
@@ -211,12 +208,10 @@ def _outline(answer: Answer, style: Style) -> tuple[Outline, Aliases | None]:
 
 def _title(answer: Answer, style: Style) -> str:
     """The policies that were named, without what they include; empty where that is not known."""
-    from rosprivacy.analysis.text import fit
+    from rosprivacy.report.page.outline import title_of
     from rosprivacy.report.words.words import Words
 
-    words, names = Words(style.language), list(dict.fromkeys(Path(file).name for file in answer.named))
-    more = [words("more", n=len(names) - NAMED)] if len(names) > NAMED else []
-    return words.row([*map(fit, names[:NAMED]), *more])
+    return title_of(list(dict.fromkeys(Path(file).name for file in answer.named)), Words(style.language))
 
 
 def _told(

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from rosprivacy.report.words import LANGUAGES as WRITTEN
 from rosprivacy.report.words.words import TABLES
 from tests.helpers.pages import LANGUAGES, texts, told
 from tests.helpers.paths import ROOT
@@ -31,6 +32,7 @@ def test_every_language_has_the_same_words_with_the_same_places() -> None:
 
     tables = [{key: places(text) for key, text in table.items() if shared(key)} for table in TABLES.values()]
     assert all(table == tables[0] for table in tables)
+    assert tuple(TABLES) == tuple(LANGUAGES) == WRITTEN
 
 
 def test_every_word_is_used_and_every_use_has_a_word() -> None:
