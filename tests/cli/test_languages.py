@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typer.main import get_command
 
-from rosprivacy.cli.app import app
+from rosprivacy.cli.app import program
 
 STILL_ENGLISH = {
     "db": "a server",
@@ -22,7 +22,7 @@ STILL_ENGLISH = {
 
 
 def test_every_command_that_prints_an_answer_takes_a_language_or_is_listed() -> None:
-    commands = get_command(app).commands  # type: ignore[attr-defined]
+    commands = get_command(program()).commands  # type: ignore[attr-defined]
     speak = {name for name, command in commands.items() if any(one.name == "lang" for one in command.params)}
     assert speak == {"analyze", "categories", "graph", "law", "report", "show"}
     assert commands.keys() - speak == STILL_ENGLISH.keys()
