@@ -66,11 +66,12 @@ def test_turtlebot3_is_the_golden_one(corpus: Path, width: int) -> None:
     assert printed(turtlebot3(corpus), width) == (GOLDEN / f"turtlebot3-{width}.txt").read_text("utf-8")
 
 
-@pytest.mark.parametrize("options", [{}, {"verbose": True}, {"quiet": True}], ids=["plain", "verbose", "quiet"])
+@pytest.mark.parametrize("options", ["", "verbose", "quiet"])
 @pytest.mark.parametrize("name", SYSTEMS)
-def test_a_file_gets_what_a_console_that_is_no_terminal_prints(name: str, options: dict[str, bool]) -> None:
+def test_a_file_gets_what_a_console_that_is_no_terminal_prints(name: str, options: str) -> None:
     report = document(name)
-    assert report_text(report, **options) == printed(report, None, **options)
+    how: dict[str, Any] = {options: True} if options else {}
+    assert report_text(report, **how) == printed(report, None, **how)
 
 
 @pytest.mark.parametrize("name", SYSTEMS)
