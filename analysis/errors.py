@@ -91,6 +91,10 @@ class LimitsError(InputError):
     """A limits file that cannot be read, or that names what is not there."""
 
 
+class TypesError(InputError):
+    """A file of message types, or of what they cannot carry, that cannot be read."""
+
+
 class DecisionError(InputError):
     """A decisions file that cannot be read, or that contradicts itself."""
 

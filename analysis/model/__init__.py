@@ -46,6 +46,7 @@ from rosprivacy.analysis.model.element import (
     Element,
 )
 from rosprivacy.analysis.model.flow import Flow, FlowGraph
+from rosprivacy.analysis.model.message_type import OF_KIND, MessageType, kind_of_type
 from rosprivacy.analysis.model.policy import Grant, Policy, Profile
 from rosprivacy.analysis.model.reason import REASONS, Reason
 from rosprivacy.analysis.model.statement import (
@@ -97,6 +98,7 @@ __all__ = [
     "NO_BASIS",
     "NO_LEAK_NAMED",
     "NO_SOURCE",
+    "OF_KIND",
     "PATHS_NOT_COUNTED",
     "REASONS",
     "REFUSED_NAME",
@@ -118,6 +120,7 @@ __all__ = [
     "FlowGraph",
     "Grant",
     "Legal",
+    "MessageType",
     "Method",
     "NonRosFacts",
     "Place",
@@ -132,5 +135,6 @@ __all__ = [
     "Surroundings",
     "UnknownEnd",
     "is_article_9",
+    "kind_of_type",
     "unread",
 ]

@@ -42,7 +42,8 @@ WINGS: dict[str, dict[str, set[str]]] = {
     "ingest": {
         "": set(),
         "reading": set(),
-        "policies": {"reading"},
+        "types": {"reading"},
+        "policies": {"reading", "types"},
         "decisions": {"reading"},
         "labels": READING,
         "mitigation": READING,
