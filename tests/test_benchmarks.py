@@ -38,7 +38,7 @@ def rows(*, quick):
 
 
 def run(*arguments: str, modules: Path | None = None) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, FOLDER / "all.py", *arguments]
+    command = [sys.executable, str(FOLDER / "all.py"), *arguments]
     env = os.environ | ({"PYTHONPATH": str(modules)} if modules else {})
     return subprocess.run(command, env=env, capture_output=True, text=True, check=False)
 
