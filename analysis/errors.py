@@ -9,6 +9,7 @@ command line turns errors into exit codes::
         PolicyError
         LabelError
         LimitsError
+        TypesError
         DecisionError
         FleetError
         OntologyError
