@@ -13,6 +13,7 @@ command line turns errors into exit codes::
         FleetError
         OntologyError
         GraphError
+        BagError
       QueryError
       DrawingError
       DatabaseError
@@ -105,6 +106,10 @@ class OntologyError(InputError):
 
 class GraphError(InputError):
     """A saved graph that cannot be read."""
+
+
+class BagError(InputError):
+    """A bag (a recording of ROS messages) that cannot be read."""
 
 
 class InputErrors(RosPrivacyError):  # noqa: N818 - it is several

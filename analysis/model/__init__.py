@@ -48,6 +48,7 @@ from rosprivacy.analysis.model.element import (
 from rosprivacy.analysis.model.flow import Flow, FlowGraph
 from rosprivacy.analysis.model.policy import Grant, Policy, Profile
 from rosprivacy.analysis.model.reason import REASONS, Reason
+from rosprivacy.analysis.model.recording import Bag, BagTopic, BagVerdict, JudgedBag, TopicKinds
 from rosprivacy.analysis.model.statement import (
     CHANGED,
     CLEANS,
@@ -109,6 +110,9 @@ __all__ = [
     "THIRD_COUNTRY",
     "UNREAD_FILE",
     "UNSTATED",
+    "Bag",
+    "BagTopic",
+    "BagVerdict",
     "Bound",
     "ByCategory",
     "Category",
@@ -117,6 +121,7 @@ __all__ = [
     "Flow",
     "FlowGraph",
     "Grant",
+    "JudgedBag",
     "Legal",
     "Method",
     "NonRosFacts",
@@ -130,6 +135,7 @@ __all__ = [
     "Situation",
     "Statement",
     "Surroundings",
+    "TopicKinds",
     "UnknownEnd",
     "is_article_9",
     "unread",
