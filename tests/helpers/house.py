@@ -47,6 +47,7 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "bags": {"reading"},
         "labels": READING,
         "mitigation": READING,
+        "observe": READING,
         "fleet": READING | {"labels"},
         "database": READING | {"labels", "fleet"},
     },
