@@ -14,6 +14,7 @@ command line turns errors into exit codes::
         FleetError
         OntologyError
         GraphError
+        BagError
         ObservationError
       QueryError
       DrawingError
@@ -112,6 +113,10 @@ class OntologyError(InputError):
 
 class GraphError(InputError):
     """A saved graph that cannot be read."""
+
+
+class BagError(InputError):
+    """A bag (a recording of ROS messages) that cannot be read."""
 
 
 class ObservationError(InputError):

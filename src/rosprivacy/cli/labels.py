@@ -17,7 +17,7 @@ from rosprivacy.cli.output import emit
 
 @reads_system(
     "the policies of one robot",
-    without=("fleet", "from_database", "neo4j", "categories", "category", "decisions"),
+    without=("fleet", "from_database", "neo4j", "categories", "category", "decisions", "types"),
 )
 def labels(
     inputs: Inputs,
