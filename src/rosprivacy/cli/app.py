@@ -17,10 +17,11 @@ import typer
 from rosprivacy.analysis.errors import RosPrivacyError
 from rosprivacy.analysis.files_read import one_run
 from rosprivacy.cli.exit_code import OWN_ERROR
-from rosprivacy.cli.help import ANALYSE, DECIDE, LABEL, MANY, SEE, Group
+from rosprivacy.cli.help import ANALYSE, DECIDE, LABEL, MANY, OBSERVE, SEE, Group
 from rosprivacy.version import __version__
 
 COMMANDS = {  # name -> its group in help; each stands in the module of its name
+    "observe": OBSERVE,
     "labels": LABEL,
     "categories": LABEL,
     "law": LABEL,
@@ -28,6 +29,7 @@ COMMANDS = {  # name -> its group in help; each stands in the module of its name
     "show": ANALYSE,
     "why-not": ANALYSE,
     "diff": ANALYSE,
+    "bag": ANALYSE,
     "report": SEE,
     "graph": SEE,
     "decide": DECIDE,
