@@ -7,6 +7,7 @@ from typer.main import get_command
 from rosprivacy.cli.app import program
 
 STILL_ENGLISH = {
+    "bag": "what is in recordings",
     "db": "a server",
     "decide": "what was recorded",
     "diff": "what changed; 'report --since' tells it in a language",
@@ -14,6 +15,7 @@ STILL_ENGLISH = {
     "labels": "review lists and label files",
     "load": "counts",
     "mitigate": "proposals; the report tells them in a language",
+    "observe": "what was written",
     "query": "rows of a database, with the heads of the queries",
     "unload": "counts",
     "why-not": "the answer",
