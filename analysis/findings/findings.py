@@ -94,8 +94,8 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
     Notes
     -----
     The fixpoint says which leaks are reached; only where one is, searches say from which source and along which path:
-    one or two per source, O(flows) each for a fixed number of categories, and networkx's ``edge_disjoint_paths`` on
-    the part of the graph between the two.
+    one or two per source, O(flows) each for a fixed number of categories, and augmenting paths on the part of the graph
+    between the two.
 
     Examples
     --------

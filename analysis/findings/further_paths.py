@@ -1,7 +1,7 @@
 """Further paths of a finding: how many share no flow, and which there are (the paper, section II-B).
 
-In: a search from a source. Out: counts and paths, by networkx, on the small part of the graph that lies between the
-source and the leak. A path is one over (element, category): where nothing is derived on the path, one over elements.
+In: a search from a source. Out: counts, by augmenting paths on numbered states; and paths, by networkx; both on the small
+part of the graph that lies between the source and the leak. A path is one over (element, category): where nothing is derived on the path, one over elements.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from rosprivacy.analysis.kernel.states import States
 from rosprivacy.analysis.modes import Paths
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
     from collections.abc import Set as AbstractSet
     from typing import Any
 
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.kernel.states import Net
     from rosprivacy.analysis.model import Element, FlowGraph
 
-State = tuple[int, int]  # vertex, number of the category with which data arrives there
-SOURCE, LEAK = -1, -2  # in place of the category's number: the source and the leak are one state each
+Edge = tuple[int, int]  # before, after: states, which are vertex * width + form
+LEAK, SOURCE, FIRST = 0, 1, 2  # forms: the leak and the source are one state each; then the categories by their number
 SEARCHED = 10  # times the bound: so many paths of data are looked at, of which many may be one to the reader
 
 
@@ -74,36 +74,57 @@ class Between:
         self.bits = net.spread.bits
         self.states = States(net, relevant, stop)
         self.emits = self.states.emitted(source)
-        self.back: dict[State, set[State]] = defaultdict(set)
+        self.width = FIRST + len(net.spread.categories)
+        self.begin = self.state(source, SOURCE)
+        self.back: dict[int, set[int]] = defaultdict(set)
         self.size = 0
-        for before, after in self._edges(reach):
+        self._known: dict[int, list[tuple[int, int]]] = {}
+        for _, target, bits in (*self.states.after(source, self.emits), *self.states.single(source)):
+            self._link(self.begin, target, bits)
+        for vertex, seen in reach.seen.items():
+            self._follow(vertex, seen)
+
+    def state(self, vertex: int, form: int) -> int:
+        """Return the number of a state."""
+        return vertex * self.width + form
+
+    def _forms(self, bits: int) -> list[tuple[int, int]]:
+        """Form and bits of each category among some, its two planes put together."""
+        forms = self._known.get(bits)
+        if forms is None:
+            numbers = bits_of(self.bits.merged(bits & self.states.allowed))
+            forms = self._known[bits] = [(number + FIRST, self.bits.both(number)) for number in numbers]
+        return forms
+
+    def _follow(self, vertex: int, seen: int) -> None:
+        """Link what arrives at a vertex to what follows."""
+        single = self.states.net.spread.flow_emits if vertex == self.source else {}
+        for form, both in self._forms(seen):
+            if not self._begun(vertex, form):
+                state = self.state(vertex, form)
+                for index, target, bits in self.states.after(vertex, self.states.leaving(vertex, seen & both)):
+                    # what a source emits along a flow does not go there a second time
+                    self._link(state, target, bits & ~single.get(index, 0) if single else bits)
+
+    def _link(self, before: int, target: int, bits: int) -> None:
+        """Link a state to those that data with some bits is in at a vertex."""
+        for form, _ in self._forms(bits):
+            after = self.begin if self._begun(target, form) else target * self.width + form
             self.size += 1
             self.back[after].add(before)
 
-    def _edges(self, reach: Search) -> Iterator[tuple[State, State]]:
-        states, single = self.states, self.states.net.spread.flow_emits
-        for _, target, bits in (*states.after(self.source, self.emits), *states.single(self.source)):
-            yield from (((self.source, SOURCE), state) for state in self._at(target, bits))
-        for vertex, seen in reach.seen.items():
-            for here in self._at(vertex, seen):
-                arriving = seen & self.bits.both(here[1]) if here[1] != SOURCE else 0
-                for index, target, bits in states.after(vertex, states.leaving(vertex, arriving)):
-                    # what a source emits along a flow does not go there a second time
-                    moved = bits & ~single.get(index, 0) if vertex == self.source else bits
-                    yield from ((here, state) for state in self._at(target, moved))
+    def _begun(self, vertex: int, form: int) -> bool:
+        """Whether data in this form is what the vertex, as the source, emits anyway."""
+        return vertex == self.source and bool(self.emits >> self.bits.plain(form - FIRST) & 1)
 
-    def _at(self, vertex: int, bits: int) -> Iterator[State]:
-        """The states that data with some bits is in at a vertex, its two planes put together."""
-        for number in bits_of(self.bits.merged(bits & self.states.allowed)):
-            begun = vertex == self.source and self.emits >> self.bits.plain(number) & 1
-            yield (vertex, SOURCE if begun else number)
-
-    def to(self, leak: int, memory: dict[Any, Any]) -> tuple[list[list[int]], list[tuple[State, State]]]:
+    def to(self, leak: int, memory: dict[Any, Any]) -> tuple[list[list[int]], list[Edge]]:
         """Return the paths to a leak that share no flow, as vertices, and the edges that they lie among."""
-        edges = self._leading_to(leak)
+        edges = sorted(self._leading_to(leak))
         key = self._key(leak, edges)
         if key not in memory:
-            memory[key] = _disjoint(edges, (self.source, SOURCE), (leak, LEAK))
+            memory[key] = [
+                [state // self.width for state in path] for path in _disjoint(edges, self.begin, self.state(leak, LEAK))
+            ]
         return memory[key], edges
 
     def number_to(self, leak: int, memory: dict[Any, Any], work: Tally) -> int:
@@ -114,69 +135,84 @@ class Between:
         memory
             Answers for equal graphs: kinds of data often take the same paths.
         """
-        edges = self._leading_to(leak)
-        work.count += len(edges)
+        if len(self._last(self._ends(leak))) == 1:
+            return 1
+        leading = self._leading_to(leak)
+        work.count += len(leading)
+        if sum(before == self.begin for before, _ in leading) == 1:
+            return 1
+        edges = sorted(leading)
         key = "number", self._key(leak, edges)
         if key not in memory:
-            memory[key] = number_disjoint(edges, (self.source, SOURCE), (leak, LEAK), work)
+            memory[key] = number_disjoint(edges, self.begin, self.state(leak, LEAK), work)
         return int(memory[key])
 
-    def _key(self, leak: int, edges: Sequence[tuple[State, State]]) -> tuple[int, int, bool, bytes]:
+    def _key(self, leak: int, edges: Sequence[Edge]) -> tuple[int, int, bool, bytes]:
         """What the answer hangs on; a hash of the edges, which are many."""
         # one kind of data is like another where nothing is made into it
-        differs = any(a[1] not in (SOURCE, self.category) for a, _ in edges)
-        numbers = array("q", (n for edge in edges for state in edge for n in (state if differs else state[:1])))
+        width, own = self.width, {SOURCE, self.category + FIRST}
+        differs = any(before % width not in own for before, _ in edges)
+        numbers = [state for edge in edges for state in edge]
+        hashed = array("q", numbers if differs else [state // width for state in numbers])
         # on a ring two sources have equal graphs
-        return self.source, leak, differs, hashlib.sha256(numbers.tobytes()).digest()
+        return self.source, leak, differs, hashlib.sha256(hashed.tobytes()).digest()
 
-    def _leading_to(self, leak: int) -> list[tuple[State, State]]:
-        """The edges from which a leak can be reached, sorted."""
-        pairs = self.derives.get(leak, ())
+    def _ends(self, leak: int) -> set[int]:
+        """The states in which data of the category is at a leak, or what the leak makes it of."""
         category = self.bits.category
-        ends = {(leak, category(before)) for before, after in pairs if category(after) == self.category}
-        ends.add((leak, self.category))
-        edges: set[tuple[State, State]] = set()
-        reached, waiting = set(ends), list(ends)
+        made_of = (category(b) for b, after in self.derives.get(leak, ()) if category(after) == self.category)
+        return {self.state(leak, number + FIRST) for number in (*made_of, self.category)}
+
+    def _last(self, ends: set[int]) -> set[int]:
+        """The states from which one step leads to the leak."""
+        return {before for end in ends for before in self.back.get(end, ())} - ends
+
+    def _leading_to(self, leak: int) -> set[Edge]:
+        """The edges from which a leak can be reached."""
+        ends, end = self._ends(leak), self.state(leak, LEAK)
+        last = self._last(ends)
+        edges = {(before, end) for before in last}
+        reached, waiting = ends | last, [state for state in last if state != self.begin]
         while waiting:
             after = waiting.pop()
             for before in self.back.get(after, ()):
                 if before in ends:
                     continue
-                edges.add((before, (leak, LEAK) if after in ends else after))
+                edges.add((before, after))
                 if before not in reached:
                     reached.add(before)
-                    if before[1] != SOURCE:
+                    if before != self.begin:
                         waiting.append(before)
-        return sorted(edges)
+        return edges
 
 
-def _disjoint(edges: list[tuple[State, State]], source: State, leak: State) -> list[list[int]]:
-    """The paths that share no flow, as vertices, shortest first."""
+def _disjoint(edges: list[Edge], source: int, leak: int) -> list[list[int]]:
+    """The paths that share no flow, as states, shortest first."""
     first, last = [b for a, b in edges if a == source], [a for a, b in edges if b == leak]
     if len(first) == 1 or len(last) == 1:  # a flow that all paths share: the shortest is one of them
         return [_shortest(edges, source, leak)]
     import networkx as nx  # noqa: PLC0415 - heavy, and only needed where there may be several
 
     paths = nx.edge_disjoint_paths(nx.DiGraph(edges), source, leak)
-    return sorted(([state[0] for state in path] for path in paths), key=lambda path: (len(path), path))
+    return sorted(paths, key=lambda path: (len(path), path))
 
 
-def number_disjoint(edges: Sequence[tuple[State, State]], source: State, leak: State, work: Tally) -> int:
+def number_disjoint(edges: Sequence[Edge], source: int, leak: int, work: Tally) -> int:
     """Return how many paths share no flow; as long as ``_disjoint``'s list, and found in a fraction of the time.
 
     Each path found may take back a step of an earlier one, until there is none left, or one for each way out or in
     (Ford and Fulkerson; a search in breadth for each path). O(paths x edges).
 
     >>> from rosprivacy.analysis.bounds import BOUNDS, Tally
-    >>> camera, left, right, cloud = ((vertex, 0) for vertex in range(4))
+    >>> camera, left, right, cloud = range(4)
     >>> edges = [(camera, left), (camera, right), (left, cloud), (right, cloud), (left, right)]
     >>> number_disjoint(edges, camera, cloud, Tally(BOUNDS, "path_steps"))
     2
     """
-    ahead: dict[State, list[State]] = defaultdict(list)
+    ahead: dict[int, list[int]] = defaultdict(list)
     for before, after in edges:
         ahead[before].append(after)
-    taken: dict[State, set[State]] = defaultdict(set)  # step of a path, from its end
+    taken: dict[int, set[int]] = defaultdict(set)  # step of a path, from its end
     most = min(len(ahead[source]), sum(after == leak for _, after in edges))
     for number in range(most):
         came = _one_more(ahead, taken, source, leak, work)
@@ -194,11 +230,11 @@ def number_disjoint(edges: Sequence[tuple[State, State]], source: State, leak: S
 
 
 def _one_more(
-    ahead: Mapping[State, Sequence[State]], taken: Mapping[State, AbstractSet[State]], source: State, leak: State,
+    ahead: Mapping[int, Sequence[int]], taken: Mapping[int, AbstractSet[int]], source: int, leak: int,
     work: Tally,
-) -> dict[State, State]:  # fmt: skip
+) -> dict[int, int]:  # fmt: skip
     """Where a search came from at each state: along steps that no path takes, and back along those that one does."""
-    came: dict[State, State] = {}
+    came: dict[int, int] = {}
     waiting = deque([source])
     while waiting and leak not in came:
         here = waiting.popleft()
@@ -212,11 +248,11 @@ def _one_more(
     return came
 
 
-def _shortest(edges: list[tuple[State, State]], source: State, leak: State) -> list[int]:
-    ahead: dict[State, list[State]] = defaultdict(list)
+def _shortest(edges: list[Edge], source: int, leak: int) -> list[int]:
+    ahead: dict[int, list[int]] = defaultdict(list)
     for before, after in edges:
         ahead[before].append(after)
-    came: dict[State, State] = {}
+    came: dict[int, int] = {}
     waiting = deque([source])
     while leak not in came:
         here = waiting.popleft()
@@ -227,7 +263,7 @@ def _shortest(edges: list[tuple[State, State]], source: State, leak: State) -> l
     path = [leak]
     while path[-1] != source:
         path.append(came[path[-1]])
-    return [state[0] for state in reversed(path)]
+    return path[::-1]
 
 
 def further(between: Between, leak: int, memory: dict[Any, Any], asked: str, most: int, work: Tally) -> FurtherPaths:
@@ -266,8 +302,8 @@ def further(between: Between, leak: int, memory: dict[Any, Any], asked: str, mos
     if mode is Paths.all:
         import networkx as nx  # noqa: PLC0415 - as above
 
-        paths = nx.shortest_simple_paths(nx.DiGraph(edges), (between.source, SOURCE), (leak, LEAK))
-        chosen = ([state[0] for state in path] for path in paths)
+        paths = nx.shortest_simple_paths(nx.DiGraph(edges), between.begin, between.state(leak, LEAK))
+        chosen = ([state // between.width for state in path] for path in paths)
     shown: dict[tuple[Element, ...], None] = {}
     for number, path in enumerate(chosen):  # two paths of data that differs may be one path to the reader
         shown[_elements(between.graph, path)] = None
