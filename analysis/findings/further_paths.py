@@ -1,7 +1,8 @@
 """Further paths of a finding: how many share no flow, and which there are (the paper, section II-B).
 
-In: a search from a source. Out: counts, by augmenting paths on numbered states; and paths, by networkx; both on the small
-part of the graph that lies between the source and the leak. A path is one over (element, category): where nothing is derived on the path, one over elements.
+In: a search from a source. Out: counts, by augmenting paths on numbered states, and paths, by networkx; both on the
+small part of the graph that lies between the source and the leak. A path is one over (element, category): where nothing
+is derived on the path, one over elements.
 """
 
 from __future__ import annotations

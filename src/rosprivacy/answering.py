@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.contexts import Contexts
 from rosprivacy.analysis.findings.findings import Options, analyse
 from rosprivacy.analysis.findings.processed import lacks, processed
-from rosprivacy.analysis.fleet.patterns import FleetView
 from rosprivacy.analysis.model import unread
 from rosprivacy.assumptions import assumptions_of
 from rosprivacy.decided import accepts, joined_to, law_of
@@ -25,6 +24,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.fleet.counts import Counts
+    from rosprivacy.analysis.fleet.patterns import FleetView
     from rosprivacy.analysis.fleet.patterns_of_pairs import Groups
     from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.question import Question
@@ -53,7 +53,7 @@ def answer(system: System, question: Question) -> Result:
         bounds=question.settings.bounds,
     )
     analysis = analyse(system.graph, system.bound, system.vocabulary.hierarchy, options)
-    view = groups.view(analysis) if groups else FleetView.of(analysis, system.likeness) if system.is_fleet else None
+    view = _view(system, analysis, groups) if system.is_fleet else None
     return concluded(system, question, analysis, view, options)
 
 
@@ -61,6 +61,12 @@ def _groups(system: System) -> Groups:
     from rosprivacy.analysis.fleet.patterns_of_pairs import Groups  # noqa: PLC0415 - numpy, for fleets only
 
     return Groups(system.likeness)
+
+
+def _view(system: System, analysis: Analysis, groups: Groups | None) -> FleetView:
+    from rosprivacy.analysis.fleet.patterns import FleetView  # noqa: PLC0415 - for fleets only
+
+    return groups.view(analysis) if groups else FleetView.of(analysis, system.likeness)
 
 
 def concluded(
