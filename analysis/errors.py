@@ -13,10 +13,12 @@ command line turns errors into exit codes::
         FleetError
         OntologyError
         GraphError
+        ObservationError
       QueryError
       DrawingError
       DatabaseError
       ClusterError
+      MiddlewareError
 """
 
 from __future__ import annotations
@@ -107,6 +109,10 @@ class GraphError(InputError):
     """A saved graph that cannot be read."""
 
 
+class ObservationError(InputError):
+    """What was seen of a running system cannot be read, or cannot be looked at with what is installed."""
+
+
 class InputErrors(RosPrivacyError):  # noqa: N818 - it is several
     """All problems of the input at once, in the order of file and line."""
 
@@ -132,5 +138,11 @@ class DatabaseError(RosPrivacyError):
 
 class ClusterError(RosPrivacyError):
     """A cluster that cannot be reached, or on which something fails."""
+
+    exit_code = 3
+
+
+class MiddlewareError(RosPrivacyError):
+    """A running ROS system that cannot be reached, or that does not answer."""
 
     exit_code = 3

@@ -70,6 +70,7 @@ OF_ITS_OWN = {  # modules that touch files in another way, and why none of these
     "ingest/policies/saved_graph.py": "what is shipped; bounded_file.py reads",
     "src/rosprivacy/cli/own_error.py": "the report of an error, a new file",
     "ontology/cache.py": "the cache of categories",
+    "src/rosprivacy/watching.py": "a policy in a folder of its own, gone at once",
     "report/pictures/graphviz_worker.py": "a process that draws, with pipes only",
     "src/rosprivacy/cli/diff.py": "looks how a file begins; what then reads it notes it",
     "src/rosprivacy/cli/output.py": "the null device, when standard output is gone",

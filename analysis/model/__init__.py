@@ -19,10 +19,13 @@ from rosprivacy.analysis.model.category import (
     is_article_9,
 )
 from rosprivacy.analysis.model.diagnostic import (
+    ASSUMED,
     CAREFUL_DENY,
     DEAD_DENY,
     EMPTY_GROUP,
+    ENCLAVES_MADE_UP,
     FALLBACK_TAKEN,
+    FOLDED_NAMES,
     GOES_NOWHERE,
     LEGAL_BASIS,
     MERGED,
@@ -30,8 +33,11 @@ from rosprivacy.analysis.model.diagnostic import (
     NO_SOURCE,
     NOT_READ,
     NOTHING_FOLLOWED,
+    OBSERVATION_GAP,
+    OBSERVED,
     PATHS_NOT_COUNTED,
     REFUSED_NAME,
+    SEEN_ALTHOUGH_DENIED,
     SHARED_ENCLAVE,
     UNREAD_FILE,
     Diagnostic,
@@ -46,7 +52,7 @@ from rosprivacy.analysis.model.element import (
     Element,
 )
 from rosprivacy.analysis.model.flow import Flow, FlowGraph
-from rosprivacy.analysis.model.policy import Grant, Policy, Profile
+from rosprivacy.analysis.model.policy import Grant, Policy, Profile, Seen
 from rosprivacy.analysis.model.reason import REASONS, Reason
 from rosprivacy.analysis.model.statement import (
     CHANGED,
@@ -74,6 +80,7 @@ __all__ = [
     "ARTICLE_9",
     "ARTICLE_9_VERDICTS",
     "ARTICLE_10",
+    "ASSUMED",
     "CAREFUL_DENY",
     "CHANGED",
     "CHANNELS",
@@ -82,7 +89,9 @@ __all__ = [
     "DEAD_DENY",
     "DISCLOSURE",
     "EMPTY_GROUP",
+    "ENCLAVES_MADE_UP",
     "FALLBACK_TAKEN",
+    "FOLDED_NAMES",
     "GLOB",
     "GOES_NOWHERE",
     "KINDS",
@@ -97,9 +106,12 @@ __all__ = [
     "NO_BASIS",
     "NO_LEAK_NAMED",
     "NO_SOURCE",
+    "OBSERVATION_GAP",
+    "OBSERVED",
     "PATHS_NOT_COUNTED",
     "REASONS",
     "REFUSED_NAME",
+    "SEEN_ALTHOUGH_DENIED",
     "SEGMENT",
     "SHARED_ENCLAVE",
     "SPECIAL",
@@ -126,6 +138,7 @@ __all__ = [
     "Processing",
     "Profile",
     "Reason",
+    "Seen",
     "Severity",
     "Situation",
     "Statement",

@@ -102,10 +102,16 @@ def answer_each(
     results = []
     for policy in read:
         alone = (policy,), (*left, *joint_warnings((policy,)))
-        graph, _ = extended(build((policy,), settings.view, settings.bounds), files)
-        system = _joined(graph, join(graph, files, settings.bounds)[0], alone, files, settings, vocabulary)
-        results.append((policy.file, answer(system, question)))
+        results.append((policy.file, answer(lenient_system(alone, files, question)[0], question)))
     return tuple(results)
+
+
+def lenient_system(read: Read, files: list[Labels], question: Question) -> tuple[System, list[InputError]]:
+    """Put policies under labels as far as their names go; return also what matches nothing."""
+    settings = question.settings
+    graph, missing = extended(build(read[0], settings.view, settings.bounds), files)
+    bound, more = join(graph, files, settings.bounds)
+    return _joined(graph, bound, read, files, settings, question.vocabulary), [*missing, *more]
 
 
 def robot_of(name: str, result: Result) -> RobotRows:

@@ -46,6 +46,7 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "decisions": {"reading"},
         "labels": READING,
         "mitigation": READING,
+        "observe": READING,
         "fleet": READING | {"labels"},
         "database": READING | {"labels", "fleet"},
     },

@@ -26,6 +26,7 @@ from rosprivacy.cli import (
     law,
     load,
     mitigate,
+    observe,
     query,
     report,
     show,
@@ -33,7 +34,7 @@ from rosprivacy.cli import (
     why_not,
 )
 from rosprivacy.cli.exit_code import OWN_ERROR
-from rosprivacy.cli.help import ANALYSE, DECIDE, LABEL, MANY, SEE, Group
+from rosprivacy.cli.help import ANALYSE, DECIDE, LABEL, MANY, OBSERVE, SEE, Group
 from rosprivacy.version import __version__
 
 app = typer.Typer(
@@ -44,6 +45,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
+app.command(rich_help_panel=OBSERVE)(observe.observe)
 app.command(rich_help_panel=LABEL)(labels.labels)
 app.command(rich_help_panel=LABEL)(categories.categories)
 app.command(rich_help_panel=LABEL)(law.law)
