@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import os
 import time
-from dataclasses import dataclass, field, replace
-from datetime import UTC, datetime, timedelta
+from dataclasses import dataclass, replace
+from datetime import datetime, timedelta
 from typing import TYPE_CHECKING
 from xml.sax.saxutils import quoteattr
 
@@ -18,13 +18,12 @@ from rosprivacy.ingest.observe.dds_graph import (
     DdsGraph,
     observation,
 )
-from rosprivacy.ingest.observe.observation import STILL_CHANGING, Observation, moment
+from rosprivacy.ingest.observe.observation import Observation, moment
+from rosprivacy.ingest.policies.observed_metadata import STILL_CHANGING
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-SECONDS = 10.0
-"""How long to look, if nobody says: Fast DDS needs 3 to 4 seconds until nodes are told (measured)."""
 SETTLED = 3.0
 """What came within so many seconds of the end makes the look one that still changed."""
 PATIENCE = 5
@@ -44,20 +43,20 @@ class DdsDoor:
 
     Attributes
     ----------
+    clock
+        Tells the time, as observations hold it.
     domain
         The ROS domain id.
     peers
         Hosts to ask by unicast, beside multicast.
     interface
         Of the network; empty: as Cyclone chooses. ``lo`` looks at this computer only.
-    clock
-        What time it is.
     """
 
+    clock: Callable[[], str]
     domain: int
     peers: tuple[str, ...] = ()
     interface: str = ""
-    clock: Callable[[], datetime] = field(default=lambda: datetime.now(UTC))
 
     def looks(self, seconds: float | None) -> Iterator[Observation]:
         """Tell what is there, each time that it has changed and been quiet for a moment.
@@ -77,15 +76,15 @@ class DdsDoor:
             since, end = self.clock(), None if seconds is None else time.monotonic() + seconds
             changed, told, graph = time.monotonic(), len(WAITS), DdsGraph()
             while end is None or time.monotonic() < end:
-                if readers.take(graph, moment(self.clock())):
+                if readers.take(graph, self.clock()):
                     changed, told = time.monotonic(), 0
                 elif told < len(WAITS) and time.monotonic() - changed > WAITS[told]:
                     told += 1
                     now = self.clock()
-                    patience = moment(now - timedelta(seconds=PATIENCE))
-                    yield observation(graph, moment(since), moment(now), self.domain, patience)
+                    patience = moment(datetime.fromisoformat(now) - timedelta(seconds=PATIENCE))
+                    yield observation(graph, since, now, self.domain, patience)
                 time.sleep(POLL)
-            last = observation(graph, moment(since), moment(self.clock()), self.domain)
+            last = observation(graph, since, self.clock(), self.domain)
             late = time.monotonic() - changed < SETTLED
             yield replace(last, gaps={**last.gaps, STILL_CHANGING: 1}) if late and graph.participants else last
 

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.ingest.observe.dds_names import NODES_TOPIC, ros_channel, ros_type
-from rosprivacy.ingest.observe.observation import HIDDEN, REFUSED, Observation, ObservedEndpoint, ObservedNode, Span
+from rosprivacy.ingest.observe.observation import Observation, ObservedEndpoint, ObservedNode, Span
+from rosprivacy.ingest.policies.observed_metadata import HIDDEN, REFUSED
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

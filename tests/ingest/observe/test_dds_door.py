@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from rosprivacy.ingest.observe.dds_door import DdsDoor
-from rosprivacy.ingest.observe.observation import HIDDEN, NO_NODE, REFUSED, STILL_CHANGING
+from rosprivacy.ingest.policies.observed_metadata import HIDDEN, NO_NODE, REFUSED, STILL_CHANGING
+from rosprivacy.observing import now
 from tests.helpers.fastdds import Peer, built, running
 
 if TYPE_CHECKING:
@@ -54,7 +55,7 @@ def domain() -> int:
 
 def looked(domain: int, seconds: float = 7) -> Observation:
     """What is seen at the end of a look."""
-    *_, last = DdsDoor(domain, interface="lo").looks(seconds)
+    *_, last = DdsDoor(now, domain, interface="lo").looks(seconds)
     return last
 
 
@@ -103,7 +104,7 @@ def test_what_peers_declare_is_what_is_seen(peer: Peer, domain: int, gid_bytes: 
 def test_peers_see_one_more_participant_and_no_ros_node(peer: Peer, domain: int) -> None:
     robot(peer, domain)
     told = []
-    for seen in DdsDoor(domain, interface="lo").looks(6):
+    for seen in DdsDoor(now, domain, interface="lo").looks(6):
         told.append(peer.does("seen"))
         assert seen.doors == ("dds",)
     assert "1 0" in told  # participants beside itself, writers of ros_discovery_info beside its own
@@ -163,7 +164,7 @@ def test_two_thousand_topics_are_all_seen(peer: Peer, domain: int) -> None:
 def test_who_comes_and_who_leaves_is_told(peer: Peer, other: Peer, domain: int) -> None:
     """In at most twice the time that the middleware itself needs: 3 to 4 seconds with Fast DDS."""
     robot(peer, domain)
-    looks = DdsDoor(domain, interface="lo").looks(60)
+    looks = DdsDoor(now, domain, interface="lo").looks(60)
     _until(looks, lambda seen: {node.name for node in seen.nodes} == {"/camera", "/ui/viewer"})
     other.does("participant", domain, "", 16)
     other.node("/", "uplink", ("reader", "rt/camera/image_raw", IMAGE))

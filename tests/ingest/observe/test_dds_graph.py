@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rosprivacy.ingest.observe.dds_graph import DdsEndpoint, DdsGraph, DdsNode, DdsParticipant, observation
-from rosprivacy.ingest.observe.observation import HIDDEN, NO_NODE, REFUSED
+from rosprivacy.ingest.policies.observed_metadata import HIDDEN, NO_NODE, REFUSED
 
 IMAGE = "sensor_msgs::msg::dds_::Image_"
 START, LATER, NOW = (f"2026-11-22T10:00:0{second}Z" for second in (0, 5, 9))
