@@ -29,11 +29,20 @@ class PlaceEntry(TypedDict):
     line: int
 
 
+class SeenEntry(TypedDict):
+    """When a grant of an observed policy was seen in use, and through which doors (rule S16)."""
+
+    by: list[str]
+    first: str
+    last: str
+
+
 class GrantEntry(PlaceEntry):
     """A line of a policy."""
 
     enclave: str
     profile: str
+    seen: NotRequired[SeenEntry]
 
 
 class Reached(TypedDict):
