@@ -37,11 +37,16 @@ class SeenEntry(TypedDict):
     last: str
 
 
-class GrantEntry(PlaceEntry):
+class LineEntry(PlaceEntry):
     """A line of a policy."""
 
     enclave: str
     profile: str
+
+
+class GrantEntry(LineEntry):
+    """A line that allows or denies something; where it was seen in use, when."""
+
     seen: NotRequired[SeenEntry]
 
 

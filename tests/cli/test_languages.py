@@ -14,6 +14,7 @@ STILL_ENGLISH = {
     "labels": "review lists and label files",
     "load": "counts",
     "mitigate": "proposals; the report tells them in a language",
+    "observe": "counts, and what was seen",
     "query": "rows of a database, with the heads of the queries",
     "unload": "counts",
     "why-not": "the answer",
