@@ -57,6 +57,7 @@ OPENERS = {"open", "fdopen", "read_bytes", "read_text"}
 WRITERS = {"write_bytes", "write_text", "mkstemp", "NamedTemporaryFile", "TemporaryFile", "rename", "truncate"}
 OF_ITS_OWN = {  # modules that touch files in another way, and why none of these is a user's
     "ingest/reading/bounded_file.py": "notes what it reads",
+    "ingest/bags/bounded_stream.py": "notes what it reads",
     "ontology/vocabulary.py": "notes what it reads; and what is shipped",
     "report/compare/earlier.py": "notes what it reads",
     "report/atomic.py": "the one writer",

@@ -37,6 +37,7 @@ if TYPE_CHECKING:
         PolicyError,
         QueryError,
         RosPrivacyError,
+        TypesError,
     )
     from rosprivacy.analysis.model import Element
     from rosprivacy.analysis.modes import View
@@ -67,6 +68,7 @@ __all__ = [
     "QueryError",
     "Result",
     "RosPrivacyError",
+    "TypesError",
     "Verdict",
     "View",
     "__version__",

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from rosprivacy.ingest.policies.policy_xml import read_policy
+from rosprivacy.ingest.types.types_file import read_types
 from tests.helpers.command import Cli, refused, run
 from tests.helpers.observed import AT, node_info
 
@@ -252,3 +253,19 @@ def test_sarif_has_a_result_where_only_a_gap_is_left(cli: Cli, robot: Path) -> N
     text = cli("analyze", "robot.policy.xml", "-l", "labels.yaml", cwd=robot).stdout
     assert text.startswith("undetermined: no leak reached, but the observation is known to miss something")
     assert "Next: observe again until no gap is left" in text
+
+
+def test_the_types_come_back_from_the_file_beside_the_policy(cli: Cli, robot: Path) -> None:
+    """The writer is ours, the reader that of ``--types``: who writes and reads which type, and when."""
+    (robot / "graph.txt").write_text(GRAPH + node_info("/old", publishers="/image: sensor_msgs/msg/CompressedImage"))
+    observe(cli, robot)
+    types = read_types(str(robot / "robot.types.yaml"))
+    assert (types.observed.start, types.observed.end, types.observed.by) == (AT, AT, ("text",))
+    seen = {(one.kind, one.name, kind.type, kind.ends) for one in types.channels for kind in one.types}
+    assert seen == {
+        ("topic", "/image", "sensor_msgs/msg/CompressedImage", (("/old",), ())),
+        ("topic", "/image", "sensor_msgs/msg/Image", (("/cam",), ("/up",))),
+        ("service", "/cam/get_parameters", "r/srv/G", (("/cam",), ())),
+    }
+    done = cli("analyze", "robot.policy.xml", "--types", "robot.types.yaml", "-l", "labels.yaml", cwd=robot)
+    assert done.returncode == 1, done.stderr

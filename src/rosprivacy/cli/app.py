@@ -16,6 +16,7 @@ from rosprivacy.analysis.errors import RosPrivacyError
 from rosprivacy.analysis.files_read import one_run
 from rosprivacy.cli import (
     analyze,
+    bag,
     categories,
     db,
     decide,
@@ -53,6 +54,7 @@ app.command(rich_help_panel=ANALYSE)(analyze.analyze)
 app.command(rich_help_panel=ANALYSE)(show.show)
 app.command("why-not", rich_help_panel=ANALYSE)(why_not.why_not)
 app.command(rich_help_panel=ANALYSE)(diff.diff)
+app.command(rich_help_panel=ANALYSE)(bag.bag)
 app.command(rich_help_panel=SEE)(report.report)
 app.command(rich_help_panel=SEE)(graph.graph)
 app.command(rich_help_panel=DECIDE)(decide.decide)

@@ -27,7 +27,7 @@ SHORTEST = "10s"  # what most middlewares need until all is found
     "labels for --watch",
     without=(
         "policies", "fleet", "from_database", "neo4j", "add", "include_root", "max_bytes", "decisions", "view",
-        "categories",
+        "categories", "types",
     ),
 )  # fmt: skip
 def observe(
