@@ -1,14 +1,12 @@
 """Analysis -> a report for the terminal: verdict, findings hop by hop, what to review next, what was assumed.
 
-In: a JSON document of the contract, so that no reader is told anything that another is not. Out: lines on a rich
-console; colours are the console's business. Names come from anybody's files, so they are made printable.
+In: a JSON document of the contract, so that no reader is told anything that another is not. Out: text; or lines on a
+rich console, whose business colours are. Names come from anybody's files, so they are made printable.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
-
-from rich.text import Text
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import ASSUMED, MERGED
@@ -63,8 +61,17 @@ def print_report(
     width
         Of the terminal; None for a file or a pipe, where lines are not broken.
     """
+    from rich.text import Text  # noqa: PLC0415 - only for a terminal
+
     for text, style in wrapped(_lines(report, words, verbose=verbose, quiet=quiet), width):
         console.print(Text(text, style), soft_wrap=True)
+
+
+def report_text(
+    report: Mapping[str, Any], words: Words = IN_ENGLISH, *, verbose: bool = False, quiet: bool = False
+) -> str:
+    """Return a document as text for a file or a pipe: ``print_report`` without colours and without broken lines."""
+    return "".join(f"{text}\n" for text, _ in _lines(report, words, verbose=verbose, quiet=quiet))
 
 
 def verdict_line(report: Mapping[str, Any], words: Words = IN_ENGLISH) -> Line:
