@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.errors import MiddlewareError, ObservationError, shown
 from rosprivacy.ingest.observe.zenoh_tokens import DOOR, observation, tokens_of
 from rosprivacy.ingest.policies.observed_metadata import STILL_CHANGING
+from rosprivacy.ingest.reading.bounded_file import read_regular
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -27,6 +28,8 @@ SETTLED = 1.0
 """What came within so many seconds of the end makes the look one that still changed."""
 QUIET = 0.25
 POLL = 0.05
+LONGEST = 2**20
+"""Bytes of a session file."""
 MISSING = "pip install 'rosprivacy[zenoh]', or give the output of `ros2 node info` (--text)"
 
 
@@ -92,15 +95,10 @@ class ZenohDoor:
 
     def _configured(self, zenoh: Any) -> Any:
         """The user's own file, or a client of one router; we listen nowhere and ask nobody else."""
-        file = str(self.session_file or "")
-        try:
-            settings = zenoh.Config.from_file(file) if file else zenoh.Config()
-        except zenoh.ZError as error:
-            hint = "give a session file of Zenoh, in JSON5"
-            raise ObservationError(file, 0, f"Zenoh does not accept it: {shown(str(error))}", hint) from error
+        settings = zenoh.Config() if self.session_file is None else _of_file(zenoh, str(self.session_file))
         settings.insert_json5("mode", json.dumps("client"))
         settings.insert_json5("listen/endpoints", "[]")
-        if self.endpoint or not file:
+        if self.endpoint or self.session_file is None:
             settings.insert_json5("connect/endpoints", json.dumps([self.endpoint or ROUTER]))
             settings.insert_json5("scouting/multicast/enabled", "false")
         return settings
@@ -115,11 +113,26 @@ def _take(changes: deque[tuple[bool, str]], tokens: dict[str, str], now: str) ->
             tokens.pop(key, None)
 
 
+def _of_file(zenoh: Any, file: str) -> Any:
+    def fail(line: int, problem: str, hint: str) -> ObservationError:
+        return ObservationError(file, line, problem, hint)
+
+    text = read_regular(file, LONGEST, fail).decode(errors="replace")
+    try:
+        return zenoh.Config.from_json5(text)
+    except zenoh.ZError as error:
+        raise fail(0, f"Zenoh does not accept it: {_why(error)}", "give a session file of Zenoh, in JSON5") from error
+
+
+def _why(error: Exception) -> str:
+    """In one line, without the place in Zenoh's own source."""
+    return shown(str(error).partition(" at /")[0].strip())
+
+
 def _opened(zenoh: Any, settings: Any, endpoint: str) -> Any:
     try:
         return zenoh.open(settings)
     except zenoh.ZError as error:
         where = f"at {shown(endpoint or ROUTER)}"
-        why = str(error).partition("  at /")[0]  # what follows is a place in Zenoh's source
         hint = "start it (ros2 run rmw_zenoh_cpp rmw_zenohd), or say where it is (--router tcp/HOST:7447)"
-        raise MiddlewareError(f"no Zenoh router answers {where}: {shown(why)}; {hint}") from error
+        raise MiddlewareError(f"no Zenoh router answers {where}: {_why(error)}; {hint}") from error
