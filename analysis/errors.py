@@ -9,10 +9,12 @@ command line turns errors into exit codes::
         PolicyError
         LabelError
         LimitsError
+        TypesError
         DecisionError
         FleetError
         OntologyError
         GraphError
+        BagError
         ObservationError
       QueryError
       DrawingError
@@ -93,6 +95,10 @@ class LimitsError(InputError):
     """A limits file that cannot be read, or that names what is not there."""
 
 
+class TypesError(InputError):
+    """A file of message types, or of what they cannot carry, that cannot be read."""
+
+
 class DecisionError(InputError):
     """A decisions file that cannot be read, or that contradicts itself."""
 
@@ -107,6 +113,10 @@ class OntologyError(InputError):
 
 class GraphError(InputError):
     """A saved graph that cannot be read."""
+
+
+class BagError(InputError):
+    """A bag (a recording of ROS messages) that cannot be read."""
 
 
 class ObservationError(InputError):

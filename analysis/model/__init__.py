@@ -52,8 +52,10 @@ from rosprivacy.analysis.model.element import (
     Element,
 )
 from rosprivacy.analysis.model.flow import Flow, FlowGraph
+from rosprivacy.analysis.model.message_type import OF_KIND, MessageType, kind_of_type
 from rosprivacy.analysis.model.policy import Grant, Policy, Profile, Seen
 from rosprivacy.analysis.model.reason import REASONS, Reason
+from rosprivacy.analysis.model.recording import Bag, BagTopic, BagVerdict, JudgedBag, TopicKinds
 from rosprivacy.analysis.model.statement import (
     CHANGED,
     CLEANS,
@@ -108,6 +110,7 @@ __all__ = [
     "NO_SOURCE",
     "OBSERVATION_GAP",
     "OBSERVED",
+    "OF_KIND",
     "PATHS_NOT_COUNTED",
     "REASONS",
     "REFUSED_NAME",
@@ -121,6 +124,9 @@ __all__ = [
     "THIRD_COUNTRY",
     "UNREAD_FILE",
     "UNSTATED",
+    "Bag",
+    "BagTopic",
+    "BagVerdict",
     "Bound",
     "ByCategory",
     "Category",
@@ -129,7 +135,9 @@ __all__ = [
     "Flow",
     "FlowGraph",
     "Grant",
+    "JudgedBag",
     "Legal",
+    "MessageType",
     "Method",
     "NonRosFacts",
     "Place",
@@ -143,7 +151,9 @@ __all__ = [
     "Situation",
     "Statement",
     "Surroundings",
+    "TopicKinds",
     "UnknownEnd",
     "is_article_9",
+    "kind_of_type",
     "unread",
 ]
