@@ -8,6 +8,7 @@ import signal
 import stat
 import subprocess
 import sys
+import threading
 from textwrap import dedent
 from typing import TYPE_CHECKING, Any
 
@@ -293,6 +294,8 @@ def test_watch_tells_what_comes_and_leaves_and_each_new_finding(robot: Path) -> 
             told.append(line)
         return told[-1]
 
+    alarm = threading.Timer(90, watch.kill)
+    alarm.start()
     try:
         until("+ node /cam")
         until("not seen yet: labels.yaml:4")
@@ -304,6 +307,7 @@ def test_watch_tells_what_comes_and_leaves_and_each_new_finding(robot: Path) -> 
         watch.send_signal(signal.SIGINT)
         watch.wait(60)
     finally:
+        alarm.cancel()
         watch.kill()
         watch.communicate()
     assert watch.returncode == 0
