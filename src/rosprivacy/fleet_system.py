@@ -177,9 +177,9 @@ class Reader:
         extended = extend(graph, files)
         diagnostics += (
             *remarks(extended, files),
-            *told_of_bags(extended, (stated for labels in files for stated in labels.elements)),
             *careful_notices(extended.careful),
         )
+        diagnostics += told_of_bags(extended, (stated for labels in files for stated in labels.elements))
         bound = bind(extended, files, settings.bounds, robot.surroundings)
         part = with_grants(Part.of(extended, bound), lambda grant: as_written(grant, robot.add))
         return Member(robot, policies, part, full, graph.profiles, tuple(files), tuple(dict.fromkeys(diagnostics)))

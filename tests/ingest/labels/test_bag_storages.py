@@ -1,4 +1,4 @@
-"""Storages that are bags (rules S9 to S11): what was recorded is in them, limits hold there, what is not known is said."""
+"""Storages that are bags (rules S9 to S11): what was recorded is in them, what is not known is said."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ def test_a_topic_that_no_policy_names_is_told_by_name(robot: Path, cli: Cli) -> 
 
 
 @pytest.mark.parametrize("harm", ["cut", "attachment", "unreadable file beside"])
-def test_no_answer_rests_on_half_a_bag(robot: Path, harm: str) -> None:
+def test_no_answer_rests_on_half_a_bag(robot: Path, cli: Cli, harm: str) -> None:
     """All that is known of it is harmless; the same bag whole makes 'no leak found'."""
     labels = "nodes: {/cam: {source: {Video: [/camera]}, leak: [Voice]}, /nav: conduit}\nchannels: {/camera: sensitive}"
     (robot / "bags").mkdir()
@@ -109,6 +109,9 @@ def test_no_answer_rests_on_half_a_bag(robot: Path, harm: str) -> None:
         (robot / "bags" / "b.db3").write_bytes(b"no database")
     verdict = rosprivacy.analyze(robot / "a.policy.xml", robot / "l.yaml").analysis.verdict
     assert verdict == "undetermined"
+    assert "not all is known of a bag" in cli("analyze", robot / "a.policy.xml", "-l", robot / "l.yaml").stdout
+    sarif = json.loads(cli("analyze", robot / "a.policy.xml", "-l", robot / "l.yaml", "-f", "sarif").stdout)
+    assert [one["ruleId"] for one in sarif["runs"][0]["results"]] == ["bag-gaps"]
     for file in (robot / "bags").iterdir():
         file.unlink()
     mcap(robot / "bags" / "a.mcap")
