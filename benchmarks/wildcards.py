@@ -1,26 +1,25 @@
 """How the flow graph of a policy grows with its wildcards: twice the names, at most 3 times the time, in one run.
 
-    python benchmarks/wildcards.py [--quick]
-
-Four shapes of names, as many written as read, 10,000 of each (4,000 with --quick) beside half of them. Ends with 1 if
-a bound is missed.
+Four shapes of names, as many written as read, 10,000 of each (4,000 in the quick form) beside half of them.
 """
 
 from __future__ import annotations
 
-import sys
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
-from measure import compared, print_header, print_line, side_by_side
+from measure import Row, timed
 
 from rosprivacy.analysis.bounds import Bounds
 from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.ingest.policies.policy_xml import read_policy
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
+
+    from measure import Measured
 
     from rosprivacy.analysis.model import Policy
 
@@ -49,23 +48,16 @@ def policy(names: int, shape: str, folder: Path) -> Policy:
     return read_policy(str(file))
 
 
-def main() -> int:
-    """Print the table; return the exit code."""
-    most = 4_000 if "--quick" in sys.argv else 10_000
-    print_header()
-    missed = 0
+def rows(*, quick: bool) -> Iterator[Row]:
+    """Declare what is measured."""
+    most = 4_000 if quick else 10_000
+    for shape in SHAPES:
+        ours = f"{most:,} names: {shape}"
+        yield Row(ours, "half of them", partial(twice, most, shape), bound=BOUND)
+
+
+def twice(most: int, shape: str) -> Measured:
+    """Time the graph of so many names against that of half of them."""
     with TemporaryDirectory() as folder:
-        for shape in SHAPES:
-            large, small = (policy(names, shape, Path(folder)) for names in (most, most // 2))
-            seconds = side_by_side(
-                3,
-                lambda large=large: build([large], bounds=BOUNDS),  # type: ignore[misc]  # mypy infers no lambda with a default
-                lambda small=small: build([small], bounds=BOUNDS),  # type: ignore[misc]  # mypy infers no lambda with a default
-            )
-            line = compared(f"{most:,} / {most // 2:,} names: {shape}", seconds, bound=BOUND)
-            missed += not print_line(line).met
-    return 1 if missed else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+        large, small = (policy(names, shape, Path(folder)) for names in (most, most // 2))
+    return timed(3, lambda: build([large], bounds=BOUNDS), lambda: build([small], bounds=BOUNDS))

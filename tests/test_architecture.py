@@ -57,6 +57,7 @@ OPENERS = {"open", "fdopen", "read_bytes", "read_text"}
 WRITERS = {"write_bytes", "write_text", "mkstemp", "NamedTemporaryFile", "TemporaryFile", "rename", "truncate"}
 OF_ITS_OWN = {  # modules that touch files in another way, and why none of these is a user's
     "ingest/reading/bounded_file.py": "notes what it reads",
+    "ingest/bags/bounded_stream.py": "notes what it reads",
     "ontology/vocabulary.py": "notes what it reads; and what is shipped",
     "report/compare/earlier.py": "notes what it reads",
     "report/atomic.py": "the one writer",
@@ -70,6 +71,7 @@ OF_ITS_OWN = {  # modules that touch files in another way, and why none of these
     "ingest/policies/saved_graph.py": "what is shipped; bounded_file.py reads",
     "src/rosprivacy/cli/own_error.py": "the report of an error, a new file",
     "ontology/cache.py": "the cache of categories",
+    "src/rosprivacy/watching.py": "a policy in a folder of its own, gone at once",
     "report/pictures/graphviz_worker.py": "a process that draws, with pipes only",
     "src/rosprivacy/cli/diff.py": "looks how a file begins; what then reads it notes it",
     "src/rosprivacy/cli/output.py": "the null device, when standard output is gone",

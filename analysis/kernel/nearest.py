@@ -6,7 +6,7 @@ In: a ``Spread`` and the places, as for ``backward``. Out: ``Nearest``, which is
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.kernel.backward import NOTHING_OPENED, Opened
@@ -30,12 +30,15 @@ class Nearest:
         Vertex -> (number of flows to a place, bits that are so far from it), the nearest first.
     leaving
         Vertex -> (target, bits that pass the flow).
+    walked
+        Vertex, bits that arrive there -> the nearest place, as walked so far: many walks go on along the same way.
     """
 
     spread: Spread
     opened: Opened
     levels: Mapping[int, list[tuple[int, int]]]
     leaving: Mapping[int, list[tuple[int, int]]]
+    walked: dict[tuple[int, int], int] = field(default_factory=dict)
 
     @classmethod
     def of(cls, spread: Spread, places: Mapping[int, int], opened: Opened = NOTHING_OPENED) -> Nearest:
@@ -72,10 +75,14 @@ class Nearest:
         return self._walk([(vertex, bits)])
 
     def _walk(self, arriving: list[tuple[int, int]]) -> int:
+        passed: list[tuple[int, int]] = []
         while True:
             level, vertex, bits = min((self._level(v, bits) for v, bits in arriving), default=(FAR, -1, 0))
-            if level in (0, FAR):
-                return vertex if level == 0 else -1
+            if level in (0, FAR) or (vertex, bits) in self.walked:
+                place = self.walked.get((vertex, bits), vertex if level == 0 else -1)
+                self.walked.update(dict.fromkeys(passed, place))
+                return place
+            passed.append((vertex, bits))
             leaving = onward(self.spread, vertex, bits, self.opened.elements.get(vertex, 0))
             arriving = [(target, leaving & passing) for target, passing in self.leaving.get(vertex, ())]
 

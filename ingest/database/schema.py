@@ -112,6 +112,8 @@ ELEMENT = NodeKind(
         Property("pseudonymised", STRINGS, f"kinds of data that get here pseudonymised{_BROAD}"),
         Property("begins", STRINGS, "kinds that it brings in"),
         Property("subjects", STRINGS, "of a source: whom its data are about"),
+        Property("types", STRINGS, "of a channel: message types, as they were observed or stated"),
+        Property("type_facts", STRINGS, "JSON: each of these with who states it, or which nodes were seen with it"),
         Property("context", STRINGS, f"where it works, with its system: some of {', '.join(CONTEXTS)}"),
         *_PROCESSING,
         Property("leaks", STRINGS, "kinds that it lets out, if they come"),

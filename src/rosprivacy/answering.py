@@ -92,6 +92,7 @@ def concluded(
         accepts=options.accepts,
         policies=system.policies,
         labels=system.labels,
+        types=system.types,
         options=options,
         again=partial(_again, system.under, question) if system.under else None,
         closes=_proposed if system.policies else None,

@@ -221,11 +221,11 @@ def test_help_shows_the_commands_in_the_order_of_a_users_way(cli: Cli) -> None:
     shown = cli("--help").stdout
     names = re.findall(r"^│ ([a-z][a-z-]*) ", shown, re.MULTILINE)
     assert names == [
-        "labels", "categories", "law", "analyze", "show", "why-not", "diff", "report", "graph", "decide", "mitigate",
-        "fleet", "load", "unload", "query", "db",
+        "observe", "labels", "categories", "law", "analyze", "show", "why-not", "diff", "bag", "report", "graph",
+        "decide", "mitigate", "fleet", "load", "unload", "query", "db",
     ]  # fmt: skip
     panels = re.findall(r"^╭─ ([\w ]+) ─", shown, re.MULTILINE)
-    assert panels == ["Options", "Label", "Analyse", "See", "Decide", "Fleet and database"]
+    assert panels == ["Options", "Observe", "Label", "Analyse", "See", "Decide", "Fleet and database"]
 
 
 def test_help_of_every_command_shows_no_type_of_a_flag_and_no_hidden_option(cli: Cli) -> None:

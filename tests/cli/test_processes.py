@@ -44,6 +44,8 @@ ENDINGS = {
     "why-not /a /b examples/factory/nope.xml": 2,
     "diff examples/care-home/care-home.policy.xml examples/care-home/care-home.policy.xml": 0,
     f"diff {BEFORE}": 2,
+    "bag examples/care-home/recording -l examples/care-home/care-home.labels.yaml": 1,
+    "bag examples/care-home/nope.mcap": 2,
     f"report {BEFORE} -f markdown --lang de": 0,
     "report examples/factory/nope.xml": 2,
     f"graph {BEFORE} --format mermaid": 0,

@@ -16,6 +16,7 @@ from rosprivacy.analysis.errors import RosPrivacyError
 from rosprivacy.analysis.files_read import one_run
 from rosprivacy.cli import (
     analyze,
+    bag,
     categories,
     db,
     decide,
@@ -26,6 +27,7 @@ from rosprivacy.cli import (
     law,
     load,
     mitigate,
+    observe,
     query,
     report,
     show,
@@ -33,7 +35,7 @@ from rosprivacy.cli import (
     why_not,
 )
 from rosprivacy.cli.exit_code import OWN_ERROR
-from rosprivacy.cli.help import ANALYSE, DECIDE, LABEL, MANY, SEE, Group
+from rosprivacy.cli.help import ANALYSE, DECIDE, LABEL, MANY, OBSERVE, SEE, Group
 from rosprivacy.version import __version__
 
 app = typer.Typer(
@@ -44,6 +46,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
+app.command(rich_help_panel=OBSERVE)(observe.observe)
 app.command(rich_help_panel=LABEL)(labels.labels)
 app.command(rich_help_panel=LABEL)(categories.categories)
 app.command(rich_help_panel=LABEL)(law.law)
@@ -51,6 +54,7 @@ app.command(rich_help_panel=ANALYSE)(analyze.analyze)
 app.command(rich_help_panel=ANALYSE)(show.show)
 app.command("why-not", rich_help_panel=ANALYSE)(why_not.why_not)
 app.command(rich_help_panel=ANALYSE)(diff.diff)
+app.command(rich_help_panel=ANALYSE)(bag.bag)
 app.command(rich_help_panel=SEE)(report.report)
 app.command(rich_help_panel=SEE)(graph.graph)
 app.command(rich_help_panel=DECIDE)(decide.decide)

@@ -89,7 +89,7 @@ def on_console(write: Callable[[Console], None], *, colour: bool) -> str:
     return text.getvalue()
 
 
-def progress_of(files: Sequence[str]) -> Iterable[str]:
+def progress_of(files: Sequence[str], what: str = "policies") -> Iterable[str]:
     """Show a bar on a terminal when there is much to read."""
     many = 20
     if len(files) < many or not sys.stderr.isatty():
@@ -97,4 +97,4 @@ def progress_of(files: Sequence[str]) -> Iterable[str]:
     from rich.console import Console
     from rich.progress import track
 
-    return track(files, description="Reading policies", console=Console(stderr=True), transient=True)
+    return track(files, description=f"Reading {what}", console=Console(stderr=True), transient=True)
