@@ -60,7 +60,9 @@ def test_the_share_of_a_kind_is_what_the_others_leave() -> None:
 
 def test_the_first_paths_of_each_kind_are_told_and_all_are_counted(many: dict[str, Any]) -> None:
     root, report = page(many), told(many)
-    shown = {kind: root.xpath(f"count(//article[@class='way'][@data-category='{kind}'])") for kind in ("Video", "Voice")}
+    shown = {
+        kind: root.xpath(f"count(//article[@class='way'][@data-category='{kind}'])") for kind in ("Video", "Voice")
+    }
     assert shown == {"Video": MOST - VOICE, "Voice": VOICE}
     assert report.opening.headline == f"You have to decide {VIDEO + VOICE:,} things"
     assert {kind.name: (kind.to_assess, kind.left) for kind in report.kinds} == {
