@@ -61,7 +61,7 @@ def _beside(made: Callable[[int], tuple[str, int]], form: str, many: int, few: i
         each = []
         for size in (many, few):
             text, number = made(size)
-            whole = _cost(folder, text, form, 1 if size == SIZES[-1] or quick and size == many else ROUNDS)
+            whole = _cost(folder, text, form, 1 if size == SIZES[-1] or (quick and size == many) else ROUNDS)
             each.append(Cost((whole.seconds - start.seconds) / number, (whole.megabytes - start.megabytes) / number))
     ours, other = each
     time, space = ours.seconds / other.seconds, ours.megabytes / other.megabytes

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import rosprivacy
-from rosprivacy.analysis.findings import findings as module
+from rosprivacy.analysis.kernel.search import Search, present
 from tests.helpers.reports import policy
 
 if TYPE_CHECKING:
@@ -25,15 +25,14 @@ def looked_at(islands: int, folder: Path, monkeypatch: pytest.MonkeyPatch) -> fl
     (folder / "p.xml").write_text(policy(profiles), "utf-8")
     (folder / "l.yaml").write_text("labels: 1\nnodes:\n  /s*: {source: [Video]}\n  /l*: {leak: [Video]}\n", "utf-8")
     looks = 0
-    present = module.present
 
-    def counting(reach: module.Search, vertex: int) -> int:
+    def counting(reach: Search, vertex: int) -> int:
         nonlocal looks
         looks += 1
         return present(reach, vertex)
 
     with monkeypatch.context() as patch:
-        patch.setattr(module, "present", counting)
+        patch.setattr("rosprivacy.analysis.findings.findings.present", counting)
         found = rosprivacy.analyze(str(folder / "p.xml"), str(folder / "l.yaml")).findings
     assert len(found) == islands * SIDE**2
     return looks / len(found)

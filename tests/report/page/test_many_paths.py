@@ -32,7 +32,7 @@ def many(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
 
 @cache
 def _many(folder: Path) -> dict[str, Any]:
-    profiles = {f"camera{i:02}": (["t"], []) for i in range(SIDE)}
+    profiles: dict[str, tuple[list[str], list[str]]] = {f"camera{i:02}": (["t"], []) for i in range(SIDE)}
     profiles |= {f"cloud{i:02}": ([], ["t"]) for i in range(SIDE)}
     profiles |= {"blur": ([], ["t"])}
     (folder / "p.xml").write_text(policy(profiles), "utf-8")
