@@ -10,7 +10,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors
-from rosprivacy.analysis.model import MERGED, REFUSED_NAME, SHARED_ENCLAVE
+from rosprivacy.analysis.model import MERGED, REFUSED_NAME, SEEN_ALTHOUGH_DENIED, SHARED_ENCLAVE
 from rosprivacy.answering import answer
 from rosprivacy.assumptions import files_read, remembered, types_read
 from rosprivacy.ingest.labels.add_non_ros import extend, extended
@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from rosprivacy.result import Result
     from rosprivacy.settings import Settings
 
+ACROSS = (MERGED, SHARED_ENCLAVE, REFUSED_NAME, SEEN_ALTHOUGH_DENIED)  # what is said of policies together
 Types = tuple["TypesFile", ...]
 Read = tuple[tuple["Policy", ...], tuple["Diagnostic", ...]]
 
@@ -121,7 +122,7 @@ def answer_each(
     bind(
         extend(build(read, settings.view, settings.bounds), files), files, settings.bounds
     )  # raises what fits none of them
-    left = tuple(one for one in said if one.code not in (MERGED, SHARED_ENCLAVE, REFUSED_NAME))
+    left = tuple(one for one in said if one.code not in ACROSS)
     results = []
     for policy in read:
         alone = (policy,), (*left, *joint_warnings((policy,)))
