@@ -238,7 +238,6 @@ def _findings_of(
                     if (i, anyway) not in between:
                         stop = {} if anyway else stops.of(spread.bits.both(i), accepted)
                         between[i, anyway] = Between(net, chosen, source, i, _relevant(spread, i), stop)
-                        work.paths.count += between[i, anyway].size
                     more = further(between[i, anyway], leak, memory, options.paths, options.max_paths, work.paths)
                     finding = replace(finding, disjoint_paths=more.disjoint, paths=more.paths, bounded=more.bounded)
                 yield leak, i, finding

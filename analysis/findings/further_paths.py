@@ -78,12 +78,17 @@ class Between:
         self.width = FIRST + len(net.spread.categories)
         self.begin = self.state(source, SOURCE)
         self.back: dict[int, set[int]] = defaultdict(set)
-        self.size = 0
+        self._reach: Search | None = reach
         self._known: dict[int, list[tuple[int, int]]] = {}
         for _, target, bits in (*self.states.after(source, self.emits), *self.states.single(source)):
             self._link(self.begin, target, bits)
-        for vertex, seen in reach.seen.items():
-            self._follow(vertex, seen)
+        self.ways_out = len(self.back)  # of the source
+
+    def link(self, work: Tally) -> None:
+        """Link all states to those that follow, once and where it is needed; the work is counted."""
+        for vertex, seen in self._reach.seen.items() if self._reach else ():
+            work.count += self._follow(vertex, seen)
+        self._reach = None
 
     def state(self, vertex: int, form: int) -> int:
         """Return the number of a state."""
@@ -97,22 +102,28 @@ class Between:
             forms = self._known[bits] = [(number + FIRST, self.bits.both(number)) for number in numbers]
         return forms
 
-    def _follow(self, vertex: int, seen: int) -> None:
-        """Link what arrives at a vertex to what follows."""
+    def _follow(self, vertex: int, seen: int) -> int:
+        """Link what arrives at a vertex to what follows; return how often."""
+        links = 0
+        moves = self.states.net.flows.get(vertex, ())
         single = self.states.net.spread.flow_emits if vertex == self.source else {}
-        for form, both in self._forms(seen):
+        for form, both in self._forms(seen) if moves else ():
             if not self._begun(vertex, form):
                 state = self.state(vertex, form)
-                for index, target, bits in self.states.after(vertex, self.states.leaving(vertex, seen & both)):
+                leaving = self.states.leaving(vertex, seen & both)
+                for index, target, passing in moves if leaving else ():
                     # what a source emits along a flow does not go there a second time
-                    self._link(state, target, bits & ~single.get(index, 0) if single else bits)
+                    if bits := leaving & passing & ~single.get(index, 0):
+                        links += self._link(state, target, bits)
+        return links
 
-    def _link(self, before: int, target: int, bits: int) -> None:
-        """Link a state to those that data with some bits is in at a vertex."""
-        for form, _ in self._forms(bits):
+    def _link(self, before: int, target: int, bits: int) -> int:
+        """Link a state to those that data with some bits is in at a vertex; return how many."""
+        forms = self._forms(bits)
+        for form, _ in forms:
             after = self.begin if self._begun(target, form) else target * self.width + form
-            self.size += 1
             self.back[after].add(before)
+        return len(forms)
 
     def _begun(self, vertex: int, form: int) -> bool:
         """Whether data in this form is what the vertex, as the source, emits anyway."""
@@ -136,6 +147,9 @@ class Between:
         memory
             Answers for equal graphs: kinds of data often take the same paths.
         """
+        if self.ways_out == 1:
+            return 1
+        self.link(work)
         if len(self._last(self._ends(leak))) == 1:
             return 1
         leading = self._leading_to(leak)
@@ -297,6 +311,7 @@ def further(between: Between, leak: int, memory: dict[Any, Any], asked: str, mos
     mode = Paths(asked)
     if mode is Paths.witness:
         return FurtherPaths(between.number_to(leak, memory, work))
+    between.link(work)
     disjoint, edges = between.to(leak, memory)
     work.count += len(edges) * (1 + len(disjoint))
     chosen: Iterable[list[int]] = disjoint

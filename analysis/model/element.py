@@ -37,6 +37,10 @@ class Element:
     side: str = ""
     without: tuple[str, ...] = ()
 
+    def __hash__(self) -> int:
+        """Of what tells nearly all apart: elements are looked up all the time."""
+        return hash((self.robot, self.name, self.leg))
+
     @property
     def pattern(self) -> bool:
         """Whether the name is a wildcard expression."""

@@ -139,7 +139,7 @@ class _Drafts:
     def add(self, node: str, grant: Grant, endpoint: Endpoint, denials: _Denials) -> None:
         """One DDS topic that a grant opens to a node, unless denied."""
         against, part = denials.of(grant, endpoint)
-        channel = self._channel(endpoint, tuple(sorted({dds for dds, _ in part})))
+        channel = self._channel(endpoint, tuple(sorted({dds for dds, _ in part})) if part else ())
         self.said.setdefault(channel, grant.place)
         if part:
             self.rules[channel].update(part)
@@ -239,11 +239,11 @@ class _Drafts:
         for (source, target, role), draft in self.flows.items():
             ends = index[source], index[target], role
             if draft.allowed or role == "matches":
-                allowed.append(Flow(*ends, tuple(sorted(draft.allowed, key=_grant_key))))
+                allowed.append(Flow(*ends, _in_order(draft.allowed)))
             else:
-                denied.append(Flow(*ends, *(tuple(sorted(lines, key=_grant_key)) for lines in draft.taken or ())))
+                denied.append(Flow(*ends, *map(_in_order, draft.taken or ())))
         refused = [
-            Flow(index[source], index[target], "matches", (), tuple(sorted(lines, key=_grant_key)))
+            Flow(index[source], index[target], "matches", (), _in_order(lines))
             for (source, target), lines in self.refused.items()
         ]
         return FlowGraph(
@@ -258,6 +258,10 @@ def _ends(flow: Flow) -> tuple[int, int, str]:
 
 def _profile_key(profile: Profile) -> tuple[str, str, str, int]:
     return (profile.enclave, profile.node, profile.place.file, profile.place.line)
+
+
+def _in_order(lines: set[Grant]) -> tuple[Grant, ...]:
+    return tuple(lines) if len(lines) < 2 else tuple(sorted(lines, key=_grant_key))  # noqa: PLR2004 - nothing to sort
 
 
 def _grant_key(grant: Grant) -> tuple[object, ...]:
