@@ -75,7 +75,7 @@ class Between:
         self.bits = net.spread.bits
         self.states = States(net, relevant, stop)
         self.emits = self.states.emitted(source)
-        self.width = FIRST + len(net.spread.categories)
+        self.width = FIRST + self.bits.merged(net.spread.all_bits).bit_length()
         self.begin = self.state(source, SOURCE)
         self.back: dict[int, set[int]] = defaultdict(set)
         self._reach: Search | None = reach
