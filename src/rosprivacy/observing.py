@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import InputError, shown
 from rosprivacy.analysis.text import counted
 from rosprivacy.clock import source_date
-from rosprivacy.ingest.observe.declared import TYPE, declared_labels
+from rosprivacy.ingest.observe.declared import TYPE
+from rosprivacy.ingest.observe.declared_labels import declared_labels
 from rosprivacy.ingest.observe.doors import seen_by
 from rosprivacy.ingest.observe.observation import Observation, added_up, moment
 from rosprivacy.ingest.observe.observed_policy import policy_xml, prepared

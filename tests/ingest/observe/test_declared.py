@@ -11,7 +11,8 @@ import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rosprivacy.ingest.observe.declared import Declared, declared, declared_labels
+from rosprivacy.ingest.observe.declared import Declared, declared
+from rosprivacy.ingest.observe.declared_labels import declared_labels
 from rosprivacy.ingest.observe.observation import Span
 from tests.helpers.command import Cli, run
 from tests.helpers.observed import AT
