@@ -9,7 +9,7 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.model import Method
+from rosprivacy.analysis.model import Method, one_by_one
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
@@ -172,7 +172,7 @@ class _Around:
 
     def _flows(self) -> tuple[dict[int, list[int]], dict[int, list[int]]]:
         into, out = defaultdict(list), defaultdict(list)
-        for index, flow in enumerate(self._spread.graph.flows):
+        for index, flow in enumerate(one_by_one(self._spread.graph.flows)):
             into[flow.target].append(index)
             out[flow.source].append(index)
         return into, out

@@ -13,13 +13,15 @@ import numpy as np
 
 from rosprivacy.analysis.kernel.edges import Edges
 from rosprivacy.analysis.kernel.fixpoint import WORD
+from rosprivacy.analysis.model import parted
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
     from rosprivacy.analysis.kernel.spread import Spread
+    from rosprivacy.analysis.model import FlowGraph
 
     Indices = NDArray[np.int64]
     Bits = NDArray[np.uint64]
@@ -32,7 +34,7 @@ class GraphArrays:
     Attributes
     ----------
     count
-        Number of elements; vertices from it on are flows.
+        Number of elements; vertices from it on are flows, then meetings of wildcards.
     edges
         Between elements and such flows.
     special
@@ -55,14 +57,8 @@ class GraphArrays:
         """Make the arrays of a spread; O(flows · log flows)."""
         graph = spread.graph
         count = len(graph.elements)
-        special = sorted({*spread.flow_emits, *spread.flow_keeps})
-        sources = [flow.source for flow in graph.flows]
-        targets = [flow.target for flow in graph.flows]
-        for number, index in enumerate(special):
-            sources.append(count + number)
-            targets.append(targets[index])
-            targets[index] = count + number
-        vertices = count + len(special)
+        special = sorted(spread.told_apart)
+        vertices, sources, targets = ends(graph, special)
         emitted = as_bits(spread, vertices, spread.emits, 0)
         keep = as_bits(spread, vertices, spread.keeps, spread.all_bits)
         for number, index in enumerate(special):
@@ -83,6 +79,41 @@ class GraphArrays:
         return replace(
             self, emitted=emitted, keep=keep, derivations=self.derivations[~np.isin(self.derivations[:, 0], vertices)]
         )
+
+
+def ends(graph: FlowGraph, special: Sequence[int]) -> tuple[int, list[int], list[int]]:
+    """Return the number of vertices, and the two ends of each edge.
+
+    Parameters
+    ----------
+    special
+        Numbers of flows that are vertices, those after the elements. Behind them is one for each meeting of wildcards:
+        what comes from any written one goes to each read one.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import factory
+    >>> vertices, sources, targets = ends(factory()[0], [2])
+    >>> len(sources) - len(factory()[0].flows), (sources[-1], targets[-1])
+    (1, (9, 2))
+    """
+    flows, meetings = parted(graph.flows, special)
+    count = len(graph.elements)
+    place: dict[int, int] = {}
+    sources: list[int] = []
+    targets: list[int] = []
+    for at, (index, flow) in enumerate(flows):
+        place[index] = at
+        sources.append(flow.source)
+        targets.append(flow.target)
+    for number, index in enumerate(special, count):
+        sources.append(number)
+        targets.append(targets[place[index]])
+        targets[place[index]] = number
+    for number, meeting in enumerate(meetings, count + len(special)):
+        sources += [*meeting.written, *(number for _ in meeting.read)]
+        targets += [*(number for _ in meeting.written), *meeting.read]
+    return count + len(special) + len(meetings), sources, targets
 
 
 def as_bits(spread: Spread, count: int, numbers: Mapping[int, int], otherwise: int) -> Bits:

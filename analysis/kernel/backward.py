@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rosprivacy.analysis.kernel.arrays import as_bits, as_numbers
+from rosprivacy.analysis.kernel.arrays import as_bits, as_numbers, ends
 from rosprivacy.analysis.kernel.edges import Edges
 from rosprivacy.analysis.kernel.fixpoint import fixpoint
 from rosprivacy.analysis.kernel.states import back_from
@@ -107,13 +107,9 @@ def backward(spread: Spread, places: Mapping[int, int], opened: Opened = NOTHING
     count = len(graph.elements)
     keeps = {v: bits | opened.elements.get(v, 0) for v, bits in spread.keeps.items()}
     restricted = sorted(spread.flow_keeps)
-    sources = [flow.source for flow in graph.flows] + [source for source, _ in opened.more]
-    targets = [flow.target for flow in graph.flows] + [target for _, target in opened.more]
-    for number, index in enumerate(restricted, count):
-        sources.append(number)
-        targets.append(targets[index])
-        targets[index] = number
-    vertices = count + len(restricted)
+    vertices, sources, targets = ends(graph, restricted)
+    sources += [source for source, _ in opened.more]
+    targets += [target for _, target in opened.more]
     begins = {v: back_from(spread, v, bits, opened.elements.get(v, 0)) for v, bits in places.items()}
     turned = [(vertex, after, before) for vertex, pairs in spread.derives.items() for before, after in pairs]
     passing = {n: spread.flow_keeps[i] | opened.flows.get(i, 0) for n, i in enumerate(restricted, count)}

@@ -46,6 +46,7 @@ from rosprivacy.analysis.model.element import (
     Element,
 )
 from rosprivacy.analysis.model.flow import Flow, FlowGraph
+from rosprivacy.analysis.model.flows import MATCHES, Flows, Meeting, at_most, leaving, number, one_by_one, parted
 from rosprivacy.analysis.model.policy import Grant, Policy, Profile
 from rosprivacy.analysis.model.reason import REASONS, Reason
 from rosprivacy.analysis.model.statement import (
@@ -87,6 +88,7 @@ __all__ = [
     "GOES_NOWHERE",
     "KINDS",
     "LEGAL_BASIS",
+    "MATCHES",
     "MAY_REVEAL",
     "MERGED",
     "NAME",
@@ -116,8 +118,10 @@ __all__ = [
     "Element",
     "Flow",
     "FlowGraph",
+    "Flows",
     "Grant",
     "Legal",
+    "Meeting",
     "Method",
     "NonRosFacts",
     "Place",
@@ -131,6 +135,11 @@ __all__ = [
     "Statement",
     "Surroundings",
     "UnknownEnd",
+    "at_most",
     "is_article_9",
+    "leaving",
+    "number",
+    "one_by_one",
+    "parted",
     "unread",
 ]
