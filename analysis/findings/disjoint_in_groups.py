@@ -106,10 +106,12 @@ class _Search:
             if here == self._leak:
                 self._take(path)
                 number, path = number + 1, [self._source]
-            elif (after := self._next(here, waiting, members, dead)) is not None:
-                path.append(after)
-            else:
+                continue
+            there = self._next(here, waiting, members, dead)
+            if there is None:
                 dead.add(path.pop())
+            else:
+                path.append(there)
         return number
 
     def _next(
@@ -123,7 +125,8 @@ class _Search:
             waiting[here] = [after for after in every if self._layer.get(after) == layer]
             self._work.count += len(every) + 1
         while waiting[here]:
-            if (after := waiting[here].pop()) not in dead:
+            after = waiting[here].pop()
+            if after not in dead:
                 return after
         for number in self._of.get(here, ()):
             some = members[number].get(layer, [])

@@ -57,15 +57,14 @@ class Net:
                     inner[flow.source].append(move)
         met: dict[int, list[Meeting]] = defaultdict(list)
         for meeting in meetings:
-            read = {graph.elements[target].shown_as: [] for target in meeting.read}
+            sides: dict[tuple[str, str, str, str], list[int]] = defaultdict(list)
             for target in meeting.read:
-                read[graph.elements[target].shown_as].append(target)
-            for source in meeting.written:
-                if spread.leaves.get(source):
-                    met[source].append(meeting)
-                    inner_of = read.get(graph.elements[source].shown_as, ())
-                    inner[source] = sorted([*inner.get(source, ()), *(_move(spread, source, t) for t in inner_of)])
-        return cls(spread, flows, {source: moves for source, moves in inner.items() if moves}, met)
+                sides[graph.elements[target].shown_as].append(target)
+            for source in filter(spread.leaves.get, meeting.written):
+                met[source].append(meeting)
+                for target in sides.get(graph.elements[source].shown_as, ()):
+                    inner[source].append(_move(spread, source, target))
+        return cls(spread, flows, {source: sorted(moves) for source, moves in inner.items()}, met)
 
     def leaving(self, vertex: int) -> list[Move]:
         """Return all flows of an element, with the pairs of its meetings."""

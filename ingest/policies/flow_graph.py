@@ -208,13 +208,13 @@ class _Drafts:
 
     def _meet(self, by_ends: Mapping[Element, Ends]) -> None:
         """Join patterns by their ends; large groups as a whole."""
-        sides = ({e: ends for e, ends in by_ends.items() if e.side == side} for side in ("write", "read"))
 
         def count(element: Element, groups: int) -> None:
             self.work.at = self.said[element]
             self.work.placed(groups)
 
-        for written, read in meetings(*sides, count):
+        writers, readers = ({e: ends for e, ends in by_ends.items() if e.side == side} for side in ("write", "read"))
+        for written, read in meetings(writers, readers, count):
             self.work.at = self.said[written[0]]
             if len(written) * len(read) > STORED * (len(written) + len(read)):
                 self.count.add(len(written) + len(read), self.work.at)
