@@ -9,14 +9,18 @@ command line turns errors into exit codes::
         PolicyError
         LabelError
         LimitsError
+        TypesError
         DecisionError
         FleetError
         OntologyError
         GraphError
+        BagError
+        ObservationError
       QueryError
       DrawingError
       DatabaseError
       ClusterError
+      MiddlewareError
 """
 
 from __future__ import annotations
@@ -91,6 +95,10 @@ class LimitsError(InputError):
     """A limits file that cannot be read, or that names what is not there."""
 
 
+class TypesError(InputError):
+    """A file of message types, or of what they cannot carry, that cannot be read."""
+
+
 class DecisionError(InputError):
     """A decisions file that cannot be read, or that contradicts itself."""
 
@@ -105,6 +113,14 @@ class OntologyError(InputError):
 
 class GraphError(InputError):
     """A saved graph that cannot be read."""
+
+
+class BagError(InputError):
+    """A bag (a recording of ROS messages) that cannot be read."""
+
+
+class ObservationError(InputError):
+    """What was seen of a running system cannot be read, or cannot be looked at with what is installed."""
 
 
 class InputErrors(RosPrivacyError):  # noqa: N818 - it is several
@@ -132,5 +148,11 @@ class DatabaseError(RosPrivacyError):
 
 class ClusterError(RosPrivacyError):
     """A cluster that cannot be reached, or on which something fails."""
+
+    exit_code = 3
+
+
+class MiddlewareError(RosPrivacyError):
+    """A running ROS system that cannot be reached, or that does not answer."""
 
     exit_code = 3

@@ -7,11 +7,12 @@ data. Both sides get the graph in the form that they work on; making that form i
 from __future__ import annotations
 
 import tracemalloc
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
-from measure import Line, compared, side_by_side
+from measure import Measured, Row, timed
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import breadth_first_order
 
@@ -136,53 +137,101 @@ def full_sweeps(fleet: Fleet) -> tuple[Bits, Bits]:
         leaves = new
 
 
-def compare(*, quick: bool) -> Iterator[Line]:
-    """Time the fixpoint against one search, and measure its memory.
+def numberings(given: Fleet) -> dict[str, Fleet]:
+    """Return the same fleet under other numbers: what the kernel takes depends on where the hub stands."""
+    middle = given.split // 2
+    others = np.random.default_rng(4)
+    nodes, channels = others.permutation(given.split), others.permutation(given.count - given.split) + given.split
+    return {
+        "the cloud first": given,
+        "the cloud in the middle": renumbered(given, _moved(given, middle)),
+        "the cloud last of the nodes": renumbered(given, _moved(given, given.split - 1)),
+        "numbers at random": renumbered(given, np.concatenate((nodes, channels))),
+    }
+
+
+def _moved(given: Fleet, place: int) -> Indices:
+    """Return the new number of each element where the cloud gets a place, and the nodes up to there move down."""
+    number = np.arange(given.count)
+    number[1 : place + 1] -= 1
+    number[CLOUD] = place
+    return number
+
+
+def renumbered(given: Fleet, number: Indices) -> Fleet:
+    """Return the fleet with a new number for each element."""
+    emitted, keep = np.empty_like(given.emitted), np.empty_like(given.keep)
+    emitted[number], keep[number] = given.emitted, given.keep
+    derivations = given.derivations.copy()
+    derivations[:, 0] = number[derivations[:, 0]]
+    return replace(
+        given,
+        sources=number[given.sources],
+        targets=number[given.targets],
+        emitted=emitted,
+        keep=keep,
+        derivations=derivations,
+    )
+
+
+def rows(*, quick: bool) -> Iterator[Row]:
+    """Declare what is measured: the fixpoint against one search, on several numberings, and its memory."""
+    robots = 1_000 if quick else 10_000
+    first = fleet(robots)
+    for name, given in numberings(first).items():
+        bound = 7 if quick else 5 if given is first else 6  # a search of a small graph has less to do
+        what = f"fixpoint of {CATEGORIES} kinds of data, {name}"
+        yield Row(what, "one scipy BFS", partial(searched, given, 7 if quick else 21), bound)
+    if quick:
+        return
+    yield Row("making the edges beforehand", "making the csr", lambda: made(first))
+    yield Row("memory of the fixpoint, per million flows", "", lambda: memory(first))
+
+
+def _matrix(given: Fleet) -> csr_array:
+    # float64 and int32 are what scipy's search works on; other types would be converted in each call.
+    ends = given.sources.astype(np.int32), given.targets.astype(np.int32)
+    return csr_array((np.ones(len(ends[0])), ends), shape=(given.count, given.count))
+
+
+def searched(given: Fleet, rounds: int) -> Measured:
+    """Time the fixpoint against one search from the hub.
 
     Raises
     ------
     AssertionError
         If the fixpoint is not the answer of the full sweeps, or if the fleet is no fair ground.
     """
-    robots = 1_000 if quick else 10_000
-    given = fleet(robots)
-    flows = len(given.sources)
     edges = Edges.of(given.count, given.sources, given.targets, given.split)
-    # float64 and int32 are what scipy's search works on; other types would be converted in each call.
-    ends = given.sources.astype(np.int32), given.targets.astype(np.int32)
-    matrix = csr_array((np.ones(flows), ends), shape=(given.count, given.count))
-    reached = breadth_first_order(matrix, CLOUD, return_predecessors=False)
+    matrix = _matrix(given)
+    hub = int(np.bincount(given.sources).argmax())
+    reached = breadth_first_order(matrix, hub, return_predecessors=False)
     assert len(reached) > 0.95 * given.count, "the search has to reach nearly all elements"
-
     expected = full_sweeps(given)
     found = fixpoint(edges, given.emitted.copy(), given.keep, given.derivations)
     for ours, theirs in zip(found, expected, strict=True):
         assert np.array_equal(ours, theirs), "the fixpoint differs from the full sweeps"
     k = np.uint64(CATEGORIES)
     assert (found[1][:, 0] >> k).any(), "both planes have to be in use"
-    del expected, found
-
     # Each call gets its own copy of what is emitted: the fixpoint may work in place.
-    seconds = side_by_side(
-        7 if quick else 21,
+    return timed(
+        rounds,
         lambda: fixpoint(edges, given.emitted.copy(), given.keep, given.derivations),
-        lambda: breadth_first_order(matrix, CLOUD, return_predecessors=False),
+        lambda: breadth_first_order(matrix, hub, return_predecessors=False),
+        note=f"{given.count:,} elements, {len(given.sources):,} flows; equal to full sweeps",
     )
-    size = f"{given.count:,} elements, {flows:,} flows, {robots:,} robots; equal to full sweeps; 3 is the goal"
-    what = f"(b) fixpoint of {CATEGORIES} kinds of data / one scipy BFS"
-    yield compared(what, seconds, bound=5, note=size)
-    making = side_by_side(
-        3 if quick else 7,
-        lambda: Edges.of(given.count, given.sources, given.targets, given.split),
-        lambda: csr_array((np.ones(flows), ends), shape=(given.count, given.count)),
-    )
-    yield compared("(b) making the edges beforehand / making the csr", making, note="no bound; not part of the above")
-    peak = _peak(edges, given)
-    yield Line(
-        "(d) memory of the fixpoint, per million flows",
-        f"{peak / flows:.0f} MB",  # bytes per flow are megabytes per million flows
-        note="peak of what the call allocates (numpy under tracemalloc), its answer included, its input not",
-    )
+
+
+def made(given: Fleet) -> Measured:
+    """Time the forms that both sides work on, which is no part of the rows above."""
+    return timed(7, lambda: Edges.of(given.count, given.sources, given.targets, given.split), lambda: _matrix(given))
+
+
+def memory(given: Fleet) -> Measured:
+    """Measure what one call allocates at most at a time, its answer included, its input not."""
+    edges = Edges.of(given.count, given.sources, given.targets, given.split)
+    # Bytes per flow are megabytes per million flows.
+    return Measured(f"{_peak(edges, given) / len(given.sources):.0f} MB", note="peak of numpy under tracemalloc")
 
 
 def _peak(edges: Edges, given: Fleet) -> int:

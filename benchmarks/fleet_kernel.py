@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from fleet_flows import NODES, fleet, full_sweeps
-from measure import Line, compared, per_robot, side_by_side
+from measure import Measured, Row, per_robot, side_by_side, timed
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import breadth_first_order
 
@@ -41,41 +41,56 @@ KIND = "Video"
 HIERARCHY = Hierarchy({KIND: {KIND: 0}}, {KIND: {KIND: 0}})
 
 
-def compare(*, quick: bool) -> Iterator[Line]:
-    """Time the kernel on a large and a small fleet, measure its memory, and time pairs against searches.
+def rows(*, quick: bool) -> Iterator[Row]:
+    """Declare what is measured: the kernel on a large and a small fleet, its memory, and pairs against searches."""
+    large = LARGE // 20 if quick else LARGE
+    sizes = large, SMALL
+    fleets = [_in_order(fleet(robots, labelled=robots, deriving=2 * robots)) for robots in sizes]
+    what = f"per robot, by the kernel: {large:,} that differ"
+    yield Row(what, f"{SMALL:,}", lambda: _grown(fleets, sizes, with_edges=True), bound=1.5)
+    if not quick:
+        yield Row("the same, the fixpoint alone", f"{SMALL:,}", lambda: _grown(fleets, sizes), bound=1.5)
+        yield Row(f"memory of the kernel, {large:,} robots, per million flows", "", lambda: _memory(fleets[0]))
+    yield Row(
+        "pairs of source and leak by the kernel",
+        "two scipy searches per source",
+        lambda: _pairs(SMALL, rounds=1 if quick else 3),
+        bound=0.1,
+    )
+
+
+def _grown(fleets: list[Fleet], sizes: tuple[int, int], *, with_edges: bool = False) -> Measured:
+    """Time both fleets.
 
     Raises
     ------
     AssertionError
-        If the small fleet's answer is not that of full sweeps, or pairs are not those of the searches.
+        If the small fleet's answer is not that of full sweeps.
     """
-    yield from _growth(LARGE // 10 if quick else LARGE)
-    yield from _pairs(SMALL, rounds=1 if quick else 3)
-
-
-def _growth(large: int) -> Iterator[Line]:
-    fleets = [_in_order(fleet(robots, labelled=robots, deriving=2 * robots)) for robots in (large, SMALL)]
     edges = [_edges(some) for some in fleets]
     for found, expected in zip(_fixpoint(edges[1], fleets[1]), full_sweeps(fleets[1]), strict=True):
         assert np.array_equal(found, expected), "the fixpoint differs from the full sweeps"
     # The small one several times in a row, or chance would decide.
-    again = (1, large // SMALL // 5)
-    count = (large, SMALL * again[1])
-    seconds = side_by_side(
-        3, *(lambda i=i: [_fixpoint(_edges(fleets[i]), fleets[i]) for _ in range(again[i])] for i in (0, 1))
-    )
+    again = (1, max(1, sizes[0] // SMALL // 5))
+
+    def side(i: int) -> None:
+        for _ in range(again[i]):
+            _fixpoint(_edges(fleets[i]) if with_edges else edges[i], fleets[i])
+
+    seconds = side_by_side(3, lambda: side(0), lambda: side(1))
     size = f"{fleets[0].count:,} elements, {len(fleets[0].sources):,} flows in arrays, every robot another"
-    what = f"(b) per robot: {large:,} that differ / {SMALL:,}, by the kernel"
-    yield per_robot(what, seconds, count, bound=1.5, note=f"{size}; edges and fixpoint together")
-    seconds = side_by_side(3, *(lambda i=i: [_fixpoint(edges[i], fleets[i]) for _ in range(again[i])] for i in (0, 1)))
-    yield per_robot("(b) the same, the fixpoint alone", seconds, count, bound=1.5)
+    note = f"{size}; edges and fixpoint together" if with_edges else size
+    return per_robot(seconds, (sizes[0], SMALL * again[1]), note)
+
+
+def _memory(given: Fleet) -> Measured:
+    """Measure what edges and fixpoint allocate at most, the answer included, their input not."""
     tracemalloc.start()
-    _fixpoint(_edges(fleets[0]), fleets[0])
+    _fixpoint(_edges(given), given)
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
-    note = "peak of what edges and fixpoint allocate (numpy under tracemalloc), the answer included, their input not"
-    megabytes = f"{peak / len(fleets[0].sources):.0f} MB"  # bytes per flow are megabytes per million flows
-    yield Line(f"(c) memory of the kernel, {large:,} robots, per million flows", megabytes, note=note)
+    # Bytes per flow are megabytes per million flows.
+    return Measured(f"{peak / len(given.sources):.0f} MB", note="peak of numpy under tracemalloc")
 
 
 def _in_order(some: Fleet) -> Fleet:
@@ -92,10 +107,15 @@ def _fixpoint(edges: Edges, some: Fleet) -> tuple[NDArray[np.uint64], NDArray[np
     return fixpoint(edges, some.emitted, some.keep, some.derivations)
 
 
-def _pairs(robots: int, rounds: int) -> Iterator[Line]:
+def _pairs(robots: int, rounds: int) -> Measured:
     """All pairs of one kind of data: by the kernel, and by two searches of scipy's per source.
 
     Two, since a finding says whether every way goes through another leak: one search stops there, one does not.
+
+    Raises
+    ------
+    AssertionError
+        If pairs are not those of the searches.
     """
     given = fleet(robots)
     random = np.random.default_rng(2)
@@ -106,12 +126,9 @@ def _pairs(robots: int, rounds: int) -> Iterator[Line]:
     searched = _searched(given, sources, leaks, cleaners)
     kernel = _by_kernel(found, kinds)
     assert np.array_equal(kernel, searched()), "pairs differ from what searches find"
-    seconds = side_by_side(rounds, lambda: _by_kernel(found, kinds), searched)
-    size = (
-        f"{robots:,} sources and leaks, {len(kernel):,} pairs, {given.count:,} elements, {len(given.sources):,} flows"
-    )
-    what = "(d) pairs by the kernel / two scipy searches per source"
-    yield compared(what, seconds, bound=0.1, note=f"{size}; making the searches' two matrices is not counted")
+    size = f"{len(kernel):,} pairs, {given.count:,} elements, {len(given.sources):,} flows"
+    note = f"{robots:,} sources and leaks, {size}; making the searches' two matrices is not counted"
+    return timed(rounds, lambda: _by_kernel(found, kinds), searched, note=note)
 
 
 def _labelled(given: Fleet, sources: Indices, leaks: Indices, cleaners: Indices) -> tuple[Spread, Bound]:

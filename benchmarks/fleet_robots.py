@@ -10,9 +10,10 @@ import json
 import multiprocessing
 from dataclasses import replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
-from measure import Line, compared, corpus, per_robot, side_by_side
+from measure import Measured, Row, corpus, per_robot, side_by_side, timed
 from turtlebot import MANY, POLICY, STEP_5, chosen_categories, label_file, six_lists
 
 from rosprivacy.analysis.findings.concerns import concerns
@@ -27,7 +28,7 @@ from rosprivacy.question import Question
 from rosprivacy.settings import Settings
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
     from typing import Any
 
     from rosprivacy.analysis.kernel.spread import Spread
@@ -84,7 +85,7 @@ def _written(file: Path, robots: int, model: dict[str, Any], flows: list[dict[st
 
 def everything(known: Vocabulary) -> Question:
     """What is asked: all that is known."""
-    return Question(Settings(), known, None, None, "")
+    return Question(Settings(include_root="/"), known, None, None, "")
 
 
 def answered(file: str, known: Vocabulary) -> dict[str, Any]:
@@ -113,52 +114,66 @@ def patterns(placed: Placed, known: Vocabulary) -> int:
     return sum(len(some) for some in Groups(placed.likeness)(found, kinds, found.all_bits).values())
 
 
-def compare(folder: Path, *, quick: bool) -> Iterator[Line]:
-    """Time equal robots through the fleet file, and the same each placed as itself.
+def rows(*, quick: bool) -> Iterator[Row]:
+    """Declare what is measured: equal robots through the fleet file, and the same each placed as itself."""
+    known = load()
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        robots = ROBOTS // 10 if quick else ROBOTS
+        yield Row(
+            f"{robots:,} equal TurtleBot3, fleet file to report", "one", lambda: _equal(folder, known, robots), bound=20
+        )
+        sizes = (10_000 if quick else 100_000, 1_000)
+        what = f"per robot, fleet file to report: {sizes[0]:,} equal small ones"
+        yield Row(what, f"{sizes[1]:,}", lambda: _small(folder, known, sizes), bound=1.5)
+        if quick:
+            return
+        large, small = 300, 30
+        placed = [as_themselves(turtlebots(folder, robots), known) for robots in (large, small)]
+        what = f"per TurtleBot3: {large} placed as themselves"
+        yield Row(what, f"{small}", lambda: _placed(sets, placed, known, (large, small)), bound=1.5)
+        what = "the same, with patterns of all pairs, which grow with the square"
+        yield Row(what, f"{small}", lambda: _placed(patterns, placed, known, (large, small)))
+        what = f"memory of {large} TurtleBot3 placed as themselves, per million flows"
+        yield Row(what, "", lambda: _memory(folder, large))
+
+
+def _equal(folder: Path, known: Vocabulary, robots: int) -> Measured:
+    """Time a fleet of equal robots against one of them.
 
     Raises
     ------
     AssertionError
         If the cloud does not join the robots: then it would be a thousand times one robot.
     """
-    known = load()
-    robots = ROBOTS // 10 if quick else ROBOTS
     many, one = turtlebots(folder, robots), turtlebots(folder, 1)
     told = answered(many, known)
     across = [p for p in told["fleet"]["patterns"] if p["across"]]
     assert across[0]["findings"] == robots * (robots - 1), "everything is connected"
-    seconds = side_by_side(3 if quick else 5, lambda: answered(many, known), lambda: answered(one, known))
     size = f"{told['elements']:,} elements, {told['flows']:,} flows, {MANY} kinds; read and analysed once, two for all"
-    yield compared(f"(a) {robots:,} equal TurtleBot3 / one, fleet file to report", seconds, bound=20, note=size)
+    return timed(5, lambda: answered(many, known), lambda: answered(one, known), note=size)
 
-    large, small = (100_000, 1_000) if not quick else (10_000, 1_000)
-    files = [small_robots(folder, robots) for robots in (large, small)]
-    seconds = side_by_side(2 if quick else 3, *(lambda file=file: answered(file, known) for file in files))
-    note = "equal robots, fleet file to report: there is little to do for each, so the cost of each falls"
-    yield per_robot(f"(b) per robot: {large:,} equal / {small:,}", seconds, (large, small), bound=1.5, note=note)
 
-    large, small = (30, 10) if quick else (300, 30)
-    placed = [as_themselves(turtlebots(folder, robots), known) for robots in (large, small)]
+def _small(folder: Path, known: Vocabulary, sizes: tuple[int, int]) -> Measured:
+    large, small = (small_robots(folder, robots) for robots in sizes)
+    seconds = side_by_side(3, lambda: answered(large, known), lambda: answered(small, known))
+    return per_robot(seconds, sizes, "there is little to do for each, so the cost of each falls")
+
+
+def _placed(
+    work: Callable[[Placed, Vocabulary], object], placed: list[Placed], known: Vocabulary, sizes: tuple[int, int]
+) -> Measured:
+    seconds = side_by_side(1, lambda: work(placed[0], known), lambda: work(placed[1], known))
     size = f"{len(placed[0].graph.elements):,} elements, {len(placed[0].graph.flows):,} flows as Python objects"
-    seconds = side_by_side(1, *(lambda some=some: sets(some, known) for some in placed))
-    what = f"(b) per TurtleBot3: {large} placed as themselves / {small}"
-    yield per_robot(what, seconds, (large, small), bound=1.5, note=f"{size}; labels decided, sets at every element")
-    seconds = side_by_side(1, *(lambda some=some: patterns(some, known) for some in placed))
-    note = (
-        f"no bound: pairs are counted one by one ({large * (large - 1):,} for each pattern across), which grows with "
-        "the square of the robots that differ; robots that are alike are counted, not paired"
-    )
-    yield per_robot("(b) the same, with patterns of all pairs", seconds, (large, small), note=note)
-    yield _memory(folder, large)
+    return per_robot(seconds, sizes, size)
 
 
-def _memory(folder: Path, robots: int) -> Line:
+def _memory(folder: Path, robots: int) -> Measured:
     """Peak of a process of its own that does the same."""
     with multiprocessing.get_context("spawn").Pool(1) as pool:
         peak, flows = pool.apply(_peak, (turtlebots(folder, robots),))
-    what = f"(c) memory of {robots} TurtleBot3 placed as themselves, per million flows"
     note = "resident peak of a process of its own, less what it has before it reads: graph, sets and pairs"
-    return Line(what, f"{peak / flows:.0f} MB", note=note)
+    return Measured(f"{peak / flows:.0f} MB", note=note)
 
 
 def _peak(file: str) -> tuple[int, int]:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
-import time
+from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from fleet_robots import small_robots
-from measure import Line, compared, side_by_side
+from measure import NotMeasured, Row, compared, side_by_side, wall
 
 from rosprivacy.fleet_system import answer_fleet
 from rosprivacy.settings import Settings
@@ -16,35 +18,47 @@ from rosprivacy.spark.session import session
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from pathlib import Path
+
+    from measure import Measured
 
     from rosprivacy.result import Result
 
 
-def compare(folder: Path, *, quick: bool) -> Iterator[Line]:
-    """Time both, at several sizes.
+def rows(*, quick: bool) -> Iterator[Row]:
+    """Declare what is measured: both engines, at several sizes.
+
+    Raises
+    ------
+    NotMeasured
+        In the quick form: Spark takes half a minute.
+    """
+    if quick:
+        raise NotMeasured("a server and minutes; in the full form only")
+    with TemporaryDirectory() as folder, session(None) as spark:
+        note = f"{spark.sparkContext.defaultParallelism} cores, the start of Spark not counted"
+        for robots in (100, 500, 2_000):
+            file = different_robots(Path(folder) / f"different{robots}", robots)
+            yield Row(f"{robots:,} robots that differ: Spark on this machine", "in memory", partial(_both, file, note))
+
+
+def _both(file: str, note: str) -> Measured:
+    """Time both.
 
     Raises
     ------
     AssertionError
         If they do not answer alike.
     """
-    begin = time.perf_counter()
-    with session(None) as spark:
-        cores = spark.sparkContext.defaultParallelism
-        yield Line("(e) starting Spark on this machine, once", f"{time.perf_counter() - begin:.1f} s")
-        for robots in (50,) if quick else (100, 500, 2_000):
-            file = different_robots(folder / f"different{robots}", robots)
-            answers: dict[str, Result] = {}
-            seconds = side_by_side(
-                1,
-                lambda: answers.update(spark=run_on_spark(file, Settings())),  # noqa: B023 - called within the round
-                lambda: answers.update(memory=answer_fleet(file, Settings())),  # noqa: B023
-            )
-            ours, other = (answers[engine] for engine in ("spark", "memory"))
-            assert _said(ours) == _said(other), "both engines answer alike"
-            note = f"no bound; {cores} cores, the start above not counted" if robots in (50, 100) else ""
-            yield compared(f"(e) {robots:,} robots that differ: Spark local / in memory", seconds, note=note)
+    answers: dict[str, Result] = {}
+    seconds = side_by_side(
+        1,
+        lambda: answers.update(spark=run_on_spark(file, Settings())),
+        lambda: answers.update(memory=answer_fleet(file, Settings())),
+        clock=wall,  # Java's time is not ours
+    )
+    ours, other = (answers[engine] for engine in ("spark", "memory"))
+    assert _said(ours) == _said(other), "both engines answer alike"
+    return compared(seconds, note)
 
 
 def _said(result: Result) -> object:

@@ -1,12 +1,17 @@
-"""What the benchmarks share: timing side by side, medians, a table of ratios with their bounds.
+"""What the benchmarks share: a row of the table, timing side by side, medians.
 
 Only ratios count: a single number of seconds says more about the machine and its other users than about the program.
-So the sides of a comparison take turns, each round gives one ratio, and the median of these is reported.
+So the sides of a comparison take turns, each round gives one ratio, and the median of these is reported. Seconds are
+those of the processor, in this process and in those that it starts and waits for, so that other load matters little.
+
+A script declares its rows in ``rows(quick=…)``, a generator. What a row needs is made ready before it, and its
+measurement is called before the generator goes on, so that nothing is kept or made ready in vain.
 """
 
 from __future__ import annotations
 
 import os
+import resource
 import subprocess
 import sys
 import time
@@ -19,62 +24,69 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
 REPOSITORY = Path(__file__).resolve().parent.parent
-WIDTH = 62
+
+
+class NotMeasured(Exception):  # noqa: N818 - no error
+    """What a benchmark needs is not there, or takes too long for the quick form; its text says which."""
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
-    """One line of the table.
+class Measured:
+    """What one measurement gave.
 
     Attributes
     ----------
-    what
-        Was measured.
-    ours, other
-        Medians, with their unit.
+    ours, against
+        Both sides, with their unit: medians.
     ratio
-        Ours / other, the median over the rounds; None where there is nothing to compare with.
-    bound
-        What the ratio may be at most; None where it is only reported.
-    goal
-        Whether the bound is a goal: to be below it is hoped for and reported, not demanded.
+        Ours / the other; None where there is nothing to compare with.
     note
         What the reader has to know beside it.
     """
 
-    what: str
     ours: str
-    other: str = ""
+    against: str = ""
     ratio: float | None = None
-    bound: float | None = None
-    goal: bool = False
     note: str = ""
 
-    @property
-    def met(self) -> bool:
-        """Whether the bound or goal is reached, or there is none."""
-        return self.ratio is None or self.bound is None or self.ratio <= self.bound
 
-    def text(self) -> str:
-        """Return the line for the table, its note below it."""
-        ratio = "" if self.ratio is None else f"{self.ratio:.3g}"
-        bound = "" if self.bound is None else f"{'goal' if self.goal else 'at most'} {self.bound:g}"
-        verdict = "" if self.bound is None else "met" if self.met else "not met" if self.goal else "MISSED"
-        columns = f"{self.what:<{WIDTH}} {self.ours:>12} {self.other:>12} {ratio:>8}  {bound:<11} {verdict}".rstrip()
-        return f"{columns}\n    {self.note}" if self.note else columns
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One row of the table.
+
+    Attributes
+    ----------
+    ours, against
+        What is compared with what.
+    measure
+        Measures it; called again where the bound was missed.
+    bound
+        What the ratio may be at most; None where it is only reported.
+    goal
+        Whether the bound is a goal: to be below it is hoped for and reported, not demanded.
+    """
+
+    ours: str
+    against: str
+    measure: Callable[[], Measured]
+    bound: float | None = None
+    goal: bool = False
 
 
-def print_header() -> None:
-    print(f"{'median':<{WIDTH}} {'ours':>12} {'other':>12} {'ratio':>8}  bound")
+def processor() -> float:
+    """Return the processor's seconds so far, of this process and of those that it has waited for."""
+    used = (resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    return sum(one.ru_utime + one.ru_stime for one in used)
 
 
-def print_line(line: Line) -> Line:
-    """Print at once, since the whole run takes minutes, and hand the line back."""
-    print(line.text(), flush=True)
-    return line
+def wall() -> float:
+    """Return the time, for what a server does that nobody waits for."""
+    return time.perf_counter()
 
 
-def side_by_side(rounds: int, *sides: Callable[[], object]) -> list[list[float]]:
+def side_by_side(
+    rounds: int, *sides: Callable[[], object], clock: Callable[[], float] = processor
+) -> list[list[float]]:
     """Return the seconds of each side in each round; they take turns, and each round another one begins.
 
     The first round warms files and caches up and does not count.
@@ -83,38 +95,41 @@ def side_by_side(rounds: int, *sides: Callable[[], object]) -> list[list[float]]
     for number in range(-1, rounds):
         for shift in range(len(sides)):
             side = (number + shift) % len(sides)
-            begin = time.perf_counter()
+            begin = clock()
             sides[side]()
             if number >= 0:
-                seconds[side][number] = time.perf_counter() - begin
+                seconds[side][number] = clock() - begin
     return seconds
 
 
-def compared(
-    what: str, seconds: Sequence[Sequence[float]], bound: float | None = None, *, goal: bool = False, note: str = ""
-) -> Line:
-    """Return the line for our seconds and the other side's, round by round; its ratio is the median of the rounds'."""
+def compared(seconds: Sequence[Sequence[float]], note: str = "") -> Measured:
+    """Compare our seconds with the other side's, round by round; the ratio is the median of the rounds'."""
     ours, other = seconds
     ratio = median(a / b for a, b in zip(ours, other, strict=True))
-    return Line(what, _shown(ours), _shown(other), ratio, bound, goal=goal, note=note)
+    return Measured(shown(ours), shown(other), ratio, note)
 
 
-def per_robot(
-    what: str,
-    seconds: Sequence[Sequence[float]],
-    robots: tuple[int, int],
-    bound: float | None = None,
+def timed(
+    rounds: int,
+    ours: Callable[[], object],
+    against: Callable[[], object],
     *,
+    clock: Callable[[], float] = processor,
     note: str = "",
-) -> Line:
-    """Return the line for what one robot costs in a large fleet and in a small one, round by round."""
+) -> Measured:
+    """Time both sides in turns and compare them."""
+    return compared(side_by_side(rounds, ours, against, clock=clock), note)
+
+
+def per_robot(seconds: Sequence[Sequence[float]], robots: tuple[int, int], note: str = "") -> Measured:
+    """Compare what one robot costs in a large fleet and in a small one, round by round."""
     each = [[one / count for one in some] for some, count in zip(seconds, robots, strict=True)]
     ratio = median(a / b for a, b in zip(*each, strict=True))
     ours, other = (f"{median(some) * 1e6:,.0f} us" for some in each)
-    return Line(what, ours, other, ratio, bound, note=note)
+    return Measured(ours, other, ratio, note)
 
 
-def _shown(seconds: Sequence[float]) -> str:
+def shown(seconds: Sequence[float]) -> str:
     """Return the median of some seconds, for people."""
     middle = median(seconds)
     return f"{middle * 1000:.1f} ms" if middle < 1 else f"{middle:.2f} s"
@@ -144,10 +159,10 @@ def corpus() -> Path:
 
     Raises
     ------
-    SystemExit
+    NotMeasured
         If it is not there.
     """
     folder = Path(os.environ.get("ROSPRIVACY_CORPUS", REPOSITORY.parent / "shared" / "corpus"))
     if not folder.is_dir():
-        sys.exit(f"{folder}: no corpus; set ROSPRIVACY_CORPUS to its folder")
+        raise NotMeasured(f"no corpus at {folder}; set ROSPRIVACY_CORPUS")
     return folder.resolve()

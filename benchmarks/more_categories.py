@@ -1,4 +1,4 @@
-"""The whole command with more kinds of data than the ontology has, for ``analyze.py``.
+"""The whole command with more kinds of data than the ontology has, for ``turtlebot.py``.
 
     python benchmarks/more_categories.py COUNT analyze …
 

@@ -2,7 +2,7 @@
 
     python benchmarks/paper_method.py POLICY CATEGORIZATION.json
 
-The measure for ``analyze.py``. Written from the paper, sections II-A and II-B, and not from its program; where that is
+The measure for ``turtlebot.py``. Written from the paper, sections II-A and II-B, not from its program; where that is
 known to be wrong or slow for no reason the better way is taken, since the comparison shall not live on that:
 ``~`` is expanded, nodes and channels have names of their own, and what no source reaches is left out before paths are
 searched. What makes the method is kept: a service or action is one vertex that data passes both ways, an

@@ -1,7 +1,5 @@
 """Pictures: a system of the size of Autoware, whole, and every finding of it by itself.
 
-    python benchmarks/pictures.py
-
 The system is made up: 1,900 elements besides the standard channels, in modules along a pipeline, as in a car that
 drives itself.
 """
@@ -16,13 +14,13 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
-from measure import Line, print_header, print_line, run
+from measure import Measured, NotMeasured, Row, run
 
 import rosprivacy
 from rosprivacy.report.page.inline import pictures_of
 from rosprivacy.report.pictures.layout import drawn
 from rosprivacy.report.pictures.narrow import folded
-from rosprivacy.report.pictures.views import PER_BOX, FindingViews, bounded, privacy_view, ros_view
+from rosprivacy.report.pictures.views import PER_BOX, FindingViews, bounded, ros_view
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -92,28 +90,43 @@ def _labels(nodes: list[str]) -> str:
     return "\n".join(["labels: 1", "nodes:", *rows, ""])
 
 
-def lines(folder: Path) -> Iterator[Line]:
-    """Measure each promise once: the longest of many counts where there are many."""
-    policy, labels = write_system(folder)
-    result = rosprivacy.analyze([policy], [labels])
-    analysis = result.analysis
-    whole = ros_view(analysis)
-    size = f"{len(whole.boxes):,} elements, {len(whole.lines):,} lines, {len(analysis.findings)} findings"
-    command = [sys.executable, "-m", "rosprivacy", "graph", "--all", policy, "--labels", labels]
-    for show in ("ros", "privacy"):
-        for options in ((), ("--fold", "--cluster", "namespace")):
-            output = folder / f"{show}.svg"
-            took = _seconds(lambda: run(*command, "--show", show, *options, "--output", output))  # noqa: B023 - at once
-            yield _line(f"rosprivacy graph --show {' '.join((show, *options))}, SVG", took, WHOLE, size)
-            size = ""
-    each = [_seconds(partial(_one, analysis, finding)) for finding in analysis.findings]
-    note = f"the slowest of {len(each)}, of up to {MOST} elements, with the start of Graphviz"
-    yield _line("the privacy view of one finding, SVG", max(each), ONE, note)
+def rows(*, quick: bool) -> Iterator[Row]:
+    """Declare what is measured: each promise once, the longest of many counts where there are many.
+
+    Raises
+    ------
+    NotMeasured
+        In the quick form.
+    """
+    if quick:
+        raise NotMeasured("minutes; in the full form only")
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        policy, labels = write_system(folder)
+        analysis = rosprivacy.analyze([policy], [labels]).analysis
+        whole = ros_view(analysis)
+        size = f"{len(whole.boxes):,} elements, {len(whole.lines):,} lines, {len(analysis.findings)} findings"
+        command = [sys.executable, "-m", "rosprivacy", "graph", "--all", policy, "--labels", labels]
+        for show in ("ros", "privacy"):
+            for options in ((), ("--fold", "--cluster", "namespace")):
+                asked = [*command, "--show", show, *options, "--output", folder / f"{show}.svg"]
+                what = f"rosprivacy graph --show {' '.join((show, *options))}, SVG"
+                yield Row(what, f"{WHOLE:g} s", partial(_within, partial(run, *asked), WHOLE, size), bound=1)
+        yield Row("the privacy view of one finding, SVG", f"{ONE:g} s", lambda: _each(analysis), bound=1)
+        what = "the picture of one finding for a report, on average"
+        yield Row(what, f"{ONE:g} s", lambda: _for_a_report(analysis), bound=1)
+
+
+def _each(analysis: Analysis) -> Measured:
+    slowest = max(_seconds(partial(_one, analysis, finding)) for finding in analysis.findings)
+    note = f"the slowest of {len(analysis.findings)}, of up to {MOST} elements, with the start of Graphviz"
+    return _against(slowest, ONE, note)
+
+
+def _for_a_report(analysis: Analysis) -> Measured:
     made: list[int] = []
     took = _seconds(lambda: made.extend(len(one.svg) for one in pictures_of(analysis, analysis.findings) if one))
-    note = f"{max(made) / 1000:.0f} kB the largest; all one after the other"
-    yield _line("the picture of one finding for a report, on average", took / len(made), ONE, note)
-    yield Line("boxes of the privacy view, folded", f"{len(folded(privacy_view(analysis)).boxes):,}")
+    return _against(took / len(made), ONE, f"{max(made) / 1000:.0f} kB the largest; all one after the other")
 
 
 def _one(analysis: Analysis, finding: Finding) -> None:
@@ -126,17 +139,9 @@ def _seconds(what: Callable[[], object]) -> float:
     return time.perf_counter() - begin
 
 
-def _line(what: str, seconds: float, limit: float, note: str) -> Line:
-    return Line(what, f"{seconds:.2f} s", f"{limit:g} s", seconds / limit, 1.0, note=note)
+def _within(what: Callable[[], object], limit: float, note: str) -> Measured:
+    return _against(_seconds(what), limit, note)
 
 
-def main() -> int:
-    """Print the table; return the exit code."""
-    print_header()
-    with TemporaryDirectory() as folder:
-        measured = [print_line(line) for line in lines(Path(folder))]
-    return 1 if any(not line.met for line in measured) else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+def _against(seconds: float, limit: float, note: str) -> Measured:
+    return Measured(f"{seconds:.2f} s", f"{limit:g} s", seconds / limit, note)

@@ -1,7 +1,5 @@
 """The report: its size, how long Chromium takes to open it, and whether the time to make it grows with the findings.
 
-    python benchmarks/report.py [--quick]
-
 The systems are made up: stations of a plant, each with cameras, microphones and trackers, a switch that nobody has
 reviewed, filters, and places that let data out, so that a finding has several ways. Chromium and chromedriver are
 needed.
@@ -9,15 +7,15 @@ needed.
 
 from __future__ import annotations
 
-import argparse
 import sys
 import time
+from functools import partial
 from pathlib import Path
 from statistics import median
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
-from measure import REPOSITORY, Line, compared, print_header, print_line, side_by_side
+from measure import REPOSITORY, Measured, NotMeasured, Row, shown, timed
 
 import rosprivacy
 from rosprivacy.report.page.figures import figures
@@ -30,7 +28,7 @@ if TYPE_CHECKING:
     from rosprivacy.result import Result
 
 MOST_BYTES, MOST_SECONDS = 10 * 10**6, 3.0
-SIZES = (250, 500, 1000)  # findings
+SIZES, FEW = (250, 500, 1000), (50, 100, 200)  # findings
 GROWTH = 2.3  # of the time, at most, for twice the findings
 KINDS = ("Video", "Voice", "PersonTrack", "FaceTemplate", "Location")
 SENSORS = LEAKS = 5
@@ -76,29 +74,46 @@ def made(result: Result) -> str:
     return html(told, figures(result.analysis, told))
 
 
-def lines(folder: Path, *, quick: bool) -> Iterator[Line]:
-    """Measure."""
-    results = []
-    for size in SIZES:
-        policy, labels = write_system(folder, size)
-        results.append(rosprivacy.analyze([policy], [labels]))
-        found = len(results[-1].analysis.findings)
-        if found != size:
-            sys.exit(f"{found} findings, not {size}: the system is not what it should be")
-    page = folder / "report.html"
-    text = made(results[1])
-    page.write_text(text, "utf-8")
-    bytes_, pictures = page.stat().st_size, text.count("<figure")
+def rows(*, quick: bool) -> Iterator[Row]:
+    """Declare what is measured."""
+    sizes = FEW if quick else SIZES
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        results = [_analysed(folder, size) for size in sizes]
+        for before, after in ((0, 1), (1, 2)):
+            ours = f"making a report of {sizes[after]} findings"
+            some = results[after], results[before]
+            yield Row(ours, f"of {sizes[before]}", partial(_made, *some, 3 if quick else 5), bound=GROWTH)
+        if quick:
+            return
+        page = folder / "report.html"
+        page.write_text(made(results[1]), "utf-8")
+        yield Row(f"a report of {sizes[1]} findings", f"{MOST_BYTES / 10**6:g} MB", lambda: _size(page), bound=1)
+        yield Row("it is open in Chromium", f"{MOST_SECONDS:g} s", lambda: _open(page, folder / "profile"), bound=1)
+
+
+def _analysed(folder: Path, size: int) -> Result:
+    policy, labels = write_system(folder, size)
+    result = rosprivacy.analyze([policy], [labels])
+    if len(result.analysis.findings) != size:
+        sys.exit(f"{len(result.analysis.findings)} findings, not {size}: the system is not what it should be")
+    return result
+
+
+def _made(large: Result, small: Result, rounds: int) -> Measured:
+    return timed(rounds, lambda: made(large), lambda: made(small))
+
+
+def _size(page: Path) -> Measured:
+    bytes_, pictures = page.stat().st_size, page.read_text("utf-8").count("<figure")
     note = f"{pictures} pictures, {bytes_ / SIZES[1] / 1000:.1f} kB for each finding"
-    size_line = f"{bytes_ / 10**6:.2f} MB", f"{MOST_BYTES / 10**6:g} MB"
-    yield Line(f"a report of {SIZES[1]} findings", *size_line, bytes_ / MOST_BYTES, 1.0, note=note)
-    opened = _opened(page, folder / "profile", 3 if quick else 9)
+    return Measured(f"{bytes_ / 10**6:.2f} MB", f"{MOST_BYTES / 10**6:g} MB", bytes_ / MOST_BYTES, note)
+
+
+def _open(page: Path, profile: Path) -> Measured:
+    opened = _opened(page, profile, 9)
     note = f"from the call to the first frame after it is loaded; the slowest of {len(opened)}: {max(opened):.2f} s"
-    open_line = f"{median(opened):.2f} s", f"{MOST_SECONDS:g} s"
-    yield Line("it is open in Chromium", *open_line, median(opened) / MOST_SECONDS, 1.0, note=note)
-    small, middle, large = side_by_side(1 if quick else 5, *(lambda one=one: made(one) for one in results))
-    yield compared(f"to make {SIZES[1]} findings / {SIZES[0]}", [middle, small], GROWTH)
-    yield compared(f"to make {SIZES[2]} findings / {SIZES[1]}", [large, middle], GROWTH)
+    return Measured(shown(opened), f"{MOST_SECONDS:g} s", median(opened) / MOST_SECONDS, note)
 
 
 def _opened(page: Path, profile: Path, rounds: int) -> list[float]:
@@ -107,7 +122,7 @@ def _opened(page: Path, profile: Path, rounds: int) -> list[float]:
     from tests.helpers import browser as chrome
 
     if chrome.missing():
-        sys.exit(f"{', '.join(chrome.missing())} missing: apt-get install chromium chromium-driver")
+        raise NotMeasured(f"{', '.join(chrome.missing())} missing: apt-get install chromium chromium-driver")
     seconds = []
     with chrome.chromium(profile) as browser:
         for _ in range(rounds + 1):
@@ -119,18 +134,3 @@ def _opened(page: Path, profile: Path, rounds: int) -> list[float]:
             if len(browser.find_elements("css selector", "article.way")) != SIZES[1]:
                 sys.exit("the page does not show every finding")
     return seconds[1:]
-
-
-def main() -> int:
-    """Print the table; return the exit code."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--quick", action="store_true", help="fewer rounds")
-    quick = parser.parse_args().quick
-    print_header()
-    with TemporaryDirectory() as folder:
-        measured = [print_line(line) for line in lines(Path(folder), quick=quick)]
-    return 1 if any(not line.met for line in measured) else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

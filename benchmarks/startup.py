@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
-from measure import compared, run, side_by_side
+from measure import Row, run, timed
 
 if TYPE_CHECKING:
-    from measure import Line
+    from collections.abc import Iterator
 
 BARE = """\
 from typing import Annotated
@@ -28,19 +29,18 @@ app()
 """
 
 
-def compare(folder: Path, *, quick: bool) -> Line:
-    """Time both sides.
-
-    Parameters
-    ----------
-    folder
-        For the bare program.
-    """
-    bare = folder / "bare.py"
-    bare.write_text(BARE, "utf-8")
-    seconds = side_by_side(
-        7 if quick else 25,
-        lambda: run(Path(sys.executable).parent / "rosprivacy", "--version"),
-        lambda: run(sys.executable, bare, "--version"),
-    )
-    return compared("(e) rosprivacy --version / a bare typer program", seconds, bound=0.3, goal=True)
+def rows(*, quick: bool) -> Iterator[Row]:
+    """Declare what is measured."""
+    with TemporaryDirectory() as folder:
+        bare = Path(folder) / "bare.py"
+        bare.write_text(BARE, "utf-8")
+        command = Path(sys.executable).parent / "rosprivacy"
+        yield Row(
+            "rosprivacy --version",
+            "a bare typer program",
+            lambda: timed(
+                7 if quick else 25, lambda: run(command, "--version"), lambda: run(sys.executable, bare, "--version")
+            ),
+            bound=0.3,
+            goal=True,
+        )

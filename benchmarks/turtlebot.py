@@ -9,18 +9,18 @@ from __future__ import annotations
 
 import json
 import sys
+from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
-from measure import REPOSITORY, compared, corpus, run, run_each, side_by_side
+from measure import REPOSITORY, Row, corpus, run, run_each, timed
 from more_categories import extra_names
 
 from rosprivacy.ontology.vocabulary import load
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from pathlib import Path
-
-    from measure import Line
 
 POLICY = "policies/ros-swg__turtlebot3_demo/policies/tb3_gazebo_policy.xml"
 STEP_5 = "categorizations/JonasWoh__ROS2PrivacyGraph/categorizations/categorization_turtlebot3_step_5.json"
@@ -33,32 +33,35 @@ BENCHMARKS = REPOSITORY / "benchmarks"
 SixLists = dict[str, list[str]]
 
 
-def compare(corpus: Path, folder: Path, *, quick: bool) -> Iterator[Line]:
-    """Time both sides for 1, 3 and 24 kinds of data.
-
-    Parameters
-    ----------
-    folder
-        For label files and reports.
-    """
-    base = json.loads((corpus / STEP_5).read_text("utf-8"))
-    policy = corpus / POLICY
-    first: list[list[float]] = []
+def rows(*, quick: bool) -> Iterator[Row]:
+    """Declare what is measured: both sides for 1, 3 and 24 kinds of data."""
+    policies = corpus()
+    base = json.loads((policies / STEP_5).read_text("utf-8"))
+    policy = policies / POLICY
     for count in (1, 3, MANY):
-        names, extra = chosen_categories(count)
-        lists = {name: six_lists(base, number) for number, name in enumerate(names)}
-        ours = _ours(policy, folder, lists, extra)
-        papers = [_paper(policy, folder, name, one) for name, one in lists.items()]
-        rounds = (2 if quick else 5) if count == MANY else (5 if quick else 15)
-        seconds = side_by_side(rounds, lambda: run(*ours), lambda: run_each(papers))  # noqa: B023 - called within the round
-        _check(folder, names)
-        what = f"(a) {count} kind{'s' if count > 1 else ''} of data: our command / the paper's, one by one"
-        note = f"{extra} of the {count} kinds are made up in memory: the ontology has too few" if extra else ""
-        yield compared(what, seconds, note=note)
-        if count == MANY:
-            first = side_by_side(rounds * 4, lambda: run(*ours), lambda: run(*papers[0]))  # noqa: B023 - as above
-    what = f"(a) {MANY} kinds with our command / ONE with the paper's"
-    yield compared(what, first, bound=1, goal=True, note=START)
+        with TemporaryDirectory() as name:
+            folder = Path(name)
+            names, extra = chosen_categories(count)
+            lists = {name: six_lists(base, number) for number, name in enumerate(names)}
+            ours = _ours(policy, folder, lists, extra)
+            papers = [_paper(policy, folder, name, one) for name, one in lists.items()]
+            rounds = (2 if quick else 5) if count == MANY else (5 if quick else 15)
+            run(*ours)
+            _check(folder, names)
+            note = f"{extra} of the {count} kinds are made up in memory: the ontology has too few" if extra else ""
+            yield Row(
+                f"the command, {count} kind{'s' if count > 1 else ''} of data, TurtleBot3",
+                "the paper's method for each",
+                partial(timed, rounds, partial(run, *ours), partial(run_each, papers), note=note),
+            )
+            if count == MANY:
+                yield Row(
+                    f"the command, {MANY} kinds of data, TurtleBot3",
+                    "the paper's method for ONE",
+                    partial(timed, rounds * 4, partial(run, *ours), partial(run, *papers[0]), note=START),
+                    bound=1,
+                    goal=True,
+                )
 
 
 def chosen_categories(count: int) -> tuple[list[str], int]:

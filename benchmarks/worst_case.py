@@ -1,6 +1,6 @@
 """What a hostile input costs, byte for byte beside a real policy: CPU seconds and peak memory of a fresh process.
 
-``python benchmarks/worst_case.py``. Each shape is made to press on one reader or one step of the analysis, and is
+Each shape is made to press on one reader or one step of the analysis, and is
 analysed by the command itself. From its CPU time and its memory those of a tiny policy are taken away, which are the
 start of the program; what is left, for each kB of input, is divided by the same of the largest public policy, in the
 same run. A shape with exit code 2 met a bound: its cost does not grow with the input any more.
@@ -10,20 +10,20 @@ from __future__ import annotations
 
 import os
 import sys
-import tempfile
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from random import Random
 from statistics import median
 from subprocess import DEVNULL, Popen
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
-from measure import corpus
+from measure import Measured, NotMeasured, Row, corpus
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
-WIDTH = 46
 ROUNDS = 3  # of the real policy and of the tiny one
 FLEET = "fleet: 1\nmodels: {m: {policies: p.xml}}\ngroups:\n"
 XI = 'xmlns:xi="http://www.w3.org/2001/XInclude"'
@@ -39,29 +39,33 @@ class Cost:
     code: int
 
 
-def main() -> None:
-    """Print a line for each shape."""
-    with tempfile.TemporaryDirectory() as folder:
-        tiny = middle(
-            [run(Path(folder), {"p.xml": policy(node("a", topics("publish", ["t"])))}) for _ in range(ROUNDS)]
-        )
-        file = largest()
-        plain = middle([run(Path(folder), {"p.xml": file.read_text("utf-8")}) for _ in range(ROUNDS)])
-        print(f"{'input':<{WIDTH}} {'kB':>7} {'s':>7} {'MB':>6} {'s/kB':>7} {'MB/kB':>7}  exit")
-        print_row(f"a real policy ({file.name}), which is 1", plain, tiny, plain)
-        for name, (files, *arguments) in shapes().items():
-            print_row(name, run(Path(folder), files, *arguments), tiny, plain)
+def rows(*, quick: bool) -> Iterator[Row]:
+    """Declare what is measured.
+
+    Raises
+    ------
+    NotMeasured
+        In the quick form: none of these has a bound.
+    """
+    if quick:
+        raise NotMeasured("no bounds; in the full form only")
+    file = largest()
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        tiny = middle([run(folder, {"p.xml": policy(node("a", topics("publish", ["t"])))}) for _ in range(ROUNDS)])
+        plain = middle([run(folder, {"p.xml": file.read_text("utf-8")}) for _ in range(ROUNDS)])
+        for shape, (files, *arguments) in shapes().items():
+            yield Row(f"per kB: {shape}", file.name, partial(_beside, folder, files, arguments, tiny, plain))
 
 
-def print_row(name: str, cost: Cost, tiny: Cost, plain: Cost) -> None:
-    """Print seconds and megabytes beside those of a tiny policy, and for each kB as ratios to a real one."""
-    time, space = cost.seconds - tiny.seconds, cost.megabytes - tiny.megabytes
-    ratios = [
-        (value / cost.size) / (beside / plain.size)
-        for value, beside in ((time, plain.seconds - tiny.seconds), (space, plain.megabytes - tiny.megabytes))
-    ]
-    text = f"{name:<{WIDTH}} {cost.size / 1e3:>7,.1f} {time:>7.2f} {space:>6,.0f} {ratios[0]:>7,.1f} {ratios[1]:>7,.1f}"
-    print(f"{text}  {cost.code}", flush=True)
+def _beside(folder: Path, files: Mapping[str, str], arguments: list[str], tiny: Cost, plain: Cost) -> Measured:
+    """Compare what each kB of an input costs with what each of a real one does, beyond what a tiny one costs."""
+    cost = run(folder, files, *arguments)
+    each = [(one.seconds - tiny.seconds) / one.size for one in (cost, plain)]
+    space = [(one.megabytes - tiny.megabytes) / one.size for one in (cost, plain)]
+    size = f"{cost.size / 1e3:,.1f} kB, {cost.megabytes - tiny.megabytes:,.0f} MB; memory {space[0] / space[1]:,.1f}"
+    ours, other = (f"{one * 1e6:,.2f} ms" for one in each)
+    return Measured(ours, other, each[0] / each[1], f"{size}; exit code {cost.code}")
 
 
 def run(folder: Path, files: Mapping[str, str], *arguments: str) -> Cost:
@@ -212,7 +216,3 @@ def mesh(number: int) -> dict[str, str]:
     nodes = [node(f"n{i}", topics("publish", some()), topics("subscribe", some())) for i in range(number)]
     labels = "labels: 1\nnodes:\n  /n0: {source: [Video]}\n  /n1: {source: [Voice]}\n  /n1??: {leak: [Video, Voice]}\n"
     return {"p.xml": policy(*nodes), "l.yaml": labels}
-
-
-if __name__ == "__main__":
-    main()

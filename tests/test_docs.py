@@ -18,7 +18,7 @@ import typer
 
 import rosprivacy
 from rosprivacy.analysis.bounds import BOUNDS, WHAT
-from rosprivacy.cli.app import app
+from rosprivacy.cli.app import program
 from rosprivacy.cli.exit_code import CODES
 from rosprivacy.cli.inputs import WRITTEN
 from rosprivacy.cli.options import ASKED, READ
@@ -78,7 +78,7 @@ system known to us meets one. The input itself is bounded by `--max-bytes`, the 
 
 def command_line() -> str:
     """The options of every command, as the program knows them."""
-    group: Any = typer.main.get_command(app)
+    group: Any = typer.main.get_command(program())
     text = HEAD + EXIT_CODES + matrix(group.commands) + bounds()
     for name, command in group.commands.items():
         if hasattr(command, "commands"):

@@ -51,7 +51,7 @@ def first_way(system: Written) -> Result:
 def saved_way(policy: str) -> Result:
     """A graph that an earlier run has saved."""
     result = rosprivacy.analyze(policy)
-    Path("g.json").write_text(as_text(as_dict(result.policies, result.diagnostics)), "utf-8")
+    Path("g.json").write_text(as_text(as_dict(result.policies, result.diagnostics, result.types)), "utf-8")
     return rosprivacy.analyze(labels="p.yaml", add="g.json", decisions=DECISIONS)
 
 

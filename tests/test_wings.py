@@ -24,6 +24,7 @@ SAME_PART = {
         "report/terminal",
     },  # the answer about one system: keys, document, lines
     "answer": {"analysis", "report"},  # the answer, and the one that every format is made of
+    "bags": {"", "report/contract"},  # the answer about bags, and its keys
     "categories": {"cli", "report/terminal"},  # the command, and what it prints
     "decisions": {"analysis", "report/document"},  # what they mean, and how the document tells them
     "findings": {"analysis/findings", "report/rdf"},  # findings, and findings as RDF

@@ -14,8 +14,6 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from rosprivacy.analysis.answer import Analysis, Carried, Finding, Step, Verdict
 from rosprivacy.analysis.bounds import BOUNDS, Tally
 from rosprivacy.analysis.decisions import Case
@@ -262,8 +260,9 @@ def _leaks_of(spread: Spread, i: int, accepted: Mapping[int, int]) -> dict[int, 
 def _shown_forms(free: Search, whole: Search, leak: int, forms: tuple[int, int]) -> list[tuple[Search, int]]:
     """The search and the form to show, the best first (rule S10)."""
     each = [(reach, bit) for reach in (free, whole) for bit in forms]
-    there = np.array([present(reach, leak) >> bit & 1 for reach, bit in each], bool)
-    return [one for one, shown in zip(each, shown_arrivals(*there), strict=True) if shown]
+    plain, hidden, plain_through, hidden_through = (present(reach, leak) >> bit & 1 for reach, bit in each)
+    flags = shown_arrivals(plain, hidden, plain_through, hidden_through)
+    return [one for one, shown in zip(each, flags, strict=True) if shown]
 
 
 def _beside(finding: Finding, options: Options) -> Finding:

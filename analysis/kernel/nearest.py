@@ -6,7 +6,7 @@ In: a ``Spread`` and the places, as for ``backward``. Out: ``Nearest``, which is
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.kernel.backward import NOTHING_OPENED, Opened
@@ -34,6 +34,8 @@ class Nearest:
         Vertex -> (target, bits that pass the flow), but for meetings.
     meetings
         Vertex -> its meetings, of which it is written.
+    walked
+        Vertex, bits that arrive there -> the nearest place, as walked so far: many walks go on along the same way.
     """
 
     spread: Spread
@@ -41,6 +43,7 @@ class Nearest:
     levels: Mapping[int, list[tuple[int, int]]]
     leaving: Mapping[int, list[tuple[int, int]]]
     meetings: Mapping[int, list[Meeting]]
+    walked: dict[tuple[int, int], int] = field(default_factory=dict)
 
     @classmethod
     def of(cls, spread: Spread, places: Mapping[int, int], opened: Opened = NOTHING_OPENED) -> Nearest:
@@ -89,10 +92,14 @@ class Nearest:
         return self._walk([(vertex, bits)])
 
     def _walk(self, arriving: list[tuple[int, int]]) -> int:
+        passed: list[tuple[int, int]] = []
         while True:
             level, vertex, bits = min((self._level(v, bits) for v, bits in arriving), default=(FAR, -1, 0))
-            if level in (0, FAR):
-                return vertex if level == 0 else -1
+            if level in (0, FAR) or (vertex, bits) in self.walked:
+                place = self.walked.get((vertex, bits), vertex if level == 0 else -1)
+                self.walked.update(dict.fromkeys(passed, place))
+                return place
+            passed.append((vertex, bits))
             leaving = onward(self.spread, vertex, bits, self.opened.elements.get(vertex, 0))
             arriving = self._after(vertex, leaving)
 

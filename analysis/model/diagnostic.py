@@ -20,6 +20,12 @@ FALLBACK_TAKEN = "fallback-taken"
 EMPTY_GROUP = "empty-group"
 REFUSED_NAME = "refused-name"
 LEGAL_BASIS = "legal-basis"  # one that is stated lacks something that the law asks for
+OBSERVED = "observed"  # from when to when, by which doors: what was not seen proves nothing (rule S16)
+ENCLAVES_MADE_UP = "enclaves-made-up"
+FOLDED_NAMES = "folded-names"
+OBSERVATION_GAP = "observation-gap"  # what an observation is known to miss: the verdict is undetermined at best (S16)
+SEEN_ALTHOUGH_DENIED = "seen-although-denied"
+ASSUMED = (OBSERVED, ENCLAVES_MADE_UP, FOLDED_NAMES)  # notices that stand under Assumed
 NO_SOURCE = "no-source"  # what 'no leak found' lacks, so that it says nothing (rules S11, S12)
 GOES_NOWHERE = "goes-nowhere"
 NO_LEAK_NAMED = "no-leak-named"
@@ -62,11 +68,11 @@ class Diagnostic:
 
 
 def unread(diagnostics: Iterable[Diagnostic]) -> tuple[Place, ...]:
-    """Return where grants stand that were not read (rule S11), sorted.
+    """Return where grants stand that were not read, or where an observation has a gap (rules S11, S16), sorted.
 
     >>> said = [Diagnostic(Place(file, 1), Severity.WARNING, "", UNREAD_FILE) for file in ("b.xml", "a.xml")]
     >>> list(map(str, unread([*said, Diagnostic(Place("c.xml", 1), Severity.NOTICE, "")])))
     ['a.xml:1', 'b.xml:1']
     """
-    places = {said.place for said in diagnostics if said.code == UNREAD_FILE}
+    places = {said.place for said in diagnostics if said.code in (UNREAD_FILE, OBSERVATION_GAP)}
     return tuple(sorted(places, key=lambda place: (place.file, place.line)))

@@ -19,6 +19,21 @@ class Profile:
 
 
 @dataclass(frozen=True, slots=True)
+class Seen:
+    """When a grant was seen in use, and by which doors to the running system (rule S16).
+
+    Attributes
+    ----------
+    first, last
+        Such as ``2026-11-22T10:00:00Z``.
+    """
+
+    by: tuple[str, ...]
+    first: str
+    last: str
+
+
+@dataclass(frozen=True, slots=True)
 class Grant:
     """What one policy line allows or denies to one profile.
 
@@ -39,6 +54,8 @@ class Grant:
         read it there. An ALLOW is taken all the same, a DENY takes nothing away (rule S5).
     absolute
         Whether the policy writes the name so: then it stays as it is under a namespace that is pushed (rule S1).
+    seen
+        When it was seen in use, of an observed policy (rule S16).
     """
 
     allow: bool
@@ -51,6 +68,7 @@ class Grant:
     policy: str = ""
     dead: bool = False
     absolute: bool = False
+    seen: Seen | None = None
 
 
 @dataclass(frozen=True, slots=True)

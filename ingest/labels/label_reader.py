@@ -36,6 +36,7 @@ from rosprivacy.ingest.labels.stated_processing import (
     read_system,
     with_transfer,
 )
+from rosprivacy.ingest.labels.stated_types import read_types
 from rosprivacy.ingest.labels.surroundings import read_contexts, read_country
 
 if TYPE_CHECKING:
@@ -66,7 +67,7 @@ NODE_KEYS = (
     "author",
 )
 SAYS_NOTHING = ("subjects", "context", *OF_ELEMENT, "note", "author")  # of what data does
-CHANNEL_KEYS = ("only", "never", "note", "author")
+CHANNEL_KEYS = ("only", "never", "types", "note", "author")
 FLOW_KEYS = ("from", "to", "only", "never", "note", "author")
 OUTSIDE = ("elements", "limits")
 SURROUNDINGS = ("context", "country")  # of a system
@@ -172,7 +173,9 @@ class LabelReader(NameReader):
             subjects = self._subjects(label) if of_node else ()
             processing = self._processing(label, place) if of_node else UNSTATED
             contexts = self._contexts(label) if of_node else ()
-            self.entries.append(Entry(SECTIONS[section], name, place, statements, subjects, processing, rank, contexts))
+            types = () if of_node else read_types(self, label, SECTIONS[section])
+            about = subjects, processing, rank, contexts, types
+            self.entries.append(Entry(SECTIONS[section], name, place, statements, *about))
 
     def _said(self, label: Value, statements: Iterable[Statement], how: str = NAME) -> tuple[Statement, ...]:
         """Statements of one entry, with how it names, its reason, and who says it: its author, or the file's."""
@@ -303,7 +306,7 @@ class LabelReader(NameReader):
             return
         if label.kind != "map":
             what = f"label {shown(label.text or label.kind)!r} on a channel"
-            self.problem(place.line, what, "write mundane, sensitive, {only: […]} or {never: […]}")
+            self.problem(place.line, what, "write mundane, sensitive, {only: […]}, {never: […]} or {types: […]}")
             return
         yield from self._restrictions(label, CHANNEL_KEYS, rank)
 
@@ -372,3 +375,5 @@ def check_mundane(reader: LabelReader, top: Value) -> None:
             if statement.role != "mundane":
                 what = f"{shown(entry.name)!r} is {statement.role} in a file of standard channels"
                 reader.problem(statement.place.line, what, hint)
+        for one in entry.types[:1]:
+            reader.problem(one.place.line, f"types of {shown(entry.name)!r} in a file of standard channels", hint)

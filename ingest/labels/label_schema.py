@@ -22,6 +22,12 @@ if TYPE_CHECKING:
 _TEXT = {"type": "string", "pattern": "\\S", "maxLength": LONGEST}
 BASIS = {"type": ["string", "integer"], "description": "Such as 6(1)(f), 9(2)(h), 46(2)(c)."}
 END = {"type": "string", "minLength": 1}
+TYPES = {
+    "type": "array",
+    "minItems": 1,
+    "items": {"type": "string", "pattern": "^[A-Za-z]\\w*/(msg|srv|action)/[A-Za-z]\\w*$"},
+    "description": "Message types of all who write it, such as sensor_msgs/msg/Image.",
+}
 END_OF_KIND = {
     "type": "object",
     "additionalProperties": False,
@@ -152,7 +158,7 @@ def _definitions(categories: list[Category]) -> dict[str, Any]:
             "anyOf": [
                 {"type": "null"},
                 {"enum": ["mundane", "sensitive"]},
-                _object({**restrictions, **said}),
+                _object({**restrictions, "types": TYPES, **said}),
             ]
         },
         "duration": {"type": "string", "pattern": "^P", "description": "ISO 8601, such as P30D."},

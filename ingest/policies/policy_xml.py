@@ -18,12 +18,22 @@ from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import InputError, InputErrors, PolicyError, shown
 from rosprivacy.analysis.model import DEAD_DENY, EMPTY_GROUP, Diagnostic, Grant, Place, Policy, Profile, Severity
 from rosprivacy.ingest.policies.names import resolve
+from rosprivacy.ingest.policies.observed_metadata import (
+    diagnostics_of,
+    observed_in,
+    observed_of,
+    seen_of,
+    together,
+    unreadable,
+)
 from rosprivacy.ingest.policies.xinclude import MAX_BYTES, Documents, Item, has_text
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator
+    from collections.abc import Collection, Iterator, Mapping
 
     from rosprivacy.analysis.bounds import Bounds
+    from rosprivacy.analysis.model import Seen
+    from rosprivacy.ingest.policies.observed_metadata import Key, Observed
 
 VERSIONS = ("0.1.0", "0.2.0")
 ROLES = {
@@ -82,6 +92,7 @@ def read_policy(
     root = documents.open(file)
     reader = _Reader(documents, file, bounds)
     reader.policy(root)
+    reader.observed()
     problems = [*documents.problems, *reader.problems]
     if problems:
         raise InputErrors(problems)
@@ -107,6 +118,8 @@ class _Reader:
     grants: list[Grant] = field(default_factory=list)
     old: bool = False
     namespace: str = ""
+    observations: list[tuple[Place, Observed]] = field(default_factory=list)
+    seen: Mapping[Key, Seen] = field(default_factory=dict)  # of the profiles that are being read (rule S16)
     first: Place | None = None  # where sros2 has read its fill of this enclave: what follows is dead (rule S5)
 
     def policy(self, root: Item) -> None:
@@ -175,12 +188,34 @@ class _Reader:
             self._profiles(group, path)
             self.first = self.first or group.place
 
+    def observed(self) -> None:
+        """What the observations say that the policy was made of, as one."""
+        if self.observations:
+            whole = together([observed for _, observed in self.observations])
+            self.diagnostics.extend(diagnostics_of(whole, self.observations[0][0]))
+
     def _profiles(self, group: Item, enclave: str | None) -> None:
+        self.seen = self._seen(group)
         profiles = list(self._elements(group, {"profile"}))
         if not profiles:
             self._problem(group.place, "<profiles> is empty", "add a <profile>")
         for profile in profiles:
             self._profile(profile, enclave)
+
+    def _seen(self, group: Item) -> Mapping[Key, Seen]:
+        """When the grants of some profiles were seen, if an observation says so in their metadata."""
+        for child in group.element:
+            observed = observed_in(child) if child.tag == "metadata" else None
+            if observed is not None:
+                place = Place(group.file, observed.sourceline or 0)
+                try:
+                    seen, said = seen_of(observed), observed_of(observed)
+                except ValueError as error:
+                    self.diagnostics.append(unreadable(str(error), place))
+                else:
+                    self.observations.append((place, said))
+                    return seen
+        return {}
 
     def _profile(self, profile: Item, enclave: str | None) -> None:
         self._attributes(profile, {"ns", "node"})
@@ -212,7 +247,10 @@ class _Reader:
             absolute = (item.element.text or "").startswith("/")
             for role, allow in granted:
                 dead = self.first is not None
-                self.grants.append(Grant(allow, role, kind, name, enclave, owned, place, self.file, dead, absolute))
+                seen = self.seen.get((owned, kind, role, name)) if allow and self.seen else None
+                self.grants.append(
+                    Grant(allow, role, kind, name, enclave, owned, place, self.file, dead, absolute, seen)
+                )
                 if dead and not allow:
                     message = f"dead DENY: {role} {name} is not taken away, since sros2 uses the first <profiles> of"
                     message += f" enclave {enclave} only ({self.first}); move it there"

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.model import SPECIAL
 from rosprivacy.analysis.text import fit
 from rosprivacy.report.compare.changes import ASKED, Changes, changes
-from rosprivacy.report.document.analysis import files_not_read, lacking
+from rosprivacy.report.document.analysis import files_not_read, lacking, observation_gaps
 from rosprivacy.report.document.ledger import by_globs
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.finding_order import REVEALS, strength
@@ -266,7 +266,8 @@ def _law(assumptions: Mapping[str, Any], words: Words) -> str:
 def _verdict(index: Index) -> str:
     """The verdict; ``nothing``, ``goes-nowhere`` or ``no-leak-named`` where it lacks grounds (rules S11, S12)."""
     verdict = str(index.document["verdict"])
-    asked = verdict != "undetermined" or index.document["open"] or files_not_read(index.document)
+    unread = files_not_read(index.document) or observation_gaps(index.document)
+    asked = verdict != "undetermined" or index.document["open"] or unread
     followed = index.document["categories"] and asked
     return verdict if followed else lacking(index.document) or "nothing"
 

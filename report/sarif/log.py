@@ -13,7 +13,7 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.legal import strongest_first
-from rosprivacy.analysis.model import NO_LEAK_NAMED, Place, Severity, unread
+from rosprivacy.analysis.model import NO_LEAK_NAMED, OBSERVATION_GAP, UNREAD_FILE, Place, Severity
 from rosprivacy.analysis.text import counted, utf8
 from rosprivacy.report.element_counts import ElementCount, count_elements
 from rosprivacy.report.places import Places, in_a_file, to_review
@@ -25,6 +25,7 @@ from rosprivacy.report.sarif.rules import (
     NO_LEAK,
     NO_VERDICT,
     NOTHING_FOLLOWED,
+    OBSERVATION_GAPS,
     RULES,
     UNREVIEWED,
     descriptors,
@@ -68,7 +69,8 @@ def _log(answer: Answer, root: Path) -> dict[str, Any]:
         said += (*contexts.revealed(finding), *pointed.of_finding(finding.kind))
     taxa = sorted({legal.iri: legal for legal in said}.values(), key=lambda legal: legal.name)
     found = (rule_of(finding.kind) for finding in analysis.findings)
-    not_read = [FILES_NOT_READ] if unread(diagnostics) else []
+    codes = {said.code for said in diagnostics}
+    not_read = [FILES_NOT_READ] if UNREAD_FILE in codes else [OBSERVATION_GAPS] if OBSERVATION_GAP in codes else []
     not_named = [NO_LEAK] if analysis.lacking == NO_LEAK_NAMED else []
     rules = {rule.id: rule for rule in (*RULES, *found, UNREVIEWED, NOTHING_FOLLOWED, *not_named, *not_read)}
     made = Results(

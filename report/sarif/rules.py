@@ -95,6 +95,13 @@ UNREVIEWED = Rule(
     ),
     NONE,
 )
+OBSERVATION_GAPS = Rule(
+    "observation-gaps",
+    "ObservationHasGaps",
+    "An observation is known to miss something: that nothing is found does not say that there is nothing.",
+    "A policy was made of what was seen running, and says itself what was not seen. What that does is not known.",
+    ("Observe again until no gap is left, or name a policy.",),
+)
 FILES_NOT_READ = Rule(
     "files-not-read",
     "PoliciesNotRead",

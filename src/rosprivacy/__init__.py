@@ -31,10 +31,13 @@ if TYPE_CHECKING:
         InputErrors,
         LabelError,
         LimitsError,
+        MiddlewareError,
+        ObservationError,
         OntologyError,
         PolicyError,
         QueryError,
         RosPrivacyError,
+        TypesError,
     )
     from rosprivacy.analysis.model import Element
     from rosprivacy.analysis.modes import View
@@ -58,11 +61,14 @@ __all__ = [
     "LabelError",
     "Labels",
     "LimitsError",
+    "MiddlewareError",
+    "ObservationError",
     "OntologyError",
     "PolicyError",
     "QueryError",
     "Result",
     "RosPrivacyError",
+    "TypesError",
     "Verdict",
     "View",
     "__version__",

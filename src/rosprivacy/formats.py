@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 from rosprivacy.analysis.errors import InputError, shown
 from rosprivacy.clock import source_date, today
 from rosprivacy.report.words import LANGUAGES
+from rosprivacy.terminal_width import terminal_width
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -98,21 +99,22 @@ def written(answer: Answer, name: str, style: Style | None = None) -> str | byte
 
 
 def _text(answer: Answer, style: Style) -> str:
-    from io import StringIO
-
-    from rich.console import Console
-
     from rosprivacy.report.document.whole import document
-    from rosprivacy.report.terminal.analysis import print_report
+    from rosprivacy.report.terminal.analysis import print_report, report_text
     from rosprivacy.report.words.words import Words
 
-    text = StringIO()
-    terminal = style.colour and Console().is_terminal
-    console = Console(file=text, force_terminal=terminal, highlight=False, emoji=False)
-    width = Console().width if terminal else None
-    words = Words(style.language)
-    print_report(console, document(answer), words, verbose=style.verbose, quiet=style.quiet, width=width)
-    return text.getvalue()
+    words, told = Words(style.language), document(answer)
+    width = terminal_width() if style.colour else None
+    if width is not None:
+        from io import StringIO
+
+        from rich.console import Console
+
+        text = StringIO()
+        console = Console(file=text, force_terminal=True, highlight=False, emoji=False)
+        print_report(console, told, words, verbose=style.verbose, quiet=style.quiet, width=width)
+        return text.getvalue()
+    return report_text(told, words, verbose=style.verbose, quiet=style.quiet)
 
 
 def _json(answer: Answer, _: Style) -> str:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 import typer
 
-from rosprivacy.cli.app import app
+from rosprivacy.cli.app import program
 from rosprivacy.cli.inputs import WRITTEN, Inputs
 from rosprivacy.cli.output import progress_of
 from rosprivacy.settings import Settings
@@ -44,7 +44,7 @@ groups:
 limits: {PulseCurve: P30D}
 """
 DECISIONS = "decisions: 1\nfindings:\n  - {category: PulseCurve, decision: mitigate}\n"
-GROUP: Any = typer.main.get_command(app)
+GROUP: Any = typer.main.get_command(program())
 READERS = ("analyze", "show", "report", "graph", "mitigate", "diff", "load", "labels", "why-not")
 SYSTEM = ("p.xml", "-l", "l.yaml")
 
@@ -221,11 +221,11 @@ def test_help_shows_the_commands_in_the_order_of_a_users_way(cli: Cli) -> None:
     shown = cli("--help").stdout
     names = re.findall(r"^│ ([a-z][a-z-]*) ", shown, re.MULTILINE)
     assert names == [
-        "labels", "categories", "law", "analyze", "show", "why-not", "diff", "report", "graph", "decide", "mitigate",
-        "fleet", "load", "unload", "query", "db",
+        "observe", "labels", "categories", "law", "analyze", "show", "why-not", "diff", "bag", "report", "graph",
+        "decide", "mitigate", "fleet", "load", "unload", "query", "db",
     ]  # fmt: skip
     panels = re.findall(r"^╭─ ([\w ]+) ─", shown, re.MULTILINE)
-    assert panels == ["Options", "Label", "Analyse", "See", "Decide", "Fleet and database"]
+    assert panels == ["Options", "Observe", "Label", "Analyse", "See", "Decide", "Fleet and database"]
 
 
 def test_help_of_every_command_shows_no_type_of_a_flag_and_no_hidden_option(cli: Cli) -> None:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import pytest
 import typer.main
 
-from rosprivacy.cli.app import app
+from rosprivacy.cli.app import program
 from rosprivacy.cli.exit_code import OWN_ERROR
 from tests.helpers.command import run
 from tests.helpers.paths import ROOT
@@ -44,6 +44,8 @@ ENDINGS = {
     "why-not /a /b examples/factory/nope.xml": 2,
     "diff examples/care-home/care-home.policy.xml examples/care-home/care-home.policy.xml": 0,
     f"diff {BEFORE}": 2,
+    "bag examples/care-home/recording -l examples/care-home/care-home.labels.yaml": 1,
+    "bag examples/care-home/nope.mcap": 2,
     f"report {BEFORE} -f markdown --lang de": 0,
     "report examples/factory/nope.xml": 2,
     f"graph {BEFORE} --format mermaid": 0,
@@ -84,7 +86,7 @@ def named(text: str) -> str:
 
 
 def test_every_command_is_there_with_an_answer_and_a_refusal() -> None:
-    commands = set(typer.main.get_command(app).commands)  # type: ignore[attr-defined]  # of a group
+    commands = set(typer.main.get_command(program()).commands)  # type: ignore[attr-defined]  # of a group
     ends = {name: {code for line, code in ENDINGS.items() if line.split()[0] == name} for name in commands}
     assert all(ends.values()), ends
     answers_only, needs_a_server = {"law", "db"}, {"unload"}

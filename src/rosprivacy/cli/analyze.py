@@ -189,7 +189,7 @@ def _saved_graph(result: Result) -> str:
     from rosprivacy.ingest.policies.saved_graph import as_dict
     from rosprivacy.report.json_text import as_text
 
-    return as_text(as_dict(result.policies, result.diagnostics))
+    return as_text(as_dict(result.policies, result.diagnostics, result.types))
 
 
 def _each_alone(

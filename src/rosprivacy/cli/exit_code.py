@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 
 CODES = {
     0: "no leak found; of other commands: done",
-    1: "what the command exists to find: a leak; for `diff` a finding that is new or worse",
+    1: "what the command exists to find: a leak; for `bag` personal data; for `diff` a finding that is new or worse",
     2: "bad input or usage",
     3: "a server (database, Spark) cannot be reached",
-    4: "`analyze`: undetermined; `--fail-on leak` makes it 0, but never where no data was followed",
+    4: "`analyze` and `bag`: undetermined; `--fail-on leak` makes it 0, but never where no data was followed",
     70: "an error of the program itself: no answer; the message says which file to send",
 }
 LEAK, UNDETERMINED, OWN_ERROR = 1, 4, 70

@@ -16,6 +16,7 @@ from rosprivacy.cli.wrong_values import with_nearest
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+OBSERVE = "Observe"
 LABEL = "Label"
 ANALYSE = "Analyse"
 SEE = "See"

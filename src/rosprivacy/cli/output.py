@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError
 from rosprivacy.cli.exit_code import SIGPIPE
+from rosprivacy.terminal_width import terminal_width
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -62,14 +63,6 @@ def not_for_a_terminal(what: str, output: Path | None) -> None:
         raise InputError("standard output", 0, f"{what} is not for a terminal", "name a file with --output, or pipe it")
 
 
-def terminal_width() -> int | None:
-    """Return how wide the terminal is; None where standard output is none."""
-    from rich.console import Console
-
-    console = Console()
-    return console.width if console.is_terminal else None
-
-
 def on_console(write: Callable[[Console], None], *, colour: bool) -> str:
     """Return what is written to a rich console, with colours if standard output is a terminal."""
     from io import StringIO
@@ -77,11 +70,11 @@ def on_console(write: Callable[[Console], None], *, colour: bool) -> str:
     from rich.console import Console
 
     text = StringIO()
-    write(Console(file=text, force_terminal=colour and Console().is_terminal, highlight=False, emoji=False))
+    write(Console(file=text, force_terminal=colour and terminal_width() is not None, highlight=False, emoji=False))
     return text.getvalue()
 
 
-def progress_of(files: Sequence[str]) -> Iterable[str]:
+def progress_of(files: Sequence[str], what: str = "policies") -> Iterable[str]:
     """Show a bar on a terminal when there is much to read."""
     many = 20
     if len(files) < many or not sys.stderr.isatty():
@@ -89,4 +82,4 @@ def progress_of(files: Sequence[str]) -> Iterable[str]:
     from rich.console import Console
     from rich.progress import track
 
-    return track(files, description="Reading policies", console=Console(stderr=True), transient=True)
+    return track(files, description=f"Reading {what}", console=Console(stderr=True), transient=True)

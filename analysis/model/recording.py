@@ -1,0 +1,141 @@
+"""What a bag (a recording of ROS messages) says of itself, and what is judged of it. No message is part of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+@dataclass(frozen=True, slots=True)
+class BagTopic:
+    """A topic of a bag.
+
+    Attributes
+    ----------
+    types, hashes
+        Of its messages, sorted; several where the bag names several.
+    messages
+        How many there are; None where the bag does not say.
+    """
+
+    name: str
+    types: tuple[str, ...] = ()
+    hashes: tuple[str, ...] = ()
+    messages: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Bag:
+    """A bag: a file, or the folder of a recording.
+
+    Attributes
+    ----------
+    path
+        As the user named it, or where it was found.
+    storage
+        ``mcap``, ``sqlite3``, or what the bag names; empty where nothing could be read.
+    topics
+        Sorted by name.
+    files
+        Those of its recording, sorted.
+    size
+        Bytes of these.
+    start, end
+        Nanoseconds since 1970; None where the bag does not say.
+    compression
+        As the bag names it, such as ``zstd (file)``; empty for none.
+    gaps
+        Why topics may be missing: what is broken, cut, too large or not to be read; one sentence each.
+    beside
+        What is in it beside the messages of its topics, such as attachments.
+    notes
+        What else a reader has to know.
+    """
+
+    path: str
+    storage: str = ""
+    topics: tuple[BagTopic, ...] = ()
+    files: tuple[str, ...] = ()
+    size: int = 0
+    start: int | None = None
+    end: int | None = None
+    distro: str = ""
+    compression: str = ""
+    gaps: tuple[str, ...] = ()
+    beside: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+
+    @property
+    def complete(self) -> bool:
+        """Whether all topics of the bag are known."""
+        return not self.gaps
+
+    @property
+    def messages(self) -> int | None:
+        """How many messages it has; None where the bag does not say it of every topic.
+
+        >>> Bag("run1", topics=(BagTopic("/a", messages=2), BagTopic("/b", messages=3))).messages
+        5
+        """
+        counts = [topic.messages for topic in self.topics]
+        known = [count for count in counts if count is not None]
+        return sum(known) if self.complete and len(known) == len(counts) else None
+
+
+class BagVerdict(StrEnum):
+    """Whether personal data are in a bag. Never 'safe': the labels are a person's word (S12)."""
+
+    PERSONAL_DATA = "personal-data"
+    UNDETERMINED = "undetermined"
+    NOTHING_FOUND = "nothing-found"
+
+
+@dataclass(frozen=True, slots=True)
+class TopicKinds:
+    """What can be in a topic of a bag.
+
+    Attributes
+    ----------
+    kinds
+        Names of categories, sorted.
+    unknown
+        Why nobody can say what is in it; empty where that is known.
+    why
+        What that rests on, in a few words.
+    """
+
+    topic: BagTopic
+    kinds: tuple[str, ...] = ()
+    unknown: str = ""
+    why: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class JudgedBag:
+    """A bag with what can be in it."""
+
+    bag: Bag
+    topics: tuple[TopicKinds, ...]
+
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """The kinds of data that can be in it, sorted."""
+        return tuple(sorted({kind for topic in self.topics for kind in topic.kinds}))
+
+    @property
+    def open_topics(self) -> tuple[str, ...]:
+        """The topics of which nobody can say what is in them."""
+        return tuple(topic.topic.name for topic in self.topics if topic.unknown)
+
+    @property
+    def verdict(self) -> BagVerdict:
+        """The answer to 'may I share it?' as far as there is one: what is not known is never left out (S11, S12).
+
+        >>> topic = BagTopic("/camera")
+        >>> [str(JudgedBag(Bag("a", gaps=gaps), (TopicKinds(topic),)).verdict) for gaps in ((), ("cut",))]
+        ['nothing-found', 'undetermined']
+        """
+        if self.kinds:
+            return BagVerdict.PERSONAL_DATA
+        known = self.bag.complete and not self.open_topics and not self.bag.beside
+        return BagVerdict.NOTHING_FOUND if known else BagVerdict.UNDETERMINED

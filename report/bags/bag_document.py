@@ -1,0 +1,78 @@
+"""Bags with what can be in them -> the JSON document ``rosprivacy.bags/1``, which is a contract."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.model import BagVerdict
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from rosprivacy.analysis.model import JudgedBag, TopicKinds
+    from rosprivacy.report.contract.bags import BagEntry, BagsDocument, BagTopicEntry
+
+FORMAT = "rosprivacy.bags/1"
+WORST_FIRST = tuple(BagVerdict)
+
+
+def bags_document(bags: Sequence[JudgedBag], assumptions: Mapping[str, Any]) -> BagsDocument:
+    """Return the document of some bags, with what it rests on (S12)."""
+    verdict = min((bag.verdict for bag in bags), key=WORST_FIRST.index, default=BagVerdict.UNDETERMINED)
+    return {
+        "format": FORMAT,
+        "verdict": str(verdict),
+        "bags": [_bag(bag) for bag in bags],
+        "assumptions": dict(assumptions),
+    }
+
+
+def _bag(judged: JudgedBag) -> BagEntry:
+    bag = judged.bag
+    return {
+        "bag": bag.path,
+        "verdict": str(judged.verdict),
+        "storage": bag.storage,
+        "distro": bag.distro,
+        "compression": bag.compression,
+        "complete": bag.complete,
+        "files": list(bag.files),
+        "bytes": bag.size,
+        "start": written(bag.start),
+        "end": written(bag.end),
+        "messages": bag.messages,
+        "kinds": list(judged.kinds),
+        "open_topics": list(judged.open_topics),
+        "topics": [_topic(topic) for topic in judged.topics],
+        "gaps": list(bag.gaps),
+        "beside": list(bag.beside),
+        "notes": list(bag.notes),
+    }
+
+
+def _topic(judged: TopicKinds) -> BagTopicEntry:
+    topic = judged.topic
+    entry: BagTopicEntry = {
+        "topic": topic.name,
+        "types": list(topic.types),
+        "type_hashes": list(topic.hashes),
+        "messages": topic.messages,
+        "kinds": list(judged.kinds),
+    }
+    if judged.unknown:
+        entry["unknown"] = judged.unknown
+    if judged.why:
+        entry["why"] = judged.why
+    return entry
+
+
+def written(moment: int | None) -> str | None:
+    """Return a time in nanoseconds as ISO 8601, whole seconds in UTC.
+
+    >>> written(1_700_000_000_500_000_000), written(None)
+    ('2023-11-14T22:13:20Z', None)
+    """
+    if moment is None:
+        return None
+    return f"{datetime.fromtimestamp(moment // 10**9, UTC):%Y-%m-%dT%H:%M:%SZ}"

@@ -1,0 +1,168 @@
+"""What kinds of data can be in a bag, by what people said of the channels that were recorded (S7, S8, S11).
+
+In: bags, and an answer about the system that was recorded or label files alone. Out: ``JudgedBag``. A topic of which
+neither says anything is open, never empty.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from functools import cache
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.kernel.roles import facts
+from rosprivacy.analysis.model import NOTHING_FOLLOWED, JudgedBag, Place, TopicKinds, unread
+from rosprivacy.ingest.policies.names import covered, covers, endpoints, is_pattern
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
+
+    from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.analysis.model import Bag, BagTopic, Statement
+    from rosprivacy.ingest.labels.label_file import Labels
+    from rosprivacy.ontology.vocabulary import Vocabulary
+    from rosprivacy.result import Result
+
+Said = tuple[tuple[str, ...], str, str]  # kinds, why they are not known, what it rests on
+Channel = tuple[str, str, str]  # kind, name, leg
+EVENTS = "/_service_event"  # the topic on which a service tells what it is asked and answers
+NO_MESSAGE = "no message of it was recorded"
+
+
+def judged(bags: Iterable[Bag], said_of: Callable[[str], Said]) -> tuple[JudgedBag, ...]:
+    """Return bags with what can be in them; ``said_of`` tells it of the name of a topic."""
+    known = cache(said_of)
+    return tuple(JudgedBag(bag, tuple(_judged(bag, topic, known) for topic in bag.topics)) for bag in bags)
+
+
+def _judged(bag: Bag, topic: BagTopic, said_of: Callable[[str], Said]) -> TopicKinds:
+    if topic.messages == 0 and bag.complete:
+        return TopicKinds(topic, why=NO_MESSAGE)
+    kinds, unknown, why = said_of(topic.name)
+    return TopicKinds(topic, kinds, unknown, why)
+
+
+def channels_of(topic: str) -> tuple[Channel, ...]:
+    """Return the channels of which a topic of a bag tells: itself, or the service or action that it belongs to (S3).
+
+    >>> channels_of("/scan"), channels_of("/spin/_action/feedback")
+    ((('topic', '/scan', ''),), (('action', '/spin', 'response'),))
+    >>> channels_of("/add/_service_event")[1:]
+    (('service', '/add', 'request'), ('service', '/add', 'response'))
+    """
+    found = list(endpoints("publish", "topic", topic))
+    if topic.endswith(EVENTS):
+        found += endpoints("request", "service", topic.removesuffix(EVENTS))
+    return tuple(dict.fromkeys((end.kind, end.name, end.leg) for end in found))
+
+
+def by_system(result: Result) -> Callable[[str], Said]:
+    """Return what tells of a topic what it carries in the system that was analysed."""
+    analysis, bound = result.analysis, result.bound
+    graph, spread = analysis.graph, analysis.spread
+    labels = by_labels(result.labels, result.vocabulary)
+    unread_files = unread(result.diagnostics)
+    vertices: dict[Channel, list[int]] = defaultdict(list)
+    patterns: dict[tuple[str, str], list[int]] = defaultdict(list)
+    for vertex, element in enumerate(graph.elements):
+        if element.is_channel and element.pattern:
+            patterns[element.kind, element.leg].append(vertex)
+        elif element.is_channel:
+            vertices[element.kind, element.name, element.leg].append(vertex)
+    writers: dict[int, list[int]] = defaultdict(list)
+    for flow in graph.flows:
+        writers[flow.target].append(flow.source)
+
+    def found(channel: Channel) -> list[int]:
+        kind, name, leg = channel
+        if vertices.get(channel) or is_pattern(name):
+            return vertices.get(channel, [])
+        return [vertex for vertex in patterns[kind, leg] if covers(graph.elements[vertex].name, name)]
+
+    def said_of(topic: str) -> Said:
+        here = [vertex for channel in channels_of(topic) for vertex in found(channel)]
+        if not here:
+            return (), "the policies do not name it", ""
+        kinds = {name for vertex in here for name in spread.names(spread.present(vertex))}
+        if kinds:
+            return tuple(sorted(kinds)), "", "what the policies and labels let arrive there"
+        stated = labels(topic)
+        if not stated[1]:
+            return stated
+        if analysis.lacking in NOTHING_FOLLOWED:
+            return (), "no label names a source whose data goes anywhere", ""
+        if unread_files:
+            return (), f"grants were not read: {shown(str(unread_files[0]))}", ""
+        return by_writers(here)
+
+    def by_writers(here: Sequence[int]) -> Said:
+        """A channel to which no data gets: that is known if all that write to it were looked at."""
+        for vertex in here:
+            sending = _senders(vertex, writers, analysis)
+            if not sending:
+                return (), "no node of the policies writes to it", ""
+            silent = sorted(graph.elements[one].name for one in sending if not bound.elements.get(one))
+            if silent:
+                more = f" and {len(silent) - 1} more" if len(silent) > 1 else ""
+                return (), f"no label says what {shown(silent[0])}{more} sends", ""
+        return (), "", "no kind of data gets to those that write to it, and labels speak of all of them"
+
+    return said_of
+
+
+def _senders(vertex: int, writers: dict[int, list[int]], analysis: Analysis) -> set[int]:
+    """Who writes to a channel, by its name or through wildcards that match it (S4)."""
+    sending: set[int] = set()
+    waiting, entered = [vertex], {vertex}
+    while waiting:
+        for source in writers.get(waiting.pop(), ()):
+            if not analysis.graph.elements[source].is_channel:
+                sending.add(source)
+            elif source not in entered:
+                entered.add(source)
+                waiting.append(source)
+    return sending
+
+
+def by_labels(files: Sequence[Labels], vocabulary: Vocabulary) -> Callable[[str], Said]:
+    """Return what tells of a topic what label files say of it, where no policy says who writes to it."""
+    hierarchy = vocabulary.hierarchy
+
+    def said_of(topic: str) -> Said:
+        channels = channels_of(topic)
+        names = {name for _, name, _ in channels}
+        kinds = {kind for file in files for kind in _named_by_sources(file, names)}
+        if kinds:
+            return tuple(sorted(kinds)), "", "sources that name the channel"
+        said = [statement for file in files for statement in _of_channels(file, channels)]
+        decided = {name: facts(topic, said, name, hierarchy) for name in sorted(vocabulary.categories)}
+        passing = [name for name, fact in decided.items() if fact.passes]
+        if not passing:
+            return (), "", f"{_lines(said)}: it carries no kind of data"
+        if len(passing) < len(decided) and (only := {s for fact in decided.values() for s in fact.by_role("only")}):
+            stated = {name for statement in only for name in statement.categories}.intersection(passing)
+            if stated:
+                return tuple(sorted(stated)), "", f"{_lines(only)}: it carries these at most"
+        return (), "no label says what it carries", ""
+
+    return said_of
+
+
+def _named_by_sources(file: Labels, names: set[str]) -> Iterable[str]:
+    """The kinds that sources bring in through some channels, as far as a file names the channels (S8)."""
+    for entry in file.entries:
+        for statement in entry.statements:
+            if statement.role == "source" and any(covered(one, names) for one in statement.through):
+                yield from statement.categories
+
+
+def _of_channels(file: Labels, channels: Sequence[Channel]) -> Iterable[Statement]:
+    for entry in file.entries:
+        if any(kind in entry.kinds and covered(entry.name, [name]) for kind, name, _ in channels):
+            yield from entry.statements
+
+
+def _lines(said: Iterable[Statement]) -> str:
+    places: list[Place] = sorted({statement.place for statement in said}, key=lambda place: (place.file, place.line))
+    return ", ".join(shown(str(place)) for place in places)

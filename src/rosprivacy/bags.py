@@ -1,0 +1,51 @@
+"""Bags, and what is known of the system that was recorded -> the document ``rosprivacy.bags/1``.
+
+In: paths of bags, policies, label files. Out: the document. Without policies the label files alone tell what is in a
+channel.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosprivacy.assumptions import files_read
+from rosprivacy.bag_kinds import by_labels, by_system, judged
+from rosprivacy.ingest.bags.bag_folders import read_bags
+from rosprivacy.question import question_of
+from rosprivacy.report.bags.bag_document import bags_document
+from rosprivacy.robot_system import answer_robot, read_label_files
+from rosprivacy.version import __version__
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
+
+    from rosprivacy.report.contract.bags import BagsDocument
+    from rosprivacy.settings import Settings
+
+
+def answer_bags(
+    bags: Sequence[str],
+    policies: tuple[str, ...],
+    labels: tuple[str, ...],
+    settings: Settings,
+    progress: Callable[[Sequence[str]], Iterable[str]] = lambda files: files,
+) -> BagsDocument:
+    """Read bags, and say what kinds of data can be in them.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the input, one line each.
+    """
+    read = read_bags(bags, progress)
+    if policies or settings.add:
+        result = answer_robot(policies, labels, settings)
+        return bags_document(judged(read, by_system(result)), result.assumptions)
+    vocabulary = question_of(settings).vocabulary
+    files = read_label_files(labels, vocabulary, settings)
+    rests_on = {
+        "rosprivacy": __version__,
+        "ontologies": [{"file": name, "sha256": digest} for name, digest in vocabulary.sources],
+        **files_read((), files, settings),
+    }
+    return bags_document(judged(read, by_labels(files, vocabulary)), rests_on)

@@ -1,0 +1,134 @@
+"""``rosprivacy observe``: a running system, or what was told of it, in; a policy and the types of its channels out."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from rosprivacy.analysis.errors import shown
+from rosprivacy.cli.exit_code import UNDETERMINED
+from rosprivacy.cli.inputs import Inputs, reads_system
+from rosprivacy.cli.output import emit
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rosprivacy.ingest.observe.doors import Door
+    from rosprivacy.ingest.observe.observation import Observation
+
+THROUGH = "Through which door"  # panel of help
+SHORTEST = "10s"  # what most middlewares need until all is found
+
+
+@reads_system(
+    "labels for --watch",
+    without=(
+        "policies", "fleet", "from_database", "neo4j", "add", "include_root", "max_bytes", "decisions", "view",
+        "categories", "types",
+    ),
+)  # fmt: skip
+def observe(
+    inputs: Inputs,
+    text: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="FILE",
+            show_default=False,
+            help="What `ros2 node info` printed, for all nodes; - is standard input; may be repeated.",
+            rich_help_panel=THROUGH,
+        ),
+    ] = None,
+    at: Annotated[
+        str | None,
+        typer.Option(
+            metavar="TIME",
+            show_default=False,
+            help="When the texts were taken, as 2026-11-22T10:00:00Z; by default when each file was last written.",
+            rich_help_panel=THROUGH,
+        ),
+    ] = None,
+    ros2: Annotated[
+        bool,
+        typer.Option("--ros2", help="Run `ros2 node list` and `ros2 node info` here.", rich_help_panel=THROUGH),
+    ] = False,
+    duration: Annotated[
+        str, typer.Option("--for", metavar="DURATION", help="How long to look, such as 30s, 10m or 1h.")
+    ] = SHORTEST,
+    watch: Annotated[
+        bool,
+        typer.Option("--watch", help="Look until stopped; one line for each change, and with --labels new findings."),
+    ] = False,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "--output",
+            "-o",
+            metavar="FILE",
+            show_default=False,
+            help="Write the policy to this file, robot.policy.xml, and the types beside it, robot.types.yaml.",
+        ),
+    ] = None,
+) -> None:
+    """Make a policy and a file of types from what runs. It reads only; nothing is announced on the ROS graph.
+
+    What was not seen proves nothing: the policy says from when to when somebody looked, and which gaps are known.
+    """
+    from rosprivacy.observing import observe as looked
+    from rosprivacy.observing import seconds_of
+
+    doors = _doors(text, at, ros2=ros2)
+    if not doors:
+        raise typer.BadParameter("name a door: --text FILE or --ros2")
+    if watch and (text or len(doors) > 1):
+        raise typer.BadParameter("--watch looks through one door to a running system: no --text, and no second door")
+    told = _watching(inputs) if watch else lambda *_: None
+    _write(looked(doors, None if watch else seconds_of(duration), told), output)
+
+
+def _doors(text: list[str] | None, at: str | None, *, ros2: bool) -> list[Door]:
+    """The doors that a user named, those that have looked already first."""
+    from rosprivacy.ingest.observe.ros2_program import Ros2Program
+    from rosprivacy.ingest.observe.text_files import TextFiles
+    from rosprivacy.observing import now, time_of
+
+    doors: list[Door] = []
+    if text:
+        doors.append(TextFiles(tuple(text), now, time_of(at) if at else ""))
+    if ros2:
+        doors.append(Ros2Program(now))
+    return doors
+
+
+def _watching(inputs: Inputs) -> Callable[[Observation | None, Observation], None]:
+    from rosprivacy.watching import Watch
+
+    watch = Watch(tuple(inputs.labels or ()), inputs.settings)
+
+    def told(before: Observation | None, now: Observation) -> None:
+        for line in watch.lines(before, now):
+            print(line, flush=True)
+
+    return told
+
+
+def _write(seen: Observation | None, output: Path | None) -> None:
+    """The policy and the types, both or none; what there is to say goes to standard error."""
+    from rosprivacy.observing import types_file, written
+
+    made = written(seen) if seen else None
+    if made is None:
+        for remark in seen.remarks if seen else ():
+            print(remark, file=sys.stderr)
+        said = "nothing was seen, so nothing is written: nothing runs, it was too short a look, or you may not look"
+        print(said, file=sys.stderr)
+        raise typer.Exit(UNDETERMINED)
+    emit(made.policy, output, {types_file(output): made.types} if output else {})
+    for remark in made.remarks:
+        print(remark, file=sys.stderr)
+    if output:
+        print(f"written: {shown(str(output))} and {shown(str(types_file(output)))}", file=sys.stderr)
+    else:
+        print("types are written only beside a policy that is written to a file (-o)", file=sys.stderr)

@@ -1,0 +1,179 @@
+"""``rosprivacy bag``: what can be in a recording, what is not known of it, and the exit code that CI goes by."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from jsonschema import Draft202012Validator
+
+from tests.helpers.bags import IMAGE, ODOMETRY, mcap, rosbag2
+from tests.helpers.command import Cli, refused
+from tests.helpers.paths import ROOT
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+SCHEMA = json.loads((ROOT / "docs" / "bags.schema.json").read_text("utf-8"))
+Draft202012Validator.check_schema(SCHEMA)
+POLICY = """<policy version="0.2.0"><enclaves><enclave path="/r"><profiles>
+<profile ns="/" node="cam"><topics publish="ALLOW"><topic>camera</topic></topics></profile>
+<profile ns="/" node="nav"><topics publish="ALLOW"><topic>odom</topic></topics>
+  <topics subscribe="ALLOW"><topic>camera</topic></topics>
+  <actions execute="ALLOW"><action>spin</action></actions></profile>
+<profile ns="/" node="log"><topics publish="ALLOW"><topic>log/*</topic></topics></profile>
+<profile ns="/" node="end"><topics subscribe="ALLOW"><topic>odom</topic><topic>log/a</topic></topics></profile>
+</profiles></enclave></enclaves></policy>"""
+
+
+@pytest.fixture
+def run(tmp_path: Path) -> Path:
+    return rosbag2(tmp_path / "run")
+
+
+def labels(tmp_path: Path, text: str) -> Path:
+    file = tmp_path / "labels.yaml"
+    file.write_text(f"labels: 1\n{text}\n")
+    return file
+
+
+def document(cli: Cli, *arguments: str | Path, code: int) -> dict[str, Any]:
+    done = cli("bag", *arguments, "--format", "json")
+    assert done.returncode == code, done.stderr
+    whole: dict[str, Any] = json.loads(done.stdout)
+    Draft202012Validator(SCHEMA).validate(whole)
+    return whole
+
+
+def topics(whole: dict[str, Any]) -> dict[str, list[str] | str]:
+    (bag,) = whole["bags"]
+    return {one["topic"]: one["kinds"] or one.get("unknown", "") for one in bag["topics"]}
+
+
+OPEN = "no label says what it carries"
+
+
+@pytest.mark.parametrize(
+    ("said", "code", "camera", "odom"),
+    [
+        ("", 4, OPEN, OPEN),
+        ("channels: {/odom: mundane}", 4, OPEN, ""),
+        ("channels: {/odom: mundane, /camera: sensitive}", 4, OPEN, ""),
+        ("channels: {/odom: mundane, /camera: {never: [Video]}}", 4, OPEN, ""),
+        ("channels: {/odom: mundane, /camera: mundane}", 0, "", ""),
+        ("channels: {'*': mundane}", 0, "", ""),
+        ("channels: {'*': mundane, /camera: sensitive}", 4, OPEN, ""),
+        ("channels: {'*': mundane, /camera: {only: [Video]}}", 1, ["Video"], ""),
+        ("channels: {/odom: {only: [Location, Video], never: [Biometric]}}", 1, OPEN, ["Location", "Video"]),
+        ("nodes: {/cam: {source: {Video: [/camera]}}}", 1, ["Video"], OPEN),
+        ("nodes: {/cam: {source: {Video: ['/cam*']}}}\nchannels: {'*': mundane}", 1, ["Video"], ""),
+        ("nodes: {/cam: {source: [Video]}}", 4, OPEN, OPEN),
+        ("nodes: {/cam: {source: {Video: [/camra]}}}\nchannels: {/odm: mundane}", 4, OPEN, OPEN),
+    ],
+)
+def test_by_labels_alone(
+    cli: Cli, tmp_path: Path, run: Path, said: str, code: int, camera: list[str] | str, odom: list[str] | str
+) -> None:
+    """S7, S11: what a label names is in it, `mundane` takes it out, and all else is open; a typo closes nothing."""
+    assert topics(document(cli, run, "-l", labels(tmp_path, said), code=code)) == {"/camera": camera, "/odom": odom}
+
+
+@pytest.mark.parametrize(
+    ("said", "code", "camera", "odom"),
+    [
+        ("", 4, "no label names a source whose data goes anywhere", "no label names a source whose data goes anywhere"),
+        ("nodes: {/cam: {source: [Video]}}", 1, ["Video"], ["Video"]),
+        ("nodes: {/cam: {source: [Video]}, /nav: {sanitizer: {Video: drop}}}", 1, ["Video"], ""),
+        ("nodes: {/cam: {source: [Video]}}\nchannels: {/odom: mundane}", 1, ["Video"], ""),
+        ("nodes: {/nav: {source: [Location]}}", 1, "no label says what /cam sends", ["Location"]),
+        ("nodes: {/nav: {source: [Location]}, /cam: conduit}", 1, "", ["Location"]),
+        ("nodes: {/nav: {source: {Location: [/odom]}}}\nchannels: {/camera: mundane, /odom: mundane}", 2, "", ""),
+        ("nodes: {/log: {source: [Voice]}, /cam: conduit, /nav: conduit}", 0, "", ""),
+        ("nodes: {/log: {source: [Voice]}, /cam: conduit, /nav: conduit}\nchannels: {/odom: {only: [Location]}}",
+         1, "", ["Location"]),
+    ],
+)  # fmt: skip
+def test_by_the_policies_of_the_system(
+    cli: Cli, tmp_path: Path, run: Path, said: str, code: int, camera: list[str] | str, odom: list[str] | str
+) -> None:
+    policy = tmp_path / "a.policy.xml"
+    policy.write_text(POLICY)
+    if code == 2:
+        refused(cli("bag", run, "--policy", policy, "-l", labels(tmp_path, said)))
+        return
+    whole = document(cli, run, "--policy", policy, "-l", labels(tmp_path, said), code=code)
+    assert topics(whole) == {"/camera": camera, "/odom": odom}
+    assert whole["assumptions"]["policies"][0]["file"] == str(policy)
+
+
+def test_topics_that_belong_to_services_actions_and_wildcards(cli: Cli, tmp_path: Path) -> None:
+    """S3, S4: what is recorded of an action is the action's; a name that only a wildcard covers is what it carries."""
+    policy = tmp_path / "a.policy.xml"
+    policy.write_text(POLICY)
+    names = {"/log/b": (IMAGE, 1), "/new": (IMAGE, 1), "/rosout": (ODOMETRY, 1), "/log/*": (IMAGE, 1)}
+    bag = rosbag2(tmp_path / "bag", "sqlite3", {**names, "/spin/_action/feedback": (ODOMETRY, 1)})
+    said = labels(tmp_path, "nodes: {/log: {source: [Voice]}, /nav: {source: [Location]}}")
+    assert topics(document(cli, bag, "--policy", policy, "-l", said, code=1)) == {
+        "/log/*": "the policies do not name it",
+        "/log/b": ["Voice"],
+        "/new": "the policies do not name it",
+        "/rosout": "the policies do not name it",
+        "/spin/_action/feedback": ["Location"],
+    }
+
+
+def test_nothing_recorded_is_nothing_in_it(cli: Cli, tmp_path: Path) -> None:
+    bag = rosbag2(tmp_path / "bag", topics={"/camera": (IMAGE, 0), "/odom": (ODOMETRY, 1)})
+    assert topics(document(cli, bag, "-l", labels(tmp_path, "channels: {/odom: mundane}"), code=0))["/camera"] == ""
+
+
+@pytest.mark.parametrize("harm", ["cut", "attachment", "metadata", "custom"])
+def test_what_is_not_known_is_never_a_yes(cli: Cli, tmp_path: Path, harm: str) -> None:
+    """S11: all topics are mundane, and still nobody can say it."""
+    bag = tmp_path / "a.mcap"
+    if harm == "custom":
+        bag = rosbag2(tmp_path / "run", custom="x")
+    else:
+        mcap(bag, attachment="note" if harm == "attachment" else "", metadata="note" if harm == "metadata" else "")
+    if harm == "cut":
+        bag.write_bytes(bag.read_bytes()[:-300])
+    whole = document(cli, bag, "-l", labels(tmp_path, "channels: {'*': mundane}"), code=4)
+    (entry,) = whole["bags"]
+    assert entry["gaps"] if harm == "cut" else entry["beside"]
+    assert whole["verdict"] == "undetermined"
+
+
+def test_a_folder_as_text_and_as_a_table(cli: Cli, tmp_path: Path) -> None:
+    rosbag2(tmp_path / "bags" / "=cmd()")
+    rosbag2(tmp_path / "bags" / "b", "sqlite3")
+    (tmp_path / "bags" / "c.mcap").write_bytes(b"broken")
+    said = labels(tmp_path, "channels: {/camera: mundane, /odom: mundane}")
+    done = cli("bag", tmp_path / "bags", "-l", said, "-f", "csv")
+    rows = list(csv.DictReader(io.StringIO(done.stdout)))
+    assert [row["verdict"] for row in rows] == ["nothing-found", "nothing-found", "undetermined"]
+    assert rows[2]["not_known"].startswith("not an MCAP file")
+    assert (rows[0]["messages"], rows[0]["complete"], rows[2]["complete"]) == ("6", "yes", "no")
+    text = cli("bag", tmp_path / "bags", "-l", said)
+    assert text.returncode == done.returncode == 4
+    first = "undetermined: of 1 bag nobody can say what is in it; by the labels no kind of personal data is in 2 bags"
+    assert text.stdout.splitlines()[0] == first
+    assert text.stdout == cli("bag", tmp_path / "bags", "-l", said).stdout  # S14
+
+
+def test_hostile_names_stay_names(cli: Cli, tmp_path: Path) -> None:
+    name = "/a\x1b[2J\n\u202e::error::<b>" + "x" * 3000
+    bag = rosbag2(tmp_path / "bag", "sqlite3", {name: (IMAGE, 1), "=1+1": (ODOMETRY, 1)})
+    for form in ("text", "json", "csv"):
+        done = cli("bag", bag, "-f", form)
+        assert done.returncode == 4
+        assert all(line.isprintable() for line in done.stdout.splitlines())
+        assert "\x1b" not in done.stdout
+
+
+@pytest.mark.parametrize("named", ["nix", "notes.txt", ""])
+def test_what_is_no_bag_is_one_line(cli: Cli, tmp_path: Path, named: str) -> None:
+    (tmp_path / "notes.txt").write_text("no bag")
+    assert refused(cli("bag", named, cwd=tmp_path))

@@ -1,0 +1,271 @@
+"""``rosprivacy observe``: from a running robot to a finding, through the door of text (rules S3, S16)."""
+
+from __future__ import annotations
+
+import json
+import os
+import stat
+import subprocess
+import sys
+from textwrap import dedent
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from rosprivacy.ingest.policies.policy_xml import read_policy
+from rosprivacy.ingest.types.types_file import read_types
+from tests.helpers.command import Cli, refused, run
+from tests.helpers.observed import AT, node_info
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+CAMERA = node_info("/cam", publishers="/image: sensor_msgs/msg/Image", service_servers="/cam/get_parameters: r/srv/G")
+GRAPH = CAMERA + node_info("/up", subscribers="/image: sensor_msgs/msg/Image")
+LABELS = "labels: 1\nnodes:\n  /cam: {source: [Video]}\n  /up: {leak: [Video]}\n"
+
+
+@pytest.fixture
+def robot(tmp_path: Path) -> Path:
+    (tmp_path / "graph.txt").write_text(GRAPH, "utf-8")
+    (tmp_path / "labels.yaml").write_text(LABELS, "utf-8")
+    return tmp_path
+
+
+def observe(cli: Cli, robot: Path, *more: str | Path) -> str:
+    done = cli("observe", "--text", "graph.txt", "--at", AT, "-o", "robot.policy.xml", *more, cwd=robot)
+    assert done.returncode == 0, done.stderr
+    return done.stderr
+
+
+def test_from_text_to_a_finding(cli: Cli, robot: Path) -> None:
+    said = observe(cli, robot)
+    assert "2 nodes, 2 channels: observed from 2026-11-22T10:00:00Z to 2026-11-22T10:00:00Z by text" in said
+    assert "enclaves are made up: one per node (2)" in said
+    done = cli("analyze", "robot.policy.xml", "-l", "labels.yaml", "-f", "json", cwd=robot)
+    document = json.loads(done.stdout)
+    assert done.returncode == 1
+    assert [element["name"] for element in document["findings"][0]["witness"]] == ["/cam", "/image", "/up"]
+    assert "observed" in {one.get("code") for one in document["diagnostics"]}
+
+
+def test_times_and_doors_come_back_from_the_metadata(cli: Cli, robot: Path) -> None:
+    observe(cli, robot)
+    grants = read_policy(str(robot / "robot.policy.xml")).grants
+    assert len(grants) == 3
+    assert {(one.seen.by, one.seen.first, one.seen.last) for one in grants if one.seen} == {(("text",), AT, AT)}
+    assert all(one.seen for one in grants)
+
+
+def test_the_same_input_gives_the_same_bytes_and_time_stamps_of_files_are_facts(cli: Cli, robot: Path) -> None:
+    """Rule S14; when a text was taken is a fact of the observation, by default when the file was written."""
+    os.utime(robot / "graph.txt", (0, 1_764_000_000))
+    texts = []
+    for _ in range(2):
+        assert cli("observe", "--text", "graph.txt", "-o", "robot.policy.xml", cwd=robot).returncode == 0
+        texts.append((robot / "robot.policy.xml").read_bytes() + (robot / "robot.types.yaml").read_bytes())
+    assert texts[0] == texts[1]
+    assert b"2025-11-24T16:00:00Z" in texts[0]
+
+
+def test_standard_input_and_several_files_add_up(robot: Path) -> None:
+    command = [sys.executable, "-m", "rosprivacy", "observe", "--text", "-", "--text", "graph.txt"]
+    other = node_info("/other", publishers="/more: t/msg/T").encode()
+    done = subprocess.run(command, input=other, capture_output=True, cwd=robot, timeout=60, check=False)
+    assert done.returncode == 0, done.stderr
+    assert b'node="other"' in done.stdout
+    assert b'node="cam"' in done.stdout
+
+
+def test_nothing_seen_writes_nothing(cli: Cli, robot: Path) -> None:
+    (robot / "graph.txt").write_text("", "utf-8")
+    done = cli("observe", "--text", "graph.txt", "-o", "robot.policy.xml", cwd=robot)
+    assert done.returncode == 4
+    assert "nothing was seen, so nothing is written" in done.stderr
+    assert not (robot / "robot.policy.xml").exists()
+
+
+def test_a_gap_makes_the_verdict_undetermined_at_best(cli: Cli, robot: Path) -> None:
+    """Rule S16: a node of which nothing is known may do anything."""
+    (robot / "graph.txt").write_text(GRAPH.replace("/up", "/nav") + "/ghost\n", "utf-8")
+    (robot / "labels.yaml").write_text(
+        "labels: 1\nnodes:\n  /cam: {source: [Video]}\n  /nav: {sanitizer: {Video: drop}}\n  /ghost: {leak: [Video]}\n"
+        "channels:\n  /image: sensitive\n",
+        "utf-8",
+    )
+    assert "known gap (1): nodes of which not all is known" in observe(cli, robot)
+    done = cli("analyze", "robot.policy.xml", "-l", "labels.yaml", cwd=robot)
+    assert done.returncode == 4, done.stdout
+    assert done.stdout.startswith("undetermined: ")
+    whole = (robot / "robot.policy.xml").read_text("utf-8").replace(' gaps="unanswered:1"', "")
+    (robot / "whole.xml").write_text(whole, "utf-8")
+    assert cli("analyze", "whole.xml", "-l", "labels.yaml", cwd=robot).returncode == 0
+
+
+def test_metadata_that_cannot_be_read_are_a_gap_too(cli: Cli, robot: Path) -> None:
+    observe(cli, robot)
+    broken = (robot / "robot.policy.xml").read_text("utf-8").replace(f'from="{AT}"', 'from="yesterday"', 1)
+    (robot / "broken.xml").write_text(broken, "utf-8")
+    done = cli("analyze", "broken.xml", cwd=robot)
+    assert "what an observation says here cannot be read: from='yesterday' is no time" in done.stdout
+    assert done.returncode == 4
+
+
+@pytest.mark.parametrize(
+    ("words", "why"),
+    [
+        (["--text", "nowhere.txt"], "file not found"),
+        (["--text", "labels.yaml"], "not the output of `ros2 node info`"),
+        (["--text", "graph.txt", "--at", "noon"], "is no time"),
+        (["--text", "graph.txt", "--for", "soon"], "is no duration"),
+    ],
+)
+def test_what_is_no_observation_is_refused(cli: Cli, robot: Path, words: list[str], why: str) -> None:
+    assert why in refused(cli("observe", *words, cwd=robot))[0]
+
+
+FAKE = """\
+    #!/bin/sh
+    echo "$@" >> "$CALLS"
+    case "$1 $2" in
+    "node list") cat "$HERE/nodes.txt"; echo 'WARNING: a warning' >&2;;
+    "node info") cat "$HERE/info$(echo "$4" | tr / _).txt";;
+    esac
+"""
+
+
+def fake_ros2(folder: Path, text: str = FAKE) -> dict[str, Any]:
+    """A program ``ros2`` that prints what lies in a folder; the variables that put it on the path."""
+    program = folder / "bin" / "ros2"
+    program.parent.mkdir()
+    program.write_text(dedent(text), "utf-8")
+    program.chmod(program.stat().st_mode | stat.S_IXUSR)
+    path = f"{program.parent}{os.pathsep}{os.environ['PATH']}"
+    return {"PATH": path, "HERE": str(folder), "CALLS": str(folder / "calls")}
+
+
+def test_ros2_is_run_by_us_with_arguments_and_no_shell(robot: Path) -> None:
+    variables = fake_ros2(robot)
+    (robot / "nodes.txt").write_text("/cam\n/up\n/$(touch owned)\n/_ros2cli_12\n", "utf-8")
+    (robot / "info_cam.txt").write_text(CAMERA, "utf-8")
+    (robot / "info_up.txt").write_text(GRAPH.removeprefix(CAMERA), "utf-8")
+    done = run("observe", "--ros2", "--for", "0s", "-o", "robot.policy.xml", cwd=robot, **variables)
+    assert done.returncode == 0, done.stderr
+    assert "known gap (1): nodes of which not all is known" in done.stderr
+    assert not (robot / "owned").exists()
+    calls = (robot / "calls").read_text("utf-8").splitlines()
+    assert calls[0] == "node list --all"
+    assert calls[1:-1] == ["node info --include-hidden /cam", "node info --include-hidden /up"]
+    assert {grant.node for grant in read_policy(str(robot / "robot.policy.xml")).grants} == {"/cam", "/up"}
+
+
+def test_no_ros2_on_the_path_is_one_line(robot: Path) -> None:
+    done = run("observe", "--ros2", cwd=robot, PATH="/nowhere")
+    assert refused(done) == [
+        "ros2: not found on the path; source the setup file of your ROS 2 installation, or give its output with --text"
+    ]
+
+
+def test_a_ros2_that_fails_is_a_server_that_cannot_be_reached(robot: Path) -> None:
+    done = run("observe", "--ros2", cwd=robot, **fake_ros2(robot, "#!/bin/sh\necho 'no rmw' >&2; exit 1\n"))
+    assert done.returncode == 3
+    assert done.stderr == "ros2 node list --all: failed: no rmw; run it by hand\n"
+
+
+GRANTED = """\
+<policy version="0.2.0">
+  <enclaves>
+    <enclave path="/robot">
+      <profiles>
+        <profile ns="/" node="cam">
+          <topics publish="ALLOW">
+            <topic>/image</topic>
+            <topic>/spare</topic>
+          </topics>
+          <topics publish="DENY">
+            <topic>/im*</topic>
+          </topics>
+          <services reply="ALLOW" request="ALLOW">
+            <service>~/get_parameters</service>
+          </services>
+        </profile>
+      </profiles>
+    </enclave>
+  </enclaves>
+</policy>
+"""
+
+
+def test_no_deny_of_a_policy_overrides_what_was_seen(cli: Cli, robot: Path) -> None:
+    """Rule S16: the flow is there, and both lines are told; the enclaves have different paths, the node is one."""
+    observe(cli, robot)
+    (robot / "granted.policy.xml").write_text(GRANTED, "utf-8")
+    done = cli("analyze", "granted.policy.xml", "robot.policy.xml", "-l", "labels.yaml", "-f", "json", cwd=robot)
+    assert done.returncode == 1, done.stderr
+    document = json.loads(done.stdout)
+    assert [element["name"] for element in document["findings"][0]["witness"]] == ["/cam", "/image", "/up"]
+    line = document["findings"][0]["steps"][0]["policy"][0]
+    assert line["seen"] == {"by": ["text"], "first": AT, "last": AT}
+    said = [one for one in document["diagnostics"] if one.get("code") == "seen-although-denied"]
+    told = f"seen although denied: /cam publish /image, from {AT} to {AT}; granted.policy.xml:11 denies it; "
+    assert [one["message"] for one in said] == [f"{told}see why it runs all the same"]
+    alone = cli("analyze", "granted.policy.xml", "-f", "json", cwd=robot)
+    assert "seen-although-denied" not in alone.stdout
+
+
+def test_a_saved_graph_keeps_what_was_seen_and_its_gaps(cli: Cli, robot: Path) -> None:
+    (robot / "graph.txt").write_text(GRAPH + "/ghost\n", "utf-8")
+    observe(cli, robot)
+    (robot / "granted.policy.xml").write_text(GRANTED, "utf-8")
+    policies = ["granted.policy.xml", "robot.policy.xml"]
+    words = ["-l", "labels.yaml", "-f", "json"]
+    cli("analyze", *policies, *words, "--save-graph", "graph.json", cwd=robot)
+    first = json.loads(cli("analyze", *policies, *words, cwd=robot).stdout)
+    again = json.loads(cli("analyze", "--add", "graph.json", *words, cwd=robot).stdout)
+    assert {"observed", "observation-gap", "seen-although-denied"} <= {one.get("code") for one in again["diagnostics"]}
+    assert again["findings"] == first["findings"]
+    assert again["diagnostics"] == first["diagnostics"]
+
+
+@pytest.mark.parametrize("language", ["en", "de", "fr"])
+def test_every_report_says_from_when_to_when_under_assumed(cli: Cli, robot: Path, language: str) -> None:
+    observe(cli, robot)
+    said = f"observed from {AT} to {AT} by text; what was not seen proves nothing"
+    text = cli("analyze", "robot.policy.xml", "-l", "labels.yaml", "--lang", language, cwd=robot).stdout
+    assert said in text
+    page = cli(
+        "report", "robot.policy.xml", "-l", "labels.yaml", "--lang", language, "-f", "markdown", cwd=robot
+    ).stdout
+    assert page.replace("\\", "").count(said) >= 1
+
+
+def test_sarif_has_a_result_where_only_a_gap_is_left(cli: Cli, robot: Path) -> None:
+    (robot / "graph.txt").write_text(GRAPH + "/ghost\n", "utf-8")
+    (robot / "labels.yaml").write_text(
+        "labels: 1\nnodes:\n  /cam: {source: [Video]}\n  /up: {sanitizer: {Video: drop}}\n  /ghost: {leak: [Video]}\n"
+        "channels:\n  /image: sensitive\n",
+        "utf-8",
+    )
+    observe(cli, robot)
+    done = cli("analyze", "robot.policy.xml", "-l", "labels.yaml", "-f", "sarif", cwd=robot)
+    assert done.returncode == 4
+    assert [one["ruleId"] for one in json.loads(done.stdout)["runs"][0]["results"]] == ["observation-gaps"]
+    text = cli("analyze", "robot.policy.xml", "-l", "labels.yaml", cwd=robot).stdout
+    assert text.startswith("undetermined: no leak reached, but the observation is known to miss something")
+    assert "Next: observe again until no gap is left" in text
+
+
+def test_the_types_come_back_from_the_file_beside_the_policy(cli: Cli, robot: Path) -> None:
+    """The writer is ours, the reader that of ``--types``: who writes and reads which type, and when."""
+    (robot / "graph.txt").write_text(GRAPH + node_info("/old", publishers="/image: sensor_msgs/msg/CompressedImage"))
+    observe(cli, robot)
+    types = read_types(str(robot / "robot.types.yaml"))
+    assert (types.observed.start, types.observed.end, types.observed.by) == (AT, AT, ("text",))
+    seen = {(one.kind, one.name, kind.type, kind.ends) for one in types.channels for kind in one.types}
+    assert seen == {
+        ("topic", "/image", "sensor_msgs/msg/CompressedImage", (("/old",), ())),
+        ("topic", "/image", "sensor_msgs/msg/Image", (("/cam",), ("/up",))),
+        ("service", "/cam/get_parameters", "r/srv/G", (("/cam",), ())),
+    }
+    done = cli("analyze", "robot.policy.xml", "--types", "robot.types.yaml", "-l", "labels.yaml", cwd=robot)
+    assert done.returncode == 1, done.stderr

@@ -1,0 +1,64 @@
+"""The text of ``ros2 node info``, exactly as ros2cli prints it."""
+
+from __future__ import annotations
+
+import pytest
+
+from rosprivacy.analysis.errors import InputErrors
+from rosprivacy.ingest.observe.node_info import MOST_PROBLEMS, read_node_info
+from tests.helpers.observed import AT, node_info
+
+TEXT = node_info(
+    "/head/camera",
+    subscribers="/parameter_events: rcl_interfaces/msg/ParameterEvent",
+    publishers="/head/image: sensor_msgs/msg/Image; /x: a/msg/A, b/msg/B",
+    service_servers="/save: t/srv/Save",
+    action_clients="/spin: t/action/Spin",
+)
+
+
+def test_every_section_is_read() -> None:
+    seen = read_node_info(TEXT, AT)
+    assert {(one.role, one.name, one.type) for one in seen.endpoints} == {
+        ("subscribe", "/parameter_events", "rcl_interfaces/msg/ParameterEvent"),
+        ("publish", "/head/image", "sensor_msgs/msg/Image"),
+        ("publish", "/x", "a/msg/A"),
+        ("publish", "/x", "b/msg/B"),
+        ("reply", "/save", "t/srv/Save"),
+        ("call", "/spin", "t/action/Spin"),
+    }
+    assert not seen.all_gaps
+
+
+@pytest.mark.parametrize("text", [TEXT.replace("\n", "\r\n"), "\ufeff" + TEXT, TEXT + "\n\n" + TEXT])
+def test_ends_of_lines_a_mark_and_a_node_listed_twice_change_nothing(text: str) -> None:
+    said = {(one.node, one.role, one.name, one.type) for one in read_node_info(text, AT).endpoints}
+    assert said == {(one.node, one.role, one.name, one.type) for one in read_node_info(TEXT, AT).endpoints}
+
+
+def test_nodes_of_one_name_are_a_gap() -> None:
+    warned = (
+        'There are 3 nodes in the graph with the exact name "/head/camera". '
+        "You are seeing information about only one of them.\n"
+    )
+    seen = read_node_info(warned + TEXT, AT)
+    assert seen.all_gaps == {"same-name": 2}
+    assert "only one of them" in seen.remarks[0]
+
+
+def test_warnings_of_the_tool_are_passed_over() -> None:
+    warned = "WARNING: Be aware that there are nodes in the graph that share an exact name, which can …\n"
+    assert read_node_info(warned + TEXT, AT).all_gaps == {"same-name": 1}
+    assert read_node_info("[WARN] [1.2] [rcl]: something\n" + TEXT, AT).all_gaps == {}
+
+
+@pytest.mark.parametrize("text", ["/a\n/b\n", TEXT[: TEXT.index("  Action Servers")]])
+def test_a_cut_text_or_a_list_of_nodes_is_a_gap(text: str) -> None:
+    assert read_node_info(text, AT).all_gaps["unanswered"] >= 1
+
+
+def test_other_text_is_refused_with_its_first_lines() -> None:
+    with pytest.raises(InputErrors) as refused:
+        read_node_info("garbage\n" * 100, AT, "graph.txt")
+    assert len(refused.value.errors) == MOST_PROBLEMS
+    assert str(refused.value.errors[0]).startswith("graph.txt:1: not the output of `ros2 node info`: 'garbage'; give")

@@ -1,0 +1,1 @@
+"""The package ros2privacy: what ros2cli does with it."""

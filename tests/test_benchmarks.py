@@ -1,0 +1,107 @@
+"""The benchmarks guard: every script is run by the one command, and a bound missed twice in a row fails it."""
+
+from __future__ import annotations
+
+import ast
+import os
+import subprocess
+import sys
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.helpers.paths import ROOT
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+FOLDER = ROOT / "benchmarks"
+PARTS = {  # scripts that declare no rows, and who has need of them
+    "all": "runs the others",
+    "measure": "all",
+    "paper_method": "turtlebot",
+    "more_categories": "turtlebot",
+    "neo4j_fleet": "graph_database",
+}
+MADE_UP = """
+from measure import Measured, NotMeasured, Row
+
+RATIOS = iter({ratios})
+
+
+def rows(*, quick):
+    yield Row("good", "a bound", lambda: Measured("1 s", "1 s", 1.0), bound=1)
+    yield Row("ours", "theirs", lambda: Measured("1 s", "1 s", next(RATIOS), "a note"), bound={bound}, goal={goal})
+    yield Row("no bound", "theirs", lambda: Measured("1 s", "1 s", 1.0))
+    raise NotMeasured("no corpus here")
+"""
+
+
+def run(*arguments: str, modules: Path | None = None) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, str(FOLDER / "all.py"), *arguments]
+    env = os.environ | ({"PYTHONPATH": str(modules)} if modules else {})
+    return subprocess.run(command, env=env, capture_output=True, text=True, check=False)
+
+
+def made_up(
+    folder: Path, *ratios: float, bound: float | None = 1, goal: bool = False
+) -> subprocess.CompletedProcess[str]:
+    """Run rows of which the second has these ratios, one measurement after the other."""
+    (folder / "made_up.py").write_text(MADE_UP.format(ratios=ratios, bound=bound, goal=goal), "utf-8")
+    return run("--quick", "made_up", modules=folder)
+
+
+def test_every_script_is_run_or_is_part_of_one() -> None:
+    tree = ast.parse((FOLDER / "all.py").read_text("utf-8"))
+    (given,) = (node.value for node in tree.body if isinstance(node, ast.Assign) and "BENCHMARKS" in ast.unparse(node))
+    listed = ast.literal_eval(given)
+    scripts = {file.stem for file in FOLDER.glob("*.py")}
+    assert set(listed) == scripts - set(PARTS)
+    assert len(listed) == len(set(listed))
+    for name in listed:
+        assert "\ndef rows(*, quick: bool) -> Iterator[Row]:" in (FOLDER / f"{name}.py").read_text("utf-8"), name
+
+
+def test_a_bound_missed_twice_fails_and_is_named(tmp_path: Path) -> None:
+    done = made_up(tmp_path, 1.5, 1.4)
+    assert done.returncode == 1, done.stderr
+    assert done.stdout.splitlines()[-1] == "missed twice: made_up: ours / theirs"
+    (line,) = (line for line in done.stdout.splitlines() if "ours / theirs" in line and "MISSED" in line)
+    assert line.split()[-5:] == ["1.4", "at", "most", "1", "MISSED"]
+    assert "measured twice: 1.5 before" in done.stdout
+
+
+@pytest.mark.parametrize("ratios", [(1.5, 0.9), (1.0,)], ids=["missed once", "met at once"])
+def test_a_bound_missed_once_does_not(tmp_path: Path, ratios: tuple[float, ...]) -> None:
+    done = made_up(tmp_path, *ratios)
+    assert done.returncode == 0, done.stdout + done.stderr
+    (line,) = (line for line in done.stdout.splitlines() if "ours / theirs" in line)
+    assert line.endswith("held")
+    assert ("measured twice" in done.stdout) is (len(ratios) > 1)
+    assert done.stdout.splitlines()[-1] == "all bounds held"
+
+
+def test_a_goal_is_told_and_not_demanded(tmp_path: Path) -> None:
+    done = made_up(tmp_path, 1.5, goal=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "not reached" in done.stdout
+
+
+def test_what_cannot_be_measured_is_told(tmp_path: Path) -> None:
+    assert "made_up        not measured: no corpus here" in made_up(tmp_path, 1.0).stdout.splitlines()
+    (tmp_path / "needy.py").write_text("import nothing_of_that_name\n", "utf-8")
+    done = run("needy", modules=tmp_path)
+    assert done.returncode == 0
+    assert "not measured: nothing_of_that_name is missing" in done.stdout
+
+
+def test_the_quick_form_leaves_out_what_has_no_bound(tmp_path: Path) -> None:
+    assert "no bound / theirs" not in made_up(tmp_path, 1.0).stdout
+    assert "no bound / theirs" in run("made_up", modules=tmp_path).stdout
+
+
+def test_real_rows_are_measured() -> None:
+    """What CI runs, in its smallest part: the start of the command, in fresh processes."""
+    done = run("--quick", "startup")
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "rosprivacy --version / a bare typer program" in done.stdout
