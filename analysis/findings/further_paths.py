@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.findings.disjoint_in_groups import number_in_groups
 from rosprivacy.analysis.kernel.bits import bits_of
 from rosprivacy.analysis.kernel.states import States
-from rosprivacy.analysis.model import one_by_one
+from rosprivacy.analysis.many_flows import one_by_one
 from rosprivacy.analysis.modes import Paths
 
 if TYPE_CHECKING:
@@ -28,7 +28,8 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.findings.disjoint_in_groups import Group
     from rosprivacy.analysis.kernel.search import Search
     from rosprivacy.analysis.kernel.states import Net
-    from rosprivacy.analysis.model import Element, FlowGraph, Meeting
+    from rosprivacy.analysis.many_flows import Meeting
+    from rosprivacy.analysis.model import Element, FlowGraph
 
 State = tuple[int, int]  # vertex, number of the category with which data arrives there
 SOURCE, LEAK = -1, -2  # in place of the category's number: the source and the leak are one state each

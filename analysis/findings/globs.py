@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.answer import Verdict
 from rosprivacy.analysis.findings.closures import ABSENT
 from rosprivacy.analysis.findings.ledger import REVIEW
-from rosprivacy.analysis.model import STANDARD, one_by_one
+from rosprivacy.analysis.many_flows import one_by_one
+from rosprivacy.analysis.model import STANDARD
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping

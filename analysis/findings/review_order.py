@@ -12,14 +12,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.kernel.dominators import immediate_dominators
-from rosprivacy.analysis.model import parted
+from rosprivacy.analysis.many_flows import parted
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.kernel.spread import Spread
-    from rosprivacy.analysis.model import Element, Meeting
+    from rosprivacy.analysis.many_flows import Meeting
+    from rosprivacy.analysis.model import Element
 
 START = -1  # before all sources
 MOST = 200_000  # flows with data; of more it is not worked out what stands behind an element

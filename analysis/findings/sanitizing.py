@@ -9,7 +9,8 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.model import Method, one_by_one
+from rosprivacy.analysis.many_flows import one_by_one
+from rosprivacy.analysis.model import Method
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence

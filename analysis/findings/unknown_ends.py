@@ -9,13 +9,15 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.model import NON_ROS, UnknownEnd, parted
+from rosprivacy.analysis.many_flows import parted
+from rosprivacy.analysis.model import NON_ROS, UnknownEnd
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
 
     from rosprivacy.analysis.kernel.spread import Spread
-    from rosprivacy.analysis.model import Element, FlowGraph, Meeting
+    from rosprivacy.analysis.many_flows import Meeting
+    from rosprivacy.analysis.model import Element, FlowGraph
 
 
 def unknown_ends(spread: Spread, mask: int) -> tuple[UnknownEnd, ...]:

@@ -9,7 +9,7 @@ from bisect import bisect_left
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.model import parted
+from rosprivacy.analysis.many_flows import parted
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

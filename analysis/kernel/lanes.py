@@ -10,13 +10,13 @@ from collections import ChainMap, defaultdict
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.model import parted
+from rosprivacy.analysis.many_flows import parted
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, MutableMapping, Sequence
 
     from rosprivacy.analysis.kernel.spread import Spread
-    from rosprivacy.analysis.model import Meeting
+    from rosprivacy.analysis.many_flows import Meeting
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import LabelError, shown
 from rosprivacy.analysis.kernel.ranks import closes, in_words
 from rosprivacy.analysis.kernel.roles import facts
-from rosprivacy.analysis.model import CHANGED, STATED, parted
+from rosprivacy.analysis.many_flows import parted
+from rosprivacy.analysis.model import CHANGED, STATED
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping

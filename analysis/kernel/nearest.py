@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.kernel.backward import NOTHING_OPENED, Opened
 from rosprivacy.analysis.kernel.states import back, back_from, onward
-from rosprivacy.analysis.model import parted
+from rosprivacy.analysis.many_flows import parted
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.kernel.spread import Spread
-    from rosprivacy.analysis.model import Flow, Meeting
+    from rosprivacy.analysis.many_flows import Meeting
+    from rosprivacy.analysis.model import Flow
 
 FAR = 1 << 60  # further than any path is long
 

@@ -11,7 +11,7 @@ from collections import defaultdict
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.model import number
+from rosprivacy.analysis.many_flows import number
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

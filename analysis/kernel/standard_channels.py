@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.model import GLOB, STANDARD, number, parted
+from rosprivacy.analysis.many_flows import number, parted
+from rosprivacy.analysis.model import GLOB, STANDARD
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -11,13 +11,13 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.model import number, one_by_one, parted
+from rosprivacy.analysis.many_flows import number, one_by_one, parted
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from rosprivacy.analysis.kernel.spread import Spread
-    from rosprivacy.analysis.model import Meeting
+    from rosprivacy.analysis.many_flows import Meeting
 
 Move = tuple[int, int, int]  # flow, its target, bits that go along it and are taken up there
 

@@ -52,7 +52,6 @@ from rosprivacy.analysis.model.element import (
     Element,
 )
 from rosprivacy.analysis.model.flow import Flow, FlowGraph
-from rosprivacy.analysis.model.flows import MATCHES, Flows, Meeting, at_most, leaving, number, one_by_one, parted
 from rosprivacy.analysis.model.message_type import OF_KIND, MessageType, kind_of_type
 from rosprivacy.analysis.model.policy import Grant, Policy, Profile, Seen
 from rosprivacy.analysis.model.reason import REASONS, Reason
@@ -99,7 +98,6 @@ __all__ = [
     "GOES_NOWHERE",
     "KINDS",
     "LEGAL_BASIS",
-    "MATCHES",
     "MAY_REVEAL",
     "MERGED",
     "NAME",
@@ -136,11 +134,9 @@ __all__ = [
     "Element",
     "Flow",
     "FlowGraph",
-    "Flows",
     "Grant",
     "JudgedBag",
     "Legal",
-    "Meeting",
     "MessageType",
     "Method",
     "NonRosFacts",
@@ -157,12 +153,7 @@ __all__ = [
     "Surroundings",
     "TopicKinds",
     "UnknownEnd",
-    "at_most",
     "is_article_9",
     "kind_of_type",
-    "leaving",
-    "number",
-    "one_by_one",
-    "parted",
     "unread",
 ]

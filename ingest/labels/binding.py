@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.bounds import BOUNDS, Tally
 from rosprivacy.analysis.durations import ordered
 from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, shown
-from rosprivacy.analysis.model import Bound, Diagnostic, Severity, Surroundings, at_most, leaving
+from rosprivacy.analysis.many_flows import at_most, leaving
+from rosprivacy.analysis.model import Bound, Diagnostic, Severity, Surroundings
 from rosprivacy.analysis.non_ros import by_kind
 from rosprivacy.analysis.text import counted
 from rosprivacy.analysis.written_names import is_glob, literal, meant

@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.bounds import BOUNDS, Tally
 from rosprivacy.analysis.errors import PolicyError
-from rosprivacy.analysis.model import KINDS, Element, Flow, FlowGraph, Flows, Grant, Meeting, Profile
+from rosprivacy.analysis.many_flows import Flows, Meeting
+from rosprivacy.analysis.model import KINDS, Element, Flow, FlowGraph, Grant, Profile
 from rosprivacy.analysis.modes import View
 from rosprivacy.ingest.policies.comparisons import Comparisons, apart
 from rosprivacy.ingest.policies.meetings import literal_ends, meetings

@@ -17,8 +17,7 @@ from typing import TYPE_CHECKING, overload
 
 from rosprivacy.analysis.bounds import BOUNDS, Bounds
 from rosprivacy.analysis.errors import InputErrors, PolicyError
-from rosprivacy.analysis.model.diagnostic import Place
-from rosprivacy.analysis.model.flow import Flow
+from rosprivacy.analysis.model import Flow, Place
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
