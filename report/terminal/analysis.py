@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import ASSUMED, MERGED
-from rosprivacy.report.document.analysis import files_not_read, lacking, observation_gaps
+from rosprivacy.report.document.analysis import bag_gaps, files_not_read, lacking, observation_gaps
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import shown_name
 from rosprivacy.report.observed_lines import observed_lines
@@ -81,7 +81,9 @@ def verdict_line(report: Mapping[str, Any], words: Words = IN_ENGLISH) -> Line:
     if not any(report["categories"]) or (verdict == "undetermined" and not report["open"]):
         unread = files_not_read(report) and any(report["categories"])
         gap = observation_gaps(report) and any(report["categories"])
-        why = "tty.unread" if unread else "tty.gap" if gap else f"tty.lacking.{lacking(report) or 'nothing'}"
+        bag = bag_gaps(report) and any(report["categories"])
+        known = "tty.unread" if unread else "tty.gap" if gap else "tty.gap.bag" if bag else ""
+        why = known or f"tty.lacking.{lacking(report) or 'nothing'}"
         meaning = words(why)
     accepted = sum(finding["accepted"] for finding in report["findings"])
     if accepted and verdict != "leak":

@@ -46,7 +46,7 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "policies": {"reading", "types"},
         "decisions": {"reading"},
         "bags": {"reading"},
-        "labels": READING,
+        "labels": READING | {"bags"},
         "mitigation": READING,
         "observe": READING,
         "fleet": READING | {"labels"},
