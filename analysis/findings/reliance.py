@@ -128,10 +128,10 @@ def reliances(
     standard:1 [] ['/rosout']
     """
     bound = replace(bound, outside=_outside(analysis))
-    work = _Work.of(analysis, bound, hierarchy, accepts)
+    spots = _spots(analysis.spread, bound)
+    work = _Work.of(analysis, bound, hierarchy, accepts) if spots else None
     if work is None:
         return ()
-    spots = _spots(analysis.spread, bound)
     order = sorted(spots, key=lambda key: (line_key(key[0]), key[1]))
     rows = (work.without(key[0], spots[key]) for key in order)
     return tuple(row for row in rows if row.hangs)

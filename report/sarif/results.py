@@ -49,10 +49,14 @@ MISSING = {
 
 @dataclass(frozen=True, slots=True)
 class Files:
-    """File names as SARIF has them. ``known`` only saves asking twice."""
+    """File names as SARIF has them.
+
+    ``known`` and ``places`` save asking twice, and what many results say is in memory once.
+    """
 
     root: Path
     known: dict[str, dict[str, Any]] = field(default_factory=dict)
+    places: dict[Place, dict[str, Any]] = field(default_factory=dict)
 
     def artifact(self, file: str) -> dict[str, Any]:
         """Return the ``artifactLocation`` of a file."""
@@ -63,7 +67,10 @@ class Files:
 
     def physical(self, place: Place) -> dict[str, Any]:
         """Return the ``physicalLocation`` of a place; viewers want a line, so one that has none gets the first."""
-        return {"artifactLocation": self.artifact(place.file), "region": {"startLine": max(place.line, 1)}}
+        if place not in self.places:
+            region = {"startLine": max(place.line, 1)}
+            self.places[place] = {"artifactLocation": self.artifact(place.file), "region": region}
+        return self.places[place]
 
 
 @dataclass(frozen=True, slots=True)

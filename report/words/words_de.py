@@ -201,6 +201,8 @@ WORDS = {
     # --- the risks
     "h.risks": "Risiken für die betroffenen Personen",
     "risk.intro": "Artikel 35 Absatz 7 Buchstaben c und d: zu jedem Datenfluss die Risiken für die Rechte und Freiheiten der betroffenen Personen, und was dagegen getan wird. Das kann nur eine Person sagen; dafür sind die Felder da.",
+    "risk.left.one": "{n} weiterer Datenfluss hat hier keine Felder, da seine Wege nicht einzeln aufgeführt sind.",
+    "risk.left.many": "{n} weitere Datenflüsse haben hier keine Felder, da ihre Wege nicht einzeln aufgeführt sind.",
     "risk.likelihood": "Eintrittswahrscheinlichkeit",
     "risk.severity": "Schwere",
     "risk.whom": "Für wen?",
@@ -399,6 +401,8 @@ WORDS = {
     "table.legend": "'kein Weg gefunden' gilt unter den gegebenen Angaben und nur, wenn auf den Wegen nichts zu prüfen bleibt.",
     # --- findings
     "f.intro": "Jeder Eintrag ist ein zu prüfender Weg: eine Datenart, von einer Quelle, zu einem Ort. Die Liste darunter ist ein kürzester Weg; jeder Schritt nennt die Policy-Zeile, die ihn erlaubt. Wer einen Weg schließen will, ändert eine dieser Zeilen oder setzt ein Element dazwischen, das die Daten anonymisiert, aggregiert oder verwirft; Pseudonymisieren schließt ihn nicht. Fragen zu jedem: Ist die Offenlegung gewollt? Auf welcher Grundlage nach Artikel 6, und bei besonderen Kategorien personenbezogener Daten nach Artikel 9 Absatz 2? Wer ist der Empfänger, und in welcher Rolle?",
+    "f.left.one": "{n} weiterer Weg ist hier nicht einzeln aufgeführt, damit sich die Datei öffnen lässt: „rosprivacy analyze --format json“ nennt ihn.",
+    "f.left.many": "{n} weitere Wege sind hier nicht einzeln aufgeführt, damit sich die Datei öffnen lässt: „rosprivacy analyze --format json“ nennt alle.",
     "f.none": "Es gibt keinen zu prüfenden Weg.",
     "f.filter": "Suchen und filtern",
     "f.search": "Suche in Namen, Zeilen und Kennungen",

@@ -18,7 +18,7 @@ from rosprivacy.report.words import LANGUAGES
 from rosprivacy.terminal_width import terminal_width
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
     from rosprivacy.report.answer import Answer
     from rosprivacy.report.compare.earlier import Earlier
@@ -72,7 +72,7 @@ class Format:
 
     name: str
     suffix: str
-    write: Callable[[Answer, Style], str | bytes]
+    write: Callable[[Answer, Style], str | bytes | Iterator[str]]
 
 
 @overload
@@ -90,6 +90,12 @@ def written(answer: Answer, name: str, style: Style | None = None) -> str | byte
         If there is no such format or language, ``SOURCE_DATE_EPOCH`` is no time, or the earlier document cannot be
         read.
     """
+    made = in_pieces(answer, name, style)
+    return made if isinstance(made, str | bytes) else "".join(made)
+
+
+def in_pieces(answer: Answer, name: str, style: Style | None = None) -> str | bytes | Iterator[str]:
+    """Return the same, of what can be large as pieces to be written one after the other; ``InputError`` as there."""
     if name not in FORMATS:
         raise InputError("format", 0, f"unknown format {shown(name)!r}", f"one of {', '.join(FORMATS)}")
     style = style or Style()
@@ -117,11 +123,11 @@ def _text(answer: Answer, style: Style) -> str:
     return report_text(told, words, verbose=style.verbose, quiet=style.quiet)
 
 
-def _json(answer: Answer, _: Style) -> str:
+def _json(answer: Answer, _: Style) -> Iterator[str]:
+    from rosprivacy.report import json_text
     from rosprivacy.report.document.whole import document
-    from rosprivacy.report.json_text import as_text
 
-    return as_text(document(answer))
+    return json_text.in_pieces(document(answer))
 
 
 def _linked_data(form: str) -> Callable[[Answer, Style], str]:
@@ -136,13 +142,13 @@ def _linked_data(form: str) -> Callable[[Answer, Style], str]:
     return write
 
 
-def _sarif(answer: Answer, _: Style) -> str:
-    from rosprivacy.report.json_text import as_text
+def _sarif(answer: Answer, _: Style) -> Iterator[str]:
+    from rosprivacy.report import json_text
     from rosprivacy.report.sarif.artifacts import repository_root
     from rosprivacy.report.sarif.log import sarif
 
     named = [entry["file"] for kind in ("policies", "labels") for entry in answer.assumptions.get(kind) or ()]
-    return as_text(sarif(answer, repository_root(named)))
+    return json_text.in_pieces(sarif(answer, repository_root(named)))
 
 
 def _cnil_pia(answer: Answer, style: Style) -> str:

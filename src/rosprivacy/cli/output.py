@@ -11,14 +11,16 @@ from rosprivacy.cli.exit_code import SIGPIPE
 from rosprivacy.terminal_width import terminal_width
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
     from pathlib import Path
 
     from rich.console import Console
 
+    from rosprivacy.report.atomic import Text
+
 
 def emit(
-    text: str | bytes,
+    text: Text,
     output: Path | None,
     others: Mapping[Path, str | None] | None = None,
     *,
@@ -36,12 +38,11 @@ def emit(
         _print(text)
 
 
-def _print(text: str | bytes) -> None:
+def _print(text: Text) -> None:
     if sys.stdout is None:  # `>&-`
         raise InputError("standard output", 0, "is closed", "open it, or name a file with --output")
     try:
-        data = text.encode(_encoding(text), "backslashreplace") if isinstance(text, str) else text
-        sys.stdout.buffer.write(data)
+        sys.stdout.buffer.writelines(_encoded(text))
         sys.stdout.flush()
     except BrokenPipeError:  # `| head`: end as a program does that knows nothing of pipes, not with a verdict
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -50,6 +51,13 @@ def _print(text: str | bytes) -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         hint = "free space, or write elsewhere"
         raise InputError("standard output", 0, f"cannot be written: {error.strerror}", hint) from None
+
+
+def _encoded(text: Text) -> Iterator[bytes]:
+    encoding = ""
+    for piece in (text,) if isinstance(text, str | bytes) else text:
+        encoding = encoding or (_encoding(piece) if isinstance(piece, str) else "")
+        yield piece.encode(encoding, "backslashreplace") if isinstance(piece, str) else piece
 
 
 def _encoding(text: str) -> str:
