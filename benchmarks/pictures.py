@@ -105,10 +105,12 @@ def rows(*, quick: bool) -> Iterator[Row]:
         size = f"{len(whole.boxes):,} elements, {len(whole.lines):,} lines, {len(analysis.findings)} findings"
         command = [sys.executable, "-m", "rosprivacy", "graph", "--all", policy, "--labels", labels]
         bare = _bare(whole, folder)
-        asked = [*command, "--show", "ros", "--output", folder / "ros.svg"]
+        drawing: list[str | Path] = [*command, "--show", "ros", "--output", folder / "ros.svg"]
         rounds = 1 if quick else 5
         what, against = "rosprivacy graph --show ros, SVG", "Graphviz's bare sfdp of the same"
-        yield Row(what, against, lambda: timed(rounds, partial(run, *asked), partial(run, *bare), note=size), bound=10)
+        yield Row(
+            what, against, lambda: timed(rounds, partial(run, *drawing), partial(run, *bare), note=size), bound=10
+        )
         if quick:
             return
         for show in ("ros", "privacy"):
