@@ -9,6 +9,7 @@ command line turns errors into exit codes::
         PolicyError
         LabelError
         LimitsError
+        TypesError
         DecisionError
         FleetError
         OntologyError
@@ -92,6 +93,10 @@ class LabelError(InputError):
 
 class LimitsError(InputError):
     """A limits file that cannot be read, or that names what is not there."""
+
+
+class TypesError(InputError):
+    """A file of message types, or of what they cannot carry, that cannot be read."""
 
 
 class DecisionError(InputError):

@@ -35,6 +35,7 @@ BENCHMARKS = (
     "fleet_spark",
     "pictures",
     "report",
+    "findings",
     "worst_case",
     "graph_database",
     "carried_kinds",

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 FACTORY = ROOT / "examples" / "factory"
 CARE = ROOT / "examples" / "care-home"
 POLICY, LABELS = CARE / "care-home.policy.xml", CARE / "care-home.labels.yaml"
-ROBOT_ONLY = {"add"}  # a fleet file names what is added, robot by robot
+ROBOT_ONLY = {"add", "types"}  # a fleet file names what is added; label files state types, robot by robot
 
 
 # ---------------------------------------------------------------- names, docs, types, light start

@@ -51,7 +51,7 @@ def first_way(system: Written) -> Result:
 def saved_way(policy: str) -> Result:
     """A graph that an earlier run has saved."""
     result = rosprivacy.analyze(policy)
-    Path("g.json").write_text(as_text(as_dict(result.policies, result.diagnostics)), "utf-8")
+    Path("g.json").write_text(as_text(as_dict(result.policies, result.diagnostics, result.types)), "utf-8")
     return rosprivacy.analyze(labels="p.yaml", add="g.json", decisions=DECISIONS)
 
 
@@ -70,7 +70,7 @@ def test_files_a_saved_graph_and_a_fleet_of_one(system: Written) -> None:
 
 @pytest.mark.slow
 @given(written())
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=settings().max_examples * 3 // 4, deadline=None)
 def test_more_of_them(system: Written) -> None:
     in_files_a_saved_graph_and_a_fleet(system)
 

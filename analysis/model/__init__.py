@@ -20,6 +20,7 @@ from rosprivacy.analysis.model.category import (
 )
 from rosprivacy.analysis.model.diagnostic import (
     ASSUMED,
+    BAG_GAP,
     CAREFUL_DENY,
     DEAD_DENY,
     EMPTY_GROUP,
@@ -36,6 +37,7 @@ from rosprivacy.analysis.model.diagnostic import (
     OBSERVATION_GAP,
     OBSERVED,
     PATHS_NOT_COUNTED,
+    RECORDING,
     REFUSED_NAME,
     SEEN_ALTHOUGH_DENIED,
     SHARED_ENCLAVE,
@@ -52,9 +54,10 @@ from rosprivacy.analysis.model.element import (
     Element,
 )
 from rosprivacy.analysis.model.flow import Flow, FlowGraph
+from rosprivacy.analysis.model.message_type import OF_KIND, MessageType, kind_of_type
 from rosprivacy.analysis.model.policy import Grant, Policy, Profile, Seen
 from rosprivacy.analysis.model.reason import REASONS, Reason
-from rosprivacy.analysis.model.recording import Bag, BagTopic, BagVerdict, JudgedBag, TopicKinds
+from rosprivacy.analysis.model.recording import Bag, BagTopic, BagVerdict, JudgedBag, TopicKinds, iso
 from rosprivacy.analysis.model.statement import (
     CHANGED,
     CLEANS,
@@ -82,6 +85,7 @@ __all__ = [
     "ARTICLE_9_VERDICTS",
     "ARTICLE_10",
     "ASSUMED",
+    "BAG_GAP",
     "CAREFUL_DENY",
     "CHANGED",
     "CHANNELS",
@@ -109,8 +113,10 @@ __all__ = [
     "NO_SOURCE",
     "OBSERVATION_GAP",
     "OBSERVED",
+    "OF_KIND",
     "PATHS_NOT_COUNTED",
     "REASONS",
+    "RECORDING",
     "REFUSED_NAME",
     "SEEN_ALTHOUGH_DENIED",
     "SEGMENT",
@@ -135,6 +141,7 @@ __all__ = [
     "Grant",
     "JudgedBag",
     "Legal",
+    "MessageType",
     "Method",
     "NonRosFacts",
     "Place",
@@ -151,5 +158,7 @@ __all__ = [
     "TopicKinds",
     "UnknownEnd",
     "is_article_9",
+    "iso",
+    "kind_of_type",
     "unread",
 ]

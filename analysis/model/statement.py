@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.durations import Duration
     from rosprivacy.analysis.model.element import Element
+    from rosprivacy.analysis.model.message_type import MessageType
 
 
 class Method(StrEnum):
@@ -241,6 +242,8 @@ class Bound:
         By vertex: what the data there are processed for, and on which basis.
     of_robots
         By robot: the same of all that is on it; with who is responsible.
+    types
+        By vertex: the message types of a channel (rule S15), sorted.
     """
 
     elements: Mapping[int, tuple[Statement, ...]]
@@ -252,6 +255,7 @@ class Bound:
     processing: Mapping[int, Processing] = field(default_factory=dict)
     of_robots: Mapping[str, Processing] = field(default_factory=dict)
     elsewhere: Mapping[tuple[str, str], frozenset[str]] = field(default_factory=dict)
+    types: Mapping[int, tuple[MessageType, ...]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

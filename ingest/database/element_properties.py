@@ -17,6 +17,7 @@ from rosprivacy.analysis.legal import turned_special
 from rosprivacy.analysis.model import UNSTATED
 from rosprivacy.ingest.database.carrying import moving
 from rosprivacy.ingest.database.processing_properties import processing_properties
+from rosprivacy.ingest.database.type_properties import type_properties
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -126,6 +127,7 @@ def element_results(analysis: Analysis, bound: Bound, names: Names, roles: Roles
             "sanitizes": cleans,
             "stops": names.exact(_stopped(found, found.keeps.get(vertex, found.all_bits))),
             "subjects": list(bound.subjects.get(vertex, ())),
+            **type_properties(bound.types.get(vertex, ()), element.robot),
             **_surroundings(bound.surroundings.get(vertex), element),
             **_of_element(bound.processing.get(vertex, UNSTATED)),
             "open": list(question.categories) if question else [],

@@ -40,6 +40,8 @@ from rosprivacy.ingest.database.row_facts import (
     subjects_of,
 )
 from rosprivacy.ingest.database.schema import KIND_LABELS, ROLES
+from rosprivacy.ingest.database.type_properties import types_of
+from rosprivacy.ingest.labels.stated_types import in_order
 from rosprivacy.ingest.labels.surroundings import surroundings_of
 
 if TYPE_CHECKING:
@@ -47,7 +49,7 @@ if TYPE_CHECKING:
 
     from neo4j import Driver, ManagedTransaction, Record
 
-    from rosprivacy.analysis.model import NonRosFacts, Processing
+    from rosprivacy.analysis.model import MessageType, NonRosFacts, Processing
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 _FLOW_ROLES = {"publish", "subscribe", "request", "reply", "call", "execute", MATCHES}
@@ -177,6 +179,7 @@ class _Reader:
         self._outside: dict[Element, NonRosFacts] = {}
         self._processing: dict[str, Processing] = {}
         self._of_robots: dict[str, Processing] = {}
+        self._types: dict[str, tuple[MessageType, ...]] = {}
 
     def elements(self, records: Iterable[Record]) -> None:
         for record in records:
@@ -203,6 +206,8 @@ class _Reader:
                 self.problems.append(_problem(f"{shown(name)!r}: {error}", hint))
                 continue
             try:
+                if "node" not in kinds and (types := types_of(properties, "" if self._alone else robot)):
+                    self._types[record["key"]] = types
                 self._processing[record["key"]] = processing_of(properties, self._vocabulary.categories)
             except ValueError as error:
                 what = f"{shown(name)!r} cannot be understood: {shown(str(error))}"
@@ -312,6 +317,7 @@ class _Reader:
                 subjects={v: groups for v, vertex in enumerate(vertices) if (groups := subjects_of(vertex.properties))},
                 processing={v: one for v, vertex in enumerate(vertices) if (one := self._processing[vertex.key])},
                 of_robots=self._of_robots,
+                types=in_order({v: self._types.get(vertex.key, ()) for v, vertex in enumerate(vertices)}),
             ),
             robots,
             tuple(vertex.key for vertex in vertices),

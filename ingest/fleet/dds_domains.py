@@ -102,7 +102,7 @@ def _without(name: str, namespace: str) -> str:
 
 def alone(member: Member) -> Part:
     """The part of a robot that has a domain of its own: everything in it is the robot's."""
-    return member.part.renamed(lambda element: replace(element, robot=member.robot.id))
+    return _own_types(member.part.renamed(lambda element: replace(element, robot=member.robot.id)), member.robot)
 
 
 def pseudo_robot(domain: str) -> str:
@@ -121,7 +121,14 @@ def shared(domain: str, members: Sequence[Member], view: str, bounds: Bounds = B
         return as_written(replace(grant, enclave=grant.enclave.split(MARK)[1], node=node), added[robot])
 
     whole = with_grants(Part.of(graph, Bound({})).renamed(names.of_marked), unmarked)
-    return together([whole, *(member.part.renamed(names.of_member(member)) for member in members)])
+    renamed = (_own_types(member.part.renamed(names.of_member(member)), member.robot) for member in members)
+    return together([whole, *renamed])
+
+
+def _own_types(part: Part, robot: Robot) -> Part:
+    """A part whose message types are told of the writers of one robot: of others in its domain they say nothing."""
+    types = {e: tuple(replace(one, robot=robot.id) for one in some) for e, some in part.types.items()}
+    return replace(part, types=types)
 
 
 class _Names:

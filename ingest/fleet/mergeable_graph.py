@@ -10,11 +10,12 @@ from operator import itemgetter
 from typing import TYPE_CHECKING, TypeVar
 
 from rosprivacy.analysis.model import Bound, Element, Flow, FlowGraph
+from rosprivacy.ingest.labels.stated_types import in_order
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
-    from rosprivacy.analysis.model import Grant, NonRosFacts, Processing, Profile, Statement, Surroundings
+    from rosprivacy.analysis.model import Grant, MessageType, NonRosFacts, Processing, Profile, Statement, Surroundings
 
 K = TypeVar("K")
 V = TypeVar("V")
@@ -43,6 +44,8 @@ class Part:
         Whom data of elements are about; where they work; what data there are processed for, and on which basis.
     of_robots
         By robot: who is responsible, what for, on which basis.
+    types
+        Message types of channels.
     """
 
     elements: dict[Element, tuple[Statement, ...]] = field(default_factory=dict)
@@ -55,6 +58,7 @@ class Part:
     surroundings: dict[Element, Surroundings] = field(default_factory=dict)
     processing: dict[Element, Processing] = field(default_factory=dict)
     of_robots: dict[str, Processing] = field(default_factory=dict)
+    types: dict[Element, tuple[MessageType, ...]] = field(default_factory=dict)
 
     @classmethod
     def of(cls, graph: FlowGraph, bound: Bound) -> Part:
@@ -72,6 +76,7 @@ class Part:
             {elements[vertex]: where for vertex, where in bound.surroundings.items()},
             {elements[vertex]: said for vertex, said in bound.processing.items()},
             dict(bound.of_robots),
+            {elements[vertex]: types for vertex, types in bound.types.items()},
         )
 
     def renamed(self, name: Callable[[Element], Element]) -> Part:
@@ -91,6 +96,7 @@ class Part:
             _joined((new[element], groups) for element, groups in self.subjects.items()),
             {new[element]: where for element, where in self.surroundings.items()},
             {new[element]: said for element, said in self.processing.items()},
+            types=_joined((new[element], types) for element, types in self.types.items()),
         )
 
 
@@ -108,6 +114,7 @@ def together(parts: Iterable[Part]) -> Part:
         {element: where for part in parts for element, where in part.surroundings.items()},
         {element: said for part in parts for element, said in part.processing.items()},
         {robot: said for part in parts for robot, said in part.of_robots.items()},
+        _joined(pair for part in parts for pair in part.types.items()),
     )
 
 
@@ -145,6 +152,7 @@ def numbered(part: Part, profiles: Mapping[str, tuple[Profile, ...]], view: str)
         _by_number(number, part.surroundings),
         _by_number(number, part.processing),
         dict(sorted(part.of_robots.items())),
+        types=in_order(_by_number(number, part.types)),
     )
     return graph, replace(bound, elements=dict(sorted(bound.elements.items())), flows=dict(sorted(bound.flows.items())))
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, shown
 from rosprivacy.analysis.model import STATED, Element, Flow, FlowGraph, Grant
 from rosprivacy.analysis.written_names import literal, meant
+from rosprivacy.ingest.labels.bag_storages import recorded
 from rosprivacy.ingest.labels.entries import End
 from rosprivacy.ingest.labels.non_ros_reader import is_non_ros
 from rosprivacy.ingest.policies.names import covered
@@ -60,6 +61,7 @@ def extended(graph: FlowGraph, files: Sequence[Labels]) -> tuple[FlowGraph, list
         for end in entry.between:
             both = list(ends.between(end, End(entry.name), entry.place, problems))
             flows += [*both, *((b, a, place) for a, b, place in both)]
+        flows += recorded(graph, entry)
     return with_flows(graph, added, flows), problems
 
 
@@ -79,7 +81,7 @@ def merged(
 def _facts(entry: Stated) -> tuple[object, ...]:
     said = entry.outside
     more = (said.encrypted, said.country, said.operator, said.recipient, said.transfer, said.contract)
-    return (entry.kind, said.retention, said.backups, *more, entry.between)
+    return (entry.kind, said.retention, said.backups, *more, entry.between, entry.bags)
 
 
 class Ends:

@@ -20,6 +20,7 @@ from rosprivacy.analysis.text import counted
 from rosprivacy.analysis.written_names import is_glob, literal, meant
 from rosprivacy.ingest.labels.label_file import OURS
 from rosprivacy.ingest.labels.stated_processing import two_of_one, united
+from rosprivacy.ingest.labels.stated_types import in_order, of_no_channel, stated_at
 from rosprivacy.ingest.labels.surroundings import everywhere, joined
 from rosprivacy.ingest.policies.names import covered
 
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.bounds import Bounds
-    from rosprivacy.analysis.model import FlowGraph, NonRosFacts, Place, Processing, Statement
+    from rosprivacy.analysis.model import FlowGraph, MessageType, NonRosFacts, Place, Processing, Statement
     from rosprivacy.ingest.labels.entries import Entry, FlowEntry
     from rosprivacy.ingest.labels.label_file import Labels
 
@@ -71,6 +72,7 @@ def join(
     subjects: dict[int, set[str]] = defaultdict(set)
     own: dict[int, Surroundings] = {}
     processing: dict[int, list[tuple[tuple[int, int], Processing]]] = defaultdict(list)
+    types: dict[int, list[MessageType]] = defaultdict(list)
     leaving = _leaving(graph)
     problems: list[InputError] = []
     for file in labels:
@@ -86,6 +88,9 @@ def join(
                     own[vertex] = joined((own.get(vertex, NOT_STATED), Surroundings(entry.contexts)))
                 if entry.processing:
                     processing[vertex].append((entry.rank, entry.processing))
+            for vertex, one in stated_at(graph, entry, vertices):
+                types[vertex].append(one)
+            problems += of_no_channel(graph, entry, vertices)
             problems += _through(graph, leaving, entry, vertices, through)
         for flow in file.flows:
             indices = _flows(graph, leaving, names, flow)
@@ -105,6 +110,7 @@ def join(
         surroundings=everywhere(graph, own, joined((system, *(file.surroundings for file in labels)))),
         processing={vertex: united(said) for vertex, said in sorted(processing.items())},
         of_robots={"": whole} if (whole := _of_system(labels, problems)) else {},
+        types=in_order(types),
     )
     return bound, problems
 

@@ -13,7 +13,7 @@ from rosprivacy.analysis.written_names import is_glob
 from rosprivacy.ingest.policies.names import literals
 
 if TYPE_CHECKING:
-    from rosprivacy.analysis.model import Place, Processing, Statement
+    from rosprivacy.analysis.model import MessageType, Place, Processing, Statement
 
 EXACT = 1_000_000  # a name outranks every glob
 PROPOSED, SHIPPED, OWN = -1, STANDARD, 1  # tiers: infrastructure, standard channels, a person's own word (rule S13)
@@ -35,6 +35,8 @@ class Entry:
         What the data there are processed for, and on which basis.
     rank
         Of the name, as of the statements.
+    types
+        Of channels: their message types, as a person states them for all writers (rule S15).
     """
 
     kinds: tuple[str, ...]
@@ -45,6 +47,7 @@ class Entry:
     processing: Processing = UNSTATED
     rank: tuple[int, int] = (0, 0)
     contexts: tuple[str, ...] = ()
+    types: tuple[MessageType, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

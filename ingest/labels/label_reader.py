@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.errors import InputError, shown
 from rosprivacy.analysis.kernel.ranks import NONE_OF
 from rosprivacy.analysis.model import (
     CLEANS,
@@ -26,6 +26,7 @@ from rosprivacy.analysis.model import (
     Statement,
     Surroundings,
 )
+from rosprivacy.ingest.labels.bag_storages import bags_of
 from rosprivacy.ingest.labels.entries import EXACT, SHIPPED, Entry, FlowEntry, naming, specificity
 from rosprivacy.ingest.labels.name_reader import NameReader
 from rosprivacy.ingest.labels.non_ros_reader import is_non_ros, read_element, read_limits
@@ -36,11 +37,13 @@ from rosprivacy.ingest.labels.stated_processing import (
     read_system,
     with_transfer,
 )
+from rosprivacy.ingest.labels.stated_types import read_types
 from rosprivacy.ingest.labels.surroundings import read_contexts, read_country
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from rosprivacy.analysis.model import Bag
     from rosprivacy.ingest.labels.non_ros_reader import Limit, Stated
     from rosprivacy.ingest.reading.yaml_values import Value
 
@@ -66,7 +69,7 @@ NODE_KEYS = (
     "author",
 )
 SAYS_NOTHING = ("subjects", "context", *OF_ELEMENT, "note", "author")  # of what data does
-CHANNEL_KEYS = ("only", "never", "note", "author")
+CHANNEL_KEYS = ("only", "never", "types", "note", "author")
 FLOW_KEYS = ("from", "to", "only", "never", "note", "author")
 OUTSIDE = ("elements", "limits")
 SURROUNDINGS = ("context", "country")  # of a system
@@ -89,6 +92,15 @@ class LabelReader(NameReader):
     limits: list[Limit] = field(default_factory=list)
     surroundings: Surroundings = field(default_factory=Surroundings)
     processing: Processing = UNSTATED
+    root: str = ""
+
+    def bags_at(self, value: Value) -> tuple[Bag, ...]:
+        """Return the bags that a storage names, relative to this file; none, and a problem, if they cannot be read."""
+        try:
+            return bags_of(self.file, self.root, value)
+        except InputError as error:
+            self.problem(value.line, error.problem, error.hint)
+        return ()
 
     def rank(self, specific: int) -> tuple[int, int]:
         """Return the rank of a statement."""
@@ -172,7 +184,9 @@ class LabelReader(NameReader):
             subjects = self._subjects(label) if of_node else ()
             processing = self._processing(label, place) if of_node else UNSTATED
             contexts = self._contexts(label) if of_node else ()
-            self.entries.append(Entry(SECTIONS[section], name, place, statements, subjects, processing, rank, contexts))
+            types = () if of_node else read_types(self, label, SECTIONS[section])
+            about = subjects, processing, rank, contexts, types
+            self.entries.append(Entry(SECTIONS[section], name, place, statements, *about))
 
     def _said(self, label: Value, statements: Iterable[Statement], how: str = NAME) -> tuple[Statement, ...]:
         """Statements of one entry, with how it names, its reason, and who says it: its author, or the file's."""
@@ -303,7 +317,7 @@ class LabelReader(NameReader):
             return
         if label.kind != "map":
             what = f"label {shown(label.text or label.kind)!r} on a channel"
-            self.problem(place.line, what, "write mundane, sensitive, {only: […]} or {never: […]}")
+            self.problem(place.line, what, "write mundane, sensitive, {only: […]}, {never: […]} or {types: […]}")
             return
         yield from self._restrictions(label, CHANNEL_KEYS, rank)
 
@@ -372,3 +386,5 @@ def check_mundane(reader: LabelReader, top: Value) -> None:
             if statement.role != "mundane":
                 what = f"{shown(entry.name)!r} is {statement.role} in a file of standard channels"
                 reader.problem(statement.place.line, what, hint)
+        for one in entry.types[:1]:
+            reader.problem(one.place.line, f"types of {shown(entry.name)!r} in a file of standard channels", hint)

@@ -11,7 +11,7 @@ from rosprivacy.analysis.model import CLEANS, CONTEXTS, NO_BASIS, NON_ROS
 from rosprivacy.analysis.non_ros import RECIPIENTS, TRANSFERS
 from rosprivacy.ingest.labels.label_reader import LONGEST_GROUP, NONE, SAYS_NOTHING
 from rosprivacy.ingest.labels.name_reader import END_KINDS
-from rosprivacy.ingest.labels.non_ros_reader import CARRIERS
+from rosprivacy.ingest.labels.non_ros_reader import BAG, CARRIERS
 from rosprivacy.ingest.labels.stated_processing import LONGEST
 
 if TYPE_CHECKING:
@@ -22,6 +22,12 @@ if TYPE_CHECKING:
 _TEXT = {"type": "string", "pattern": "\\S", "maxLength": LONGEST}
 BASIS = {"type": ["string", "integer"], "description": "Such as 6(1)(f), 9(2)(h), 46(2)(c)."}
 END = {"type": "string", "minLength": 1}
+TYPES = {
+    "type": "array",
+    "minItems": 1,
+    "items": {"type": "string", "pattern": "^[A-Za-z]\\w*/(msg|srv|action)/[A-Za-z]\\w*$"},
+    "description": "Message types of all who write it, such as sensor_msgs/msg/Image.",
+}
 END_OF_KIND = {
     "type": "object",
     "additionalProperties": False,
@@ -152,7 +158,7 @@ def _definitions(categories: list[Category]) -> dict[str, Any]:
             "anyOf": [
                 {"type": "null"},
                 {"enum": ["mundane", "sensitive"]},
-                _object({**restrictions, **said}),
+                _object({**restrictions, "types": TYPES, **said}),
             ]
         },
         "duration": {"type": "string", "pattern": "^P", "description": "ISO 8601, such as P30D."},
@@ -186,6 +192,7 @@ def _element(kind: str, labels: dict[str, Any]) -> dict[str, Any]:
             "retention": {"anyOf": [duration, _by_category(duration)], "description": "How long data is kept."},
             "backups": {"anyOf": [duration, {"type": "boolean"}], "description": "How much longer backups keep it."},
             "encrypted": {"type": "boolean", "description": "At rest."},
+            BAG: {"type": "string", "minLength": 1, "description": "The recording that it is, relative to this file."},
         }
     if kind in CARRIERS:
         facts["between"] = {

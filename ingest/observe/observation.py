@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
-from rosprivacy.ingest.policies.observed_metadata import NO_NODE, STILL_CHANGING
+from rosprivacy.ingest.policies.observed_metadata import HIDDEN, NO_NODE, STILL_CHANGING
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -153,8 +153,11 @@ class Observation:
 
 
 def continued(before: Observation, now: Observation) -> Observation:
-    """Return what a door has seen so far, with what it sees now: only the end says whether it still changed."""
-    settled = replace(before, gaps={gap: n for gap, n in before.gaps.items() if gap != STILL_CHANGING})
+    """Return what a door has seen so far, with what it sees now: only the end says what still changes or is hidden.
+
+    A participant that was hidden when it left is counted by the door to the end.
+    """
+    settled = replace(before, gaps={gap: n for gap, n in before.gaps.items() if gap not in (STILL_CHANGING, HIDDEN)})
     return added_up((settled, now))
 
 

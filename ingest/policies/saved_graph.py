@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import re
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib.resources import files
 from itertools import islice
@@ -26,15 +26,19 @@ from rosprivacy.analysis.model import (
     Place,
     Policy,
     Profile,
+    Seen,
     Severity,
 )
 from rosprivacy.ingest.policies.policy_xml import ROLES
 from rosprivacy.ingest.reading.bounded_file import read_regular
+from rosprivacy.ingest.types import types_file
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
     from jsonschema.protocols import Validator
+
+    from rosprivacy.ingest.types.types_file import TypesFile
 
 FORMAT = "rosprivacy.graph/1"
 MAX_BYTES = 2**30
@@ -47,24 +51,39 @@ UNKNOWN = (
 _ROLES = {role: kind for kind, roles in ROLES.values() for role in roles}
 
 
-def as_dict(policies: Iterable[Policy], diagnostics: Iterable[Diagnostic] = ()) -> dict[str, Any]:
+@dataclass(frozen=True, slots=True)
+class Saved:
+    """What a file keeps of a system: policies, what was not read, and observed types."""
+
+    policies: tuple[Policy, ...]
+    left: tuple[Diagnostic, ...] = ()
+    types: tuple[TypesFile, ...] = ()
+
+
+def as_dict(
+    policies: Iterable[Policy], diagnostics: Iterable[Diagnostic] = (), types: Iterable[TypesFile] = ()
+) -> dict[str, Any]:
     """Return policies as plain values, in the order of their files.
 
     Parameters
     ----------
     diagnostics
         Of the reading: what was not read is kept, since the answer hangs on it (rule S11).
+    types
+        That were observed (rule S15).
     """
+    observed = [types_file.as_dict(one) for one in types]
     left = dict.fromkeys(d for d in diagnostics if d.code in (NOT_READ, UNREAD_FILE))
     return {
         "format": FORMAT,
         "policies": [_policy(policy) for policy in sorted(policies, key=lambda p: p.file)],
         **({"not_read": [_diagnostic(d) for d in left]} if left else {}),
+        **({"types": observed} if observed else {}),
     }
 
 
-def read_saved(file: str) -> tuple[tuple[Policy, ...], tuple[Diagnostic, ...]]:
-    """Read what ``as_dict`` was written from: policies, and what was not read.
+def read_saved(file: str) -> Saved:
+    """Read what ``as_dict`` was written from: policies, what was not read, and observed types.
 
     Raises
     ------
@@ -81,7 +100,7 @@ def read_saved(file: str) -> tuple[tuple[Policy, ...], tuple[Diagnostic, ...]]:
         raise InputErrors([error]) from None
 
 
-def _read(file: str, fail: Callable[[int, str, str], GraphError]) -> tuple[tuple[Policy, ...], tuple[Diagnostic, ...]]:
+def _read(file: str, fail: Callable[[int, str, str], GraphError]) -> Saved:
     data = parsed(read_regular(file, MAX_BYTES, fail), fail, AGAIN)
     said = data.get("format") if isinstance(data, dict) else None
     if said != FORMAT:
@@ -96,7 +115,8 @@ def _read(file: str, fail: Callable[[int, str, str], GraphError]) -> tuple[tuple
         first = policies[0]
         told = (*first.diagnostics, Diagnostic(Place(file, 1), Severity.WARNING, UNKNOWN))
         policies = (replace(first, diagnostics=told), *policies[1:])
-    return policies, tuple(map(_read_diagnostic, data.get("not_read", ())))
+    left = tuple(map(_read_diagnostic, data.get("not_read", ())))
+    return Saved(policies, left, tuple(map(types_file.from_dict, data.get("types", ()))))
 
 
 @cache
@@ -135,11 +155,20 @@ def _policy(policy: Policy) -> dict[str, Any]:
                 "file": grant.place.file,
                 "line": grant.place.line,
                 **({} if grant.allow and not grant.dead else {"dead": grant.dead}),
+                **({"seen": _seen(grant.seen)} if grant.seen else {}),
             }
             for grant in policy.grants
         ],
         "diagnostics": [_diagnostic(d) for d in policy.diagnostics],
     }
+
+
+def _seen(seen: Seen) -> dict[str, Any]:
+    return {"by": list(seen.by), "first": seen.first, "last": seen.last}
+
+
+def _read_seen(saved: dict[str, Any]) -> Seen:
+    return Seen(tuple(saved["by"]), saved["first"], saved["last"])
 
 
 def _diagnostic(d: Diagnostic) -> dict[str, Any]:
@@ -170,6 +199,7 @@ def _read_policy(saved: dict[str, Any]) -> Policy:
             policy=saved["file"],
             dead=g.get("dead", False),
             absolute=g.get("absolute", True),
+            seen=_read_seen(g["seen"]) if "seen" in g else None,
         )
         for g in saved["grants"]
     ]

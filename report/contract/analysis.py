@@ -36,6 +36,7 @@ if TYPE_CHECKING:
         SanitizerEntry,
         SubjectsEntry,
         SurroundingsEntry,
+        TypesEntry,
     )
 
 
@@ -66,6 +67,15 @@ class StandardFile(FileEntry):
     taken: int
 
 
+ObservedEntry = TypedDict("ObservedEntry", {"from": str, "to": str, "by": list[str]})  # empty where a file does not say
+
+
+class TypesFileEntry(FileEntry):
+    """A file of observed message types, and when they were observed."""
+
+    observed: ObservedEntry
+
+
 class DecisionsFile(FileEntry):
     """The file of decisions, and the day that they are looked at."""
 
@@ -93,6 +103,7 @@ class Given(TypedDict):
     policies: list[FileEntry]
     labels: list[FileEntry]
     fleet: NotRequired[list[FileEntry]]
+    types: NotRequired[list[TypesFileEntry]]
     standard_channels: StandardFile | None
     database: NotRequired[DatabaseEntry]
     decisions: NotRequired[DecisionsFile]
@@ -130,6 +141,7 @@ class AnalysisDocument(TypedDict):
     outside: list[NonRosEntry]
     subjects: list[SubjectsEntry]
     surroundings: NotRequired[list[SurroundingsEntry]]
+    types: NotRequired[list[TypesEntry]]
     contexts: NotRequired[list[ContextEntry]]
     look_at: NotRequired[list[PointerEntry]]
     processing: NotRequired[list[ProcessingEntry]]

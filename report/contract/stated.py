@@ -51,6 +51,27 @@ class PointerEntry(TypedDict):
     translations: Texts
 
 
+class TypeEntry(TypedDict):
+    """A message type of a channel: stated for all writers, or seen with those that are named."""
+
+    type: str
+    stated: bool
+    file: str
+    line: int
+    hash: NotRequired[str]
+    writers: NotRequired[list[str]]
+    readers: NotRequired[list[str]]
+    first: NotRequired[str]
+    last: NotRequired[str]
+
+
+class TypesEntry(TypedDict):
+    """The message types of a channel, or of a leg of one."""
+
+    element: ElementEntry
+    types: list[TypeEntry]
+
+
 class SurroundingsEntry(TypedDict):
     """Where an element that brings data in works."""
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.report.document.analysis import analysis_document
 from rosprivacy.report.document.decisions import with_decisions
 from rosprivacy.report.document.fleet import fleet_document
+from rosprivacy.report.document.message_types import with_types
 from rosprivacy.report.document.processing import with_processing
 
 if TYPE_CHECKING:
@@ -16,6 +17,6 @@ if TYPE_CHECKING:
 
 def document(answer: Answer) -> AnalysisDocument:
     """Return the JSON document of an answer."""
-    made = with_processing(analysis_document(answer), answer)
+    made = with_types(with_processing(analysis_document(answer), answer), answer)
     made = with_decisions(made, answer.decided) if answer.decided else made
     return fleet_document(made, answer.fleet, answer.fleet_counts(answer.fleet)) if answer.fleet else made

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Analysis, Finding, Verdict
     from rosprivacy.analysis.bounds import Bounds
     from rosprivacy.analysis.errors import (
+        BagError,
         ClusterError,
         DatabaseError,
         DecisionError,
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
         PolicyError,
         QueryError,
         RosPrivacyError,
+        TypesError,
     )
     from rosprivacy.analysis.model import Element
     from rosprivacy.analysis.modes import View
@@ -46,6 +48,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Analysis",
+    "BagError",
     "Bounds",
     "ClusterError",
     "DatabaseError",
@@ -67,6 +70,7 @@ __all__ = [
     "QueryError",
     "Result",
     "RosPrivacyError",
+    "TypesError",
     "Verdict",
     "View",
     "__version__",

@@ -13,7 +13,6 @@ from rosprivacy.analysis.contexts import Contexts
 from rosprivacy.analysis.findings.findings import Options, analyse
 from rosprivacy.analysis.findings.processed import lacks, processed
 from rosprivacy.analysis.fleet.patterns import FleetView
-from rosprivacy.analysis.fleet.patterns_of_pairs import Groups
 from rosprivacy.analysis.model import unread
 from rosprivacy.assumptions import assumptions_of
 from rosprivacy.decided import accepts, joined_to, law_of
@@ -26,6 +25,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.fleet.counts import Counts
+    from rosprivacy.analysis.fleet.patterns_of_pairs import Groups
     from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.question import Question
     from rosprivacy.system import System
@@ -41,7 +41,7 @@ def answer(system: System, question: Question) -> Result:
     """
     at_sources = Contexts.of(system.graph, system.bound, system.vocabulary.categories, together=system.is_fleet)
     question = in_contexts(question, at_sources.everywhere)
-    groups = Groups(system.likeness) if system.is_fleet and not question.every_finding else None
+    groups = _groups(system) if system.is_fleet and not question.every_finding else None
     options = Options(
         categories=question.asked,
         paths=question.settings.paths,
@@ -55,6 +55,12 @@ def answer(system: System, question: Question) -> Result:
     analysis = analyse(system.graph, system.bound, system.vocabulary.hierarchy, options)
     view = groups.view(analysis) if groups else FleetView.of(analysis, system.likeness) if system.is_fleet else None
     return concluded(system, question, analysis, view, options)
+
+
+def _groups(system: System) -> Groups:
+    from rosprivacy.analysis.fleet.patterns_of_pairs import Groups  # noqa: PLC0415 - numpy, for fleets only
+
+    return Groups(system.likeness)
 
 
 def concluded(
@@ -92,6 +98,7 @@ def concluded(
         accepts=options.accepts,
         policies=system.policies,
         labels=system.labels,
+        types=system.types,
         options=options,
         again=partial(_again, system.under, question) if system.under else None,
         closes=_proposed if system.policies else None,

@@ -41,6 +41,7 @@ def analyze(
     ontologies: Paths = (),
     category: str = TOP,
     standard_channels: Path | None = STANDARD,
+    types: Paths = (),
     paths: Literal["witness", "disjoint", "all"] = "witness",
     max_paths: int = MAX_PATHS,
     decisions: Path | None = None,
@@ -80,6 +81,8 @@ def analyze(
         What the paper's six lists are about.
     standard_channels
         Label file of the standard ROS channels; None to take no channel as mundane by itself (rule S13).
+    types
+        Files of observed message types, as ``rosprivacy observe`` writes them (rule S15).
     paths
         Further paths to list for each finding: none beside the ``witness``, ``disjoint`` ones, or ``all``.
     max_paths
@@ -118,6 +121,7 @@ def analyze(
     """
     settings = Settings(
         add=_paths(add),
+        types=_paths(types),
         view=view,
         categories=_several(categories),
         article9=article9,

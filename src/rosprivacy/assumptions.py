@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.decisions import Decisions
     from rosprivacy.analysis.model import Policy
     from rosprivacy.ingest.labels.label_file import Labels
+    from rosprivacy.ingest.types.types_file import TypesFile
     from rosprivacy.question import Question
     from rosprivacy.settings import Settings
 
@@ -95,6 +96,15 @@ def named_files(
     }
 
 
+def types_read(types: Iterable[TypesFile]) -> dict[str, Any]:
+    """Return which files of observed types were read, and from when to when was looked; nothing without one (S16)."""
+    rows = []
+    for file in types:
+        seen = {"from": file.observed.start, "to": file.observed.end, "by": list(file.observed.by)}
+        rows.append({"file": file.file, "sha256": file.sha256, "observed": seen})
+    return {"types": rows} if rows else {}
+
+
 def sources_of(system: Iterable[Policy]) -> list[tuple[str, str]]:
     """Return (file, SHA-256) of policies and all that they include, sorted."""
     return sorted({source for policy in system for source in policy.sources})
@@ -125,11 +135,13 @@ def put_together(robots: Iterable[Mapping[str, Any]]) -> tuple[tuple[Diagnostic,
         named = {(entry["file"], entry["sha256"]) for said in loaded for entry in said.get(kind, ())}
         if named or kind != "fleet":
             files[kind] = [{"file": name, "sha256": digest} for name, digest in sorted(named)]
+    types = {json.dumps(entry, sort_keys=True) for said in loaded for entry in said.get("types", ())}
     standard = [said["standard_channels"] for said in loaded]
     distinct = {(entry["file"], entry["sha256"]) for entry in standard if entry}
     taken = [{"file": name, "sha256": digest} for name, digest in sorted(distinct)]
     diagnostics = {said for robot in robots for said in diagnostics_of(robot)}
-    rests_on = {**files, "standard_channels": taken[0] if taken else None, "database": {"robots": count}}
+    seen: dict[str, Any] = {"types": [json.loads(entry) for entry in sorted(types)]} if types else {}
+    rests_on = {**files, **seen, "standard_channels": taken[0] if taken else None, "database": {"robots": count}}
     if len(taken) > 1 or (taken and not all(standard)):
         message = "robots were loaded with different files of standard channels; one of them is named"
         diagnostics.add(Diagnostic(Place("the database", 0), Severity.WARNING, message))

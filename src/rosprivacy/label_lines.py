@@ -30,7 +30,7 @@ from rosprivacy.report.document.analysis import lacking
 from rosprivacy.report.review_groups import next_round, sources_of
 from rosprivacy.report.terminal.next_step import candidates, lacking_step
 from rosprivacy.report.terminal.review import review_text
-from rosprivacy.robot_system import answer_robot, read_label_files, read_system, standard_channels
+from rosprivacy.robot_system import answer_robot, read_graphs, read_label_files, read_system, standard_channels
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -61,7 +61,7 @@ def updated(policies: tuple[str, ...], labels: tuple[str, ...], settings: Settin
     """
     vocabulary = load(ontologies=settings.ontologies)
     own, text = _own(labels, vocabulary, settings)
-    read, _ = read_system(policies, settings)
+    read, _ = read_system(policies, settings, read_graphs(settings))
     known = read_label_files(tuple(own if one == own.file else one for one in labels), vocabulary, settings)
     graph = extend(build(read, settings.view, settings.bounds), known)
     _, problems = join(graph, known, settings.bounds)
@@ -131,7 +131,9 @@ def _own(labels: tuple[str, ...], vocabulary: Vocabulary, settings: Settings) ->
     if not Path(file).exists():
         return parse_labels(NEW, vocabulary, name=file), NEW
     data = read_regular(file, MAX_BYTES, partial(LabelError, file))
-    return read_labels(file, vocabulary, category=settings.category, bounds=settings.bounds), data.decode("utf-8-sig")
+    root = settings.include_root
+    read = read_labels(file, vocabulary, category=settings.category, bounds=settings.bounds, include_root=root)
+    return read, data.decode("utf-8-sig")
 
 
 def _meant(elements: Iterable[Element], entry: Entry) -> Iterator[Channel]:

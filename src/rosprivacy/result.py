@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.findings.why_not import WhyNot
     from rosprivacy.analysis.model import Element, Policy
     from rosprivacy.ingest.labels.label_file import Labels
+    from rosprivacy.ingest.types.types_file import TypesFile
 
 
 class Shown(TypedDict, total=False):
@@ -45,7 +46,7 @@ class Result(Answer):
 
     Attributes
     ----------
-    policies, labels
+    policies, labels, types
         As they were read; none where the system comes from a database.
     options
         What was asked.
@@ -57,6 +58,7 @@ class Result(Answer):
 
     policies: tuple[Policy, ...] = ()
     labels: tuple[Labels, ...] = ()
+    types: tuple[TypesFile, ...] = ()
     options: Options = field(default_factory=Options)
     again: Callable[[tuple[str | Labels, ...]], Result] | None = field(default=None, compare=False)
     closes: Callable[[Result], Mapping[str, Any] | str] | None = field(default=None, compare=False)

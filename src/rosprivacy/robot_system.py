@@ -10,29 +10,37 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors
-from rosprivacy.analysis.model import MERGED, REFUSED_NAME, SHARED_ENCLAVE
+from rosprivacy.analysis.model import MERGED, REFUSED_NAME, SEEN_ALTHOUGH_DENIED, SHARED_ENCLAVE
 from rosprivacy.answering import answer
-from rosprivacy.assumptions import files_read, remembered
+from rosprivacy.assumptions import files_read, remembered, types_read
 from rosprivacy.ingest.labels.add_non_ros import extend, extended
+from rosprivacy.ingest.labels.bag_storages import told_of_bags
 from rosprivacy.ingest.labels.binding import bind, join, remarks
 from rosprivacy.ingest.labels.label_file import Labels, read_labels, unknown_categories
+from rosprivacy.ingest.labels.stated_types import in_order
 from rosprivacy.ingest.policies.comparisons import careful_notices
 from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.ingest.policies.joint_policies import joint_warnings
 from rosprivacy.ingest.policies.merged_policies import merging_notices
 from rosprivacy.ingest.policies.policy_files import read_policies
 from rosprivacy.ingest.policies.saved_graph import read_saved
+from rosprivacy.ingest.types.channel_types import channel_types, matching_nothing
+from rosprivacy.ingest.types.types_file import read_types
 from rosprivacy.question import question_of
 from rosprivacy.system import System
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.model import Bound, Diagnostic, FlowGraph, Policy
     from rosprivacy.ingest.database.rows import RobotRows
+    from rosprivacy.ingest.policies.saved_graph import Saved
+    from rosprivacy.ingest.types.types_file import TypesFile
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.question import Question
     from rosprivacy.result import Result
     from rosprivacy.settings import Settings
 
+ACROSS = (MERGED, SHARED_ENCLAVE, REFUSED_NAME, SEEN_ALTHOUGH_DENIED)  # what is said of policies together
+Types = tuple["TypesFile", ...]
 Read = tuple[tuple["Policy", ...], tuple["Diagnostic", ...]]
 
 
@@ -57,25 +65,44 @@ def robot_system(policies: tuple[str, ...], labels: tuple[str | Labels, ...], qu
         With every problem of the input, one line each.
     """
     settings = question.settings
-    return _under(labels, read=read_system(policies, settings), settings=settings, vocabulary=question.vocabulary)
+    graphs = read_graphs(settings)
+    read, types = read_system(policies, settings, graphs), observed_types(settings, graphs)
+    return _under(labels, read=read, types=types, settings=settings, vocabulary=question.vocabulary)
 
 
-def _under(labels: tuple[str | Labels, ...], *, read: Read, settings: Settings, vocabulary: Vocabulary) -> System:
+def _under(
+    labels: tuple[str | Labels, ...], *, read: Read, types: Types, settings: Settings, vocabulary: Vocabulary
+) -> System:
     """Put policies that were read under labels."""
     files = read_label_files(labels, vocabulary, settings)
     graph = extend(build(read[0], settings.view, settings.bounds), files)
-    system = _joined(graph, bind(graph, files, settings.bounds), read, files, settings, vocabulary)
-    return replace(system, under=partial(_under, read=read, settings=settings, vocabulary=vocabulary))
+    system = _joined(graph, bind(graph, files, settings.bounds), read, files, types, settings, vocabulary)
+    system = replace(system, diagnostics=(*system.diagnostics, *matching_nothing(graph, types)))
+    return replace(system, under=partial(_under, read=read, types=types, settings=settings, vocabulary=vocabulary))
 
 
 def _joined(
-    graph: FlowGraph, bound: Bound, read: Read, files: list[Labels], settings: Settings, vocabulary: Vocabulary
-) -> System:
+    graph: FlowGraph, bound: Bound, read: Read, files: list[Labels], types: Types, settings: Settings,
+    vocabulary: Vocabulary,
+) -> System:  # fmt: skip
     policies, diagnostics = read
     said = tuple(d for policy in policies for d in policy.diagnostics) + diagnostics
-    said += tuple(d for file in files for d in file.diagnostics) + tuple(remarks(graph, files))
+    said += (
+        tuple(d for file in files for d in file.diagnostics)
+        + tuple(remarks(graph, files))
+        + tuple(told_of_bags(graph, (stated for file in files for stated in file.elements)))
+    )
     said += careful_notices(graph.careful)
-    return System(graph, bound, vocabulary, said, files_read(policies, files, settings), policies, tuple(files))
+    rests_on = {**files_read(policies, files, settings), **types_read(types)}
+    bound = with_types(graph, bound, types)
+    return System(graph, bound, vocabulary, said, rests_on, policies, tuple(files), types=types)
+
+
+def with_types(graph: FlowGraph, bound: Bound, types: Types) -> Bound:
+    """Return what is bound to a graph with the observed types of its channels beside those that labels state."""
+    seen = channel_types(graph, types)
+    both = {v: (*bound.types.get(v, ()), *seen.get(v, ())) for v in {*bound.types, *seen}}
+    return replace(bound, types=in_order(both))
 
 
 def answer_each(
@@ -93,25 +120,29 @@ def answer_each(
     """
     question = question_of(settings)
     vocabulary = question.vocabulary
-    read, said = read_system(policies, settings)
+    graphs = read_graphs(settings)
+    read, said = read_system(policies, settings, graphs)
+    types = observed_types(settings, graphs)
     files = read_label_files(labels, vocabulary, settings)
     bind(
         extend(build(read, settings.view, settings.bounds), files), files, settings.bounds
     )  # raises what fits none of them
-    left = tuple(one for one in said if one.code not in (MERGED, SHARED_ENCLAVE, REFUSED_NAME))
+    left = tuple(one for one in said if one.code not in ACROSS)
     results = []
     for policy in read:
         alone = (policy,), (*left, *joint_warnings((policy,)))
-        results.append((policy.file, answer(lenient_system(alone, files, question)[0], question)))
+        results.append((policy.file, answer(lenient_system(alone, files, question, types)[0], question)))
     return tuple(results)
 
 
-def lenient_system(read: Read, files: list[Labels], question: Question) -> tuple[System, list[InputError]]:
+def lenient_system(
+    read: Read, files: list[Labels], question: Question, types: Types = ()
+) -> tuple[System, list[InputError]]:
     """Put policies under labels as far as their names go; return also what matches nothing."""
     settings = question.settings
     graph, missing = extended(build(read[0], settings.view, settings.bounds), files)
     bound, more = join(graph, files, settings.bounds)
-    return _joined(graph, bound, read, files, settings, question.vocabulary), [*missing, *more]
+    return _joined(graph, bound, read, files, types, settings, question.vocabulary), [*missing, *more]
 
 
 def robot_of(name: str, result: Result) -> RobotRows:
@@ -122,10 +153,14 @@ def robot_of(name: str, result: Result) -> RobotRows:
     return robot_rows(name, result.analysis, result.bound, result.vocabulary, more)
 
 
-def read_system(policies: tuple[str, ...], settings: Settings) -> Read:
-    """Read policies and the saved graphs that they add to."""
-    graphs = [read_saved(file) for file in settings.add]
-    saved = [policy for policies_of, _ in graphs for policy in policies_of]
+def read_graphs(settings: Settings) -> list[Saved]:
+    """Read the saved graphs that are added to."""
+    return [read_saved(file) for file in settings.add]
+
+
+def read_system(policies: tuple[str, ...], settings: Settings, graphs: list[Saved]) -> Read:
+    """Read policies, beside the saved graphs that they add to."""
+    saved = [policy for graph in graphs for policy in graph.policies]
     read: tuple[Policy, ...] = ()
     diagnostics: tuple[Diagnostic, ...] = ()
     if policies or not saved:
@@ -138,10 +173,26 @@ def read_system(policies: tuple[str, ...], settings: Settings) -> Read:
         )
     known = {policy.file for policy in read}  # read again is read anew
     sources = {name for policy in read for name, _ in policy.sources}
-    diagnostics += tuple(d for _, left in graphs for d in left if d.place.file not in sources and d not in diagnostics)
+    left = (d for graph in graphs for d in graph.left)
+    diagnostics += tuple(d for d in left if d.place.file not in sources and d not in diagnostics)
     system = (*read, *(policy for policy in saved if policy.file not in known))
     read = tuple(sorted(system, key=lambda policy: policy.file))
     return read, (*diagnostics, *joint_warnings(system), *merging_notices(system))
+
+
+def observed_types(settings: Settings, graphs: list[Saved]) -> Types:
+    """Read the files of observed types, and those that saved graphs keep; one that is named is read anew."""
+    problems: list[InputError] = []
+    files: dict[str, TypesFile] = {}
+    for name in dict.fromkeys(settings.types):
+        try:
+            files[name] = read_types(name, settings.bounds)
+        except InputErrors as error:
+            problems += error.errors
+    if problems:
+        raise InputErrors(problems)
+    saved = {one.file: one for graph in graphs for one in graph.types}
+    return tuple(one for _, one in sorted({**saved, **files}.items()))
 
 
 def standard_channels(graph: FlowGraph, vocabulary: Vocabulary, settings: Settings) -> set[tuple[str, str]]:
@@ -164,7 +215,14 @@ def read_label_files(labels: tuple[str | Labels, ...], vocabulary: Vocabulary, s
         try:
             shipped = file in standard and file not in labels  # named by the user, it is the user's own
             files.append(
-                read_labels(file, vocabulary, category=settings.category, shipped=shipped, bounds=settings.bounds)
+                read_labels(
+                    file,
+                    vocabulary,
+                    category=settings.category,
+                    shipped=shipped,
+                    bounds=settings.bounds,
+                    include_root=settings.include_root,
+                )
             )
         except InputErrors as error:
             problems += error.errors

@@ -42,6 +42,8 @@ class Settings:
         What the paper's six lists are about.
     standard_channels
         The label file of the standard channels, or None to take none as mundane (rule S13).
+    types
+        Files of observed message types (rule S15).
     paths, max_paths
         See ``Options``.
     include_root, max_bytes
@@ -66,6 +68,7 @@ class Settings:
     ontologies: tuple[str, ...] = ()
     category: str = TOP
     standard_channels: str | None = STANDARD
+    types: tuple[str, ...] = ()
     paths: str = Paths.witness
     max_paths: int = MAX_PATHS
     include_root: str | None = None
@@ -82,6 +85,6 @@ class Settings:
         if self.article9_level is not None:
             Article9Level(self.article9_level)
             object.__setattr__(self, "article9", True)
-        for name in ("add", "categories", "data_types", "identity_factors", "ontologies"):
+        for name in ("add", "categories", "data_types", "identity_factors", "ontologies", "types"):
             if isinstance(getattr(self, name), str):
                 object.__setattr__(self, name, (getattr(self, name),))

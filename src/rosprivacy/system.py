@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.analysis.model import Bound, Diagnostic, FlowGraph, Policy
     from rosprivacy.ingest.labels.label_file import Labels
+    from rosprivacy.ingest.types.types_file import TypesFile
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 
@@ -29,7 +30,7 @@ class System:
         What a reader has to know of the inputs.
     rests_on
         Entries of the ``assumptions`` about what was read: files with their hashes (rule S12).
-    policies, labels
+    policies, labels, types
         As they were read; none where the system comes from a database.
     likeness
         Which robots of the graph stand for which.
@@ -49,3 +50,4 @@ class System:
     likeness: Likeness = NO_ROBOTS
     is_fleet: bool = False
     under: Callable[[tuple[str | Labels, ...]], System] | None = None
+    types: tuple[TypesFile, ...] = ()

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import pytest
 import typer.main
 
-from rosprivacy.cli.app import app
+from rosprivacy.cli.app import program
 from rosprivacy.cli.exit_code import OWN_ERROR
 from tests.helpers.command import run
 from tests.helpers.paths import ROOT
@@ -86,7 +86,7 @@ def named(text: str) -> str:
 
 
 def test_every_command_is_there_with_an_answer_and_a_refusal() -> None:
-    commands = set(typer.main.get_command(app).commands)  # type: ignore[attr-defined]  # of a group
+    commands = set(typer.main.get_command(program()).commands)  # type: ignore[attr-defined]  # of a group
     ends = {name: {code for line, code in ENDINGS.items() if line.split()[0] == name} for name in commands}
     assert all(ends.values()), ends
     answers_only, needs_a_server = {"law", "db"}, {"unload"}

@@ -42,10 +42,11 @@ WINGS: dict[str, dict[str, set[str]]] = {
     "ingest": {
         "": set(),
         "reading": set(),
-        "policies": {"reading"},
+        "types": {"reading"},
+        "policies": {"reading", "types"},
         "decisions": {"reading"},
         "bags": {"reading"},
-        "labels": READING,
+        "labels": READING | {"bags"},
         "mitigation": READING,
         "observe": READING,
         "fleet": READING | {"labels"},

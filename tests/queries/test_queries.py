@@ -90,7 +90,7 @@ VOCABULARY = Vocabulary.of(
 def system(robot: str, name: str) -> RobotRows:
     """The rows of a system of ``systems.json``; its paths are relative to the repository."""
     given = SYSTEMS[name]
-    graph = build(read_system(tuple(given["policies"]), Settings())[0])
+    graph = build(read_system(tuple(given["policies"]), Settings(), [])[0])
     graph = with_storages(graph, given.get("storages", {}))
     labels = [read_labels(STANDARD, VOCABULARY), *(read_labels(file, VOCABULARY) for file in given["labels"])]
     bound = bind(graph, labels)

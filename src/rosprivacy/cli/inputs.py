@@ -32,6 +32,7 @@ from rosprivacy.cli.options import (
     Server,
     SixLists,
     Standard,
+    TypesFiles,
     ViewChosen,
 )
 from rosprivacy.cli.output import progress_of
@@ -56,6 +57,7 @@ class Inputs:
     ontology: Ontologies = None
     standard_channels: Standard = "rosprivacy:standard"
     no_standard_channels: NoStandard = False
+    types: TypesFiles = None
     include_root: IncludeRoot = None
     max_bytes: MaxBytes = 64 * 2**20
     bound: BoundsRaised = None
@@ -76,6 +78,7 @@ class Inputs:
             ontologies=tuple(self.ontology or ()),
             category=self.category,
             standard_channels=None if self.no_standard_channels else self.standard_channels,
+            types=tuple(self.types or ()),
             include_root=str(self.include_root) if self.include_root else None,
             max_bytes=self.max_bytes,
             bounds=Bounds.raised(self.bound or ()),
@@ -99,7 +102,7 @@ class Inputs:
         if self.from_database:
             refuse("--from-database", "what is in the database", self.given(*OF_FILES))
         if self.fleet:
-            refuse("--fleet", "what the fleet file names", self.given("policies", "labels", "add"))
+            refuse("--fleet", "what the fleet file names", self.given("policies", "labels", "add", "types"))
 
     def result(self, settings: Settings) -> Result:
         """Read the system and analyse it."""
@@ -118,8 +121,8 @@ class Inputs:
 
 
 OF_FILES = (
-    "policies", "labels", "add", "fleet", "standard_channels", "no_standard_channels", "include_root", "max_bytes",
-    "category", "view",
+    "policies", "labels", "add", "fleet", "standard_channels", "no_standard_channels", "types", "include_root",
+    "max_bytes", "category", "view",
 )  # fmt: skip
 OPTIONS = get_type_hints(Inputs, include_extras=True)
 DEFAULTS = {field.name: field.default for field in fields(Inputs)}

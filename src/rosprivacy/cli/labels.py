@@ -17,7 +17,7 @@ from rosprivacy.cli.output import emit
 
 @reads_system(
     "the policies of one robot",
-    without=("fleet", "from_database", "neo4j", "categories", "category", "decisions"),
+    without=("fleet", "from_database", "neo4j", "categories", "category", "decisions", "types"),
 )
 def labels(
     inputs: Inputs,
@@ -82,11 +82,11 @@ def _first(inputs: Inputs, output: Path | None) -> tuple[str, Path | None, dict[
     from rosprivacy.ingest.labels.shipped import infrastructure_of
     from rosprivacy.ingest.policies.flow_graph import build
     from rosprivacy.ontology.vocabulary import load
-    from rosprivacy.robot_system import read_system, standard_channels
+    from rosprivacy.robot_system import read_graphs, read_system, standard_channels
 
     settings = inputs.settings
     vocabulary = load(ontologies=settings.ontologies)
-    system, _ = read_system(inputs.named, settings)
+    system, _ = read_system(inputs.named, settings, read_graphs(settings))
     graph = build(system, settings.view, settings.bounds)
     known = standard_channels(graph, vocabulary, settings), infrastructure_of(graph.elements, vocabulary)
     own = sorted(set(vocabulary.categories) - set(load().categories))

@@ -126,6 +126,16 @@ NoStandard = Annotated[
     bool,
     typer.Option("--no-standard-channels", help="Take no channel as mundane by itself.", rich_help_panel=READ),
 ]
+TypesFiles = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--types",
+        metavar="FILE",
+        show_default=False,
+        help="Message types that were observed, as observe writes them; may be repeated.",
+        rich_help_panel=READ,
+    ),
+]
 IncludeRoot = Annotated[
     Path | None,
     typer.Option(

@@ -28,6 +28,7 @@ from rosprivacy.stored_system import answer_stored
 from tests.helpers.additions import ADD_STORAGE
 from tests.helpers.cases import CASES
 from tests.helpers.daily import one_in
+from tests.helpers.fleet_files import policy
 from tests.helpers.graphs import care_home, dump, factory, rows_of
 from tests.helpers.random_rows import VOCABULARY as SMALL
 from tests.helpers.random_rows import random_systems
@@ -328,3 +329,27 @@ class TestProblems:
     def test_an_empty_database(self, driver: Driver) -> None:
         with pytest.raises(InputErrors, match="there is no robot in it; load one with rosprivacy load"):
             answer_stored(driver, Settings())
+
+
+TYPED = "types: 1\ntopics: {/video: [{type: sensor_msgs/msg/Image, hash: RIHS01_a, writers: [/camera]}]}\n"
+
+
+def test_types_come_back_and_a_person_can_state_more_there(driver: Driver, tmp_path: Path) -> None:
+    """S15: what was observed is as it was; a type that is only named in the database is stated for all writers."""
+    (tmp_path / "p.xml").write_text(policy("/camera>/video", "/wall</video"), "utf-8")
+    (tmp_path / "t.yaml").write_text(TYPED, "utf-8")
+    (tmp_path / "l.yaml").write_text("labels: 1\nchannels: {/video: {types: [a/msg/B]}}\n", "utf-8")
+    files = [str(tmp_path / name) for name in ("p.xml", "l.yaml", "t.yaml")]
+    result = rosprivacy.analyze(files[0], files[1], types=files[2])
+    load(driver, [robot_of("r", result)], VOCABULARY)
+    stored = answer_stored(driver, Settings()).document()
+    assert stored["types"] == result.document()["types"]
+    assert stored["assumptions"]["types"] == result.document()["assumptions"]["types"]
+    driver.execute_query("MATCH (t:Topic {name: '/video'}) SET t.types = t.types + ['std_msgs/msg/Bool']")
+    (row,) = answer_stored(driver, Settings()).document()["types"]
+    assert [(one["type"], one["stated"]) for one in row["types"]] == [
+        ("a/msg/B", True), ("sensor_msgs/msg/Image", False), ("std_msgs/msg/Bool", True),
+    ]  # fmt: skip
+    driver.execute_query("MATCH (t:Topic {name: '/video'}) SET t.type_facts = ['[]']")
+    with pytest.raises(InputErrors, match=r"'/video' cannot be understood: type_facts are not what was loaded"):
+        answer_stored(driver, Settings())

@@ -1,0 +1,68 @@
+"""Observed types + graph -> the types of its channels, and what of the files matches nothing (rules S15, S16).
+
+In: files of types, a flow graph. Out: ``MessageType`` facts by vertex; a notice that counts and names what matches
+nothing: observation only adds, so it is no error.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.model import Diagnostic, MessageType, Place, Severity
+from rosprivacy.analysis.text import counted
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from rosprivacy.analysis.model import Element, FlowGraph
+    from rosprivacy.ingest.types.types_file import SeenType, TypesFile
+
+LISTED = 5  # names in a notice
+TYPES_OF_NOTHING = "types-of-nothing"
+
+
+def channel_types(graph: FlowGraph, files: Iterable[TypesFile]) -> dict[int, tuple[MessageType, ...]]:
+    """Return the observed types of the channels of a graph, by vertex; a wildcard has none.
+
+    A service and an action are two legs: what their clients write their servers read, and the other way round (S2).
+    """
+    at = _vertices(graph)
+    found: dict[int, list[MessageType]] = defaultdict(list)
+    for file in files:
+        for channel in file.channels:
+            for vertex in at.get((channel.kind, channel.name), ()):
+                found[vertex] += [_at_leg(one, graph.elements[vertex], file.file) for one in channel.types]
+    return {vertex: tuple(types) for vertex, types in sorted(found.items())}
+
+
+def matching_nothing(graph: FlowGraph, files: Iterable[TypesFile]) -> tuple[Diagnostic, ...]:
+    """Return a notice for each file with names, of channels or of nodes, that nothing of the system is called."""
+    at = _vertices(graph)
+    nodes = {element.name for element in graph.elements if not element.is_channel}
+    said = []
+    for file in files:
+        lost = {f"{c.kind} {shown(c.name)}" for c in file.channels if (c.kind, c.name) not in at}
+        seen = {name for c in file.channels for one in c.types for end in one.ends for name in end}
+        lost |= {f"node {shown(name)}" for name in seen - nodes}
+        if lost:
+            names = ", ".join(sorted(lost)[:LISTED]) + (f" and {len(lost) - LISTED} more" if len(lost) > LISTED else "")
+            what = f"{counted(len(lost), 'name')} of observed types that nothing of the system is called: {names}"
+            said.append(Diagnostic(Place(file.file, 0), Severity.NOTICE, what, TYPES_OF_NOTHING))
+    return tuple(said)
+
+
+def _vertices(graph: FlowGraph) -> Mapping[tuple[str, str], list[int]]:
+    at: dict[tuple[str, str], list[int]] = defaultdict(list)
+    for vertex, element in enumerate(graph.elements):
+        if element.is_channel and not element.pattern:
+            at[element.kind, element.name].append(vertex)
+    return at
+
+
+def _at_leg(one: SeenType, element: Element, file: str) -> MessageType:
+    first, second = one.ends  # writers and readers, or servers and clients
+    writers, readers = (second, first) if element.leg == "request" else (first, second)
+    place = Place(file, one.line)
+    return MessageType(one.type, place, False, one.hash, writers, readers, one.first, one.last)

@@ -1,0 +1,219 @@
+"""Files of observed message types -> ``TypesFile``: which types channels have, and who was seen with them.
+
+In: YAML or JSON as ``rosprivacy observe`` writes it, read only where ``--types`` names it. Out: facts, each with its
+line, not yet joined to a graph (``channel_types.py`` does that). All problems of a file are raised at once. What a
+type is called is anybody's word: one that is no name of a type is kept as it was seen, since it may be a second type
+of the channel (rule S15).
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from dataclasses import dataclass, field
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.bounds import BOUNDS
+from rosprivacy.analysis.errors import InputError, InputErrors, TypesError, shown
+from rosprivacy.ingest.reading import yaml_values
+from rosprivacy.ingest.reading.format_reader import FileReader
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from rosprivacy.analysis.bounds import Bounds
+    from rosprivacy.ingest.reading.yaml_values import Value
+
+TIME = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d+)?(Z|[+-]\d\d:\d\d)")
+LONGEST = 500  # characters of a type, a hash or a door
+ENDS = {"topics": ("writers", "readers"), "services": ("servers", "clients"), "actions": ("servers", "clients")}
+KINDS = {"topics": "topic", "services": "service", "actions": "action"}
+
+
+@dataclass(frozen=True, slots=True)
+class SeenType:
+    """A type that was seen on a channel.
+
+    Attributes
+    ----------
+    ends
+        Names of nodes: the writers and readers of a topic, the servers and clients of a service or an action.
+    line
+        Of the file; 0 where there is none.
+    """
+
+    type: str
+    hash: str = ""
+    ends: tuple[tuple[str, ...], tuple[str, ...]] = ((), ())
+    first: str = ""
+    last: str = ""
+    line: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class SeenChannel:
+    """A channel, of kind ``topic``, ``service`` or ``action``, with the types that were seen on it."""
+
+    kind: str
+    name: str
+    types: tuple[SeenType, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Observed:
+    """From when to when was looked, and by which doors."""
+
+    start: str = ""
+    end: str = ""
+    by: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class TypesFile:
+    """A file of observed types."""
+
+    file: str
+    sha256: str
+    observed: Observed
+    channels: tuple[SeenChannel, ...]
+
+
+def read_types(file: str, bounds: Bounds = BOUNDS) -> TypesFile:
+    """Read a file of observed types.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the file, each a ``TypesError`` of one line.
+    """
+    try:
+        top, data = yaml_values.read(file, partial(TypesError, file), bounds)
+    except InputError as error:
+        raise InputErrors([error]) from None
+    reader = _Reader(file, error=TypesError, bounds=bounds)
+    observed, channels = reader.document(top)
+    if reader.problems:
+        raise InputErrors(reader.problems)
+    return TypesFile(file, hashlib.sha256(data).hexdigest(), observed, channels)
+
+
+def as_dict(types: TypesFile) -> dict[str, Any]:
+    """Return a file of types as plain values, with the lines of its types: for a saved graph.
+
+    >>> seen = SeenType("std_msgs/msg/Bool", ends=(("/door",), ()), line=5)
+    >>> as_dict(TypesFile("t.yaml", "", Observed(), (SeenChannel("topic", "/open", (seen,)),)))["topics"]
+    {'/open': [{'type': 'std_msgs/msg/Bool', 'line': 5, 'writers': ['/door']}]}
+    """
+    observed = {"from": types.observed.start, "to": types.observed.end, "by": list(types.observed.by)}
+    saved: dict[str, Any] = {"file": types.file, "sha256": types.sha256, "observed": _filled(observed)}
+    for section, kind in KINDS.items():
+        saved[section] = {c.name: [_seen(one, section) for one in c.types] for c in types.channels if c.kind == kind}
+    return saved
+
+
+def from_dict(saved: Mapping[str, Any]) -> TypesFile:
+    """Return what ``as_dict`` was made from.
+
+    >>> seen = SeenType("std_msgs/msg/Bool", ends=(("/door",), ()), line=5)
+    >>> types = TypesFile("t.yaml", "", Observed(), (SeenChannel("topic", "/open", (seen,)),))
+    >>> from_dict(as_dict(types)) == types
+    True
+    """
+    said = saved["observed"]
+    channels = [
+        SeenChannel(kind, name, tuple(_of_saved(one, section) for one in some))
+        for section, kind in KINDS.items()
+        for name, some in sorted(saved[section].items())
+    ]
+    observed = Observed(said.get("from", ""), said.get("to", ""), tuple(said.get("by", ())))
+    return TypesFile(saved["file"], saved["sha256"], observed, tuple(channels))
+
+
+def _seen(one: SeenType, section: str) -> dict[str, Any]:
+    ends = {name: list(nodes) for name, nodes in zip(ENDS[section], one.ends, strict=True)}
+    more = _filled({"hash": one.hash, "first": one.first, "last": one.last, **ends})
+    return {"type": one.type, "line": one.line, **more}
+
+
+def _of_saved(saved: Mapping[str, Any], section: str) -> SeenType:
+    first, second = (tuple(saved.get(name, ())) for name in ENDS[section])
+    texts = (saved.get("hash", ""), (first, second), saved.get("first", ""), saved.get("last", ""))
+    return SeenType(saved["type"], *texts, saved["line"])
+
+
+def _filled(values: dict[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in values.items() if value}
+
+
+@dataclass
+class _Reader(FileReader):
+    """One file of types."""
+
+    channels: list[SeenChannel] = field(default_factory=list)
+
+    def document(self, top: Value) -> tuple[Observed, tuple[SeenChannel, ...]]:
+        if top.kind != "map":
+            self.problem(top.line, f"a file of types is a map, not a {top.kind}", "begin with 'types: 1'")
+            return Observed(), ()
+        self.version(top, "types", "types")
+        observed = Observed()
+        for key, _, value in self.entries_of(top, ("types", "observed", *KINDS)):
+            if key == "observed":
+                observed = self._observed(value)
+            elif key in KINDS:
+                self.channels += self._section(key, value)
+        order = list(KINDS.values())
+        return observed, tuple(sorted(self.channels, key=lambda one: (order.index(one.kind), one.name)))
+
+    def _observed(self, value: Value) -> Observed:
+        if value.kind != "map":
+            self.problem(value.line, f"observed is a map, not a {value.kind}", "write {from: …, to: …, by: [dds]}")
+            return Observed()
+        said = {key: child for key, _, child in self.entries_of(value, ("from", "to", "by"))}
+        start, end = (self._time(said[key], key) if key in said else "" for key in ("from", "to"))
+        doors = self.list_of(said["by"], "by") if "by" in said else ()
+        return Observed(start, end, tuple(filter(None, (self._text(door, "by") for door in doors))))
+
+    def _section(self, section: str, value: Value) -> Iterator[SeenChannel]:
+        if value.kind not in ("map", "empty"):
+            self.problem(value.line, f"{section} is a map, not a {value.kind}", "write /name: [{type: …}]")
+        for name, line, types in value.entries:
+            if not name.startswith("/") or len(name) > self.bounds.name:
+                self.problem(line, f"{shown(name)!r} is not the name of a channel", "begin it with /")
+                continue
+            items = self.list_of(types, shown(name), "write [{type: …}]")
+            seen = [one for item in items if (one := self._type(item, section))]
+            yield SeenChannel(KINDS[section], name, tuple(seen))
+
+    def _type(self, item: Value, section: str) -> SeenType | None:
+        ends = ENDS[section]
+        said = {key: value for key, _, value in self.entries_of(item, ("type", "hash", *ends, "first", "last"))}
+        if item.kind != "map" or "type" not in said:
+            self.problem(item.line, "what was seen needs a type", "write {type: sensor_msgs/msg/Image}")
+            return None
+        first, second = (self._nodes(said[end], end) if end in said else () for end in ends)
+        begun, ended = (self._time(said[key], key) if key in said else "" for key in ("first", "last"))
+        text = self._text(said["type"], "type")
+        return SeenType(text, self._hash(said), (first, second), begun, ended, item.line) if text else None
+
+    def _hash(self, said: Mapping[str, Value]) -> str:
+        return self._text(said["hash"], "hash") if "hash" in said else ""
+
+    def _nodes(self, value: Value, what: str) -> tuple[str, ...]:
+        return tuple(sorted({name for item in self.list_of(value, what) if (name := self._text(item, what))}))
+
+    def _text(self, value: Value, what: str) -> str:
+        longest = self.bounds.name if what in ("writers", "readers", "servers", "clients") else LONGEST
+        if value.kind != "text" or not value.text or len(value.text) > longest:
+            what = f"{what} takes text of at most {longest} characters, not {shown(value.text[:40]) or value.kind!r}"
+            self.problem(value.line, what, "observe again, or correct it")
+            return ""
+        return value.text
+
+    def _time(self, value: Value, what: str) -> str:
+        if value.kind not in ("text", "number") or not TIME.fullmatch(value.text):
+            text = f"{what} takes a time, not {shown(value.text[:40]) or value.kind!r}"
+            self.problem(value.line, text, "write it as 2026-11-22T10:00:00Z")
+            return ""
+        return value.text

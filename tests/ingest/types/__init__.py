@@ -1,0 +1,1 @@
+"""Observed message types."""
