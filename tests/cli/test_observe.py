@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import stat
 import subprocess
 import sys
+import threading
 from textwrap import dedent
 from typing import TYPE_CHECKING, Any
 
@@ -269,3 +271,45 @@ def test_the_types_come_back_from_the_file_beside_the_policy(cli: Cli, robot: Pa
     }
     done = cli("analyze", "robot.policy.xml", "--types", "robot.types.yaml", "-l", "labels.yaml", cwd=robot)
     assert done.returncode == 1, done.stderr
+
+
+def test_watch_tells_what_comes_and_leaves_and_each_new_finding(robot: Path) -> None:
+    """An alarm at run time: a node that starts and opens a path to a leak is told, and one that leaves is told."""
+    variables = fake_ros2(robot)
+    (robot / "nodes.txt").write_text("/cam\n", "utf-8")
+    (robot / "info_cam.txt").write_text(CAMERA, "utf-8")
+    (robot / "info_up.txt").write_text(GRAPH.removeprefix(CAMERA), "utf-8")
+    words = ["observe", "--ros2", "--watch", "-l", "labels.yaml", "-o", "robot.policy.xml"]
+    watch = subprocess.Popen(
+        [sys.executable, "-u", "-m", "rosprivacy", *words],
+        cwd=robot, env={**os.environ, **variables}, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    assert watch.stdout is not None
+    told: list[str] = []
+
+    def until(what: str) -> str:
+        while what not in "".join(told[-1:]):
+            line = watch.stdout.readline() if watch.stdout else ""
+            assert line, told
+            told.append(line)
+        return told[-1]
+
+    alarm = threading.Timer(90, watch.kill)
+    alarm.start()
+    try:
+        until("+ node /cam")
+        until("not seen yet: labels.yaml:4")
+        (robot / "nodes.txt").write_text("/cam\n/up\n", "utf-8")
+        until("+ /up subscribes to /image (sensor_msgs/msg/Image)")
+        assert "Video: /cam -> /image -> /up" in until("! new finding [")
+        (robot / "nodes.txt").write_text("/cam\n", "utf-8")
+        until("- node /up")
+        watch.send_signal(signal.SIGINT)
+        watch.wait(60)
+    finally:
+        alarm.cancel()
+        watch.kill()
+        watch.communicate()
+    assert watch.returncode == 0
+    assert {grant.node for grant in read_policy(str(robot / "robot.policy.xml")).grants} == {"/cam", "/up"}
+    assert sum("new finding" in line for line in told) == 1
