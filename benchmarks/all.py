@@ -26,6 +26,7 @@ BENCHMARKS = (
     "startup",
     "turtlebot",
     "reading",
+    "bags",
     "ledger",
     "reliance",
     "wildcards",
