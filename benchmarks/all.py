@@ -31,6 +31,7 @@ BENCHMARKS = (
     "startup",
     "turtlebot",
     "reading",
+    "bags",
     "ledger",
     "reliance",
     "wildcards",
