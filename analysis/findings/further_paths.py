@@ -1,8 +1,7 @@
 """Further paths of a finding: how many share no flow, and which there are (the paper, section II-B).
 
-In: a search from a source. Out: counts, by augmenting paths on numbered states, and paths, by networkx; both on the
-small part of the graph that lies between the source and the leak. A path is one over (element, category): where nothing
-is derived on the path, one over elements.
+In: a search from a source. Out: counts and paths, by networkx, on the small part of the graph that lies between the
+source and the leak. A path is one over (element, category): where nothing is derived on the path, one over elements.
 """
 
 from __future__ import annotations
@@ -11,24 +10,29 @@ import hashlib
 from array import array
 from collections import defaultdict, deque
 from dataclasses import dataclass
+from itertools import chain, product
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.findings.disjoint_in_groups import number_in_groups
 from rosprivacy.analysis.kernel.bits import bits_of
 from rosprivacy.analysis.kernel.states import States
+from rosprivacy.analysis.many_flows import one_by_one
 from rosprivacy.analysis.modes import Paths
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
     from collections.abc import Set as AbstractSet
     from typing import Any
 
     from rosprivacy.analysis.bounds import Tally
+    from rosprivacy.analysis.findings.disjoint_in_groups import Group
     from rosprivacy.analysis.kernel.search import Search
     from rosprivacy.analysis.kernel.states import Net
+    from rosprivacy.analysis.many_flows import Meeting
     from rosprivacy.analysis.model import Element, FlowGraph
 
-Edge = tuple[int, int]  # before, after: states, which are vertex * width + form
-LEAK, SOURCE, FIRST = 0, 1, 2  # forms: the leak and the source are one state each; then the categories by their number
+State = tuple[int, int]  # vertex, number of the category with which data arrives there
+SOURCE, LEAK = -1, -2  # in place of the category's number: the source and the leak are one state each
 SEARCHED = 10  # times the bound: so many paths of data are looked at, of which many may be one to the reader
 
 
@@ -75,68 +79,69 @@ class Between:
         self.bits = net.spread.bits
         self.states = States(net, relevant, stop)
         self.emits = self.states.emitted(source)
-        self.width = FIRST + self.bits.merged(net.spread.all_bits).bit_length()
-        self.begin = self.state(source, SOURCE)
-        self.back: dict[int, set[int]] = defaultdict(set)
         self._reach: Search | None = reach
-        self._known: dict[int, list[tuple[int, int]]] = {}
-        for _, target, bits in (*self.states.after(source, self.emits), *self.states.single(source)):
-            self._link(self.begin, target, bits)
-        self.ways_out = len(self.back)  # of the source
+        self.back: dict[State, set[State]] = defaultdict(set)
+        self.met: dict[tuple[int, int], tuple[Meeting, set[State]]] = {}  # by meeting and bits: who sends these
+        self.groups: list[tuple[set[State], set[State]]] = []
+        self.into: dict[State, list[int]] = defaultdict(list)
+        self._meet((self.source, SOURCE), self.emits)
+        for _, target, bits in (*self.states.after_alone(source, self.emits), *self.states.single(source)):
+            for state in self._at(target, bits):
+                self.back[state].add((source, SOURCE))
+        self.one_way_out = len(self.back) == 1 and not self.met
 
     def link(self, work: Tally) -> None:
         """Link all states to those that follow, once and where it is needed; the work is counted."""
-        for vertex, seen in self._reach.seen.items() if self._reach else ():
-            work.count += self._follow(vertex, seen)
-        self._reach = None
-
-    def state(self, vertex: int, form: int) -> int:
-        """Return the number of a state."""
-        return vertex * self.width + form
-
-    def _forms(self, bits: int) -> list[tuple[int, int]]:
-        """Form and bits of each category among some, its two planes put together."""
-        forms = self._known.get(bits)
-        if forms is None:
-            numbers = bits_of(self.bits.merged(bits & self.states.allowed))
-            forms = self._known[bits] = [(number + FIRST, self.bits.both(number)) for number in numbers]
-        return forms
-
-    def _follow(self, vertex: int, seen: int) -> int:
-        """Link what arrives at a vertex to what follows; return how often."""
-        links = 0
-        moves = self.states.net.flows.get(vertex, ())
-        single = self.states.net.spread.flow_emits if vertex == self.source else {}
-        for form, both in self._forms(seen) if moves else ():
-            if not self._begun(vertex, form):
-                state = self.state(vertex, form)
-                leaving = self.states.leaving(vertex, seen & both)
-                for index, target, passing in moves if leaving else ():
-                    # what a source emits along a flow does not go there a second time
-                    if bits := leaving & passing & ~single.get(index, 0):
-                        links += self._link(state, target, bits)
-        return links
-
-    def _link(self, before: int, target: int, bits: int) -> int:
-        """Link a state to those that data with some bits is in at a vertex; return how many."""
-        forms = self._forms(bits)
-        for form, _ in forms:
-            after = self.begin if self._begun(target, form) else target * self.width + form
+        if self._reach is None:
+            return
+        for before, after in self._edges(self._reach):
+            work.count += 1
             self.back[after].add(before)
-        return len(forms)
+        self._reach = None
+        self.groups = [(befores, set(self._read(meeting, bits))) for (_, bits), (meeting, befores) in self.met.items()]
+        for number, (befores, afters) in enumerate(self.groups):
+            work.count += len(befores) + len(afters)
+            for after in afters:
+                self.into[after].append(number)
 
-    def _begun(self, vertex: int, form: int) -> bool:
-        """Whether data in this form is what the vertex, as the source, emits anyway."""
-        return vertex == self.source and bool(self.emits >> self.bits.plain(form - FIRST) & 1)
+    def _edges(self, reach: Search) -> Iterator[tuple[State, State]]:
+        """The steps from what arrives somewhere; those from the source's own data are linked before."""
+        states, single = self.states, self.states.net.spread.flow_emits
+        for vertex, seen in reach.seen.items():
+            for here in self._at(vertex, seen):
+                arriving = seen & self.bits.both(here[1]) if here[1] != SOURCE else 0
+                leaving = states.leaving(vertex, arriving)
+                self._meet(here, leaving)
+                for index, target, bits in states.after_alone(vertex, leaving):
+                    # what a source emits along a flow does not go there a second time
+                    moved = bits & ~single.get(index, 0) if vertex == self.source else bits
+                    yield from ((here, state) for state in self._at(target, moved))
 
-    def to(self, leak: int, memory: dict[Any, Any]) -> tuple[list[list[int]], list[Edge]]:
+    def _meet(self, here: State, leaving: int) -> None:
+        """Note what a state sends to all that its meetings read."""
+        for meeting in self.states.net.meetings.get(here[0], ()) if leaving else ():
+            self.met.setdefault((id(meeting), leaving), (meeting, set()))[1].add(here)
+
+    def _read(self, meeting: Meeting, bits: int) -> Iterator[State]:
+        spread = self.states.net.spread
+        for target in meeting.read:
+            yield from self._at(target, bits & spread.keeps.get(target, spread.all_bits))
+
+    def _at(self, vertex: int, bits: int) -> Iterator[State]:
+        """The states that data with some bits is in at a vertex, its two planes put together."""
+        for number in bits_of(self.bits.merged(bits & self.states.allowed)):
+            begun = vertex == self.source and self.emits >> self.bits.plain(number) & 1
+            yield (vertex, SOURCE if begun else number)
+
+    def to(self, leak: int, memory: dict[Any, Any]) -> tuple[list[list[int]], list[tuple[State, State]]]:
         """Return the paths to a leak that share no flow, as vertices, and the edges that they lie among."""
-        edges = sorted(self._leading_to(leak))
+        edges, groups = self._leading_to(leak)
+        if groups:
+            one_by_one(self.graph.flows)
+            edges = sorted([*edges, *(pair for group in groups for pair in product(*group))])
         key = self._key(leak, edges)
         if key not in memory:
-            memory[key] = [
-                [state // self.width for state in path] for path in _disjoint(edges, self.begin, self.state(leak, LEAK))
-            ]
+            memory[key] = _disjoint(edges, (self.source, SOURCE), (leak, LEAK))
         return memory[key], edges
 
     def number_to(self, leak: int, memory: dict[Any, Any], work: Tally) -> int:
@@ -147,87 +152,83 @@ class Between:
         memory
             Answers for equal graphs: kinds of data often take the same paths.
         """
-        if self.ways_out == 1:
+        if self.one_way_out:
             return 1
         self.link(work)
-        if len(self._last(self._ends(leak))) == 1:
-            return 1
-        leading = self._leading_to(leak)
-        work.count += len(leading)
-        if sum(before == self.begin for before, _ in leading) == 1:
-            return 1
-        edges = sorted(leading)
-        key = "number", self._key(leak, edges)
+        edges, groups = self._leading_to(leak)
+        work.count += len(edges) + sum(len(befores) + len(afters) for befores, afters in groups)
+        alike = [[(state, state) for state in some] for some in chain(*groups)]
+        key = "number", *(self._key(leak, some) for some in (edges, *alike))
         if key not in memory:
-            memory[key] = number_disjoint(edges, self.begin, self.state(leak, LEAK), work)
+            ends = (self.source, SOURCE), (leak, LEAK)
+            memory[key] = (
+                number_in_groups(edges, groups, *ends, work) if groups else number_disjoint(edges, *ends, work)
+            )
         return int(memory[key])
 
-    def _key(self, leak: int, edges: Sequence[Edge]) -> tuple[int, int, bool, bytes]:
+    def _key(self, leak: int, edges: Sequence[tuple[State, State]]) -> tuple[int, int, bool, bytes]:
         """What the answer hangs on; a hash of the edges, which are many."""
         # one kind of data is like another where nothing is made into it
-        width, own = self.width, {SOURCE, self.category + FIRST}
-        differs = any(before % width not in own for before, _ in edges)
-        numbers = [state for edge in edges for state in edge]
-        hashed = array("q", numbers if differs else [state // width for state in numbers])
+        differs = any(a[1] not in (SOURCE, self.category) for a, _ in edges)
+        numbers = array("q", (n for edge in edges for state in edge for n in (state if differs else state[:1])))
         # on a ring two sources have equal graphs
-        return self.source, leak, differs, hashlib.sha256(hashed.tobytes()).digest()
+        return self.source, leak, differs, hashlib.sha256(numbers.tobytes()).digest()
 
-    def _ends(self, leak: int) -> set[int]:
-        """The states in which data of the category is at a leak, or what the leak makes it of."""
+    def _leading_to(self, leak: int) -> tuple[list[tuple[State, State]], list[Group]]:
+        """The edges from which a leak can be reached, sorted; of groups, in place of their pairs, what begins and ends.
+
+        Whatever comes to one state of a group comes to all that lead on, so each group is walked back once.
+        """
+        pairs = self.derives.get(leak, ())
         category = self.bits.category
-        made_of = (category(b) for b, after in self.derives.get(leak, ()) if category(after) == self.category)
-        return {self.state(leak, number + FIRST) for number in (*made_of, self.category)}
-
-    def _last(self, ends: set[int]) -> set[int]:
-        """The states from which one step leads to the leak."""
-        return {before for end in ends for before in self.back.get(end, ())} - ends
-
-    def _leading_to(self, leak: int) -> set[Edge]:
-        """The edges from which a leak can be reached."""
-        ends, end = self._ends(leak), self.state(leak, LEAK)
-        last = self._last(ends)
-        edges = {(before, end) for before in last}
-        reached, waiting = ends | last, [state for state in last if state != self.begin]
+        ends = {(leak, category(before)) for before, after in pairs if category(after) == self.category}
+        ends.add((leak, self.category))
+        edges: set[tuple[State, State]] = set()
+        reached, waiting = set(ends), list(ends)
+        groups: dict[int, set[State]] = {}
         while waiting:
             after = waiting.pop()
-            for before in self.back.get(after, ()):
-                if before in ends:
-                    continue
-                edges.add((before, after))
-                if before not in reached:
-                    reached.add(before)
-                    if before != self.begin:
-                        waiting.append(before)
-        return edges
+            shown = (leak, LEAK) if after in ends else after
+            befores = self.back.get(after, set()) - ends
+            edges.update((before, shown) for before in befores)
+            for number in self.into.get(after, ()):
+                if number not in groups:
+                    befores |= self.groups[number][0] - ends
+                groups.setdefault(number, set()).add(shown)
+            new = befores - reached
+            reached |= new
+            waiting += (before for before in new if before[1] != SOURCE)
+        met = ((sorted(self.groups[number][0] - ends), sorted(afters)) for number, afters in groups.items())
+        return sorted(edges), sorted((befores, afters) for befores, afters in met if befores)
 
 
-def _disjoint(edges: list[Edge], source: int, leak: int) -> list[list[int]]:
-    """The paths that share no flow, as states, shortest first."""
+def _disjoint(edges: list[tuple[State, State]], source: State, leak: State) -> list[list[int]]:
+    """The paths that share no flow, as vertices, shortest first."""
     first, last = [b for a, b in edges if a == source], [a for a, b in edges if b == leak]
     if len(first) == 1 or len(last) == 1:  # a flow that all paths share: the shortest is one of them
         return [_shortest(edges, source, leak)]
     import networkx as nx  # noqa: PLC0415 - heavy, and only needed where there may be several
 
     paths = nx.edge_disjoint_paths(nx.DiGraph(edges), source, leak)
-    return sorted(paths, key=lambda path: (len(path), path))
+    return sorted(([state[0] for state in path] for path in paths), key=lambda path: (len(path), path))
 
 
-def number_disjoint(edges: Sequence[Edge], source: int, leak: int, work: Tally) -> int:
+def number_disjoint(edges: Sequence[tuple[State, State]], source: State, leak: State, work: Tally) -> int:
     """Return how many paths share no flow; as long as ``_disjoint``'s list, and found in a fraction of the time.
 
     Each path found may take back a step of an earlier one, until there is none left, or one for each way out or in
     (Ford and Fulkerson; a search in breadth for each path). O(paths x edges).
 
     >>> from rosprivacy.analysis.bounds import BOUNDS, Tally
-    >>> camera, left, right, cloud = range(4)
+    >>> camera, left, right, cloud = ((vertex, 0) for vertex in range(4))
     >>> edges = [(camera, left), (camera, right), (left, cloud), (right, cloud), (left, right)]
     >>> number_disjoint(edges, camera, cloud, Tally(BOUNDS, "path_steps"))
     2
     """
-    ahead: dict[int, list[int]] = defaultdict(list)
+    ahead: dict[State, list[State]] = defaultdict(list)
     for before, after in edges:
         ahead[before].append(after)
-    taken: dict[int, set[int]] = defaultdict(set)  # step of a path, from its end
+    taken: dict[State, set[State]] = defaultdict(set)  # step of a path, from its end
     most = min(len(ahead[source]), sum(after == leak for _, after in edges))
     for number in range(most):
         came = _one_more(ahead, taken, source, leak, work)
@@ -245,11 +246,11 @@ def number_disjoint(edges: Sequence[Edge], source: int, leak: int, work: Tally) 
 
 
 def _one_more(
-    ahead: Mapping[int, Sequence[int]], taken: Mapping[int, AbstractSet[int]], source: int, leak: int,
+    ahead: Mapping[State, Sequence[State]], taken: Mapping[State, AbstractSet[State]], source: State, leak: State,
     work: Tally,
-) -> dict[int, int]:  # fmt: skip
+) -> dict[State, State]:  # fmt: skip
     """Where a search came from at each state: along steps that no path takes, and back along those that one does."""
-    came: dict[int, int] = {}
+    came: dict[State, State] = {}
     waiting = deque([source])
     while waiting and leak not in came:
         here = waiting.popleft()
@@ -263,11 +264,11 @@ def _one_more(
     return came
 
 
-def _shortest(edges: list[Edge], source: int, leak: int) -> list[int]:
-    ahead: dict[int, list[int]] = defaultdict(list)
+def _shortest(edges: list[tuple[State, State]], source: State, leak: State) -> list[int]:
+    ahead: dict[State, list[State]] = defaultdict(list)
     for before, after in edges:
         ahead[before].append(after)
-    came: dict[int, int] = {}
+    came: dict[State, State] = {}
     waiting = deque([source])
     while leak not in came:
         here = waiting.popleft()
@@ -278,7 +279,7 @@ def _shortest(edges: list[Edge], source: int, leak: int) -> list[int]:
     path = [leak]
     while path[-1] != source:
         path.append(came[path[-1]])
-    return path[::-1]
+    return [state[0] for state in reversed(path)]
 
 
 def further(between: Between, leak: int, memory: dict[Any, Any], asked: str, most: int, work: Tally) -> FurtherPaths:
@@ -318,8 +319,8 @@ def further(between: Between, leak: int, memory: dict[Any, Any], asked: str, mos
     if mode is Paths.all:
         import networkx as nx  # noqa: PLC0415 - as above
 
-        paths = nx.shortest_simple_paths(nx.DiGraph(edges), between.begin, between.state(leak, LEAK))
-        chosen = ([state // between.width for state in path] for path in paths)
+        paths = nx.shortest_simple_paths(nx.DiGraph(edges), (between.source, SOURCE), (leak, LEAK))
+        chosen = ([state[0] for state in path] for path in paths)
     shown: dict[tuple[Element, ...], None] = {}
     for number, path in enumerate(chosen):  # two paths of data that differs may be one path to the reader
         shown[_elements(between.graph, path)] = None

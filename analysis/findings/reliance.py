@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputErrors
@@ -185,18 +186,22 @@ def _takes(statement: Statement) -> bool:
     return statement.role not in BRINGS_IN and statement.place != NOWHERE
 
 
-@dataclass(slots=True)
+@dataclass
 class _Work:
     """The answer as it is, for comparison, and how many analyses of the whole are left."""
 
     bound: Bound
     hierarchy: Hierarchy
     places: Places
-    reaches: tuple[Reach, ...]
     ends: set[int]
     unknown: set[int]
     left: int
     open: dict[Shown, int] = field(default_factory=lambda: defaultdict(int))  # as shown -> numbers of categories
+
+    @cached_property
+    def reaches(self) -> tuple[Reach, ...]:
+        """What the sources' data gets to today; not looked for where no statement asks for it."""
+        return _reaches(self.places, self.bound)
 
     @classmethod
     def of(
@@ -209,7 +214,7 @@ class _Work:
         if not asked:
             return None
         places = Places.of(spread, bound, hierarchy, asked, accepts)
-        work = cls(bound, hierarchy, places, _reaches(places, bound), places.vertices(), unknown, ROUNDS)
+        work = cls(bound, hierarchy, places, places.vertices(), unknown, ROUNDS)
         for vertex, bits in open_bits(spread, unknown).items():
             work.open[elements[vertex].shown_as] |= spread.bits.merged(bits & asked)
         return work

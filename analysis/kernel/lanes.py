@@ -10,10 +10,13 @@ from collections import defaultdict
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
 
+from rosprivacy.analysis.many_flows import parted
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.kernel.spread import Spread
+    from rosprivacy.analysis.many_flows import Meeting
 
 
 T = TypeVar("T")
@@ -98,8 +101,10 @@ class Doing:
 
     Attributes
     ----------
-    moves, into
-        Vertex -> (flow, its target); flow's target -> (flow, its source).
+    moves
+        Vertex -> (flow, its target).
+    meetings
+        Written wildcard -> its meetings, which are flows too.
     keeps, flow_keeps
         Vertex or flow -> what passes as it is; all where absent.
     derives
@@ -114,6 +119,7 @@ class Doing:
 
     lanes: Lanes
     moves: Mapping[int, list[tuple[int, int]]]
+    meetings: Mapping[int, list[Meeting]]
     keeps: Known[int]
     derives: Known[tuple[tuple[int, int], ...]]
     flow_keeps: Known[int]
@@ -127,13 +133,19 @@ class Doing:
         """Return what a spread says, with a lane for each of some sources."""
         lanes = Lanes.of(sources, spread.all_bits.bit_length())
         moves: dict[int, list[tuple[int, int]]] = defaultdict(list)
-        for index, flow in enumerate(spread.graph.flows):
-            moves[flow.source].append((index, flow.target))
         flows = spread.graph.flows
+        own, meetings = parted(flows, spread.told_apart)
+        for index, flow in own:
+            moves[flow.source].append((index, flow.target))
+        met: dict[int, list[Meeting]] = defaultdict(list)
+        for meeting in meetings:
+            for source in meeting.written:
+                met[source].append(meeting)
         begun = {index: lanes.own(flows[index].source, bits) for index, bits in spread.flow_emits.items()}
         return cls(
             lanes,
             moves,
+            met,
             {v: lanes.every(bits) for v, bits in spread.keeps.items() if bits != spread.all_bits},
             {v: pairs for v, pairs in spread.derives.items() if pairs},
             {index: lanes.every(bits) for index, bits in spread.flow_keeps.items()},
@@ -262,11 +274,18 @@ class Flood:
     def _follow(self, pending: dict[int, int]) -> None:
         """First in, first out: what comes to one element along several flows goes on together."""
         moves, flow_keeps, allowed = self.doing.moves, self.doing.flow_keeps, self.doing.allowed
+        meetings = self.doing.meetings
+        met: dict[int, int] = defaultdict(int)  # what has come to all that a meeting reads
         while pending:
             vertex = next(iter(pending))
             bits = pending.pop(vertex)
             for index, target in moves.get(vertex, ()):
                 self._arrive(target, bits & flow_keeps.get(index, allowed), pending)
+            for meeting in meetings.get(vertex, ()):
+                new = bits & ~met[id(meeting)]
+                met[id(meeting)] |= new
+                for target in meeting.read if new else ():
+                    self._arrive(target, new, pending)
 
     def _arrive(self, target: int, bits: int, pending: dict[int, int]) -> None:
         known = self.arrived(target)

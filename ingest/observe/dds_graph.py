@@ -17,6 +17,8 @@ from rosprivacy.ingest.policies.observed_metadata import HIDDEN, REFUSED
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from rosprivacy.ingest.observe.declared import Declared
+
 DOOR = "dds"
 PREFIX = 12
 """Bytes of a GUID that say which participant an entity is of (RTPS, clause 9.3.1)."""
@@ -72,11 +74,14 @@ class DdsGraph:
         By the first twelve bytes of the participant's GUID.
     endpoints
         By GUID.
+    declared
+        What nodes have said of themselves so far.
     """
 
     participants: dict[bytes, DdsParticipant] = field(default_factory=dict)
     endpoints: dict[bytes, DdsEndpoint] = field(default_factory=dict)
     nodes: dict[bytes, tuple[DdsNode, ...]] = field(default_factory=dict)
+    declared: set[Declared] = field(default_factory=set)
 
     def without(self, participant: bytes) -> None:
         """Forget a participant that has left, with all that it had."""
@@ -122,6 +127,7 @@ def observation(graph: DdsGraph, since: str, now: str, domain: int, patience: st
         (domain,),
         {gap: number for gap, number in ((HIDDEN, len(hidden)), (REFUSED, claims + len(strange))) if number},
         tuple(sorted(set(remarks))),
+        tuple(sorted(graph.declared)),
     )
 
 

@@ -1,14 +1,16 @@
 """A participant of ours in a DDS domain: it reads what discovery tells, and writes nothing.
 
-In: the domain. Out: a ``DdsGraph`` that is kept up to date. It reads the built-in topics and ``ros_discovery_info``, no
-user data. Nodes say there which endpoints they have, by GIDs of 24 bytes up to Humble and of 16 from Iron on
-(rmw_dds_common 2.0.0). Read with the wrong length, the list is empty without an error: both are read.
+In: the domain. Out: a ``DdsGraph`` that is kept up to date. It reads the built-in topics, ``ros_discovery_info``, and
+of all other topics only those on which nodes declare how they process personal data. In ``ros_discovery_info`` nodes
+say which endpoints they have, by GIDs of 24 bytes up to Humble and of 16 from Iron on (rmw_dds_common 2.0.0). Read with
+the wrong length, the list is empty without an error: both are read.
 """
 
 from __future__ import annotations
 
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 from cyclonedds.builtin import (
@@ -26,8 +28,9 @@ from cyclonedds.util import duration
 
 from rosprivacy.analysis.errors import MiddlewareError
 from rosprivacy.ingest.observe.dds_graph import PREFIX, DdsEndpoint, DdsGraph, DdsNode, DdsParticipant
-from rosprivacy.ingest.observe.dds_names import NODES_TOPIC, user_data
-from rosprivacy.ingest.observe.dds_types import participant_entities
+from rosprivacy.ingest.observe.dds_names import NODES_TOPIC, ros_channel, user_data
+from rosprivacy.ingest.observe.dds_types import PersonalDataProcessor, participant_entities
+from rosprivacy.ingest.observe.declared import DDS_TYPE, Declared
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -43,15 +46,18 @@ _KEPT = Qos(Policy.Reliability.Reliable(duration(seconds=1)), Policy.Durability.
 class Readers:
     """The readers of a participant of ours."""
 
+    participant: DomainParticipant
     own: bytes
     participants: Any
     writers: Any
     readers: Any
     nodes: tuple[Any, ...]
+    declarations: dict[str, Any] = field(default_factory=dict)
 
     def take(self, graph: DdsGraph, now: str) -> bool:
         """Bring a graph up to date; return whether anything changed."""
-        return any([*self._participants(graph, now), *self._endpoints(graph, now), *self._nodes(graph, now)])
+        changes = self._participants(graph, now), self._endpoints(graph, now), self._nodes(graph, now)
+        return any([*chain(*changes), *self._declared(graph)])
 
     def _participants(self, graph: DdsGraph, now: str) -> Iterator[bool]:
         for sample in self.participants.take(N=MOST_SAMPLES):
@@ -93,6 +99,19 @@ class Readers:
                     graph.nodes[participant] = _since_before(nodes, graph.nodes.get(participant, ()))
                     yield True
 
+    def _declared(self, graph: DdsGraph) -> Iterator[bool]:
+        for one in graph.endpoints.values():
+            channel = ros_channel(one.topic, one.writes) if one.type == DDS_TYPE and one.writes else None
+            if channel and channel[1] not in self.declarations:
+                topic = Topic(self.participant, one.topic, PersonalDataProcessor)
+                self.declarations[channel[1]] = DataReader(self.participant, topic, qos=_KEPT)
+        for name, reader in self.declarations.items():
+            for sample in reader.take(N=MOST_SAMPLES):
+                if sample.sample_info.valid_data:
+                    texts = sample.data_source_node, sample.user_friendly_source_name, sample.data_purpose, sample.path
+                    graph.declared.add(Declared(name, *texts))
+                    yield True
+
 
 def _node(participant: bytes, info: Any, now: str) -> DdsNode:
     gids = (*info.reader_gid_seq, *info.writer_gid_seq)
@@ -125,6 +144,7 @@ def joined(domain: int, settings: str) -> Iterator[Readers]:
         participant = DomainParticipant(domain)
         topics = [Topic(participant, NODES_TOPIC, participant_entities(length), qos=_KEPT) for length in GID_BYTES]
         yield Readers(
+            participant,
             participant.guid.bytes[:PREFIX],
             BuiltinDataReader(participant, BuiltinTopicDcpsParticipant),
             BuiltinDataReader(participant, BuiltinTopicDcpsPublication),

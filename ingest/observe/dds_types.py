@@ -1,4 +1,4 @@
-"""The type of ``ros_discovery_info``, for both lengths of GIDs.
+"""The types that are read: that of ``ros_discovery_info`` for both lengths of GIDs, and that of declarations.
 
 In: the length. Out: a class that Cyclone reads samples into. No future annotations here: Cyclone looks at the types,
 which are values to it and no types to mypy.
@@ -12,6 +12,8 @@ from typing import Any
 from cyclonedds.idl import IdlStruct
 from cyclonedds.idl.annotations import final
 from cyclonedds.idl.types import array, bounded_str, sequence, uint8
+
+from rosprivacy.ingest.observe.declared import DDS_TYPE
 
 
 def participant_entities(gid_bytes: int) -> Any:
@@ -37,3 +39,14 @@ def participant_entities(gid_bytes: int) -> Any:
         node_entities_info_seq: sequence[NodeEntities]  # type: ignore[type-arg]
 
     return ParticipantEntities
+
+
+@dataclass
+@final
+class PersonalDataProcessor(IdlStruct, typename=DDS_TYPE):
+    """What nodes declare of themselves."""
+
+    data_source_node: str
+    user_friendly_source_name: str
+    data_purpose: str
+    path: str

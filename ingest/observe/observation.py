@@ -17,6 +17,8 @@ from rosprivacy.ingest.policies.observed_metadata import HIDDEN, NO_NODE, STILL_
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
+    from rosprivacy.ingest.observe.declared import Declared
+
 ROLES = {
     "publish": "topic",
     "subscribe": "topic",
@@ -130,6 +132,8 @@ class Observation:
         One of ``GAPS`` of ``observed_metadata`` -> how many. ``NO_NODE`` is counted here.
     remarks
         One line each, for people: what was left out, and why. Fit to be shown.
+    declared
+        What nodes said of themselves.
     """
 
     doors: tuple[str, ...]
@@ -139,6 +143,7 @@ class Observation:
     domains: tuple[int, ...] = ()
     gaps: Mapping[str, int] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
+    declared: tuple[Declared, ...] = ()
 
     def __bool__(self) -> bool:
         """Whether there is anything in it that a policy can say."""
@@ -186,6 +191,7 @@ def added_up(observations: Iterable[Observation]) -> Observation:
         tuple(sorted({domain for one in several for domain in one.domains})),
         gaps,
         tuple(dict.fromkeys(remark for one in several for remark in one.remarks)),
+        tuple(sorted({declared for one in several for declared in one.declared})),
     )
 
 

@@ -8,10 +8,12 @@ from __future__ import annotations
 import json
 import time
 from collections import deque
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import MiddlewareError, ObservationError, shown
+from rosprivacy.ingest.observe.declared import DDS_TYPE, Declared, declared
 from rosprivacy.ingest.observe.zenoh_tokens import DOOR, observation, tokens_of
 from rosprivacy.ingest.policies.observed_metadata import STILL_CHANGING
 from rosprivacy.ingest.reading.bounded_file import read_regular
@@ -71,6 +73,7 @@ class ZenohDoor:
                 f"--{DOOR}", 0, f"the package eclipse-zenoh is not there ({error})", MISSING
             ) from error
         changes: deque[tuple[bool, str]] = deque()
+        messages: deque[tuple[str, bytes]] = deque()
         with _opened(zenoh, self._configured(zenoh), self.endpoint) as session:
             since, end = self.clock(), None if seconds is None else time.monotonic() + seconds
             watched = session.liveliness().declare_subscriber(
@@ -78,18 +81,22 @@ class ZenohDoor:
                 lambda sample: changes.append((sample.kind == zenoh.SampleKind.PUT, str(sample.key_expr))),
                 history=True,
             )
+            heard = _declarations(session, self.domain, messages)
             changed, told = time.monotonic(), True
             tokens: dict[str, str] = {}
+            said: set[Declared] = set()
             while end is None or time.monotonic() < end:
-                if changes:
+                if changes or messages:
                     _take(changes, tokens, self.clock())
+                    said |= set(_read(messages, self.domain))
                     changed, told = time.monotonic(), False
                 elif not told and time.monotonic() - changed > QUIET:
                     told = True
-                    yield observation(tokens, since, self.clock(), self.domain)
+                    yield observation(tokens, since, self.clock(), self.domain, said)
                 time.sleep(POLL)
+            heard.undeclare()
             watched.undeclare()
-            last = observation(tokens, since, self.clock(), self.domain)
+            last = observation(tokens, since, self.clock(), self.domain, said)
             late = tokens and time.monotonic() - changed < SETTLED
             yield replace(last, gaps={**last.gaps, STILL_CHANGING: 1}) if late else last
 
@@ -111,6 +118,27 @@ def _take(changes: deque[tuple[bool, str]], tokens: dict[str, str], now: str) ->
             tokens.setdefault(key, now)
         else:
             tokens.pop(key, None)
+
+
+def _declarations(session: Any, domain: int, messages: deque[tuple[str, bytes]]) -> Any:
+    """Hear what nodes declare of themselves, and what they declared before: no other message is read."""
+    from zenoh.ext import HistoryConfig, declare_advanced_subscriber
+
+    return declare_advanced_subscriber(
+        session,
+        f"{domain}/**/{DDS_TYPE}/*",
+        lambda sample: messages.append((str(sample.key_expr), sample.payload.to_bytes())),
+        history=HistoryConfig(detect_late_publishers=True),
+    )
+
+
+def _read(messages: deque[tuple[str, bytes]], domain: int) -> Iterator[Declared]:
+    """What is no declaration is left out; that nothing was heard on its topic is told then."""
+    while messages:
+        key, payload = messages.popleft()
+        topic = "/" + key.removeprefix(f"{domain}/").rpartition("/")[0].removesuffix(f"/{DDS_TYPE}")
+        with suppress(ValueError):
+            yield declared(topic, payload)
 
 
 def _of_file(zenoh: Any, file: str) -> Any:

@@ -18,7 +18,9 @@ from rosprivacy.ingest.observe.observation import Observation, ObservedEndpoint,
 from rosprivacy.ingest.policies.observed_metadata import HIDDEN, REFUSED
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
+
+    from rosprivacy.ingest.observe.declared import Declared
 
 DOOR = "zenoh"
 ROOT = "@ros2_lv"
@@ -36,7 +38,9 @@ def tokens_of(domain: int) -> str:
     return f"{ROOT}/{domain}/**"
 
 
-def observation(tokens: Mapping[str, str], since: str, now: str, domain: int) -> Observation:
+def observation(
+    tokens: Mapping[str, str], since: str, now: str, domain: int, declared: Iterable[Declared] = ()
+) -> Observation:
     """Return what tokens say.
 
     Parameters
@@ -45,6 +49,8 @@ def observation(tokens: Mapping[str, str], since: str, now: str, domain: int) ->
         Key -> since when it is there.
     since, now
         When somebody began to look, and this moment.
+    declared
+        What nodes have said of themselves so far.
     """
     nodes: list[ObservedNode] = []
     endpoints: list[ObservedEndpoint] = []
@@ -60,7 +66,9 @@ def observation(tokens: Mapping[str, str], since: str, now: str, domain: int) ->
     gaps = {REFUSED: len(remarks)} if remarks else {}
     if not tokens:
         gaps, remarks = {HIDDEN: 1}, [EMPTY.format(domain=domain)]
-    return Observation((DOOR,), Span(since, now), tuple(nodes), tuple(endpoints), (domain,), gaps, tuple(remarks))
+    seen = Span(since, now)
+    said = tuple(sorted(declared))
+    return Observation((DOOR,), seen, tuple(nodes), tuple(endpoints), (domain,), gaps, tuple(remarks), said)
 
 
 def _read(key: str, seen: Span) -> tuple[ObservedNode, ObservedEndpoint | None] | None:

@@ -41,7 +41,8 @@ def router(**values: object) -> Iterator[str]:
 @contextmanager
 def session(where: str) -> Iterator[Any]:
     """A session of rmw_zenoh, as far as the graph goes."""
-    with zenoh.open(_settings(mode="client", connect__endpoints=[where], listen__endpoints=[])) as one:
+    latched = {"timestamping__enabled": True}  # what publishers that keep their messages need
+    with zenoh.open(_settings(mode="client", connect__endpoints=[where], listen__endpoints=[], **latched)) as one:
         yield one
 
 

@@ -185,7 +185,7 @@ def _watching(inputs: Inputs) -> Callable[[Observation | None, Observation], Non
 
 def _write(seen: Observation | None, output: Path | None) -> None:
     """The policy and the types, both or none; what there is to say goes to standard error."""
-    from rosprivacy.observing import types_file, written
+    from rosprivacy.observing import declared_file, types_file, written
 
     made = written(seen) if seen else None
     if made is None:
@@ -194,10 +194,13 @@ def _write(seen: Observation | None, output: Path | None) -> None:
         said = "nothing was seen, so nothing is written: nothing runs, it was too short a look, or you may not look"
         print(said, file=sys.stderr)
         raise typer.Exit(UNDETERMINED)
-    emit(made.policy, output, {types_file(output): made.types} if output else {})
+    beside = {types_file(output): made.types} if output else {}
+    if output and made.declared:
+        beside[declared_file(output)] = made.declared
+    emit(made.policy, output, beside)
     for remark in made.remarks:
         print(remark, file=sys.stderr)
     if output:
-        print(f"written: {shown(str(output))} and {shown(str(types_file(output)))}", file=sys.stderr)
+        print(f"written: {' and '.join(shown(str(file)) for file in (output, *beside))}", file=sys.stderr)
     else:
         print("types are written only beside a policy that is written to a file (-o)", file=sys.stderr)

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from rosprivacy.ingest.observe.dds_door import DdsDoor
+from rosprivacy.ingest.observe.declared import DDS_TYPE, Declared
 from rosprivacy.ingest.policies.observed_metadata import HIDDEN, NO_NODE, REFUSED, STILL_CHANGING
 from rosprivacy.observing import now
 from tests.helpers.fastdds import Peer, built, running
@@ -184,6 +185,17 @@ def test_who_comes_and_who_leaves_is_told(peer: Peer, other: Peer, domain: int) 
 
 def _until(looks: Iterator[Observation], holds: Callable[[Observation], bool]) -> None:
     assert any(holds(seen) for seen in looks)
+
+
+def test_what_nodes_declare_of_themselves_is_heard_and_no_other_message(peer: Peer, domain: int) -> None:
+    texts = ("/head/camera", "the camera in the head", "to greet people by name", "/var/faces.db")
+    peer.does("participant", domain, "", 16)
+    peer.does("node", "/", "greeter")
+    peer.does("declare", "rt/greeter/processing", DDS_TYPE, *texts)
+    peer.does("declare", "rt/greeter/log", TEXT, "secret", "", "", "")
+    peer.does("announce")
+    seen = looked(domain, lambda seen: bool(seen.declared) and has(1, 2)(seen))
+    assert seen.declared == (Declared("/greeter/processing", *texts),)
 
 
 def test_a_participant_that_shows_nothing_of_itself_is_told(peer: Peer, other: Peer, domain: int) -> None:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import json
+import struct
 import time
 from typing import TYPE_CHECKING
 
 import pytest
+import zenoh.ext
 
 from rosprivacy.analysis.errors import MiddlewareError, ObservationError
+from rosprivacy.ingest.observe.declared import DDS_TYPE, Declared
 from rosprivacy.ingest.observe.zenoh_door import ZenohDoor
 from rosprivacy.ingest.policies.observed_metadata import HIDDEN, REFUSED, STILL_CHANGING
 from rosprivacy.observing import now
@@ -160,6 +163,24 @@ def test_who_comes_and_who_leaves_is_told_and_late_comers_make_it_still_changing
 
 def _until(looks: Iterator[Observation], holds: Callable[[Observation], bool]) -> None:
     assert any(holds(seen) for seen in looks)
+
+
+def test_what_nodes_declare_of_themselves_is_heard_also_if_they_said_it_before(where: str) -> None:
+    texts = ("/head/camera", "the camera in the head", "to greet people by name", "")
+    payload = b"\0\1\0\0"
+    for text in texts:
+        payload += b"\0" * (-(len(payload) - 4) % 4) + struct.pack("<I", len(text) + 1) + text.encode() + b"\0"
+    key = f"{DOMAIN}/greeter/processing/{DDS_TYPE}/{HASH}"
+    with session(where) as one:
+        kept = one.liveliness().declare_token(node(DOMAIN, "greeter"))
+        latched = zenoh.ext.declare_advanced_publisher(
+            one, key, cache=zenoh.ext.CacheConfig(1), publisher_detection=True
+        )
+        latched.put(payload)
+        seen = looked(where)
+        latched.undeclare()  # type: ignore[no-untyped-call]
+        kept.undeclare()
+    assert seen.declared == (Declared("/greeter/processing", *texts),)
 
 
 def test_two_thousand_topics_are_all_seen(where: str) -> None:

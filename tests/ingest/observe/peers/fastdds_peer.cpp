@@ -3,6 +3,7 @@
 //
 // It reads commands, one on each line; in words, %XX stands for a byte, and - for nothing:
 //   participant DOMAIN ENCLAVE GID_BYTES   node NAMESPACE NAME      writer TOPIC TYPE HASH   reader TOPIC TYPE
+//   declare TOPIC TYPE TEXT TEXT TEXT TEXT
 //   loose-writer TOPIC TYPE HASH           announce                 leave                    seen    quit
 // A loose writer is one that no node has. After each command it prints a line that begins with "done". All traffic stays
 // on 127.0.0.1: no multicast.
@@ -134,6 +135,18 @@ class Peer {
     if (of_node) nodes_.back().writers.push_back(writer->guid());
   }
 
+  // A writer of the last node, and one sample of texts, which late readers get too.
+  void declare(const std::string& name, const std::string& type, const std::vector<std::string>& texts) {
+    DataWriterQos kept = DATAWRITER_QOS_DEFAULT;
+    kept.durability().kind = TRANSIENT_LOCAL_DURABILITY_QOS;
+    kept.reliability().kind = RELIABLE_RELIABILITY_QOS;
+    auto* writer = publisher_->create_datawriter(topic(name, type), kept);
+    nodes_.back().writers.push_back(writer->guid());
+    Cdr sample;
+    for (const auto& text : texts) sample.text(text);
+    writer->write(&sample.bytes);
+  }
+
   void reader(const std::string& name, const std::string& type) {
     nodes_.back().readers.push_back(subscriber_->create_datareader(topic(name, type), DATAREADER_QOS_DEFAULT)->guid());
   }
@@ -219,6 +232,11 @@ int main() {
     } else if (command == "writer" || command == "loose-writer") {
       const std::string topic = word(words), type = word(words);
       peer->writer(topic, type, word(words), command == "writer");
+    } else if (command == "declare") {
+      const std::string topic = word(words), type = word(words);
+      std::vector<std::string> texts(4);
+      for (auto& text : texts) text = word(words);
+      peer->declare(topic, type, texts);
     } else if (command == "reader") {
       const std::string topic = word(words);
       peer->reader(topic, word(words));
