@@ -57,6 +57,7 @@ from rosprivacy.analysis.model.policy import Grant, Policy, Profile, Seen
 from rosprivacy.analysis.model.reason import REASONS, Reason
 from rosprivacy.analysis.model.recording import Bag, BagTopic, BagVerdict, JudgedBag, TopicKinds
 from rosprivacy.analysis.model.statement import (
+    CANNOT,
     CHANGED,
     CLEANS,
     CONTEXTS,
@@ -64,6 +65,7 @@ from rosprivacy.analysis.model.statement import (
     NAME,
     NO_BASIS,
     NOWHERE,
+    OF_TYPES,
     SEGMENT,
     STANDARD,
     STATED,
@@ -83,6 +85,7 @@ __all__ = [
     "ARTICLE_9_VERDICTS",
     "ARTICLE_10",
     "ASSUMED",
+    "CANNOT",
     "CAREFUL_DENY",
     "CHANGED",
     "CHANNELS",
@@ -111,6 +114,7 @@ __all__ = [
     "OBSERVATION_GAP",
     "OBSERVED",
     "OF_KIND",
+    "OF_TYPES",
     "PATHS_NOT_COUNTED",
     "REASONS",
     "REFUSED_NAME",

@@ -23,6 +23,7 @@ from rosprivacy.report.terminal.fleet import fleet_lines
 from rosprivacy.report.terminal.globs import glob_lines, glob_warnings
 from rosprivacy.report.terminal.labels import absent_lines, overruled_lines, standard_lines
 from rosprivacy.report.terminal.ledger import hanging_lines, ledger_lines, taken_away_lines
+from rosprivacy.report.terminal.message_types import type_lines
 from rosprivacy.report.terminal.next_step import next_lines
 from rosprivacy.report.terminal.reliance import reliance_lines
 from rosprivacy.report.terminal.restriction import asked_at_verdict, asked_lines
@@ -142,6 +143,7 @@ def _assumed(report: Mapping[str, Any], words: Words, most: int | None) -> Itera
     view = report["view"]
     yield f"   {words(f'tty.view.{view}')}", ""
     yield from standard_lines(report, most, words)
+    yield from type_lines(report, most, words)
     yield from taken_away_lines(report, words)
     yield from hanging_lines(report, most, words)
     yield from glob_warnings(report, words)

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Analysis, Finding, Verdict
     from rosprivacy.analysis.bounds import Bounds
     from rosprivacy.analysis.errors import (
+        BagError,
         ClusterError,
         DatabaseError,
         DecisionError,
@@ -47,6 +48,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Analysis",
+    "BagError",
     "Bounds",
     "ClusterError",
     "DatabaseError",
