@@ -141,6 +141,8 @@ def turned_special(finding: Finding, categories: Mapping[str, Category]) -> Elem
     """
     elements = [*(step.source for step in finding.steps), finding.leak]
     kinds = [*(step.category for step in finding.steps), finding.category]
+    if len(set(kinds)) == 1:
+        return None
     special = [categories[kind].article9 in SPECIAL for kind in kinds]
     changes = [i for i in range(1, len(kinds)) if special[i] and not special[i - 1]]
     return elements[changes[-1]] if changes and special[-1] else None

@@ -14,7 +14,7 @@ import unicodedata
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from rosprivacy.analysis.errors import InputError, InputErrors, reason, shown
 from rosprivacy.analysis.files_read import changed_since, read_as
@@ -22,6 +22,7 @@ from rosprivacy.analysis.files_read import changed_since, read_as
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
+Text: TypeAlias = "str | bytes | Iterable[str]"  # in one piece or in several
 STANDARD_OUTPUT = Path("/dev/stdout")
 
 
@@ -49,7 +50,7 @@ class _Output:
         return self.status is not None and not (stat.S_ISREG(self.status.st_mode) or stat.S_ISDIR(self.status.st_mode))
 
 
-def write_texts(texts: Iterable[tuple[Path, str | bytes | None]], *, edited: Path | None = None) -> None:
+def write_texts(texts: Iterable[tuple[Path, Text | None]], *, edited: Path | None = None) -> None:
     """Write UTF-8 texts, or bytes, to files, all of them or none.
 
     Parameters
@@ -75,11 +76,11 @@ def write_texts(texts: Iterable[tuple[Path, str | bytes | None]], *, edited: Pat
         for at, text in pairs:
             if not at.stream:
                 with writing(at.named):
-                    staged.append((_stage(at, _bytes(text)), at))
+                    staged.append((_stage(at, _pieces(text)), at))
         for at, text in pairs:
             if at.stream:
-                with writing(at.named):
-                    at.named.write_bytes(_bytes(text))
+                with writing(at.named), at.named.open("wb") as file:
+                    file.writelines(_pieces(text))
         _check_edited(outputs, edited)
         for temporary, at in staged:
             with writing(at.named):
@@ -171,11 +172,12 @@ def writing(file: Path) -> Iterator[None]:
         raise InputError(str(file), 0, f"cannot be written: {reason(error)}", hint) from None
 
 
-def _bytes(text: str | bytes) -> bytes:
-    return text.encode() if isinstance(text, str) else text
+def _pieces(text: Text) -> Iterator[bytes]:
+    for piece in (text,) if isinstance(text, str | bytes) else text:
+        yield piece.encode() if isinstance(piece, str) else piece
 
 
-def _stage(at: _Output, data: bytes) -> Path:
+def _stage(at: _Output, pieces: Iterable[bytes]) -> Path:
     """Write a text beside its target, with the target's permissions; return where."""
     if at.status and stat.S_ISDIR(at.status.st_mode):
         raise IsADirectoryError(0, "it is a folder")
@@ -185,7 +187,7 @@ def _stage(at: _Output, data: bytes) -> Path:
     try:
         temporary.chmod(stat.S_IMODE(mode))
         with os.fdopen(handle, "wb") as file:
-            file.write(data)
+            file.writelines(pieces)
             file.flush()
             os.fsync(file.fileno())
     except BaseException:

@@ -9,8 +9,13 @@ from __future__ import annotations
 
 import json
 import re
-from typing import Any
+from itertools import islice
+from typing import TYPE_CHECKING, Any
 
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+PIECE = 10_000  # tokens of JSON, some 100 kB
 _ODD = re.compile(r"[^\x20-\x7e\n]")
 
 
@@ -22,8 +27,19 @@ def as_text(value: Any) -> str:
       "name": "/é\u009b\u202e"
     }
     """
-    text = json.dumps(value, indent=2, ensure_ascii=False)
-    return _ODD.sub(_escaped, text) + "\n"
+    return "".join(in_pieces(value))
+
+
+def in_pieces(value: Any) -> Iterator[str]:
+    """Yield the same text piece by piece: of a large document it need not be in memory as a whole.
+
+    >>> "".join(in_pieces([1, {}])) == as_text([1, {}])
+    True
+    """
+    tokens = json.JSONEncoder(indent=2, ensure_ascii=False).iterencode(value)
+    while piece := "".join(islice(tokens, PIECE)):
+        yield _ODD.sub(_escaped, piece)
+    yield "\n"
 
 
 def _escaped(match: re.Match[str]) -> str:

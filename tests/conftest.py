@@ -34,15 +34,18 @@ GROUPS = {
 }
 
 settings.register_profile("everyday", max_examples=5, deadline=None)
+settings.register_profile("slow", max_examples=50, deadline=None, print_blob=True)
 settings.register_profile("thorough", max_examples=200, deadline=None, print_blob=True)
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    settings.load_profile("thorough" if config.getoption("--slow") else "everyday")
+    config.option.slow = config.option.slow or config.option.thorough
+    settings.load_profile("thorough" if config.option.thorough else "slow" if config.option.slow else "everyday")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    parser.addoption("--slow", action="store_true", help="also run what builds, installs or fuzzes")
+    parser.addoption("--slow", action="store_true", help="also run what builds, installs or fuzzes, as CI does")
+    parser.addoption("--thorough", action="store_true", help="and with more examples and samples, as CI does each week")
     parser.addoption("--all-kills", action="store_true", help="kill at every moment, not at some (CONTRIBUTING.md)")
 
 
@@ -68,11 +71,12 @@ def pytest_itemcollected(item: pytest.Item) -> None:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leave out slow tests, if they are not asked for."""
+    """Leave out slow tests, if they are not asked for; else they come first: no worker waits for one at the end."""
     if not config.getoption("--slow"):
         chosen = [item for item in items if "slow" not in item.keywords]
         config.hook.pytest_deselected(items=[item for item in items if "slow" in item.keywords])
         items[:] = chosen
+    items.sort(key=lambda item: "slow" not in item.keywords or "xdist_group" in item.keywords)
 
 
 @pytest.hookimpl(wrapper=True)
@@ -100,6 +104,12 @@ def _own_folders(tmp_path_factory: pytest.TempPathFactory, pytestconfig: pytest.
 def every(pytestconfig: pytest.Config) -> int:
     """Of the moments at which a run can be killed, every so many-th is taken."""
     return 1 if pytestconfig.getoption("--all-kills") else 10
+
+
+@pytest.fixture(scope="session")
+def thorough(pytestconfig: pytest.Config) -> bool:
+    """Whether to take all samples, as each week; else some of them, as for each change."""
+    return bool(pytestconfig.getoption("--thorough"))
 
 
 @pytest.fixture(scope="session")

@@ -18,7 +18,7 @@ import typer
 
 import rosprivacy
 from rosprivacy.analysis.bounds import BOUNDS, WHAT
-from rosprivacy.cli.app import app
+from rosprivacy.cli.app import program
 from rosprivacy.cli.exit_code import CODES
 from rosprivacy.cli.inputs import WRITTEN
 from rosprivacy.cli.options import ASKED, READ
@@ -29,6 +29,7 @@ from rosprivacy.queries.library import pack
 from rosprivacy.report.terminal import categories
 from tests.helpers.docs import CATEGORIES, blocks
 from tests.helpers.house import MODULES, PACKAGE, ROOMS, WINGS
+from tests.helpers.observed import node_info
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
@@ -78,7 +79,7 @@ system known to us meets one. The input itself is bounded by `--max-bytes`, the 
 
 def command_line() -> str:
     """The options of every command, as the program knows them."""
-    group: Any = typer.main.get_command(app)
+    group: Any = typer.main.get_command(program())
     text = HEAD + EXIT_CODES + matrix(group.commands) + bounds()
     for name, command in group.commands.items():
         if hasattr(command, "commands"):
@@ -256,6 +257,7 @@ def test_the_readmes_commands_run_as_they_stand_there(cli: Cli, tmp_path: Path) 
     shutil.copytree(ROOT / "examples" / "factory", tmp_path, dirs_exist_ok=True)
     for name in ("my_robot", "old", "new"):
         shutil.copy(tmp_path / "before.policy.xml", tmp_path / f"{name}.policy.xml")
+    (tmp_path / "graph.txt").write_text(node_info("/camera", publishers="/image: sensor_msgs/msg/Image"), "utf-8")
     lines = [line for block in blocks(ROOT / "README.md", "console") for line in block.splitlines()]
     ran = {}
     for line in lines:
@@ -264,7 +266,7 @@ def test_the_readmes_commands_run_as_they_stand_there(cli: Cli, tmp_path: Path) 
             done = cli(*arguments, cwd=tmp_path)
             ran[arguments[0]] = done.returncode
             assert done.returncode in (0, 1, 4), (line, done.stderr)
-    assert ran.keys() == {"analyze", "decide", "labels", "mitigate", "report", "graph", "diff"}
+    assert ran.keys() == {"analyze", "decide", "labels", "mitigate", "report", "graph", "diff", "observe"}
     assert "- id: 7ac677bf059b5beb" in (tmp_path / "decisions.yaml").read_text("utf-8")
     assert (tmp_path / "report.html").stat().st_size > 10_000
 

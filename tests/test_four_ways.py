@@ -70,7 +70,7 @@ def test_files_a_saved_graph_and_a_fleet_of_one(system: Written) -> None:
 
 @pytest.mark.slow
 @given(written())
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=settings().max_examples * 3 // 4, deadline=None)
 def test_more_of_them(system: Written) -> None:
     in_files_a_saved_graph_and_a_fleet(system)
 

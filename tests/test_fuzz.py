@@ -75,7 +75,7 @@ WEEKDAYS = settings(
     derandomize=True,
     suppress_health_check=list(HealthCheck),
 )
-SUNDAYS = settings(WEEKDAYS, max_examples=1500, derandomize=False)
+SUNDAYS = settings(WEEKDAYS, max_examples=settings().max_examples * 15 // 2, derandomize=False)  # 1500, each week
 DICE = st.randoms(use_true_random=True)  # seeded by hypothesis; spread more evenly than its own
 
 

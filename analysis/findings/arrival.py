@@ -6,13 +6,13 @@ In: whether data gets there in each way; for one pair, or for arrays of pairs. O
 from __future__ import annotations
 
 from enum import IntEnum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    Flags = NDArray[np.bool_]
+Flags = TypeVar("Flags", "NDArray[np.bool_]", int)
 
 
 class Arrival(IntEnum):
@@ -35,14 +35,13 @@ class Arrival(IntEnum):
 
 
 def shown_arrivals(plain: Flags, hidden: Flags, plain_through: Flags, hidden_through: Flags) -> tuple[Flags, ...]:
-    """Return of each ``Arrival`` whether a finding shows it: the best, and what stands beside it.
+    """Return of each ``Arrival`` whether a finding shows it: the best, and what stands beside it; 0 or 1, or arrays.
 
     Where only pseudonymised data gets there past no other leak, data as it is that gets there through one is shown
     beside it. What gets there past no other leak may count as going through one, too.
 
-    >>> import numpy as np
-    >>> [str(flag) for flag in shown_arrivals(*np.array([False, True, True, True]))]
-    ['False', 'True', 'True', 'False']
+    >>> shown_arrivals(0, 1, 1, 1)
+    (0, 1, 1, 0)
     """
     return (
         plain,

@@ -14,8 +14,6 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from rosprivacy.analysis.answer import Analysis, Carried, Finding, Step, Verdict
 from rosprivacy.analysis.bounds import BOUNDS, Tally
 from rosprivacy.analysis.decisions import Case
@@ -162,28 +160,52 @@ class _Work:
 def _findings(net: Net, mask: int, kinds: Sequence[Concern], options: Options, work: _Work) -> Iterator[Finding]:
     """All findings, sorted by category, source, leak and kind."""
     spread = net.spread
-    ends = [(c, {v: b & mask for v, b in c.bits.items() if b & mask & spread.present(v)}) for c in kinds]
+    ends = [(c, {v: b & mask for v, b in sorted(c.bits.items()) if b & mask & spread.present(v)}) for c in kinds]
     reached = [(concern, leaks) for concern, leaks in ends if leaks]
     results: list[tuple[int, int, int, str, bool, Finding]] = []
-    memory: dict[Any, Any] = {}
+    stops = _Stops(spread)
     chosen = options.choose(spread, kinds, mask) if options.choose and reached else None
     sources = [v for v in spread.facts if spread.begins(v)] if chosen is None else chosen
     for source in sorted(sources) if reached else ():
         only = None if chosen is None else chosen[source]
         whole = search(net, [source], spread.all_bits, {})
         work.searches.add(len(whole.seen), NOWHERE)
+        memory: dict[Any, Any] = {}
         for concern, leaks in reached:
+            there = _there(whole, leaks)
             for leak, category, finding in _findings_of(
-                net, source, whole, concern, leaks, options, memory, only, work
+                net, source, whole, concern, there, options, memory, only, work, stops
             ):
                 work.findings.add(1, NOWHERE)
                 results.append((category, source, leak, finding.kind, finding.beside, finding))
     yield from (finding for *_, finding in sorted(results, key=lambda row: row[:5]))
 
 
+class _Stops:
+    """Where data of some categories ends: at leaks that nobody has accepted (rule S10)."""
+
+    def __init__(self, spread: Spread) -> None:
+        self._leaks = spread.leaks
+        self._known: dict[int, dict[int, int]] = {}
+
+    def of(self, ends: int, accepted: Mapping[int, int]) -> Mapping[int, int]:
+        """Leak -> bits that are not followed on from there; one mapping for all sources where nothing is accepted."""
+        if ends not in self._known:
+            self._known[ends] = {v: bits & ends for v, bits in self._leaks.items() if bits & ends}
+        every = self._known[ends]
+        return {**every, **{v: every[v] & ~bits for v, bits in accepted.items() if v in every}} if accepted else every
+
+
+def _there(whole: Search, leaks: Mapping[int, int]) -> dict[int, int]:
+    """The leaks that a search comes to, with the bits that do; in their order, and not one look at each leak."""
+    near = whole.seen.keys() | whole.begun.keys()
+    some = leaks if len(leaks) <= len(near) else {v: leaks[v] for v in sorted(near & leaks.keys())}
+    return {v: bits & found for v, bits in some.items() if bits & (found := present(whole, v))}
+
+
 def _findings_of(
-    net: Net, source: int, whole: Search, concern: Concern, leaks: dict[int, int], options: Options,
-    memory: dict[Any, Any], only: AbstractSet[Chosen] | None, work: _Work,
+    net: Net, source: int, whole: Search, concern: Concern, reached: Mapping[int, int], options: Options,
+    memory: dict[Any, Any], only: AbstractSet[Chosen] | None, work: _Work, stops: _Stops,
 ) -> Iterator[tuple[int, int, Finding]]:  # fmt: skip
     """(leak, number of the category, finding) of one source and kind.
 
@@ -191,7 +213,6 @@ def _findings_of(
     """
     spread = net.spread
     between: dict[tuple[int, bool], Between] = {}
-    reached = {v: bits & present(whole, v) for v, bits in leaks.items() if bits & present(whole, v)}
     accepted = _accepted(spread, source, concern.kind, reached, options)
     free: dict[int, Search] = {}  # number of the category -> search that stops at other leaks of it
     for leak, bits in reached.items():
@@ -201,7 +222,7 @@ def _findings_of(
             if concern.kind != DISCLOSURE:
                 free[i] = whole
             elif i not in free:
-                _search_free(net, source, i, accepted, free)
+                _search_free(net, source, i, accepted, free, stops)
                 work.searches.add(len(free[i].seen), NOWHERE)
             for beside, (chosen, bit) in enumerate(_shown_forms(free[i], whole, leak, spread.bits.forms(i))):
                 if only is not None and (concern.kind, leak, i, bool(beside)) not in only:
@@ -215,7 +236,7 @@ def _findings_of(
                     finding = replace(finding, bounded=options.paths != Paths.witness)
                 elif len(finding.witness) > 1:
                     if (i, anyway) not in between:
-                        stop = {} if anyway else _leaks_of(spread, i, accepted)
+                        stop = {} if anyway else stops.of(spread.bits.both(i), accepted)
                         between[i, anyway] = Between(net, chosen, source, i, _relevant(spread, i), stop)
                         work.paths.count += between[i, anyway].size
                     more = further(between[i, anyway], leak, memory, options.paths, options.max_paths, work.paths)
@@ -239,13 +260,14 @@ def _accepted(spread: Spread, source: int, kind: str, reached: Mapping[int, int]
     return accepted
 
 
-def _search_free(net: Net, source: int, i: int, accepted: Mapping[int, int], free: dict[int, Search]) -> None:
+def _search_free(
+    net: Net, source: int, i: int, accepted: Mapping[int, int], free: dict[int, Search], stops: _Stops
+) -> None:
     """Search with the leaks of category i as ends; one search serves all categories that nothing is made into."""
     spread = net.spread
     together = [i] if i in spread.made else [j for j, _ in enumerate(spread.categories) if j not in spread.made]
     ends = sum(map(spread.bits.both, together))
-    stop = {v: bits & ends & ~accepted.get(v, 0) for v, bits in spread.leaks.items()}
-    result = search(net, [source], spread.all_bits if i in spread.made else ends, stop)
+    result = search(net, [source], spread.all_bits if i in spread.made else ends, stops.of(ends, accepted))
     free.update(dict.fromkeys(together, result))
 
 
@@ -254,16 +276,12 @@ def _relevant(spread: Spread, i: int) -> int:
     return spread.all_bits if i in spread.made else spread.bits.both(i)
 
 
-def _leaks_of(spread: Spread, i: int, accepted: Mapping[int, int]) -> dict[int, int]:
-    both = spread.bits.both(i)
-    return {v: bits & both & ~accepted.get(v, 0) for v, bits in spread.leaks.items() if bits & both}
-
-
 def _shown_forms(free: Search, whole: Search, leak: int, forms: tuple[int, int]) -> list[tuple[Search, int]]:
     """The search and the form to show, the best first (rule S10)."""
     each = [(reach, bit) for reach in (free, whole) for bit in forms]
-    there = np.array([present(reach, leak) >> bit & 1 for reach, bit in each], bool)
-    return [one for one, shown in zip(each, shown_arrivals(*there), strict=True) if shown]
+    plain, hidden, plain_through, hidden_through = (present(reach, leak) >> bit & 1 for reach, bit in each)
+    flags = shown_arrivals(plain, hidden, plain_through, hidden_through)
+    return [one for one, shown in zip(each, flags, strict=True) if shown]
 
 
 def _beside(finding: Finding, options: Options) -> Finding:

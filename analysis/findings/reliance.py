@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputErrors
@@ -128,10 +129,10 @@ def reliances(
     standard:1 [] ['/rosout']
     """
     bound = replace(bound, outside=_outside(analysis))
-    work = _Work.of(analysis, bound, hierarchy, accepts)
+    spots = _spots(analysis.spread, bound)
+    work = _Work.of(analysis, bound, hierarchy, accepts) if spots else None
     if work is None:
         return ()
-    spots = _spots(analysis.spread, bound)
     order = sorted(spots, key=lambda key: (line_key(key[0]), key[1]))
     rows = (work.without(key[0], spots[key]) for key in order)
     return tuple(row for row in rows if row.hangs)
@@ -185,18 +186,22 @@ def _takes(statement: Statement) -> bool:
     return statement.role not in BRINGS_IN and statement.place != NOWHERE
 
 
-@dataclass(slots=True)
+@dataclass
 class _Work:
     """The answer as it is, for comparison, and how many analyses of the whole are left."""
 
     bound: Bound
     hierarchy: Hierarchy
     places: Places
-    reaches: tuple[Reach, ...]
     ends: set[int]
     unknown: set[int]
     left: int
     open: set[tuple[Shown, str]] = field(default_factory=set)
+
+    @cached_property
+    def reaches(self) -> tuple[Reach, ...]:
+        """What the sources' data gets to today; not looked for where no statement asks for it."""
+        return _reaches(self.places, self.bound)
 
     @classmethod
     def of(
@@ -209,7 +214,7 @@ class _Work:
         if not asked:
             return None
         places = Places.of(spread, bound, hierarchy, asked, accepts)
-        work = cls(bound, hierarchy, places, _reaches(places, bound), places.vertices(), unknown, ROUNDS)
+        work = cls(bound, hierarchy, places, places.vertices(), unknown, ROUNDS)
         work.open.update(work.asks(spread, open_bits(spread, unknown)))
         return work
 

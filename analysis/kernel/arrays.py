@@ -1,18 +1,18 @@
-"""What labels mean for a graph, as arrays for the kernel: a flow that emits or blocks something is a vertex of its own.
+"""A labelled graph as arrays, for the fixpoint on numpy.
 
-In: a spread before its fixpoint. Out: edges, and per vertex what it emits, keeps and derives.
+In: a ``LabelledGraph``, or the spread that it is of. Out: edges, and per vertex what it emits, keeps and derives.
 """
 
 from __future__ import annotations
 
-from bisect import bisect_left
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rosprivacy.analysis.kernel.edges import Edges
-from rosprivacy.analysis.kernel.fixpoint import WORD
+from rosprivacy.analysis.kernel.fixpoint import WORD, fixpoint
+from rosprivacy.analysis.kernel.labelled_graph import LabelledGraph
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -53,28 +53,21 @@ class GraphArrays:
     @classmethod
     def of(cls, spread: Spread) -> GraphArrays:
         """Make the arrays of a spread; O(flows · log flows)."""
-        graph = spread.graph
-        count = len(graph.elements)
-        special = sorted({*spread.flow_emits, *spread.flow_keeps})
-        sources = [flow.source for flow in graph.flows]
-        targets = [flow.target for flow in graph.flows]
-        for number, index in enumerate(special):
-            sources.append(count + number)
-            targets.append(targets[index])
-            targets[index] = count + number
-        vertices = count + len(special)
-        emitted = as_bits(spread, vertices, spread.emits, 0)
-        keep = as_bits(spread, vertices, spread.keeps, spread.all_bits)
-        for number, index in enumerate(special):
-            passing = spread.flow_keeps.get(
-                index, spread.all_bits
-            )  # what never goes along it is not emitted there either
-            emitted[count + number] = _words(spread.flow_emits.get(index, 0) & passing, emitted.shape[1])
-            keep[count + number] = _words(passing, keep.shape[1])
-        derivations = [(vertex, *pair) for vertex, pairs in spread.derives.items() for pair in pairs]
-        nodes = bisect_left(graph.elements, True, key=lambda element: element.is_channel)  # these are last
-        edges = Edges.of(vertices, np.array(sources, np.int64), np.array(targets, np.int64), nodes)
-        return cls(count, edges, tuple(special), emitted, keep, np.array(derivations, np.int64).reshape(-1, 3))
+        return cls.made_of(LabelledGraph.of(spread))
+
+    @classmethod
+    def made_of(cls, graph: LabelledGraph) -> GraphArrays:
+        """Make the arrays of a labelled graph; O(edges · log edges)."""
+        vertices, words = graph.vertices, words_of(graph.all_bits)
+        edges = Edges.of(vertices, np.array(graph.sources, np.int64), np.array(graph.targets, np.int64), graph.nodes)
+        return cls(
+            graph.count,
+            edges,
+            graph.special,
+            _rows(vertices, words, graph.emitted, 0),
+            _rows(vertices, words, graph.keep, graph.all_bits),
+            np.array(graph.derivations, np.int64).reshape(-1, 3),
+        )
 
     def closed(self, vertices: Indices) -> GraphArrays:
         """Return the same where some vertices emit nothing and pass nothing on: there the graph is cut."""
@@ -93,12 +86,36 @@ def as_bits(spread: Spread, count: int, numbers: Mapping[int, int], otherwise: i
     >>> as_bits(spread(*factory()), 3, {1: 0b10}, 0b1111).tolist()
     [[15], [2], [15]]
     """
-    words = max(1, -(-spread.all_bits.bit_length() // WORD))
+    return _rows(count, words_of(spread.all_bits), numbers, otherwise)
+
+
+def words_of(all_bits: int) -> int:
+    """Return how many words hold so many bits.
+
+    >>> words_of(0b1111), words_of(1 << 64)
+    (1, 2)
+    """
+    return max(1, -(-all_bits.bit_length() // WORD))
+
+
+def _rows(count: int, words: int, numbers: Mapping[int, int], otherwise: int) -> Bits:
     rows = np.empty((count, words), np.uint64)
     rows[:] = np.array(_words(otherwise, words), np.uint64)
     for vertex, bits in numbers.items():
         rows[vertex] = _words(bits, words)
     return rows
+
+
+def solved(graph: LabelledGraph) -> tuple[dict[int, int], dict[int, int]]:
+    """Return what arrives at and what leaves each vertex where there is any, in order; as ``worklist`` does.
+
+    >>> line = LabelledGraph(3, 3, [0, 1], [1, 2], (), 0b11, {0: 1}, {0: 0, 1: 0, 2: 0}, [(1, 0, 1)])
+    >>> solved(line)  # 0 -> 1 -> 2, and vertex 1 makes bit 1 of bit 0
+    ({1: 1, 2: 2}, {0: 1, 1: 2})
+    """
+    network = GraphArrays.made_of(graph)
+    arrives, leaves = fixpoint(network.edges, network.emitted, network.keep, network.derivations)
+    return as_numbers(arrives), as_numbers(leaves)
 
 
 def as_numbers(bits: Bits) -> dict[int, int]:
@@ -112,6 +129,19 @@ def as_numbers(bits: Bits) -> dict[int, int]:
     for vertex in np.flatnonzero(bits.any(axis=1)).tolist():
         numbers[vertex] = sum(word << WORD * i for i, word in enumerate(bits[vertex].tolist()))
     return numbers
+
+
+def of_elements(spread: Spread, rows: Bits) -> dict[int, int]:
+    """Return the rows of elements, which are the first, as numbers; those that are not empty.
+
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> carried = spread(*factory())
+    >>> rows = as_bits(carried, len(carried.graph.elements) + 1, carried.arrives, 0)
+    >>> of_elements(carried, rows) == carried.arrives
+    True
+    """
+    return as_numbers(rows[: len(spread.graph.elements)])
 
 
 def _words(bits: int, words: int) -> list[int]:

@@ -9,16 +9,12 @@ A part of what labels close can be opened for one run: then it says what that pa
 
 from __future__ import annotations
 
-from bisect import bisect_left
 from collections import defaultdict
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from rosprivacy.analysis.kernel.arrays import as_bits, as_numbers
-from rosprivacy.analysis.kernel.edges import Edges
-from rosprivacy.analysis.kernel.fixpoint import fixpoint
+from rosprivacy.analysis.kernel.labelled_graph import LabelledGraph, ends, nodes_of
+from rosprivacy.analysis.kernel.least_solution import least_solution
 from rosprivacy.analysis.kernel.states import back_from
 
 if TYPE_CHECKING:
@@ -103,26 +99,24 @@ def backward(spread: Spread, places: Mapping[int, int], opened: Opened = NOTHING
     >>> carried.names(entering[FACE_ID]), carried.names(entering[FACES])
     (('FaceTemplate', 'Video'), ('FaceTemplate',))
     """
-    graph, everything = spread.graph, spread.all_bits
-    count = len(graph.elements)
+    graph, count = spread.graph, len(spread.graph.elements)
     keeps = {v: bits | opened.elements.get(v, 0) for v, bits in spread.keeps.items()}
     restricted = sorted(spread.flow_keeps)
-    sources = [flow.source for flow in graph.flows] + [source for source, _ in opened.more]
-    targets = [flow.target for flow in graph.flows] + [target for _, target in opened.more]
-    for number, index in enumerate(restricted, count):
-        sources.append(number)
-        targets.append(targets[index])
-        targets[index] = number
-    vertices = count + len(restricted)
-    begins = {v: back_from(spread, v, bits, opened.elements.get(v, 0)) for v, bits in places.items()}
-    turned = [(vertex, after, before) for vertex, pairs in spread.derives.items() for before, after in pairs]
+    sources, targets, meetings = ends(graph, restricted)
+    sources += [source for source, _ in opened.more]
+    targets += [target for _, target in opened.more]
     passing = {n: spread.flow_keeps[i] | opened.flows.get(i, 0) for n, i in enumerate(restricted, count)}
-    nodes = bisect_left(graph.elements, True, key=lambda element: element.is_channel)  # channels are last
-    edges = Edges.of(vertices, np.array(targets, np.int64), np.array(sources, np.int64), nodes)
-    leaving, entering = fixpoint(
-        edges,
-        as_bits(spread, vertices, begins, 0),
-        as_bits(spread, vertices, keeps | passing, everything),
-        np.array(turned, np.int64).reshape(-1, 3),
+    turned = LabelledGraph(
+        count,
+        nodes_of(spread),
+        targets,
+        sources,
+        tuple(restricted),
+        spread.all_bits,
+        {v: back_from(spread, v, bits, opened.elements.get(v, 0)) for v, bits in places.items()},
+        keeps | passing,
+        [(vertex, after, before) for vertex, pairs in spread.derives.items() for before, after in pairs],
+        meetings,
     )
-    return Backward(as_numbers(entering[:count]), as_numbers(leaving[:count]))
+    leaving, entering = least_solution(turned)
+    return Backward(entering, leaving)

@@ -9,8 +9,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors
-from rosprivacy.analysis.kernel.arrays import GraphArrays, as_numbers
-from rosprivacy.analysis.kernel.fixpoint import fixpoint
+from rosprivacy.analysis.kernel.labelled_graph import LabelledGraph
+from rosprivacy.analysis.kernel.least_solution import least_solution
 from rosprivacy.analysis.kernel.named_channels import keep_named, named, stated_flows
 from rosprivacy.analysis.kernel.overruled import overruled
 from rosprivacy.analysis.kernel.roles import NOTHING_SAID, Facts, facts
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from typing import Any
 
     from rosprivacy.analysis.hierarchy import Hierarchy
-    from rosprivacy.analysis.kernel.arrays import Bits
     from rosprivacy.analysis.model import Bound, FlowGraph, Statement
 
 
@@ -42,8 +41,7 @@ def spread(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy) -> Spread:
     (('FaceTemplate',), ('Video',))
     """
     result = meaning(graph, bound, hierarchy, emitted(bound.elements.values()))
-    network = GraphArrays.of(result)
-    fill(result, *fixpoint(network.edges, network.emitted, network.keep, network.derivations))
+    fill(result, *least_solution(LabelledGraph.of(result)))
     return result
 
 
@@ -192,19 +190,16 @@ def _closed(derives: Mapping[str, tuple[str, ...]]) -> dict[str, set[str]]:
     return {category: after - {category} for category, after in made.items()}
 
 
-def fill(spread: Spread, arrives: Bits, leaves: Bits) -> None:
-    """Put the fixpoint in; rows are vertices of its network, of which elements are the first.
+def fill(spread: Spread, arrives: dict[int, int], leaves: dict[int, int]) -> None:
+    """Put the fixpoint in: of elements, where there are any bits.
 
     >>> from rosprivacy.analysis.example import ROSOUT, factory
     >>> labelled = meaning(*factory(), ["FaceTemplate", "Video"])
-    >>> network = GraphArrays.of(labelled)
-    >>> fill(labelled, *fixpoint(network.edges, network.emitted, network.keep, network.derivations))
+    >>> fill(labelled, *least_solution(LabelledGraph.of(labelled)))
     >>> labelled.names(labelled.arrives[ROSOUT]), labelled.leaves.get(ROSOUT, 0)
     (('Video',), 0)
     """
-    count = len(spread.graph.elements)
-    spread.arrives = as_numbers(arrives[:count])
-    spread.leaves = as_numbers(leaves[:count])
-    spread.sent = dict(spread.leaves)
+    spread.arrives, spread.leaves = arrives, leaves
+    spread.sent = dict(leaves)
     for vertex, bits in spread.flow_begins.items():  # through one channel only is still from here
         spread.leaves[vertex] = spread.leaves.get(vertex, 0) | bits

@@ -20,6 +20,7 @@ from rosprivacy.analysis.model.category import (
 )
 from rosprivacy.analysis.model.diagnostic import (
     ASSUMED,
+    BAG_GAP,
     CAREFUL_DENY,
     DEAD_DENY,
     EMPTY_GROUP,
@@ -36,6 +37,7 @@ from rosprivacy.analysis.model.diagnostic import (
     OBSERVATION_GAP,
     OBSERVED,
     PATHS_NOT_COUNTED,
+    RECORDING,
     REFUSED_NAME,
     SEEN_ALTHOUGH_DENIED,
     SHARED_ENCLAVE,
@@ -55,7 +57,7 @@ from rosprivacy.analysis.model.flow import Flow, FlowGraph
 from rosprivacy.analysis.model.message_type import OF_KIND, MessageType, kind_of_type
 from rosprivacy.analysis.model.policy import Grant, Policy, Profile, Seen
 from rosprivacy.analysis.model.reason import REASONS, Reason
-from rosprivacy.analysis.model.recording import Bag, BagTopic, BagVerdict, JudgedBag, TopicKinds
+from rosprivacy.analysis.model.recording import Bag, BagTopic, BagVerdict, JudgedBag, TopicKinds, iso
 from rosprivacy.analysis.model.statement import (
     CANNOT,
     CHANGED,
@@ -85,6 +87,7 @@ __all__ = [
     "ARTICLE_9_VERDICTS",
     "ARTICLE_10",
     "ASSUMED",
+    "BAG_GAP",
     "CANNOT",
     "CAREFUL_DENY",
     "CHANGED",
@@ -117,6 +120,7 @@ __all__ = [
     "OF_TYPES",
     "PATHS_NOT_COUNTED",
     "REASONS",
+    "RECORDING",
     "REFUSED_NAME",
     "SEEN_ALTHOUGH_DENIED",
     "SEGMENT",
@@ -158,6 +162,7 @@ __all__ = [
     "TopicKinds",
     "UnknownEnd",
     "is_article_9",
+    "iso",
     "kind_of_type",
     "unread",
 ]

@@ -24,8 +24,10 @@ OBSERVED = "observed"  # from when to when, by which doors: what was not seen pr
 ENCLAVES_MADE_UP = "enclaves-made-up"
 FOLDED_NAMES = "folded-names"
 OBSERVATION_GAP = "observation-gap"  # what an observation is known to miss: the verdict is undetermined at best (S16)
+BAG_GAP = "bag-gap"  # what is not known of a bag that is a storage: the verdict is undetermined at best (S11)
+RECORDING = "recording"  # a bag that is a storage: its size, its time, its topics
 SEEN_ALTHOUGH_DENIED = "seen-although-denied"
-ASSUMED = (OBSERVED, ENCLAVES_MADE_UP, FOLDED_NAMES)  # notices that stand under Assumed
+ASSUMED = (OBSERVED, ENCLAVES_MADE_UP, FOLDED_NAMES, RECORDING)  # notices that stand under Assumed
 NO_SOURCE = "no-source"  # what 'no leak found' lacks, so that it says nothing (rules S11, S12)
 GOES_NOWHERE = "goes-nowhere"
 NO_LEAK_NAMED = "no-leak-named"
@@ -74,5 +76,5 @@ def unread(diagnostics: Iterable[Diagnostic]) -> tuple[Place, ...]:
     >>> list(map(str, unread([*said, Diagnostic(Place("c.xml", 1), Severity.NOTICE, "")])))
     ['a.xml:1', 'b.xml:1']
     """
-    places = {said.place for said in diagnostics if said.code in (UNREAD_FILE, OBSERVATION_GAP)}
+    places = {said.place for said in diagnostics if said.code in (UNREAD_FILE, OBSERVATION_GAP, BAG_GAP)}
     return tuple(sorted(places, key=lambda place: (place.file, place.line)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from enum import StrEnum
 
 
@@ -80,6 +81,15 @@ class Bag:
         counts = [topic.messages for topic in self.topics]
         known = [count for count in counts if count is not None]
         return sum(known) if self.complete and len(known) == len(counts) else None
+
+
+def iso(moment: int | None) -> str:
+    """Return a time in nanoseconds since 1970 as ISO 8601, whole seconds in UTC; empty for None.
+
+    >>> iso(1_700_000_000_500_000_000), iso(None)
+    ('2023-11-14T22:13:20Z', '')
+    """
+    return f"{datetime.fromtimestamp(moment // 10**9, UTC):%Y-%m-%dT%H:%M:%SZ}" if moment is not None else ""
 
 
 class BagVerdict(StrEnum):

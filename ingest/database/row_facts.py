@@ -11,7 +11,7 @@ from collections import defaultdict
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.model import NAME, SEGMENT, Element, Flow, FlowGraph, Grant, Method, Place, Statement
+from rosprivacy.analysis.model import NAME, SEGMENT, Element, Flow, FlowGraph, Grant, Method, Place, Seen, Statement
 from rosprivacy.ingest.database.flow_statements import DATABASE, HAND
 from rosprivacy.ingest.labels.entries import EXACT, as_ranked_now
 from rosprivacy.ingest.policies.names import covered
@@ -55,9 +55,17 @@ def _lines(lines: Iterable[Mapping[str, Any]], role: str, channel: Element, *, a
             enclave=str(line.get("enclave") or ""),
             node=str(line.get("profile") or ""),
             place=Place(str(line["file"]), int(line.get("line") or 0)),
+            seen=_seen(line),
         )
         for line in lines
     )
+
+
+def _seen(line: Mapping[str, Any]) -> Seen | None:
+    """When a line of an observed policy was seen in use (rule S16)."""
+    if not line.get("first_seen"):
+        return None
+    return Seen(tuple(map(str, line.get("seen_by") or ())), str(line["first_seen"]), str(line.get("last_seen") or ""))
 
 
 def subjects_of(properties: Mapping[str, Any]) -> tuple[str, ...]:

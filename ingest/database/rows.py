@@ -257,7 +257,10 @@ def flow_row(robot: str, flow: Flow, source: str, target: str, properties: Row) 
 
 def _grant(grant: Grant) -> Row:
     place = grant.place
-    return {"file": place.file, "line": place.line, "enclave": grant.enclave, "profile": grant.node}
+    row: Row = {"file": place.file, "line": place.line, "enclave": grant.enclave, "profile": grant.node}
+    if grant.seen:
+        row |= {"seen_by": list(grant.seen.by), "first_seen": grant.seen.first, "last_seen": grant.seen.last}
+    return row
 
 
 def _roles(robot: str, bound: Bound, vocabulary: Vocabulary, ids: Sequence[str]) -> dict[str, list[Row]]:

@@ -21,6 +21,7 @@ from rosprivacy.ingest.reading.confined import unusable
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
+    from rosprivacy.analysis.model import Bag
     from rosprivacy.ingest.reading.yaml_values import Value
 
 ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,199}")
@@ -60,6 +61,12 @@ class Spec:
 
 class FleetReader(LabelReader):
     """One fleet file: the sections that label files have too are read as there."""
+
+    def bags_at(self, value: Value) -> tuple[Bag, ...]:
+        """Return none, and a problem: nobody could say from which robots the topics of a bag are."""
+        hint = "state the storage in a label file of the robot that it was recorded on"
+        self.problem(value.line, "a bag in a fleet file", hint)
+        return ()
 
     def states(self, ends: Iterable[str]) -> bool:  # noqa: ARG002 - whatever they are
         """Return True: no policy knows of a flow between robots."""

@@ -7,12 +7,15 @@ their flows keeps the line that states it. A name that is not there is an error 
 from __future__ import annotations
 
 from collections import defaultdict
+from dataclasses import replace
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, shown
+from rosprivacy.analysis.many_flows import Flows, Meeting, parted
 from rosprivacy.analysis.model import STATED, Element, Flow, FlowGraph, Grant
 from rosprivacy.analysis.written_names import literal, meant
+from rosprivacy.ingest.labels.bag_storages import recorded
 from rosprivacy.ingest.labels.entries import End
 from rosprivacy.ingest.labels.non_ros_reader import is_non_ros
 from rosprivacy.ingest.policies.names import covered
@@ -60,6 +63,7 @@ def extended(graph: FlowGraph, files: Sequence[Labels]) -> tuple[FlowGraph, list
         for end in entry.between:
             both = list(ends.between(end, End(entry.name), entry.place, problems))
             flows += [*both, *((b, a, place) for a, b, place in both)]
+        flows += recorded(graph, entry)
     return with_flows(graph, added, flows), problems
 
 
@@ -79,7 +83,7 @@ def merged(
 def _facts(entry: Stated) -> tuple[object, ...]:
     said = entry.outside
     more = (said.encrypted, said.country, said.operator, said.recipient, said.transfer, said.contract)
-    return (entry.kind, said.retention, said.backups, *more, entry.between)
+    return (entry.kind, said.retention, said.backups, *more, entry.between, entry.bags)
 
 
 class Ends:
@@ -156,11 +160,16 @@ def with_flows(
         lines[number[source], number[target]].append(place)
     added = [Flow(*ends, FLOW, tuple(line_of(place) for place in _sorted(places))) for ends, places in lines.items()]
 
-    def renumbered(old: tuple[Flow, ...], new: Sequence[Flow] = ()) -> tuple[Flow, ...]:
+    def renumbered(old: Iterable[Flow], new: Sequence[Flow] = ()) -> tuple[Flow, ...]:
         kept = [Flow(moved[f.source], moved[f.target], f.role, f.grants, f.denials) for f in old]
         return tuple(sorted([*kept, *new], key=lambda f: (f.source, f.target, f.role)))
 
-    allowed, denied = renumbered(graph.flows, added), renumbered(graph.denied)
+    own, meetings = parted(graph.flows)
+    allowed: Sequence[Flow] = renumbered((flow for _, flow in own), added)
+    if isinstance(graph.flows, Flows):  # no flow that is stated has both of its ends in a meeting
+        met = (Meeting(*(tuple(moved[end] for end in side) for side in (m.written, m.read))) for m in meetings)
+        allowed = replace(graph.flows, stored=tuple(allowed), meetings=tuple(met))
+    denied = renumbered(graph.denied)
     matches = renumbered(graph.denied_matches)
     return FlowGraph(tuple(known), allowed, denied, graph.profiles, graph.view, matches, graph.careful)
 

@@ -80,6 +80,7 @@ def read_labels(
     shipped: bool = False,
     own: bool = False,
     bounds: Bounds = BOUNDS,
+    include_root: str | None = None,
 ) -> Labels:
     """Read one label file.
 
@@ -93,6 +94,8 @@ def read_labels(
         Read it as one that comes with the program: of lower rank, and free to name what is not there.
     own
         It is about one robot of a fleet, and outranks what its model's files say.
+    include_root
+        Folder that the bags which it names may not leave, links followed; by default its own.
 
     Raises
     ------
@@ -107,7 +110,7 @@ def read_labels(
     except InputError as error:
         raise InputErrors([error]) from None
     tier = OWN if not shipped else PROPOSED if file == INFRASTRUCTURE else SHIPPED
-    reader = LabelReader(file, vocabulary, category, tier, ROBOT if own else 0, bounds=bounds)
+    reader = LabelReader(file, vocabulary, category, tier, ROBOT if own else 0, bounds=bounds, root=include_root or "")
     return _labels(reader, top, data, shipped=shipped, own=own)
 
 

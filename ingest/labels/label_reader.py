@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.errors import InputError, shown
 from rosprivacy.analysis.kernel.ranks import NONE_OF
 from rosprivacy.analysis.model import (
     CLEANS,
@@ -26,6 +26,7 @@ from rosprivacy.analysis.model import (
     Statement,
     Surroundings,
 )
+from rosprivacy.ingest.labels.bag_storages import bags_of
 from rosprivacy.ingest.labels.entries import EXACT, SHIPPED, Entry, FlowEntry, naming, specificity
 from rosprivacy.ingest.labels.name_reader import NameReader
 from rosprivacy.ingest.labels.non_ros_reader import is_non_ros, read_element, read_limits
@@ -42,6 +43,7 @@ from rosprivacy.ingest.labels.surroundings import read_contexts, read_country
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from rosprivacy.analysis.model import Bag
     from rosprivacy.ingest.labels.non_ros_reader import Limit, Stated
     from rosprivacy.ingest.reading.yaml_values import Value
 
@@ -90,6 +92,15 @@ class LabelReader(NameReader):
     limits: list[Limit] = field(default_factory=list)
     surroundings: Surroundings = field(default_factory=Surroundings)
     processing: Processing = UNSTATED
+    root: str = ""
+
+    def bags_at(self, value: Value) -> tuple[Bag, ...]:
+        """Return the bags that a storage names, relative to this file; none, and a problem, if they cannot be read."""
+        try:
+            return bags_of(self.file, self.root, value)
+        except InputError as error:
+            self.problem(value.line, error.problem, error.hint)
+        return ()
 
     def rank(self, specific: int) -> tuple[int, int]:
         """Return the rank of a statement."""

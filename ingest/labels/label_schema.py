@@ -11,7 +11,7 @@ from rosprivacy.analysis.model import CLEANS, CONTEXTS, NO_BASIS, NON_ROS
 from rosprivacy.analysis.non_ros import RECIPIENTS, TRANSFERS
 from rosprivacy.ingest.labels.label_reader import LONGEST_GROUP, NONE, SAYS_NOTHING
 from rosprivacy.ingest.labels.name_reader import END_KINDS
-from rosprivacy.ingest.labels.non_ros_reader import CARRIERS
+from rosprivacy.ingest.labels.non_ros_reader import BAG, CARRIERS
 from rosprivacy.ingest.labels.stated_processing import LONGEST
 
 if TYPE_CHECKING:
@@ -192,6 +192,7 @@ def _element(kind: str, labels: dict[str, Any]) -> dict[str, Any]:
             "retention": {"anyOf": [duration, _by_category(duration)], "description": "How long data is kept."},
             "backups": {"anyOf": [duration, {"type": "boolean"}], "description": "How much longer backups keep it."},
             "encrypted": {"type": "boolean", "description": "At rest."},
+            BAG: {"type": "string", "minLength": 1, "description": "The recording that it is, relative to this file."},
         }
     if kind in CARRIERS:
         facts["between"] = {

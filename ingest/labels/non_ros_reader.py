@@ -21,13 +21,15 @@ from rosprivacy.ingest.labels.surroundings import read_country
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
+    from rosprivacy.analysis.model import Bag
     from rosprivacy.ingest.labels.entries import End
     from rosprivacy.ingest.reading.yaml_values import Value
 
 LONGEST = 200  # characters of a name
+BAG = "bag"  # the recording that a storage is
 CARRIERS = ("shared-memory", "side-channel")
 FACTS = ("country", "operator", "recipient", "contract", "transfer")
-OF_KIND = {"storage": ("retention", "backups", "encrypted"), **dict.fromkeys(CARRIERS, ("between",))}
+OF_KIND = {"storage": ("retention", "backups", "encrypted", BAG), **dict.fromkeys(CARRIERS, ("between",))}
 TRUE, FALSE = ("true", "yes", "on"), ("false", "no", "off")
 Limit = tuple[str, Duration]  # category, how long it may be kept
 
@@ -49,6 +51,9 @@ class Reader(Protocol):
     def kind_of_data(self, written: str, line: int) -> str:
         """Return the name of a category; empty, and a problem, if there is none."""
 
+    def bags_at(self, value: Value) -> tuple[Bag, ...]:
+        """Return the bags that are named; none, and a problem, if they cannot be read."""
+
 
 @dataclass(frozen=True, slots=True)
 class Stated:
@@ -60,12 +65,15 @@ class Stated:
         Without limits.
     between
         The nodes, or channels, that it joins, in both directions.
+    bags
+        Of a storage: the recordings that it is.
     """
 
     kind: str
     name: str
     outside: NonRosFacts
     between: tuple[End, ...] = ()
+    bags: tuple[Bag, ...] = ()
 
     @property
     def place(self) -> Place:
@@ -96,7 +104,7 @@ def read_element(reader: Reader, name: str, line: int, value: Value, labels: tup
     for key, at, fact in reader.entries_of(value, known):
         if key not in ("kind", *labels):
             facts.take(key, at, fact)
-    return Stated(kind.text, name, facts.outside(Place(reader.file, line)), facts.between)
+    return Stated(kind.text, name, facts.outside(Place(reader.file, line)), facts.between, facts.bags)
 
 
 def read_limits(reader: Reader, line: int, value: Value) -> Iterator[Limit]:
@@ -114,6 +122,7 @@ class _Facts:
 
     def __init__(self, reader: Reader) -> None:
         self.between: tuple[End, ...] = ()
+        self.bags: tuple[Bag, ...] = ()
         self._reader = reader
         self._retention: list[Limit] = []
         self._texts: dict[str, str] = {}
@@ -136,6 +145,8 @@ class _Facts:
                 self._reader.problem(line, f"encrypted: {_written(value)}", "write true or false")
         elif key == "between":
             self._take_between(line, value)
+        elif key == BAG:
+            self.bags = self._reader.bags_at(value)
         elif key == "country":
             self._take_country(value)
         else:

@@ -12,10 +12,12 @@ from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
-from rosprivacy.ingest.policies.observed_metadata import NO_NODE, STILL_CHANGING
+from rosprivacy.ingest.policies.observed_metadata import HIDDEN, NO_NODE, STILL_CHANGING
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
+
+    from rosprivacy.ingest.observe.declared import Declared
 
 ROLES = {
     "publish": "topic",
@@ -130,6 +132,8 @@ class Observation:
         One of ``GAPS`` of ``observed_metadata`` -> how many. ``NO_NODE`` is counted here.
     remarks
         One line each, for people: what was left out, and why. Fit to be shown.
+    declared
+        What nodes said of themselves.
     """
 
     doors: tuple[str, ...]
@@ -139,6 +143,7 @@ class Observation:
     domains: tuple[int, ...] = ()
     gaps: Mapping[str, int] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
+    declared: tuple[Declared, ...] = ()
 
     def __bool__(self) -> bool:
         """Whether there is anything in it that a policy can say."""
@@ -153,8 +158,11 @@ class Observation:
 
 
 def continued(before: Observation, now: Observation) -> Observation:
-    """Return what a door has seen so far, with what it sees now: only the end says whether it still changed."""
-    settled = replace(before, gaps={gap: n for gap, n in before.gaps.items() if gap != STILL_CHANGING})
+    """Return what a door has seen so far, with what it sees now: only the end says what still changes or is hidden.
+
+    A participant that was hidden when it left is counted by the door to the end.
+    """
+    settled = replace(before, gaps={gap: n for gap, n in before.gaps.items() if gap not in (STILL_CHANGING, HIDDEN)})
     return added_up((settled, now))
 
 
@@ -183,6 +191,7 @@ def added_up(observations: Iterable[Observation]) -> Observation:
         tuple(sorted({domain for one in several for domain in one.domains})),
         gaps,
         tuple(dict.fromkeys(remark for one in several for remark in one.remarks)),
+        tuple(sorted({declared for one in several for declared in one.declared})),
     )
 
 

@@ -14,8 +14,9 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.model import REFUSED_NAME, SHARED_ENCLAVE, Diagnostic, Place, Severity
+from rosprivacy.analysis.model import OBSERVED, REFUSED_NAME, SHARED_ENCLAVE, Diagnostic, Place, Severity
 from rosprivacy.ingest.policies.names import is_pattern
+from rosprivacy.ingest.policies.seen_although_denied import seen_although_denied
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -39,14 +40,19 @@ _REFUSED = (
 def joint_warnings(policies: Iterable[Policy]) -> tuple[Diagnostic, ...]:
     """Return what is to be said of policies that are read as one system."""
     policies = sorted(policies, key=lambda policy: policy.file)
-    found = (*_shared_enclaves(policies), *_refused_names(policies))
+    found = (*_shared_enclaves(policies), *_refused_names(policies), *seen_although_denied(policies))
     return tuple(sorted(found, key=lambda said: (said.place.file, said.place.line, said.message)))
+
+
+def deployed(policies: Iterable[Policy]) -> list[Policy]:
+    """Return the policies that may be in force: one that was made of an observation stands beside them (rule S16)."""
+    return [policy for policy in policies if all(said.code != OBSERVED for said in policy.diagnostics)]
 
 
 def _shared_enclaves(policies: Sequence[Policy]) -> Iterator[Diagnostic]:
     """One warning for all enclaves that the same files state."""
     stated: dict[str, dict[str, Place]] = defaultdict(dict)
-    for policy in policies:
+    for policy in deployed(policies):
         for profile in policy.profiles:
             stated[profile.enclave].setdefault(policy.file, profile.place)
     shared: dict[tuple[str, ...], list[str]] = defaultdict(list)

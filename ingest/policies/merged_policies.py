@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import MERGED, Diagnostic, Severity
+from rosprivacy.ingest.policies.joint_policies import deployed
 from rosprivacy.ingest.policies.names import is_pattern, matcher
 
 if TYPE_CHECKING:
@@ -32,7 +33,7 @@ def merging_notices(policies: Iterable[Policy], instead: str = ALONE) -> tuple[D
     instead
         What to do if they were not meant to make one graph.
     """
-    policies = sorted((policy for policy in policies if policy.profiles), key=lambda policy: policy.file)
+    policies = sorted((policy for policy in deployed(policies) if policy.profiles), key=lambda policy: policy.file)
     if len(policies) < 2:  # noqa: PLR2004 - two make one
         return ()
     return (*_stated_differently(policies, instead), *_without_common_names(policies, instead))

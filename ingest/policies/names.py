@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 ACTION_SERVICES = ("cancel_goal", "get_result", "send_goal")
 ACTION_TOPICS = ("feedback", "status")
+EVENTS = "/_service_event"  # the topic on which a service tells what it is asked and what it answers
 
 _OUT = {"publish", "request", "call"}
 _PART = re.compile(rf"(.+)/_action/({'|'.join(ACTION_SERVICES + ACTION_TOPICS)})", re.DOTALL)
@@ -117,6 +118,20 @@ def dds_names(kind: str, name: str, leg: str) -> tuple[str, ...]:
         return tuple(f"rq{name}/_action/{part}Request" for part in ACTION_SERVICES)
     replies = tuple(f"rr{name}/_action/{part}Reply" for part in ACTION_SERVICES)
     return replies + tuple(f"rt{name}/_action/{part}" for part in ACTION_TOPICS)
+
+
+def recorded_channels(topic: str) -> tuple[tuple[str, str, str], ...]:
+    """Return (kind, name, leg) of the channels of which a recorded topic tells: itself, or a service or action (S3).
+
+    >>> recorded_channels("/scan"), recorded_channels("/spin/_action/feedback")
+    ((('topic', '/scan', ''),), (('action', '/spin', 'response'),))
+    >>> recorded_channels("/add/_service_event")[1:]
+    (('service', '/add', 'request'), ('service', '/add', 'response'))
+    """
+    found = list(endpoints("publish", "topic", topic))
+    if topic.endswith(EVENTS):
+        found += endpoints("request", "service", topic.removesuffix(EVENTS))
+    return tuple(dict.fromkeys((end.kind, end.name, end.leg) for end in found))
 
 
 def is_pattern(name: str) -> bool:

@@ -26,6 +26,7 @@ from rosprivacy.analysis.model import (
     Place,
     Policy,
     Profile,
+    Seen,
     Severity,
 )
 from rosprivacy.ingest.policies.policy_xml import ROLES
@@ -154,11 +155,20 @@ def _policy(policy: Policy) -> dict[str, Any]:
                 "file": grant.place.file,
                 "line": grant.place.line,
                 **({} if grant.allow and not grant.dead else {"dead": grant.dead}),
+                **({"seen": _seen(grant.seen)} if grant.seen else {}),
             }
             for grant in policy.grants
         ],
         "diagnostics": [_diagnostic(d) for d in policy.diagnostics],
     }
+
+
+def _seen(seen: Seen) -> dict[str, Any]:
+    return {"by": list(seen.by), "first": seen.first, "last": seen.last}
+
+
+def _read_seen(saved: dict[str, Any]) -> Seen:
+    return Seen(tuple(saved["by"]), saved["first"], saved["last"])
 
 
 def _diagnostic(d: Diagnostic) -> dict[str, Any]:
@@ -189,6 +199,7 @@ def _read_policy(saved: dict[str, Any]) -> Policy:
             policy=saved["file"],
             dead=g.get("dead", False),
             absolute=g.get("absolute", True),
+            seen=_read_seen(g["seen"]) if "seen" in g else None,
         )
         for g in saved["grants"]
     ]

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.model import BagVerdict
+from rosprivacy.analysis.model import BagVerdict, iso
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -39,8 +38,8 @@ def _bag(judged: JudgedBag) -> BagEntry:
         "complete": bag.complete,
         "files": list(bag.files),
         "bytes": bag.size,
-        "start": written(bag.start),
-        "end": written(bag.end),
+        "start": iso(bag.start) or None,
+        "end": iso(bag.end) or None,
         "messages": bag.messages,
         "kinds": list(judged.kinds),
         "open_topics": list(judged.open_topics),
@@ -65,14 +64,3 @@ def _topic(judged: TopicKinds) -> BagTopicEntry:
     if judged.why:
         entry["why"] = judged.why
     return entry
-
-
-def written(moment: int | None) -> str | None:
-    """Return a time in nanoseconds as ISO 8601, whole seconds in UTC.
-
-    >>> written(1_700_000_000_500_000_000), written(None)
-    ('2023-11-14T22:13:20Z', None)
-    """
-    if moment is None:
-        return None
-    return f"{datetime.fromtimestamp(moment // 10**9, UTC):%Y-%m-%dT%H:%M:%SZ}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NotRequired, TypedDict
 
 from rosprivacy.report.contract.analysis import Assumptions
-from rosprivacy.report.contract.records import ElementEntry, GrantEntry
+from rosprivacy.report.contract.records import ElementEntry, LineEntry
 
 if TYPE_CHECKING:
     from rosprivacy.report.contract.records import DiagnosticEntry
@@ -35,7 +35,7 @@ Between = TypedDict("Between", {"from": MarkedElement, "to": MarkedElement})
 Filtered = TypedDict("Filtered", {"from": NamedElement, "categories": list[str]})
 
 
-class ChangedGrant(GrantEntry):
+class ChangedGrant(LineEntry):
     """A line of a policy that a proposal changes."""
 
     role: str

@@ -29,11 +29,25 @@ class PlaceEntry(TypedDict):
     line: int
 
 
-class GrantEntry(PlaceEntry):
+class SeenEntry(TypedDict):
+    """When a grant of an observed policy was seen in use, and through which doors (rule S16)."""
+
+    by: list[str]
+    first: str
+    last: str
+
+
+class LineEntry(PlaceEntry):
     """A line of a policy."""
 
     enclave: str
     profile: str
+
+
+class GrantEntry(LineEntry):
+    """A line that allows or denies something; where it was seen in use, when."""
+
+    seen: NotRequired[SeenEntry]
 
 
 class Reached(TypedDict):

@@ -13,7 +13,7 @@ from rosprivacy.analysis.findings.review_order import Behind
 from rosprivacy.analysis.findings.sanitizing import absent, cleanings, makings
 from rosprivacy.analysis.kernel.ranks import in_words
 from rosprivacy.analysis.legal import turned_special
-from rosprivacy.analysis.model import GOES_NOWHERE, NO_LEAK_NAMED, UNREAD_FILE
+from rosprivacy.analysis.model import BAG_GAP, GOES_NOWHERE, NO_LEAK_NAMED, OBSERVATION_GAP, UNREAD_FILE
 from rosprivacy.analysis.written_names import literal
 from rosprivacy.report.document import ledger, reliance
 from rosprivacy.report.document.non_ros import inventory, taken_by_kind, without_backups
@@ -139,6 +139,16 @@ def analysis_document(answer: Answer) -> AnalysisDocument:
 def files_not_read(document: Mapping[str, Any]) -> int:
     """Return how many files with grants were not read: why a verdict can be undetermined with nothing open (S11)."""
     return len({said["file"] for said in document["diagnostics"] if said.get("code") == UNREAD_FILE})
+
+
+def observation_gaps(document: Mapping[str, Any]) -> list[str]:
+    """Return what observations are known to miss: the other such reason (S16)."""
+    return [str(said["message"]) for said in document["diagnostics"] if said.get("code") == OBSERVATION_GAP]
+
+
+def bag_gaps(document: Mapping[str, Any]) -> list[str]:
+    """Return what is not known of bags that are storages: one more such reason (S11)."""
+    return [str(said["message"]) for said in document["diagnostics"] if said.get("code") == BAG_GAP]
 
 
 def lacking(document: Mapping[str, Any]) -> str:
@@ -372,7 +382,15 @@ def _denied(flow: Flow, graph: FlowGraph) -> DeniedEntry:
 
 
 def _grant(grant: Grant) -> GrantEntry:
-    return {"file": grant.place.file, "line": grant.place.line, "enclave": grant.enclave, "profile": grant.node}
+    line: GrantEntry = {
+        "file": grant.place.file,
+        "line": grant.place.line,
+        "enclave": grant.enclave,
+        "profile": grant.node,
+    }
+    if grant.seen:
+        line["seen"] = {"by": list(grant.seen.by), "first": grant.seen.first, "last": grant.seen.last}
+    return line
 
 
 def _diagnostic(diagnostic: Diagnostic) -> DiagnosticEntry:

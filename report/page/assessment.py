@@ -57,6 +57,8 @@ class Assessment:
 
     Attributes
     ----------
+    left
+        How many more flows there are, without fields: their paths are not told one by one.
     unmatched
         Answers to fields that this report does not have.
     file, sha256
@@ -66,6 +68,7 @@ class Assessment:
     general: tuple[Field, ...]
     criteria: tuple[Field, ...]
     risks: tuple[Risk, ...]
+    left: int
     unmatched: tuple[Field, ...]
     file: str
     sha256: str
@@ -101,6 +104,8 @@ def assessment(
 
     general = tuple(field(f"sign.{what}", f"sign.{what}") for what in GENERAL)
     criteria = tuple(field(f"criterion.{number}", f"w.{number}") for number in range(1, CRITERIA + 1))
-    risks = tuple(map(risk, flows))
+    asked = flows if answers.texts else [flow for flow in flows if flow.entries[0].told]
+    made = (risk(flow) for flow in asked)
+    risks = tuple(one for one in made if one.flow.entries[0].told or any(field.text for field in one.fields))
     left = tuple(Field(key, fit(key), text) for key, text in answers.texts.items() if key not in used)
-    return Assessment(general, criteria, risks, left, fit(answers.file), answers.sha256)
+    return Assessment(general, criteria, risks, len(flows) - len(risks), left, fit(answers.file), answers.sha256)

@@ -12,6 +12,7 @@ from rosprivacy.analysis.model import MAY_REVEAL
 from rosprivacy.analysis.text import fit, printable
 from rosprivacy.report.document.ledger import hanging
 from rosprivacy.report.naming import infrastructure_file, name
+from rosprivacy.report.observed_lines import observed_lines
 from rosprivacy.report.page.entries_of_robots import grouped
 
 if TYPE_CHECKING:
@@ -45,6 +46,7 @@ def assumed(index: Index) -> Iterator[str]:
     words, said = index.words, index.document["assumptions"]
     yield words(f"a.view.{index.document['view']}")
     yield words("a.unlabelled")
+    yield from observed_lines(index.document, words)
     yield _standard(index)
     yield from _stopped(index)
     yield from _types(index)

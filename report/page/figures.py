@@ -66,7 +66,7 @@ def figures(
     if not available():
         return Figures(installed=False)
     findings = {finding.id: finding for finding in analysis.findings}
-    entries = [entry for entry in report.entries if entry.id in findings]
+    entries = [entry for entry in report.entries if entry.told and entry.id in findings]
     words = report.words
     titles = {kind.name: kind.title for kind in report.kinds}
     say = Phrases.told(words, titles)

@@ -5,6 +5,7 @@ In: an ``Index``. Out: ``Entry``, in the order of the document; those that diffe
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -14,8 +15,9 @@ from rosprivacy.report.made_of import made_of
 from rosprivacy.report.naming import key, line, name
 from rosprivacy.report.page.decision_texts import Decision, decision_of
 from rosprivacy.report.page.entries_of_robots import finding_pattern, grouped
-from rosprivacy.report.page.index import anchor, state
+from rosprivacy.report.page.index import anchor, kind_anchor, state
 from rosprivacy.report.page.look_at import revealed
+from rosprivacy.report.page.shares import share
 from rosprivacy.report.robots import forms_in_words
 from rosprivacy.report.words.reasons import reason_told
 
@@ -71,6 +73,8 @@ class Entry:
     ----------
     id, anchor, number
         Of the first finding; ``others`` are the ids of those that differ only in the robot.
+    told
+        Whether the page tells it by itself; else it has no hops and notes, and its anchor is that of its kind of data.
     kind, state, article9, category
         As in the contract; the state is ``open``, ``decided``, ``accepted`` or ``dismissed``.
     sentence
@@ -114,6 +118,7 @@ class Entry:
     mark: str = ""
     spread: tuple[str, ...] = ()
     pattern: str = ""
+    told: bool = True
     where: tuple[tuple[str, tuple[str, ...]], ...] = ()
 
     @property
@@ -141,7 +146,13 @@ def finding_entries(index: Index, marks: Mapping[str, str] | None = None) -> tup
     fleet = index.patterns  # there each finding is one of its pattern
     findings = in_order(index.findings, index.document.get("fleet"))
     groups = [[finding] for finding in findings] if fleet else grouped(findings, pattern)
-    return tuple(_entry(number, group, index, decided, marks) for number, group in enumerate(groups, 1))
+    numbers = Counter(group[0]["category"] for group in groups)
+    left = dict.fromkeys(numbers, share(numbers.values()))
+    entries = []
+    for number, group in enumerate(groups, 1):
+        left[group[0]["category"]] -= 1
+        entries.append(_entry(number, group, index, decided, marks, told=left[group[0]["category"]] >= 0))
+    return tuple(entries)
 
 
 def _entry(
@@ -150,6 +161,8 @@ def _entry(
     index: Index,
     decided: Mapping[str, Decision | None],
     marks: Mapping[str, str],
+    *,
+    told: bool,
 ) -> Entry:
     finding = group[0]
     decision = decided[finding["id"]]
@@ -157,7 +170,8 @@ def _entry(
     robots = _robots(group, index)
     return Entry(
         id=finding["id"],
-        anchor=anchor(finding["id"]),
+        anchor=anchor(finding["id"]) if told else kind_anchor(finding["category"]),
+        told=told,
         number=number,
         kind=finding["kind"],
         state="decided" if decision and stands == "open" else stands,
@@ -168,8 +182,8 @@ def _entry(
         leak=name(finding["leak"]),
         sentence=_sentence(finding, index),
         pseudonymised=finding["pseudonymised"],
-        hops=tuple(_hops(finding, index)),
-        notes=tuple(_notes(finding, index)),
+        hops=tuple(_hops(finding, index)) if told else (),
+        notes=tuple(_notes(finding, index)) if told else (),
         special=_special(finding, index),
         others=tuple(f["id"] for f in group[1:]),
         robots=robots,

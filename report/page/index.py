@@ -158,3 +158,8 @@ def state(finding: Mapping[str, Any]) -> str:
 def anchor(finding_id: str) -> str:
     """Return where a finding stands in a page."""
     return f"way-{finding_id}"
+
+
+def kind_anchor(name: str) -> str:
+    """Return where a kind of data stands in a page; names are parts of IRIs, so anything may be in them."""
+    return f"kind-{''.join(c if c.isascii() and c.isalnum() else f'_{ord(c):x}' for c in fit(name))}"

@@ -12,6 +12,7 @@ from rosprivacy.analysis.errors import DrawingError
 from rosprivacy.report.page.page_svg import page_svg, width
 from rosprivacy.report.pictures.dot import dot
 from rosprivacy.report.pictures.graphviz import Graphviz, Job, TooLongError
+from rosprivacy.report.pictures.layout import ORDERED, way_of
 from rosprivacy.report.pictures.narrow import folded
 from rosprivacy.report.pictures.overview import overview
 from rosprivacy.report.pictures.svg import alt_text
@@ -27,7 +28,8 @@ if TYPE_CHECKING:
     from rosprivacy.report.pictures.picture import Picture
 
 MOST = 16  # boxes, unless the shortest path itself is longer
-SECONDS = 5.0  # a picture; it takes a hundredth of one
+SECONDS = 60.0  # a picture; it takes some hundredths of one
+INSTEAD = "try again when the machine has less to do, or take a report without pictures: --format markdown"
 WIDEST = 680.0  # points; what is wider is drawn downwards
 
 
@@ -81,12 +83,13 @@ def pictures_of(
 ) -> Iterator[Inline | None]:
     """Return a picture of each finding, as an ``<svg>`` element for one HTML page; None where none could be drawn.
 
-    Lines and text on the page have the colour of the page's text. What goes beyond ``most`` boxes is left out.
+    Lines and text on the page have the colour of the page's text. What goes beyond ``most`` boxes is left out. The
+    time that a picture takes decides nothing (rule S14): too large is what ``layout.way_of`` finds so.
 
     Raises
     ------
     DrawingError
-        If Graphviz is not installed.
+        If Graphviz is not installed, or does not end.
 
     Notes
     -----
@@ -107,7 +110,7 @@ def picture_of_all(analysis: Analysis, findings: Sequence[Finding], wishes: Wish
     Raises
     ------
     DrawingError
-        If Graphviz is not installed.
+        If Graphviz is not installed, or does not end.
     """
     picture = folded(overview(analysis, findings, wishes.say))
     with Graphviz() as graphviz:
@@ -121,10 +124,14 @@ def _is_whole(picture: Picture, whole: Picture) -> bool:
 
 def _drawn(graphviz: Graphviz, picture: Picture, wishes: Wishes, finding: Finding, *, whole: bool) -> Inline | None:
     for wanted in (picture, bounded(picture, 1)):
+        if way_of(wanted).engine != ORDERED:
+            continue
         changed = wishes.change(wanted)
         try:
             data = _best(graphviz, changed)
-        except (TooLongError, DrawingError):
+        except TooLongError:
+            raise DrawingError(f"graph: a picture takes more than {SECONDS:g} seconds; {INSTEAD}") from None
+        except DrawingError:
             continue
         label = wishes.labels.get(finding.id) or alt_text(changed)
         return Inline(page_svg(data, changed, label), whole and wanted is picture)

@@ -13,6 +13,7 @@ from rosprivacy.analysis.text import fit, printable
 from rosprivacy.ontology.iris import as_published
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import text
+from rosprivacy.report.page.index import kind_anchor
 from rosprivacy.report.page.look_at import LookAt, context_of, of_kind
 from rosprivacy.report.words.typography import spaced
 
@@ -87,8 +88,18 @@ class Kind:
 
     @property
     def anchor(self) -> str:
-        """Where it stands in a page; names are parts of IRIs, so anything may be in them."""
-        return f"kind-{''.join(c if c.isascii() and c.isalnum() else f'_{ord(c):x}' for c in self.name)}"
+        """Where it stands in a page."""
+        return kind_anchor(self.name)
+
+    @property
+    def told(self) -> tuple[Entry, ...]:
+        """The entries that are told one by one."""
+        return tuple(entry for entry in self.entries if entry.told)
+
+    @property
+    def left(self) -> int:
+        """How many others there are."""
+        return sum(not entry.told for entry in self.entries)
 
     @property
     def to_assess(self) -> int:

@@ -85,18 +85,20 @@ class Opening:
     more: str = ""
 
 
-def opening(index: Index, entries: Iterable[Entry], verdict: str, means: str) -> Opening:
+def opening(index: Index, flows: Iterable[ToDecide], verdict: str, means: str) -> Opening:
     """Return what a report begins with.
 
     Parameters
     ----------
+    flows
+        All of them, see ``flows``.
     verdict, means
         Its verdict, and what that means, in words: of a report without anything to decide.
 
-    Complexity: O(entries).
+    Complexity: O(flows).
     """
     words = index.words
-    rows = [flow for flow in flows(index, entries) if flow.entries[0].state in TO_DECIDE]
+    rows = [flow for flow in flows if flow.entries[0].state in TO_DECIDE]
     waiting = sum(row.waits for row in rows)
     if not rows:
         return Opening(verdict, (means, *_first_to_review(index)))

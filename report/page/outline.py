@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.model import SPECIAL
 from rosprivacy.analysis.text import fit
 from rosprivacy.report.compare.changes import ASKED, Changes, changes
-from rosprivacy.report.document.analysis import files_not_read, lacking
+from rosprivacy.report.document.analysis import bag_gaps, files_not_read, lacking, observation_gaps
 from rosprivacy.report.document.ledger import by_globs
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.finding_order import REVEALS, strength
@@ -185,7 +185,8 @@ def outline(
     differ = changes(earlier.document, document) if earlier else None
     entries = finding_entries(index, differ.marks() if differ else None)
     verdict = _verdict(index)
-    begins = opening(index, entries, words(f"verdict.{verdict}"), _told_of(verdict, index))
+    decided = flows(index, entries)
+    begins = opening(index, decided, words(f"verdict.{verdict}"), _told_of(verdict, index))
     links = tables.Links(entries)
     subjects, silent = tables.subjects(index, links)
     closes = closing(index, entries, proposals)
@@ -203,7 +204,7 @@ def outline(
         verdict=verdict,
         opening=begins,
         closing=closes,
-        means=tuple(_means(index, names)),
+        means=tuple(_means(index, names, sum(not entry.told for entry in entries))),
         numbers=tuple(_numbers(index)),
         glossary=tuple((words(f"w.{word}"), words(f"w.{word}.means")) for word in (document["view"], *EXPLAINED)),
         assumptions=tuple(assumed.assumed(index)),
@@ -228,7 +229,7 @@ def outline(
         ends=unknown_ends(index),
         criteria=criteria(index),
         rights=rights.rights(index),
-        assessment=assessment(words, flows(index, entries), answers or Answers(), signed(index)),
+        assessment=assessment(words, decided, answers or Answers(), signed(index)),
         size=words(
             "i.intro",
             elements=words.count(document["elements"], "element"),
@@ -266,7 +267,8 @@ def _law(assumptions: Mapping[str, Any], words: Words) -> str:
 def _verdict(index: Index) -> str:
     """The verdict; ``nothing``, ``goes-nowhere`` or ``no-leak-named`` where it lacks grounds (rules S11, S12)."""
     verdict = str(index.document["verdict"])
-    asked = verdict != "undetermined" or index.document["open"] or files_not_read(index.document)
+    unread = files_not_read(index.document) or observation_gaps(index.document) or bag_gaps(index.document)
+    asked = verdict != "undetermined" or index.document["open"] or unread
     followed = index.document["categories"] and asked
     return verdict if followed else lacking(index.document) or "nothing"
 
@@ -277,7 +279,7 @@ def _told_of(verdict: str, index: Index) -> str:
     return words(f"verdict.{verdict}.means", open=words.count(count_rows(index.document["open"]).elements, "element"))
 
 
-def _means(index: Index, sections: list[str]) -> Iterator[str]:
+def _means(index: Index, sections: list[str], left: int) -> Iterator[str]:
     """What else is to be known of the result: what to ask of each path, and which are not to be decided now."""
     words = index.words
     if index.to_assess:
@@ -295,6 +297,8 @@ def _means(index: Index, sections: list[str]) -> Iterator[str]:
             ends=words.count(count_rows(ends).elements, "element"),
             section=sections.index("questions") + 1,
         )
+    if left:
+        yield words.count(left, "f.left")
     yield words("not.legal")
 
 

@@ -5,12 +5,15 @@ In: an ``Index`` and the entries of the report. Out: rows; elements that differ 
 
 from __future__ import annotations
 
+from collections import Counter, defaultdict
 from dataclasses import dataclass
+from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.model import SPECIAL
 from rosprivacy.report.naming import key, whole
 from rosprivacy.report.page.entries_of_robots import grouped, without_robots
+from rosprivacy.report.page.index import state
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -18,6 +21,8 @@ if TYPE_CHECKING:
     from rosprivacy.report.naming import Key
     from rosprivacy.report.page.finding_entries import Entry
     from rosprivacy.report.page.index import Index
+
+SHOWN = 100  # entries of one row
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,8 +37,9 @@ class Cleaning:
         Kinds that never get there.
     beside
         Who reads the same channels and gets the data as they are; after these, who is said to clean them, too.
-    past
-        Entries of these kinds whose path does not lead through the element: (anchor, number).
+    past, more
+        The first entries of these kinds whose path does not lead through the element: (anchor, number); and how many
+        more there are, in words.
     """
 
     name: str
@@ -44,6 +50,7 @@ class Cleaning:
     leaves: str
     beside: tuple[str, ...]
     past: tuple[tuple[str, int], ...]
+    more: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,17 +78,28 @@ class _Past:
     """Paths to assess on which a kind of data arrives as it is, and the elements that each leads through."""
 
     def __init__(self, index: Index, entries: Iterable[Entry]) -> None:
-        places = {finding: (entry.anchor, entry.number) for entry in entries for finding in (entry.id, *entry.others)}
-        self._paths: dict[str, list[tuple[set[Key], tuple[str, int]]]] = {}
-        for finding in index.to_assess:
-            if not finding["pseudonymised"]:
-                through = {whole(element) for element in finding["witness"]}
-                self._paths.setdefault(finding["category"], []).append((through, places[finding["id"]]))
+        self._paths: dict[str, Counter[tuple[str, int]]] = defaultdict(Counter)
+        self._through: dict[tuple[str, Key], list[tuple[str, tuple[str, int]]]] = defaultdict(list)
+        for entry in entries:
+            for finding in map(index.by_id.__getitem__, (entry.id, *entry.others)):
+                if state(finding) == "open" and not finding["pseudonymised"]:
+                    place = entry.anchor, entry.number
+                    self._paths[entry.category][place] += 1
+                    for element in {whole(element) for element in finding["witness"]}:
+                        self._through[entry.category, element].append((finding["id"], place))
 
-    def of(self, elements: set[Key], categories: Iterable[str]) -> tuple[tuple[str, int], ...]:
-        """Entries of the categories that lead through none of the elements."""
-        paths = (path for category in categories for path in self._paths.get(category, ()))
-        return tuple(sorted({place for through, place in paths if not through & elements}, key=lambda place: place[1]))
+    def of(self, elements: set[Key], categories: Iterable[str]) -> tuple[list[tuple[str, int]], int]:
+        """The first entries of the categories that lead through none of the elements, and how many there are."""
+        first: list[tuple[str, int]] = []
+        number = 0
+        for category in categories:
+            paths = self._paths[category]
+            here = {path for element in elements for path in self._through.get((category, element), ())}
+            through = Counter(place for _, place in here)
+            past = (place for place in paths if paths[place] > through[place])
+            first += islice(past, SHOWN)
+            number += len(paths) - sum(paths[place] == count for place, count in through.items())
+        return sorted(first, key=lambda place: place[1])[:SHOWN], number
 
 
 def _cleaning(group: list[Mapping[str, Any]], past: _Past, index: Index) -> Cleaning:
@@ -90,6 +108,7 @@ def _cleaning(group: list[Mapping[str, Any]], past: _Past, index: Index) -> Clea
     unreached = [c for c in dict.fromkeys(r["category"] for r in group) if c not in reached]
     leaves = [index.data(category) for category in row["leaves"]]
     leaves += [index.data(category, pseudonymised=True) for category in row["leaves_pseudonymised"]]
+    first, number = past.of({whole(r["element"]) for r in group}, reached)
     return Cleaning(
         name=words.row(index.names([r["element"] for r in group])),
         kinds=index.all_data(reached),
@@ -101,7 +120,8 @@ def _cleaning(group: list[Mapping[str, Any]], past: _Past, index: Index) -> Clea
             *index.names([element for r in group for element in r["beside"]]),
             *(words("s.cleans.too", element=name) for name in index.names(_cleaning_too(group))),
         ),
-        past=past.of({whole(r["element"]) for r in group}, reached),
+        past=tuple(first),
+        more=words("more", n=number - len(first)) if number > len(first) else "",
     )
 
 

@@ -9,6 +9,7 @@ import re
 import struct
 import time
 from dataclasses import dataclass
+from functools import cache
 from math import inf
 from typing import TYPE_CHECKING
 
@@ -43,7 +44,7 @@ class Way:
     engine, attributes
         Of Graphviz.
     most
-        Boxes and lines that it is taken for.
+        What it is taken for: see ``crossings``.
     words
         What a reader has to know of it.
     """
@@ -54,12 +55,15 @@ class Way:
     words: str = ""
 
 
-WAYS = (  # by size, never by time: the same picture on a busy machine
-    Way("dot", {}, 1_500),
+# By size, never by time: the same picture on a busy machine. dot takes 0.4 s of processor time for 450 boxes and 673
+# lines of benchmarks/pictures.py, 2 for 500 and 833, 28 for 520 and 953, and is not done in 100 for 540 and 1,100;
+# each picture of the public policies takes less than 0.3. sfdp takes 4 for all 1,900 boxes and 5,215 lines.
+WAYS = (
+    Way("dot", {}, 1_000_000),
     Way(
         "sfdp",
         {"overlap": "ortho_yx", "splines": "line"},
-        15_000,
+        150_000_000,
         "boxes stand near what they are joined to, unordered",
     ),
     Way("sfdp", {"overlap": "true", "splines": "line", "K": "3"}, words="boxes may lie on each other"),
@@ -116,14 +120,15 @@ def drawn(
     noted = picture.noted(*note)
     with Graphviz() as graphviz:
 
+        @cache
         def draw(form: str, direction: str) -> bytes:
-            job = Job(dot(noted, direction=direction or "LR"), way.engine, form, {**way.attributes, **_paper(form)})
+            job = Job(dot(noted, direction=direction), way.engine, form, {**way.attributes, **_paper(form)})
             return graphviz.draw(job, end - time.monotonic())
 
         try:
             if not direction and way.engine == ORDERED:
                 direction = max(DIRECTIONS, key=lambda one: _scale(draw(SVG, one)))
-            data = draw(form, direction)
+            data = draw(form, direction or DIRECTIONS[0])
         except TooLongError:
             what = f"the layout of {counted(len(picture.boxes), 'box', 'boxes')} takes more than {seconds:g} seconds"
             raise DrawingError(f"graph: {what}; {instead}") from None
@@ -134,8 +139,12 @@ def drawn(
 
 def way_of(picture: Picture, ways: tuple[Way, ...] = WAYS) -> Way:
     """Return how a picture is laid out: by its size alone."""
-    size = len(picture.boxes) + len(picture.lines)
-    return next(way for way in ways if size <= way.most)
+    return next(way for way in ways if crossings(len(picture.boxes), len(picture.lines)) <= way.most)
+
+
+def crossings(boxes: int, lines: int) -> int:
+    """Return how often a line may meet a box or another line: what an ordered layout has to weigh up."""
+    return lines * (boxes + lines)
 
 
 def _scale(svg: bytes) -> float:

@@ -17,7 +17,16 @@ from rosprivacy.report.made_of import making
 from rosprivacy.report.places import NOWHERE, of_step, to_review
 from rosprivacy.report.sarif.artifacts import uri_of
 from rosprivacy.report.sarif.flows import flows_of, logical, named, prose, text
-from rosprivacy.report.sarif.rules import FILES_NOT_READ, NO_LEAK, NOTHING_FOLLOWED, UNREVIEWED, Rule, rule_of
+from rosprivacy.report.sarif.rules import (
+    BAG_GAPS,
+    FILES_NOT_READ,
+    NO_LEAK,
+    NOTHING_FOLLOWED,
+    OBSERVATION_GAPS,
+    UNREVIEWED,
+    Rule,
+    rule_of,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -40,10 +49,14 @@ MISSING = {
 
 @dataclass(frozen=True, slots=True)
 class Files:
-    """File names as SARIF has them. ``known`` only saves asking twice."""
+    """File names as SARIF has them.
+
+    ``known`` and ``places`` save asking twice, and what many results say is in memory once.
+    """
 
     root: Path
     known: dict[str, dict[str, Any]] = field(default_factory=dict)
+    places: dict[Place, dict[str, Any]] = field(default_factory=dict)
 
     def artifact(self, file: str) -> dict[str, Any]:
         """Return the ``artifactLocation`` of a file."""
@@ -54,7 +67,10 @@ class Files:
 
     def physical(self, place: Place) -> dict[str, Any]:
         """Return the ``physicalLocation`` of a place; viewers want a line, so one that has none gets the first."""
-        return {"artifactLocation": self.artifact(place.file), "region": {"startLine": max(place.line, 1)}}
+        if place not in self.places:
+            region = {"startLine": max(place.line, 1)}
+            self.places[place] = {"artifactLocation": self.artifact(place.file), "region": region}
+        return self.places[place]
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,9 +115,10 @@ class Results:
         for question in to_review(self.analysis):
             yield self._question(question)
         if self.analysis.verdict is Verdict.UNDETERMINED and not self.analysis.open:
-            not_read = FILES_NOT_READ.id in self.rules and self.analysis.carried
+            not_seen = [rule for rule in (FILES_NOT_READ, OBSERVATION_GAPS, BAG_GAPS) if rule.id in self.rules]
             lacks_leak = self.analysis.lacking == NO_LEAK_NAMED
-            yield self._rule_alone(FILES_NOT_READ if not_read else NO_LEAK if lacks_leak else NOTHING_FOLLOWED)
+            known = not_seen if self.analysis.carried else []
+            yield self._rule_alone(known[0] if known else NO_LEAK if lacks_leak else NOTHING_FOLLOWED)
 
     def _finding(self, finding: Finding) -> dict[str, Any]:
         rule = rule_of(finding.kind)

@@ -95,6 +95,20 @@ UNREVIEWED = Rule(
     ),
     NONE,
 )
+OBSERVATION_GAPS = Rule(
+    "observation-gaps",
+    "ObservationHasGaps",
+    "An observation is known to miss something: that nothing is found does not say that there is nothing.",
+    "A policy was made of what was seen running, and says itself what was not seen. What that does is not known.",
+    ("Observe again until no gap is left, or name a policy.",),
+)
+BAG_GAPS = Rule(
+    "bag-gaps",
+    "BagIsNotAllKnown",
+    "Of a bag that is a storage not all is known: that nothing is found does not say that there is nothing.",
+    "It is not complete, holds more than messages, or has topics that no policy names. What is in these is not known.",
+    ("Name the policies of the system that was recorded, or repair or replace the bag.",),
+)
 FILES_NOT_READ = Rule(
     "files-not-read",
     "PoliciesNotRead",

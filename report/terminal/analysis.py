@@ -1,20 +1,19 @@
 """Analysis -> a report for the terminal: verdict, findings hop by hop, what to review next, what was assumed.
 
-In: a JSON document of the contract, so that no reader is told anything that another is not. Out: lines on a rich
-console; colours are the console's business. Names come from anybody's files, so they are made printable.
+In: a JSON document of the contract, so that no reader is told anything that another is not. Out: text; or lines on a
+rich console, whose business colours are. Names come from anybody's files, so they are made printable.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rich.text import Text
-
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.model import MERGED
-from rosprivacy.report.document.analysis import files_not_read, lacking
+from rosprivacy.analysis.model import ASSUMED, MERGED
+from rosprivacy.report.document.analysis import bag_gaps, files_not_read, lacking, observation_gaps
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import shown_name
+from rosprivacy.report.observed_lines import observed_lines
 from rosprivacy.report.review_groups import SHOWN
 from rosprivacy.report.terminal.called_alike import legs
 from rosprivacy.report.terminal.denied import denied_lines
@@ -63,8 +62,17 @@ def print_report(
     width
         Of the terminal; None for a file or a pipe, where lines are not broken.
     """
+    from rich.text import Text  # noqa: PLC0415 - only for a terminal
+
     for text, style in wrapped(_lines(report, words, verbose=verbose, quiet=quiet), width):
         console.print(Text(text, style), soft_wrap=True)
+
+
+def report_text(
+    report: Mapping[str, Any], words: Words = IN_ENGLISH, *, verbose: bool = False, quiet: bool = False
+) -> str:
+    """Return a document as text for a file or a pipe: ``print_report`` without colours and without broken lines."""
+    return "".join(f"{text}\n" for text, _ in _lines(report, words, verbose=verbose, quiet=quiet))
 
 
 def verdict_line(report: Mapping[str, Any], words: Words = IN_ENGLISH) -> Line:
@@ -73,7 +81,11 @@ def verdict_line(report: Mapping[str, Any], words: Words = IN_ENGLISH) -> Line:
     style, meaning = STYLES[verdict], words(f"tty.verdict.{verdict}")
     if not any(report["categories"]) or (verdict == "undetermined" and not report["open"]):
         unread = files_not_read(report) and any(report["categories"])
-        meaning = words("tty.unread" if unread else f"tty.lacking.{lacking(report) or 'nothing'}")
+        gap = observation_gaps(report) and any(report["categories"])
+        bag = bag_gaps(report) and any(report["categories"])
+        known = "tty.unread" if unread else "tty.gap" if gap else "tty.gap.bag" if bag else ""
+        why = known or f"tty.lacking.{lacking(report) or 'nothing'}"
+        meaning = words(why)
     accepted = sum(finding["accepted"] for finding in report["findings"])
     if accepted and verdict != "leak":
         style, meaning = "bold yellow", words(f"tty.accepted.{verdict}")
@@ -142,6 +154,7 @@ def _assumed(report: Mapping[str, Any], words: Words, most: int | None) -> Itera
     yield words("tty.assumed"), "bold"
     view = report["view"]
     yield f"   {words(f'tty.view.{view}')}", ""
+    yield from ((f"   {line}", "yellow") for line in observed_lines(report, words))
     yield from standard_lines(report, most, words)
     yield from type_lines(report, most, words)
     yield from taken_away_lines(report, words)
@@ -192,8 +205,9 @@ def _assumed_outside(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
 
 def _diagnostics(report: Mapping[str, Any], words: Words, *, verbose: bool) -> Iterator[Line]:
     """Messages about files: they are in English, as other tools read them."""
-    notices = [d for d in report["diagnostics"] if d["severity"] == "notice" and d.get("code") != MERGED]
-    for diagnostic in report["diagnostics"]:
+    told = [d for d in report["diagnostics"] if d.get("code") not in ASSUMED]
+    notices = [d for d in told if d["severity"] == "notice" and d.get("code") != MERGED]
+    for diagnostic in told:
         if verbose or diagnostic not in notices:
             line = f":{diagnostic['line']}" if diagnostic["line"] else ""
             severity = words(f"tty.severity.{diagnostic['severity']}")

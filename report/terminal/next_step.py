@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import GOES_NOWHERE, NO_LEAK_NAMED, UNREAD_FILE
-from rosprivacy.report.document.analysis import lacking
+from rosprivacy.report.document.analysis import bag_gaps, lacking, observation_gaps
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import shown_name
 from rosprivacy.report.review_groups import next_round
@@ -69,7 +69,9 @@ def _step(report: Mapping[str, Any], words: Words) -> str:
         more = words("tty.more", n=others) if others else ""
         return words("tty.next.review", element=shown_name(first), more=more)
     unread = sorted({shown(said["file"]) for said in report["diagnostics"] if said.get("code") == UNREAD_FILE})
-    return words("tty.next.unread", file=unread[0]) if unread else lacking_step(lacking(report), words)
+    gap = "tty.next.gap" if observation_gaps(report) else "tty.next.bag" if bag_gaps(report) else ""
+    known = words("tty.next.unread", file=unread[0]) if unread else words(gap) if gap else ""
+    return known or lacking_step(lacking(report), words)
 
 
 def candidates(report: Mapping[str, Any]) -> list[str]:

@@ -201,6 +201,8 @@ WORDS = {
     # --- the risks
     "h.risks": "Risiken für die betroffenen Personen",
     "risk.intro": "Artikel 35 Absatz 7 Buchstaben c und d: zu jedem Datenfluss die Risiken für die Rechte und Freiheiten der betroffenen Personen, und was dagegen getan wird. Das kann nur eine Person sagen; dafür sind die Felder da.",
+    "risk.left.one": "{n} weiterer Datenfluss hat hier keine Felder, da seine Wege nicht einzeln aufgeführt sind.",
+    "risk.left.many": "{n} weitere Datenflüsse haben hier keine Felder, da ihre Wege nicht einzeln aufgeführt sind.",
     "risk.likelihood": "Eintrittswahrscheinlichkeit",
     "risk.severity": "Schwere",
     "risk.whom": "Für wen?",
@@ -307,6 +309,10 @@ WORDS = {
     "a.kinds.conduit": "gibt alle Daten weiter, die dorthin gelangen",
     "a.countries": "Mitglieder des EWR und Angemessenheitsbeschlüsse mit Stand {date}; bitte prüfen.",
     "a.limit": "Wie lange {element} aufbewahrt ({data}), wurde nicht beurteilt: Keine Datei nennt eine Frist.",
+    "a.observed": "{file} gibt wieder, was im Betrieb gesehen wurde; was nicht gesehen wurde, beweist nichts ({said}).",
+    "a.enclaves-made-up": "{file}: Die Enclaves sind angenommen, eine je Knoten; was DDS je Enclave durchsetzt, ist nicht bekannt ({said}).",
+    "a.folded-names": "{file}: Namen, die ein Programm bei jedem Start neu bildet, sind zusammengefasst ({said}).",
+    "a.recording": "{file}: Ein Speicher ist eine Aufzeichnung (Bag); keine Nachricht darin wurde gelesen ({said}).",
     "a.law": "Nur die DSGVO wird auf den Wegen verfolgt, so wie die Ontologie des Programms sie mit Stand {date} kennt. Die KI-Verordnung, das Recht der elektronischen Kommunikation, nationales Recht und Betriebsvereinbarungen werden nicht betrachtet. Vorschläge für neues Recht werden nicht angewandt.",
     "a.labels": "Angaben sind das Wort einer Person. Was ein Knoten im Inneren tut und was ihn an ROS vorbei verlässt, kann das Programm nicht nachsehen.",
     "t.closed": "Auf jemandes Wort hin verschlossen: Ohne es kämen Daten weiter",
@@ -403,6 +409,8 @@ WORDS = {
     "table.legend": "'kein Weg gefunden' gilt unter den gegebenen Angaben und nur, wenn auf den Wegen nichts zu prüfen bleibt.",
     # --- findings
     "f.intro": "Jeder Eintrag ist ein zu prüfender Weg: eine Datenart, von einer Quelle, zu einem Ort. Die Liste darunter ist ein kürzester Weg; jeder Schritt nennt die Policy-Zeile, die ihn erlaubt. Wer einen Weg schließen will, ändert eine dieser Zeilen oder setzt ein Element dazwischen, das die Daten anonymisiert, aggregiert oder verwirft; Pseudonymisieren schließt ihn nicht. Fragen zu jedem: Ist die Offenlegung gewollt? Auf welcher Grundlage nach Artikel 6, und bei besonderen Kategorien personenbezogener Daten nach Artikel 9 Absatz 2? Wer ist der Empfänger, und in welcher Rolle?",
+    "f.left.one": "{n} weiterer Weg ist hier nicht einzeln aufgeführt, damit sich die Datei öffnen lässt: „rosprivacy analyze --format json“ nennt ihn.",
+    "f.left.many": "{n} weitere Wege sind hier nicht einzeln aufgeführt, damit sich die Datei öffnen lässt: „rosprivacy analyze --format json“ nennt alle.",
     "f.none": "Es gibt keinen zu prüfenden Weg.",
     "f.filter": "Suchen und filtern",
     "f.search": "Suche in Namen, Zeilen und Kennungen",

@@ -232,6 +232,8 @@ WORDS = {
     # --- the risks
     "h.risks": "Risks to the persons",
     "risk.intro": "Article 35(7)(c) and (d): for each flow the risks to the rights and freedoms of the persons, and what is done about them. Only a person can say it; the fields are for that.",
+    "risk.left.one": "{n} more flow has no fields here, as its paths are not told one by one.",
+    "risk.left.many": "{n} more flows have no fields here, as their paths are not told one by one.",
     "risk.likelihood": "How likely is harm?",
     "risk.severity": "How severe would it be?",
     "risk.whom": "For whom?",
@@ -354,6 +356,10 @@ WORDS = {
     "a.kinds.conduit": "pass on all data that gets there",
     "a.countries": "Members of the EEA and adequacy decisions as of {date}; check them.",
     "a.limit": "How long {element} keeps {data} was not judged: no label file states a limit.",
+    "a.observed": "{file} tells what was seen running: {said}.",
+    "a.enclaves-made-up": "{file}: {said}; what DDS enforces per enclave is not known.",
+    "a.folded-names": "{file}: {said}.",
+    "a.recording": "{file}: {said}.",
     "a.law": "Only the GDPR is followed into paths, as the ontology of the program knows it as of {date}. The AI Act, the law on electronic communications, national law and agreements with works councils are not looked at. Proposals of new law are not applied.",
     "a.labels": "Labels are a person's word. The program cannot check what a node does inside, or what leaves it past ROS.",
     "t.closed": "Closed on somebody's word: without it, data would get on",
@@ -466,6 +472,8 @@ WORDS = {
         "put an element in between that anonymises, aggregates or drops them; pseudonymising does not close it. Questions for each: is the disclosure wanted? On which basis of "
         "Article 6, and of Article 9(2) where the data are special? Who is the recipient, and in which role?"
     ),
+    "f.left.one": "{n} more path is not told by itself here, so that the file can be opened: 'rosprivacy analyze --format json' tells it.",
+    "f.left.many": "{n} more paths are not told one by one here, so that the file can be opened: 'rosprivacy analyze --format json' tells all.",
     "f.none": "There is no path to assess.",
     "f.filter": "Find and filter",
     "f.search": "Search in names, lines and ids",

@@ -206,6 +206,8 @@ _TYPED = {
     # --- the risks
     "h.risks": "Risques pour les personnes concernées",
     "risk.intro": "Article 35, paragraphe 7, points c) et d) : pour chaque flux, les risques pour les droits et libertés des personnes concernées, et ce qui est fait pour y faire face. Seule une personne peut le dire ; les champs sont là pour cela.",
+    "risk.left.one": "{n} autre flux n'a pas de champs ici, car ses chemins ne sont pas indiqués un par un.",
+    "risk.left.many": "{n} autres flux n'ont pas de champs ici, car leurs chemins ne sont pas indiqués un par un.",
     "risk.likelihood": "Vraisemblance",
     "risk.severity": "Gravité",
     "risk.whom": "Pour qui ?",
@@ -312,6 +314,10 @@ _TYPED = {
     "a.kinds.conduit": "transmet toutes les données qui l'atteignent",
     "a.countries": "Membres de l'EEE et décisions d'adéquation au {date} ; à vérifier.",
     "a.limit": "La durée de conservation par {element} ({data}) n'a pas été évaluée : aucun fichier d'annotations n'indique de limite.",
+    "a.observed": "{file} rapporte ce qui a été vu en fonctionnement ; ce qui n'a pas été vu ne prouve rien ({said}).",
+    "a.enclaves-made-up": "{file} : les enclaves sont supposées, une par nœud ; ce que DDS impose par enclave n'est pas connu ({said}).",
+    "a.folded-names": "{file} : les noms qu'un programme invente à chaque démarrage sont réunis ({said}).",
+    "a.recording": "{file} : un stockage est un enregistrement (bag) ; aucun message n'y a été lu ({said}).",
     "a.law": "Seul le RGPD est suivi le long des chemins, tel que l'ontologie du programme le connaît au {date}. Le règlement sur l'intelligence artificielle, le droit des communications électroniques, le droit national et les accords d'entreprise ne sont pas examinés. Les propositions de droit nouveau ne sont pas appliquées.",
     "a.labels": "Les annotations sont la parole d'une personne. Le programme ne peut pas vérifier ce qu'un nœud fait en lui-même, ni ce qui le quitte en dehors de ROS.",
     "t.closed": "Fermé sur la parole de quelqu'un : sans elle, des données iraient plus loin",
@@ -408,6 +414,8 @@ _TYPED = {
     "table.legend": "« aucun chemin trouvé » vaut selon les annotations fournies, et seulement s'il ne reste rien à examiner sur les chemins.",
     # --- findings
     "f.intro": "Chaque entrée est un chemin à évaluer : un type de données, d'une source, vers un endroit. La liste sous chaque titre est un chemin le plus court ; chaque étape nomme la ligne de politique qui la permet. Pour fermer un chemin, modifiez l'une de ces lignes, ou placez entre deux un élément qui anonymise, agrège ou écarte les données ; pseudonymiser ne le ferme pas. Questions pour chacun : la divulgation est-elle voulue ? Sur quelle base de l'article 6 et, pour des catégories particulières de données, de l'article 9, paragraphe 2 ? Qui est le destinataire, et dans quel rôle ?",
+    "f.left.one": "{n} autre chemin n'est pas indiqué séparément ici, pour que le fichier puisse être ouvert : « rosprivacy analyze --format json » l'indique.",
+    "f.left.many": "{n} autres chemins ne sont pas indiqués un par un ici, pour que le fichier puisse être ouvert : « rosprivacy analyze --format json » les indique tous.",
     "f.none": "Il n'y a aucun chemin à évaluer.",
     "f.filter": "Chercher et filtrer",
     "f.search": "Chercher dans les noms, les lignes et les identifiants",

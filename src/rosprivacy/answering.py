@@ -16,7 +16,6 @@ from rosprivacy.analysis.findings.held_by_types import held_by_types
 from rosprivacy.analysis.findings.processed import lacks, processed
 from rosprivacy.analysis.fleet.likeness import pattern_id
 from rosprivacy.analysis.fleet.patterns import FleetView
-from rosprivacy.analysis.fleet.patterns_of_pairs import Groups
 from rosprivacy.analysis.kernel.type_limits import under_limits
 from rosprivacy.analysis.model import unread
 from rosprivacy.analysis.modes import Paths, View
@@ -31,6 +30,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.fleet.counts import Counts
+    from rosprivacy.analysis.fleet.patterns_of_pairs import Groups
     from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.question import Question
     from rosprivacy.system import System
@@ -46,7 +46,7 @@ def answer(system: System, question: Question) -> Result:
     """
     at_sources = Contexts.of(system.graph, system.bound, system.vocabulary.categories, together=system.is_fleet)
     question = in_contexts(question, at_sources.everywhere)
-    groups = Groups(system.likeness) if system.is_fleet and not question.every_finding else None
+    groups = _groups(system) if system.is_fleet and not question.every_finding else None
     options = Options(
         categories=question.asked,
         paths=question.settings.paths,
@@ -69,11 +69,17 @@ def answer(system: System, question: Question) -> Result:
 
 def _beside(system: System, options: Options, analysis: Analysis) -> Analysis:
     """An analysis under what types cannot carry, with what only this closes: the whole is analysed without it, too."""
-    choose = Groups(system.likeness) if options.choose else None
+    choose = _groups(system) if options.choose else None
     hierarchy = system.vocabulary.hierarchy
     without = analyse(system.graph, system.bound, hierarchy, replace(options, choose=choose, paths=Paths.witness))
     identity = partial(pattern_id, likeness=system.likeness)
     return held_by_types(analysis, without, identity, all_read=not options.unread)
+
+
+def _groups(system: System) -> Groups:
+    from rosprivacy.analysis.fleet.patterns_of_pairs import Groups  # noqa: PLC0415 - numpy, for fleets only
+
+    return Groups(system.likeness)
 
 
 def concluded(

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.kernel.roles import facts
 from rosprivacy.analysis.model import NOTHING_FOLLOWED, JudgedBag, Place, TopicKinds, unread
-from rosprivacy.ingest.policies.names import covered, covers, endpoints, is_pattern
+from rosprivacy.ingest.policies.names import covered, covers, is_pattern, recorded_channels
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 
 Said = tuple[tuple[str, ...], str, str]  # kinds, why they are not known, what it rests on
 Channel = tuple[str, str, str]  # kind, name, leg
-EVENTS = "/_service_event"  # the topic on which a service tells what it is asked and answers
 NO_MESSAGE = "no message of it was recorded"
 
 
@@ -43,20 +42,6 @@ def _judged(bag: Bag, topic: BagTopic, said_of: Callable[[str], Said]) -> TopicK
     return TopicKinds(topic, kinds, unknown, why)
 
 
-def channels_of(topic: str) -> tuple[Channel, ...]:
-    """Return the channels of which a topic of a bag tells: itself, or the service or action that it belongs to (S3).
-
-    >>> channels_of("/scan"), channels_of("/spin/_action/feedback")
-    ((('topic', '/scan', ''),), (('action', '/spin', 'response'),))
-    >>> channels_of("/add/_service_event")[1:]
-    (('service', '/add', 'request'), ('service', '/add', 'response'))
-    """
-    found = list(endpoints("publish", "topic", topic))
-    if topic.endswith(EVENTS):
-        found += endpoints("request", "service", topic.removesuffix(EVENTS))
-    return tuple(dict.fromkeys((end.kind, end.name, end.leg) for end in found))
-
-
 def by_system(result: Result) -> Callable[[str], Said]:
     """Return what tells of a topic what it carries in the system that was analysed."""
     analysis, bound = result.analysis, result.bound
@@ -66,9 +51,9 @@ def by_system(result: Result) -> Callable[[str], Said]:
     vertices: dict[Channel, list[int]] = defaultdict(list)
     patterns: dict[tuple[str, str], list[int]] = defaultdict(list)
     for vertex, element in enumerate(graph.elements):
-        if element.is_channel and element.pattern:
+        if element.is_channel and element.side == "write":
             patterns[element.kind, element.leg].append(vertex)
-        elif element.is_channel:
+        elif element.is_channel and not element.pattern:
             vertices[element.kind, element.name, element.leg].append(vertex)
     writers: dict[int, list[int]] = defaultdict(list)
     for flow in graph.flows:
@@ -81,7 +66,7 @@ def by_system(result: Result) -> Callable[[str], Said]:
         return [vertex for vertex in patterns[kind, leg] if covers(graph.elements[vertex].name, name)]
 
     def said_of(topic: str) -> Said:
-        here = [vertex for channel in channels_of(topic) for vertex in found(channel)]
+        here = [vertex for channel in recorded_channels(topic) for vertex in found(channel)]
         if not here:
             return (), "the policies do not name it", ""
         kinds = {name for vertex in here for name in spread.names(spread.present(vertex))}
@@ -130,7 +115,7 @@ def by_labels(files: Sequence[Labels], vocabulary: Vocabulary) -> Callable[[str]
     hierarchy = vocabulary.hierarchy
 
     def said_of(topic: str) -> Said:
-        channels = channels_of(topic)
+        channels = recorded_channels(topic)
         names = {name for _, name, _ in channels}
         kinds = {kind for file in files for kind in _named_by_sources(file, names)}
         if kinds:

@@ -20,6 +20,7 @@ from rosprivacy.ingest.fleet.fleet_graph import Placed, place
 from rosprivacy.ingest.fleet.joins import joins_nothing
 from rosprivacy.ingest.fleet.mergeable_graph import Part
 from rosprivacy.ingest.labels.add_non_ros import extend
+from rosprivacy.ingest.labels.bag_storages import told_of_bags
 from rosprivacy.ingest.labels.binding import bind, remarks
 from rosprivacy.ingest.labels.label_file import Labels, read_labels
 from rosprivacy.ingest.policies.comparisons import careful_notices
@@ -174,7 +175,11 @@ class Reader:
         run = [pushed(policy, robot.add) for policy in policies]
         graph, full = stripped(build(run, settings.view, settings.bounds), robot.strip or robot.add)
         extended = extend(graph, files)
-        diagnostics += (*remarks(extended, files), *careful_notices(extended.careful))
+        diagnostics += (
+            *remarks(extended, files),
+            *careful_notices(extended.careful),
+        )
+        diagnostics += told_of_bags(extended, (stated for labels in files for stated in labels.elements))
         bound = bind(extended, files, settings.bounds, robot.surroundings)
         part = with_grants(Part.of(extended, bound), lambda grant: as_written(grant, robot.add))
         return Member(robot, policies, part, full, graph.profiles, tuple(files), tuple(dict.fromkeys(diagnostics)))
@@ -189,7 +194,13 @@ class Reader:
             shipped = file == standard and file not in (*robot.labels, *robot.own)
             try:
                 self.labels[file, own] = read_labels(
-                    file, self._vocabulary, category=settings.category, shipped=shipped, own=own, bounds=settings.bounds
+                    file,
+                    self._vocabulary,
+                    category=settings.category,
+                    shipped=shipped,
+                    own=own,
+                    bounds=settings.bounds,
+                    include_root=self._root,
                 )
             except InputErrors as error:
                 problems += error.errors

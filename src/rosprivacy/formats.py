@@ -15,9 +15,10 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 from rosprivacy.analysis.errors import InputError, shown
 from rosprivacy.clock import source_date, today
 from rosprivacy.report.words import LANGUAGES
+from rosprivacy.terminal_width import terminal_width
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
     from rosprivacy.report.answer import Answer
     from rosprivacy.report.compare.earlier import Earlier
@@ -71,7 +72,7 @@ class Format:
 
     name: str
     suffix: str
-    write: Callable[[Answer, Style], str | bytes]
+    write: Callable[[Answer, Style], str | bytes | Iterator[str]]
 
 
 @overload
@@ -89,6 +90,12 @@ def written(answer: Answer, name: str, style: Style | None = None) -> str | byte
         If there is no such format or language, ``SOURCE_DATE_EPOCH`` is no time, or the earlier document cannot be
         read.
     """
+    made = in_pieces(answer, name, style)
+    return made if isinstance(made, str | bytes) else "".join(made)
+
+
+def in_pieces(answer: Answer, name: str, style: Style | None = None) -> str | bytes | Iterator[str]:
+    """Return the same, of what can be large as pieces to be written one after the other; ``InputError`` as there."""
     if name not in FORMATS:
         raise InputError("format", 0, f"unknown format {shown(name)!r}", f"one of {', '.join(FORMATS)}")
     style = style or Style()
@@ -98,28 +105,29 @@ def written(answer: Answer, name: str, style: Style | None = None) -> str | byte
 
 
 def _text(answer: Answer, style: Style) -> str:
-    from io import StringIO
-
-    from rich.console import Console
-
     from rosprivacy.report.document.whole import document
-    from rosprivacy.report.terminal.analysis import print_report
+    from rosprivacy.report.terminal.analysis import print_report, report_text
     from rosprivacy.report.words.words import Words
 
-    text = StringIO()
-    terminal = style.colour and Console().is_terminal
-    console = Console(file=text, force_terminal=terminal, highlight=False, emoji=False)
-    width = Console().width if terminal else None
-    words = Words(style.language)
-    print_report(console, document(answer), words, verbose=style.verbose, quiet=style.quiet, width=width)
-    return text.getvalue()
+    words, told = Words(style.language), document(answer)
+    width = terminal_width() if style.colour else None
+    if width is not None:
+        from io import StringIO
+
+        from rich.console import Console
+
+        text = StringIO()
+        console = Console(file=text, force_terminal=True, highlight=False, emoji=False)
+        print_report(console, told, words, verbose=style.verbose, quiet=style.quiet, width=width)
+        return text.getvalue()
+    return report_text(told, words, verbose=style.verbose, quiet=style.quiet)
 
 
-def _json(answer: Answer, _: Style) -> str:
+def _json(answer: Answer, _: Style) -> Iterator[str]:
+    from rosprivacy.report import json_text
     from rosprivacy.report.document.whole import document
-    from rosprivacy.report.json_text import as_text
 
-    return as_text(document(answer))
+    return json_text.in_pieces(document(answer))
 
 
 def _linked_data(form: str) -> Callable[[Answer, Style], str]:
@@ -134,13 +142,13 @@ def _linked_data(form: str) -> Callable[[Answer, Style], str]:
     return write
 
 
-def _sarif(answer: Answer, _: Style) -> str:
-    from rosprivacy.report.json_text import as_text
+def _sarif(answer: Answer, _: Style) -> Iterator[str]:
+    from rosprivacy.report import json_text
     from rosprivacy.report.sarif.artifacts import repository_root
     from rosprivacy.report.sarif.log import sarif
 
     named = [entry["file"] for kind in ("policies", "labels") for entry in answer.assumptions.get(kind) or ()]
-    return as_text(sarif(answer, repository_root(named)))
+    return json_text.in_pieces(sarif(answer, repository_root(named)))
 
 
 def _cnil_pia(answer: Answer, style: Style) -> str:

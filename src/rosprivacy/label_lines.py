@@ -131,7 +131,9 @@ def _own(labels: tuple[str, ...], vocabulary: Vocabulary, settings: Settings) ->
     if not Path(file).exists():
         return parse_labels(NEW, vocabulary, name=file), NEW
     data = read_regular(file, MAX_BYTES, partial(LabelError, file))
-    return read_labels(file, vocabulary, category=settings.category, bounds=settings.bounds), data.decode("utf-8-sig")
+    root = settings.include_root
+    read = read_labels(file, vocabulary, category=settings.category, bounds=settings.bounds, include_root=root)
+    return read, data.decode("utf-8-sig")
 
 
 def _meant(elements: Iterable[Element], entry: Entry) -> Iterator[Channel]:

@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import InputError, shown
 from rosprivacy.analysis.text import counted
 from rosprivacy.clock import source_date
+from rosprivacy.ingest.observe.declared import TYPE
+from rosprivacy.ingest.observe.declared_labels import declared_labels
 from rosprivacy.ingest.observe.doors import seen_by
 from rosprivacy.ingest.observe.observation import Observation, added_up, moment
 from rosprivacy.ingest.observe.observed_policy import policy_xml, prepared
@@ -38,12 +40,15 @@ class Written:
     ----------
     policy, types
         Texts of the two files.
+    declared
+        Text of a label file with what nodes declare of themselves; empty if none does.
     remarks
         One line each, for people.
     """
 
     policy: bytes
     types: str
+    declared: str
     remarks: tuple[str, ...]
 
 
@@ -96,12 +101,26 @@ def types_file(policy: Path) -> Path:
     >>> str(types_file(Path("a/robot.policy.xml"))), str(types_file(Path("robot.xml")))
     ('a/robot.types.yaml', 'robot.types.yaml')
     """
+    return _beside(policy, "types")
+
+
+def declared_file(policy: Path) -> Path:
+    """Return the label file with what nodes declare of themselves, beside a policy.
+
+    >>> from pathlib import Path
+    >>> str(declared_file(Path("robot.policy.xml")))
+    'robot.declared.labels.yaml'
+    """
+    return _beside(policy, "declared.labels")
+
+
+def _beside(policy: Path, what: str) -> Path:
     name = policy.name
     for ending in (".policy.xml", ".xml"):
         if name.lower().endswith(ending) and len(name) > len(ending):
             name = name[: -len(ending)]
             break
-    return policy.with_name(f"{name}.types.yaml")
+    return policy.with_name(f"{name}.{what}.yaml")
 
 
 def observe(
@@ -119,7 +138,18 @@ def written(observation: Observation) -> Written | None:
     ready = prepared(observation)
     if not ready.enclaves:
         return None
-    return Written(policy_xml(ready), types_yaml(ready.observation), tuple(_remarks(ready)))
+    labels = declared_labels(observation.declared, observation.seen)
+    return Written(policy_xml(ready), types_yaml(ready.observation), labels, tuple(_remarks(ready)))
+
+
+def _of_declarations(whole: Observation) -> Iterator[str]:
+    """What nodes said of themselves, and where nothing was heard."""
+    heard = {one.topic for one in whole.declared}
+    if whole.declared:
+        told = counted(len(whole.declared), "declaration")
+        yield f"{told} of nodes on how they process personal data: their own word, in a label file to review"
+    for name in sorted({one.name for one in whole.endpoints if one.type == TYPE and one.role == "publish"} - heard):
+        yield f"{name}: nodes declare there how they process personal data, and none was heard"
 
 
 def _remarks(ready: Prepared) -> Iterator[str]:
@@ -131,6 +161,7 @@ def _remarks(ready: Prepared) -> Iterator[str]:
     if ready.made_up:
         yield f"enclaves are made up: one per node ({len(ready.made_up):,})"
     yield from whole.remarks
+    yield from _of_declarations(whole)
     for one in ready.folded:
         yield f"folded by the rule {one.rule}: {shown(', '.join(one.names))} -> {one.name}"
     for gap, number in whole.all_gaps.items():

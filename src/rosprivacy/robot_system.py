@@ -10,10 +10,11 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors
-from rosprivacy.analysis.model import MERGED, REFUSED_NAME, SHARED_ENCLAVE
+from rosprivacy.analysis.model import MERGED, REFUSED_NAME, SEEN_ALTHOUGH_DENIED, SHARED_ENCLAVE
 from rosprivacy.answering import answer
 from rosprivacy.assumptions import files_read, remembered, types_read
 from rosprivacy.ingest.labels.add_non_ros import extend, extended
+from rosprivacy.ingest.labels.bag_storages import told_of_bags
 from rosprivacy.ingest.labels.binding import bind, join, remarks
 from rosprivacy.ingest.labels.label_file import Labels, read_labels, unknown_categories
 from rosprivacy.ingest.labels.stated_types import in_order
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
     from rosprivacy.result import Result
     from rosprivacy.settings import Settings
 
+ACROSS = (MERGED, SHARED_ENCLAVE, REFUSED_NAME, SEEN_ALTHOUGH_DENIED)  # what is said of policies together
 Types = tuple["TypesFile", ...]
 Read = tuple[tuple["Policy", ...], tuple["Diagnostic", ...]]
 
@@ -85,7 +87,11 @@ def _joined(
 ) -> System:  # fmt: skip
     policies, diagnostics = read
     said = tuple(d for policy in policies for d in policy.diagnostics) + diagnostics
-    said += tuple(d for file in files for d in file.diagnostics) + tuple(remarks(graph, files))
+    said += (
+        tuple(d for file in files for d in file.diagnostics)
+        + tuple(remarks(graph, files))
+        + tuple(told_of_bags(graph, (stated for file in files for stated in file.elements)))
+    )
     said += careful_notices(graph.careful)
     rests_on = {**files_read(policies, files, settings), **types_read(types)}
     bound = with_types(graph, bound, types)
@@ -121,7 +127,7 @@ def answer_each(
     bind(
         extend(build(read, settings.view, settings.bounds), files), files, settings.bounds
     )  # raises what fits none of them
-    left = tuple(one for one in said if one.code not in (MERGED, SHARED_ENCLAVE, REFUSED_NAME))
+    left = tuple(one for one in said if one.code not in ACROSS)
     results = []
     for policy in read:
         alone = (policy,), (*left, *joint_warnings((policy,)))
@@ -209,7 +215,14 @@ def read_label_files(labels: tuple[str | Labels, ...], vocabulary: Vocabulary, s
         try:
             shipped = file in standard and file not in labels  # named by the user, it is the user's own
             files.append(
-                read_labels(file, vocabulary, category=settings.category, shipped=shipped, bounds=settings.bounds)
+                read_labels(
+                    file,
+                    vocabulary,
+                    category=settings.category,
+                    shipped=shipped,
+                    bounds=settings.bounds,
+                    include_root=settings.include_root,
+                )
             )
         except InputErrors as error:
             problems += error.errors

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 import typer
 
-from rosprivacy.cli.app import app
+from rosprivacy.cli.app import program
 from rosprivacy.cli.inputs import WRITTEN, Inputs
 from rosprivacy.cli.output import progress_of
 from rosprivacy.settings import Settings
@@ -44,7 +44,7 @@ groups:
 limits: {PulseCurve: P30D}
 """
 DECISIONS = "decisions: 1\nfindings:\n  - {category: PulseCurve, decision: mitigate}\n"
-GROUP: Any = typer.main.get_command(app)
+GROUP: Any = typer.main.get_command(program())
 READERS = ("analyze", "show", "report", "graph", "mitigate", "diff", "load", "labels", "why-not")
 SYSTEM = ("p.xml", "-l", "l.yaml")
 

@@ -167,6 +167,7 @@ def test_a_killed_writer_leaves_the_old_or_the_new(program: Forked, tmp_path: Pa
         assert {True, False} <= set(killed)
 
 
+@pytest.mark.slow
 def test_a_writer_in_place_is_seen(program: Forked, tmp_path: Path) -> None:
     """That the test above can fail: without the rename a kill leaves an empty file."""
     killing = Killing(program, WRITERS["decide"], tmp_path / "home")

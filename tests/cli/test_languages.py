@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typer.main import get_command
 
-from rosprivacy.cli.app import app
+from rosprivacy.cli.app import program
 
 STILL_ENGLISH = {
+    "bag": "what is in recordings",
     "db": "a server",
     "decide": "what was recorded",
     "diff": "what changed; 'report --since' tells it in a language",
@@ -14,6 +15,7 @@ STILL_ENGLISH = {
     "labels": "review lists and label files",
     "load": "counts",
     "mitigate": "proposals; the report tells them in a language",
+    "observe": "what was written",
     "query": "rows of a database, with the heads of the queries",
     "unload": "counts",
     "why-not": "the answer",
@@ -22,7 +24,7 @@ STILL_ENGLISH = {
 
 
 def test_every_command_that_prints_an_answer_takes_a_language_or_is_listed() -> None:
-    commands = get_command(app).commands  # type: ignore[attr-defined]
+    commands = get_command(program()).commands  # type: ignore[attr-defined]
     speak = {name for name, command in commands.items() if any(one.name == "lang" for one in command.params)}
     assert speak == {"analyze", "categories", "graph", "law", "report", "show"}
     assert commands.keys() - speak == STILL_ENGLISH.keys()

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import stat
 import subprocess
 import sys
+import threading
 from textwrap import dedent
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from rosprivacy.ingest.policies.policy_xml import read_policy
+from rosprivacy.ingest.types.types_file import read_types
 from tests.helpers.command import Cli, refused, run
 from tests.helpers.observed import AT, node_info
 
@@ -169,3 +172,144 @@ def test_a_ros2_that_fails_is_a_server_that_cannot_be_reached(robot: Path) -> No
     done = run("observe", "--ros2", cwd=robot, **fake_ros2(robot, "#!/bin/sh\necho 'no rmw' >&2; exit 1\n"))
     assert done.returncode == 3
     assert done.stderr == "ros2 node list --all: failed: no rmw; run it by hand\n"
+
+
+GRANTED = """\
+<policy version="0.2.0">
+  <enclaves>
+    <enclave path="/robot">
+      <profiles>
+        <profile ns="/" node="cam">
+          <topics publish="ALLOW">
+            <topic>/image</topic>
+            <topic>/spare</topic>
+          </topics>
+          <topics publish="DENY">
+            <topic>/im*</topic>
+          </topics>
+          <services reply="ALLOW" request="ALLOW">
+            <service>~/get_parameters</service>
+          </services>
+        </profile>
+      </profiles>
+    </enclave>
+  </enclaves>
+</policy>
+"""
+
+
+def test_no_deny_of_a_policy_overrides_what_was_seen(cli: Cli, robot: Path) -> None:
+    """Rule S16: the flow is there, and both lines are told; the enclaves have different paths, the node is one."""
+    observe(cli, robot)
+    (robot / "granted.policy.xml").write_text(GRANTED, "utf-8")
+    done = cli("analyze", "granted.policy.xml", "robot.policy.xml", "-l", "labels.yaml", "-f", "json", cwd=robot)
+    assert done.returncode == 1, done.stderr
+    document = json.loads(done.stdout)
+    assert [element["name"] for element in document["findings"][0]["witness"]] == ["/cam", "/image", "/up"]
+    line = document["findings"][0]["steps"][0]["policy"][0]
+    assert line["seen"] == {"by": ["text"], "first": AT, "last": AT}
+    said = [one for one in document["diagnostics"] if one.get("code") == "seen-although-denied"]
+    told = f"seen although denied: /cam publish /image, from {AT} to {AT}; granted.policy.xml:11 denies it; "
+    assert [one["message"] for one in said] == [f"{told}see why it runs all the same"]
+    alone = cli("analyze", "granted.policy.xml", "-f", "json", cwd=robot)
+    assert "seen-although-denied" not in alone.stdout
+
+
+def test_a_saved_graph_keeps_what_was_seen_and_its_gaps(cli: Cli, robot: Path) -> None:
+    (robot / "graph.txt").write_text(GRAPH + "/ghost\n", "utf-8")
+    observe(cli, robot)
+    (robot / "granted.policy.xml").write_text(GRANTED, "utf-8")
+    policies = ["granted.policy.xml", "robot.policy.xml"]
+    words = ["-l", "labels.yaml", "-f", "json"]
+    cli("analyze", *policies, *words, "--save-graph", "graph.json", cwd=robot)
+    first = json.loads(cli("analyze", *policies, *words, cwd=robot).stdout)
+    again = json.loads(cli("analyze", "--add", "graph.json", *words, cwd=robot).stdout)
+    assert {"observed", "observation-gap", "seen-although-denied"} <= {one.get("code") for one in again["diagnostics"]}
+    assert again["findings"] == first["findings"]
+    assert again["diagnostics"] == first["diagnostics"]
+
+
+@pytest.mark.parametrize("language", ["en", "de", "fr"])
+def test_every_report_says_from_when_to_when_under_assumed(cli: Cli, robot: Path, language: str) -> None:
+    observe(cli, robot)
+    said = f"observed from {AT} to {AT} by text; what was not seen proves nothing"
+    text = cli("analyze", "robot.policy.xml", "-l", "labels.yaml", "--lang", language, cwd=robot).stdout
+    assert said in text
+    page = cli(
+        "report", "robot.policy.xml", "-l", "labels.yaml", "--lang", language, "-f", "markdown", cwd=robot
+    ).stdout
+    assert page.replace("\\", "").count(said) >= 1
+
+
+def test_sarif_has_a_result_where_only_a_gap_is_left(cli: Cli, robot: Path) -> None:
+    (robot / "graph.txt").write_text(GRAPH + "/ghost\n", "utf-8")
+    (robot / "labels.yaml").write_text(
+        "labels: 1\nnodes:\n  /cam: {source: [Video]}\n  /up: {sanitizer: {Video: drop}}\n  /ghost: {leak: [Video]}\n"
+        "channels:\n  /image: sensitive\n",
+        "utf-8",
+    )
+    observe(cli, robot)
+    done = cli("analyze", "robot.policy.xml", "-l", "labels.yaml", "-f", "sarif", cwd=robot)
+    assert done.returncode == 4
+    assert [one["ruleId"] for one in json.loads(done.stdout)["runs"][0]["results"]] == ["observation-gaps"]
+    text = cli("analyze", "robot.policy.xml", "-l", "labels.yaml", cwd=robot).stdout
+    assert text.startswith("undetermined: no leak reached, but the observation is known to miss something")
+    assert "Next: observe again until no gap is left" in text
+
+
+def test_the_types_come_back_from_the_file_beside_the_policy(cli: Cli, robot: Path) -> None:
+    """The writer is ours, the reader that of ``--types``: who writes and reads which type, and when."""
+    (robot / "graph.txt").write_text(GRAPH + node_info("/old", publishers="/image: sensor_msgs/msg/CompressedImage"))
+    observe(cli, robot)
+    types = read_types(str(robot / "robot.types.yaml"))
+    assert (types.observed.start, types.observed.end, types.observed.by) == (AT, AT, ("text",))
+    seen = {(one.kind, one.name, kind.type, kind.ends) for one in types.channels for kind in one.types}
+    assert seen == {
+        ("topic", "/image", "sensor_msgs/msg/CompressedImage", (("/old",), ())),
+        ("topic", "/image", "sensor_msgs/msg/Image", (("/cam",), ("/up",))),
+        ("service", "/cam/get_parameters", "r/srv/G", (("/cam",), ())),
+    }
+    done = cli("analyze", "robot.policy.xml", "--types", "robot.types.yaml", "-l", "labels.yaml", cwd=robot)
+    assert done.returncode == 1, done.stderr
+
+
+def test_watch_tells_what_comes_and_leaves_and_each_new_finding(robot: Path) -> None:
+    """An alarm at run time: a node that starts and opens a path to a leak is told, and one that leaves is told."""
+    variables = fake_ros2(robot)
+    (robot / "nodes.txt").write_text("/cam\n", "utf-8")
+    (robot / "info_cam.txt").write_text(CAMERA, "utf-8")
+    (robot / "info_up.txt").write_text(GRAPH.removeprefix(CAMERA), "utf-8")
+    words = ["observe", "--ros2", "--watch", "-l", "labels.yaml", "-o", "robot.policy.xml"]
+    watch = subprocess.Popen(
+        [sys.executable, "-u", "-m", "rosprivacy", *words],
+        cwd=robot, env={**os.environ, **variables}, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    assert watch.stdout is not None
+    told: list[str] = []
+
+    def until(what: str) -> str:
+        while what not in "".join(told[-1:]):
+            line = watch.stdout.readline() if watch.stdout else ""
+            assert line, told
+            told.append(line)
+        return told[-1]
+
+    alarm = threading.Timer(90, watch.kill)
+    alarm.start()
+    try:
+        until("+ node /cam")
+        until("not seen yet: labels.yaml:4")
+        (robot / "nodes.txt").write_text("/cam\n/up\n", "utf-8")
+        until("+ /up subscribes to /image (sensor_msgs/msg/Image)")
+        assert "Video: /cam -> /image -> /up" in until("! new finding [")
+        (robot / "nodes.txt").write_text("/cam\n", "utf-8")
+        until("- node /up")
+        watch.send_signal(signal.SIGINT)
+        watch.wait(60)
+    finally:
+        alarm.cancel()
+        watch.kill()
+        watch.communicate()
+    assert watch.returncode == 0
+    assert {grant.node for grant in read_policy(str(robot / "robot.policy.xml")).grants} == {"/cam", "/up"}
+    assert sum("new finding" in line for line in told) == 1

@@ -54,6 +54,7 @@ def decided(home: Path) -> set[int]:
     return {int(str(entry["id"]), 16) for entry in yaml.safe_load((home / "d.yaml").read_text("utf-8"))["findings"]}
 
 
+@pytest.mark.slow  # each day test_two_writers.py shows it, six decisions
 def test_of_two_that_decide_none_is_lost(two: Two, tmp_path: Path, every: int) -> None:
     """Two decisions each time; and two about one finding each time, of which the first stays as history."""
     for number in range(0, 2 * RACES, 2 * every):

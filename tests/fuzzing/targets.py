@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import rosprivacy
 from rosprivacy.analysis import durations
 from rosprivacy.analysis.errors import InputError
+from rosprivacy.ingest.bags.bag_folders import read_bags
 from rosprivacy.ingest.decisions.decisions_file import read_decisions
 from rosprivacy.ingest.fleet.fleet_file import read_fleet
 from rosprivacy.ingest.labels.label_file import read_labels
@@ -27,7 +28,7 @@ from rosprivacy.queries.library import parse
 from rosprivacy.report.compare.earlier import read_earlier
 from rosprivacy.report.json_text import as_text
 from rosprivacy.spark import parquet
-from tests.fuzzing import label_texts, other_texts, policy_texts
+from tests.fuzzing import bag_texts, label_texts, other_texts, policy_texts
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
@@ -101,6 +102,13 @@ def _since() -> Result:
     return _base()
 
 
+def _bags() -> None:
+    """The folder, and each of its files alone; what one of them is refused for, the whole command is."""
+    for bag in read_bags(["bag", "bag/bag_0.mcap", "bag/bag_0.db3"]):
+        assert all(one.isprintable() for one in (*bag.gaps, *bag.beside, *bag.notes)), bag
+        assert bag.messages is None or bag.complete
+
+
 def _results() -> None:
     document, rows = parquet.read("results")
     list(rows)
@@ -144,7 +152,7 @@ TARGETS = {target.name: target for target in (
         ("analyze", "policy.xml", "-l", "star.yaml"), "policy",
     ),
     Target(
-        "labels", 241, label_texts.labels, lambda: read_labels("labels.yaml", load()),
+        "labels", 211, label_texts.labels, lambda: read_labels("labels.yaml", load()),
         lambda: rosprivacy.analyze("base.xml", "labels.yaml", today=TODAY, paths="all"),
         ("analyze", "base.xml", "-l", "labels.yaml"),
     ),
@@ -183,5 +191,9 @@ TARGETS = {target.name: target for target in (
     Target("parquet", 3, other_texts.parquet, _results, words=""),
     Target("query", 25, other_texts.query, lambda: parse("asked", Path("asked.cypher").read_text("utf-8", "replace"))),
     Target("duration", 25, other_texts.duration, _duration, words=""),
+    Target(
+        "bag", 30, bag_texts.bag, _bags, lambda: rosprivacy.analyze("base.xml", "bag.yaml", today=TODAY),
+        ("bag", "bag", "bag/bag_0.mcap", "bag/bag_0.db3", "-l", "base.yaml"),
+    ),
     Target("names", 25, other_texts.names, _names, words=""),
 )}  # fmt: skip

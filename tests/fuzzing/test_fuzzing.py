@@ -198,13 +198,14 @@ def test_a_record_adds_up() -> None:
 
 
 @pytest.mark.slow
-def test_a_bounded_exploration_finds_nothing(tmp_path: Path) -> None:
+def test_a_bounded_exploration_finds_nothing(tmp_path: Path, thorough: bool) -> None:  # noqa: FBT001 - a fixture
     """The same inputs in every run of the same code: seed and number are given."""
     pytest.importorskip("atheris", reason="no atheris: pip install '.[fuzz]'")
-    command = [sys.executable, "-m", "tests.fuzzing", "run", "--inputs", "20000", "--whole", "40"]
+    inputs, whole = (20_000, 40) if thorough else (5_000, 20)
+    command = [sys.executable, "-m", "tests.fuzzing", "run", "--inputs", str(inputs), "--whole", str(whole)]
     done = subprocess.run([*command, "--folder", tmp_path], cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     told = json.loads((tmp_path / "record.json").read_text("utf-8"))
-    assert told["totals"]["inputs"] >= 19_900
-    assert told["totals"]["whole"] >= 30
+    assert told["totals"]["inputs"] >= 0.99 * inputs
+    assert told["totals"]["whole"] >= 0.75 * whole
     assert all(counts["coverage"] for counts in told["targets"].values())

@@ -37,6 +37,11 @@ def read(folder: Path, text: str) -> Vocabulary:
     return replace(load(folder / "cache", [str(file)]), sources=())  # the file's hash differs
 
 
+@pytest.fixture(scope="module")
+def old(tmp_path_factory: pytest.TempPathFactory) -> Vocabulary:
+    return read(tmp_path_factory.mktemp("old"), MINE.format(STORED, "rp:Health"))
+
+
 @pytest.mark.parametrize(
     "parent",
     [
@@ -45,9 +50,9 @@ def read(folder: Path, text: str) -> Vocabulary:
     ],
 )  # fmt: skip
 @pytest.mark.parametrize("namespace", [STORED, PUBLISHED])
-def test_an_ontology_of_users_says_the_same_with_either(tmp_path: Path, namespace: str, parent: str) -> None:
-    (tmp_path / "old").mkdir()
-    old = read(tmp_path / "old", MINE.format(STORED, "rp:Health"))
+def test_an_ontology_of_users_says_the_same_with_either(
+    old: Vocabulary, tmp_path: Path, namespace: str, parent: str
+) -> None:
     assert old.categories["PulseCurve"].article9 == "always"
     assert old.categories["PulseCurve"].broader == ("Health",)
     assert read(tmp_path, MINE.format(namespace, parent)) == old

@@ -414,6 +414,7 @@ class TestElements:
     def test_what_there_is(self, kind: str, notations: set[str]) -> None:
         assert set(self.of_type(kind)) == notations
 
+    @pytest.mark.slow
     def test_processing_is_processing_in_dpv(self, dpv_terms: Graph) -> None:
         for term in ontology().objects(None, RP.processing):
             assert (term, RDF.type, URIRef("https://w3id.org/dpv#Processing")) in dpv_terms

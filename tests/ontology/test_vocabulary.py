@@ -32,6 +32,7 @@ def test_the_shipped_categories() -> None:
     assert len({c.label for c in found.categories.values()}) == len(found.categories)
 
 
+@pytest.mark.slow
 def test_every_foreign_iri_is_one_of_dpv(corpus: Path) -> None:
     """DPV 2.3; the files stay where they are."""
     dpv = Graph()

@@ -345,7 +345,7 @@ def test_without_the_extra_three_ways_are_named(call: str, nowhere: Path) -> Non
         done = rosprivacy("db", "start", before=BLOCKED)
     else:
         asks = "import rosprivacy.cli.app as cli, rosprivacy.private_neo4j.connection as d\n"
-        asks += "cli.app = lambda: d.connection(None)\n"
+        asks += "cli.program = lambda _: lambda: d.connection(None)\n"
         done = rosprivacy(before=BLOCKED + asks)
     assert done.returncode == 3, done.stderr
     assert done.stdout == ""

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import ast
 import json
+import tracemalloc
 from typing import TYPE_CHECKING
 
 import pytest
 
-from rosprivacy.report.json_text import as_text
+from rosprivacy.report.json_text import as_text, in_pieces
 from tests.helpers.command import Cli, cli
 from tests.helpers.house import ROOMS, parsed
 from tests.helpers.paths import ROOT
@@ -38,6 +39,17 @@ def test_the_value_stays_and_the_text_is_printable() -> None:
     assert json.loads(text) == value
     assert text.replace("\n", "").isprintable()
     assert "é 人 😀" in text  # letters are for people
+
+
+def test_a_large_document_is_not_in_memory_as_text() -> None:
+    """At e6bf35d the text was there three times, and each of its tokens by itself."""
+    value = [{"name": f"/camera{number}", "steps": [number, "é"]} for number in range(30_000)]
+    tracemalloc.start()
+    size = sum(map(len, in_pieces(value)))
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert size == len(as_text(value)) > 2_000_000
+    assert most < size / 4
 
 
 @pytest.mark.parametrize(

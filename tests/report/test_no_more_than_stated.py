@@ -225,7 +225,7 @@ def test_no_row_says_more_than_the_files_state(said: Said) -> None:
 
 @pytest.mark.slow
 @given(stated())
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=settings().max_examples * 2, deadline=None)
 def test_more_of_them(said: Said) -> None:
     check(said)
 

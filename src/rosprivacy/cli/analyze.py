@@ -130,7 +130,7 @@ def analyze(
     verbose: Annotated[bool, typer.Option("--verbose", "-v", help="Print every open element and notice.")] = False,
 ) -> None:
     """Find where each kind of personal data can get from its sources, and whether it reaches a leak."""
-    from rosprivacy.formats import Style, written
+    from rosprivacy.formats import Style, in_pieces
 
     settings = replace(
         inputs.settings,
@@ -163,7 +163,7 @@ def analyze(
     else:
         result = inputs.result(settings)
     graphs = {save_graph: _saved_graph(result)} if save_graph else {}
-    emit(written(result, format.value, style), output, graphs)
+    emit(in_pieces(result, format.value, style), output, graphs)
     raise typer.Exit(exit_code(result, fail_on))
 
 

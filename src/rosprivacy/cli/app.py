@@ -8,65 +8,63 @@ from __future__ import annotations
 
 import sys
 from contextlib import suppress
+from functools import cache
+from importlib import import_module
 from typing import Annotated, NoReturn
 
 import typer
 
 from rosprivacy.analysis.errors import RosPrivacyError
 from rosprivacy.analysis.files_read import one_run
-from rosprivacy.cli import (
-    analyze,
-    bag,
-    categories,
-    db,
-    decide,
-    diff,
-    fleet,
-    graph,
-    labels,
-    law,
-    load,
-    mitigate,
-    observe,
-    query,
-    report,
-    show,
-    unload,
-    why_not,
-)
 from rosprivacy.cli.exit_code import OWN_ERROR
 from rosprivacy.cli.help import ANALYSE, DECIDE, LABEL, MANY, OBSERVE, SEE, Group
 from rosprivacy.version import __version__
 
-app = typer.Typer(
-    name="rosprivacy",
-    help="Where personal data can go in a ROS 2 system, per kind of data.",
-    cls=Group,
-    no_args_is_help=True,
-    pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
-)
-app.command(rich_help_panel=OBSERVE)(observe.observe)
-app.command(rich_help_panel=LABEL)(labels.labels)
-app.command(rich_help_panel=LABEL)(categories.categories)
-app.command(rich_help_panel=LABEL)(law.law)
-app.command(rich_help_panel=ANALYSE)(analyze.analyze)
-app.command(rich_help_panel=ANALYSE)(show.show)
-app.command("why-not", rich_help_panel=ANALYSE)(why_not.why_not)
-app.command(rich_help_panel=ANALYSE)(diff.diff)
-app.command(rich_help_panel=ANALYSE)(bag.bag)
-app.command(rich_help_panel=SEE)(report.report)
-app.command(rich_help_panel=SEE)(graph.graph)
-app.command(rich_help_panel=DECIDE)(decide.decide)
-app.command(rich_help_panel=DECIDE)(mitigate.mitigate)
-app.command(rich_help_panel=MANY)(fleet.fleet)
-app.command(rich_help_panel=MANY)(load.load)
-app.command(rich_help_panel=MANY)(unload.unload)
-app.command(rich_help_panel=MANY)(query.query)
-app.add_typer(db.app, name="db", help="The private Neo4j: start it, stop it, see where it is.", rich_help_panel=MANY)
+COMMANDS = {  # name -> its group in help; each stands in the module of its name
+    "observe": OBSERVE,
+    "labels": LABEL,
+    "categories": LABEL,
+    "law": LABEL,
+    "analyze": ANALYSE,
+    "show": ANALYSE,
+    "why-not": ANALYSE,
+    "diff": ANALYSE,
+    "bag": ANALYSE,
+    "report": SEE,
+    "graph": SEE,
+    "decide": DECIDE,
+    "mitigate": DECIDE,
+    "fleet": MANY,
+    "load": MANY,
+    "unload": MANY,
+    "query": MANY,
+    "db": MANY,
+}
 
 
-@app.callback(invoke_without_command=True)
+@cache
+def program(only: str = "") -> typer.Typer:
+    """Return the command line; with one of its commands where that is named, since the others need not be imported."""
+    app = typer.Typer(
+        name="rosprivacy",
+        help="Where personal data can go in a ROS 2 system, per kind of data.",
+        cls=Group,
+        no_args_is_help=True,
+        pretty_exceptions_enable=False,
+        context_settings={"help_option_names": ["-h", "--help"]},
+    )
+    app.callback(invoke_without_command=True)(root)
+    for name, panel in COMMANDS.items():
+        if only in ("", name):
+            module = import_module(f"rosprivacy.cli.{name.replace('-', '_')}")
+            if name == "db":
+                what = "The private Neo4j: start it, stop it, see where it is."
+                app.add_typer(module.app, name=name, help=what, rich_help_panel=panel)
+            else:
+                app.command(name, rich_help_panel=panel)(getattr(module, name.replace("-", "_")))
+    return app
+
+
 def root(
     version: Annotated[bool, typer.Option("--version", help="Print the version.")] = False,
 ) -> None:
@@ -81,9 +79,10 @@ def main() -> None:
 
     An error of our own is no finding: Python would end with 1, which says 'leak'.
     """
+    named = "".join(sys.argv[1:2])
     with one_run():
         try:
-            app()
+            program(named if named in COMMANDS else "")()
         except RosPrivacyError as error:
             _end(str(error), error.exit_code)
         except Exception as error:  # noqa: BLE001 - whatever it is, it is an error of our own

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import sys
 from enum import StrEnum
-from typing import TYPE_CHECKING, Annotated, Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
-from rosprivacy.cli.inputs import Inputs, reads_system
+from rosprivacy.analysis.errors import shown
+from rosprivacy.cli.exit_code import UNDETERMINED
+from rosprivacy.cli.inputs import Inputs, reads_system, refuse
 from rosprivacy.cli.options import READ, Output
 from rosprivacy.cli.output import emit
 
@@ -30,6 +34,13 @@ class FailOnChange(StrEnum):
     worse = "worse"
     any = "any"
     never = "never"
+
+
+class As(StrEnum):
+    """What the two are compared as."""
+
+    states = "states"
+    usage = "usage"
 
 
 State = "a policy, a folder of them, a fleet file, a saved analysis or a saved graph."
@@ -56,11 +67,29 @@ def diff(
     fail_on: Annotated[
         FailOnChange, typer.Option(help="Exit with 1 on a finding that is new or worse, or on any difference.")
     ] = FailOnChange.worse,
+    compared_as: Annotated[
+        As,
+        typer.Option("--as", help="Two states; or usage: OLD is what is granted, NEW what `observe` saw in use."),
+    ] = As.states,
+    patch: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            show_default=False,
+            help="With --as usage: write what was never seen in use, set to DENY, as a unified diff.",
+        ),
+    ] = None,
 ) -> None:
     """Compare two states: grants, elements and findings that are new, gone or changed.
 
-    Nodes whose names change at every start (a process id, an address) are matched without these.
+    Nodes whose names change at every start (a process id, an address) are matched without these. With --as usage it
+    ends with 1 if something runs that is not granted, and with 4 if nothing such was seen but the observation has gaps.
     """
+    if compared_as is As.usage:
+        refuse("diff --as usage", "policies alone", inputs.given("labels"))
+        _usage(old, new, inputs, format, output, patch)
+    if patch:
+        raise typer.BadParameter("--patch is for --as usage")
     from rosprivacy.report.compare.difference import difference, differs
 
     settings, given = inputs.settings, tuple(inputs.labels or ())
@@ -69,6 +98,27 @@ def diff(
     emit(_text(document, format), output)
     failed = document["worse"] if fail_on is FailOnChange.worse else differs(document)
     raise typer.Exit(1 if failed and fail_on is not FailOnChange.never else 0)
+
+
+def _usage(
+    granted: str, observed: str, inputs: Inputs, form: DiffFormat, output: Path | None, patch: Path | None
+) -> NoReturn:
+    """What is granted against what was seen in use."""
+    from rosprivacy.report.compare.usage_lines import usage_lines, usage_markdown
+    from rosprivacy.report.json_text import as_text
+    from rosprivacy.usage import usage_document
+
+    saved = (_kind(granted) == "graph", _kind(observed) == "graph")
+    document = usage_document(granted, observed, inputs.settings, saved=saved)
+    texts = {
+        DiffFormat.json: lambda: as_text(document),
+        DiffFormat.markdown: lambda: usage_markdown(document),
+        DiffFormat.text: lambda: "".join(f"{line}\n" for line in usage_lines(document)),
+    }
+    emit(texts[form](), output, {patch: document["patch"] or None} if patch else {})
+    if patch and not document["patch"]:
+        print(f"{shown(str(patch))}: left as it is: there is no patch; the answer says why", file=sys.stderr)
+    raise typer.Exit(1 if document["not_granted"] else UNDETERMINED if document["gaps"] else 0)
 
 
 def _text(document: dict[str, Any], form: DiffFormat) -> str:
@@ -107,8 +157,6 @@ def _snapshot(state: str, labels: tuple[str, ...], settings: Settings) -> Snapsh
 
 def _kind(state: str) -> str:
     """What a file is, by how it begins; folders and globs hold policies."""
-    from pathlib import Path
-
     try:
         path = Path(state)
         head = path.read_bytes()[:4096] if path.is_file() else b""

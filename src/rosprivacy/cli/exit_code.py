@@ -15,10 +15,12 @@ if TYPE_CHECKING:
 
 CODES = {
     0: "no leak found; of other commands: done",
-    1: "what the command exists to find: a leak; for `bag` personal data; for `diff` a finding that is new or worse",
+    1: "what the command exists to find: a leak; for `bag` personal data; for `diff` a finding that is new or worse, "
+    "with `--as usage` something that runs and is not granted",
     2: "bad input or usage",
-    3: "a server (database, Spark) cannot be reached",
-    4: "`analyze` and `bag`: undetermined; `--fail-on leak` makes it 0, but never where no data was followed",
+    3: "a server (database, middleware, Spark) cannot be reached",
+    4: "`analyze` and `bag`: undetermined; `--fail-on leak` makes it 0, but never where no data was followed; "
+    "`observe`: nothing was seen; `diff --as usage`: the observation has gaps",
     70: "an error of the program itself: no answer; the message says which file to send",
 }
 LEAK, UNDETERMINED, OWN_ERROR = 1, 4, 70

@@ -54,6 +54,55 @@ def observe(
         bool,
         typer.Option("--ros2", help="Run `ros2 node list` and `ros2 node info` here.", rich_help_panel=THROUGH),
     ] = False,
+    dds: Annotated[
+        bool, typer.Option("--dds", help="Join the DDS domain as a reader of discovery.", rich_help_panel=THROUGH)
+    ] = False,
+    zenoh: Annotated[
+        bool, typer.Option("--zenoh", help="Ask a Zenoh router for the tokens of ROS.", rich_help_panel=THROUGH)
+    ] = False,
+    domain: Annotated[
+        int,
+        typer.Option(
+            metavar="N", min=0, max=232, envvar="ROS_DOMAIN_ID", help="The ROS domain.", rich_help_panel=THROUGH
+        ),
+    ] = 0,
+    peer: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="HOST",
+            show_default=False,
+            help="With --dds: ask this host too, where there is no multicast; may be repeated.",
+            rich_help_panel=THROUGH,
+        ),
+    ] = None,
+    interface: Annotated[
+        str,
+        typer.Option(
+            metavar="NAME",
+            show_default=False,
+            help="With --dds: the network to look at; lo is this computer only.",
+            rich_help_panel=THROUGH,
+        ),
+    ] = "",
+    router: Annotated[
+        str,
+        typer.Option(
+            metavar="ENDPOINT",
+            show_default=False,
+            help="With --zenoh: where the router is; by default tcp/localhost:7447.",
+            rich_help_panel=THROUGH,
+        ),
+    ] = "",
+    session_file: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            show_default=False,
+            envvar="ZENOH_SESSION_CONFIG_URI",
+            help="With --zenoh: your own session file (JSON5), such as one with TLS.",
+            rich_help_panel=THROUGH,
+        ),
+    ] = None,
     duration: Annotated[
         str, typer.Option("--for", metavar="DURATION", help="How long to look, such as 30s, 10m or 1h.")
     ] = SHORTEST,
@@ -80,8 +129,14 @@ def observe(
     from rosprivacy.observing import seconds_of
 
     doors = _doors(text, at, ros2=ros2)
+    if (router and not zenoh) or ((peer or interface) and not dds):
+        raise typer.BadParameter("--router is for --zenoh; --peer and --interface are for --dds")
+    if zenoh:
+        doors.append(_zenoh_door(domain, router, session_file))
+    if dds:
+        doors.append(_dds_door(domain, tuple(peer or ()), interface))
     if not doors:
-        raise typer.BadParameter("name a door: --text FILE or --ros2")
+        raise typer.BadParameter("name a door: --text FILE, --ros2, --zenoh or --dds")
     if watch and (text or len(doors) > 1):
         raise typer.BadParameter("--watch looks through one door to a running system: no --text, and no second door")
     told = _watching(inputs) if watch else lambda *_: None
@@ -102,6 +157,20 @@ def _doors(text: list[str] | None, at: str | None, *, ros2: bool) -> list[Door]:
     return doors
 
 
+def _zenoh_door(domain: int, router: str, session_file: Path | None) -> Door:
+    from rosprivacy.ingest.observe.zenoh_door import ZenohDoor
+    from rosprivacy.observing import now
+
+    return ZenohDoor(now, domain, router, session_file)
+
+
+def _dds_door(domain: int, peers: tuple[str, ...], interface: str) -> Door:
+    from rosprivacy.ingest.observe.dds_door import DdsDoor
+    from rosprivacy.observing import now
+
+    return DdsDoor(now, domain, peers, interface)
+
+
 def _watching(inputs: Inputs) -> Callable[[Observation | None, Observation], None]:
     from rosprivacy.watching import Watch
 
@@ -116,7 +185,7 @@ def _watching(inputs: Inputs) -> Callable[[Observation | None, Observation], Non
 
 def _write(seen: Observation | None, output: Path | None) -> None:
     """The policy and the types, both or none; what there is to say goes to standard error."""
-    from rosprivacy.observing import types_file, written
+    from rosprivacy.observing import declared_file, types_file, written
 
     made = written(seen) if seen else None
     if made is None:
@@ -125,10 +194,13 @@ def _write(seen: Observation | None, output: Path | None) -> None:
         said = "nothing was seen, so nothing is written: nothing runs, it was too short a look, or you may not look"
         print(said, file=sys.stderr)
         raise typer.Exit(UNDETERMINED)
-    emit(made.policy, output, {types_file(output): made.types} if output else {})
+    beside = {types_file(output): made.types} if output else {}
+    if output and made.declared:
+        beside[declared_file(output)] = made.declared
+    emit(made.policy, output, beside)
     for remark in made.remarks:
         print(remark, file=sys.stderr)
     if output:
-        print(f"written: {shown(str(output))} and {shown(str(types_file(output)))}", file=sys.stderr)
+        print(f"written: {' and '.join(shown(str(file)) for file in (output, *beside))}", file=sys.stderr)
     else:
         print("types are written only beside a policy that is written to a file (-o)", file=sys.stderr)

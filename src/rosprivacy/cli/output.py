@@ -8,16 +8,19 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError
 from rosprivacy.cli.exit_code import SIGPIPE
+from rosprivacy.terminal_width import terminal_width
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
     from pathlib import Path
 
     from rich.console import Console
 
+    from rosprivacy.report.atomic import Text
+
 
 def emit(
-    text: str | bytes,
+    text: Text,
     output: Path | None,
     others: Mapping[Path, str | None] | None = None,
     *,
@@ -35,12 +38,11 @@ def emit(
         _print(text)
 
 
-def _print(text: str | bytes) -> None:
+def _print(text: Text) -> None:
     if sys.stdout is None:  # `>&-`
         raise InputError("standard output", 0, "is closed", "open it, or name a file with --output")
     try:
-        data = text.encode(_encoding(text), "backslashreplace") if isinstance(text, str) else text
-        sys.stdout.buffer.write(data)
+        sys.stdout.buffer.writelines(_encoded(text))
         sys.stdout.flush()
     except BrokenPipeError:  # `| head`: end as a program does that knows nothing of pipes, not with a verdict
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -49,6 +51,13 @@ def _print(text: str | bytes) -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         hint = "free space, or write elsewhere"
         raise InputError("standard output", 0, f"cannot be written: {error.strerror}", hint) from None
+
+
+def _encoded(text: Text) -> Iterator[bytes]:
+    encoding = ""
+    for piece in (text,) if isinstance(text, str | bytes) else text:
+        encoding = encoding or (_encoding(piece) if isinstance(piece, str) else "")
+        yield piece.encode(encoding, "backslashreplace") if isinstance(piece, str) else piece
 
 
 def _encoding(text: str) -> str:
@@ -62,14 +71,6 @@ def not_for_a_terminal(what: str, output: Path | None) -> None:
         raise InputError("standard output", 0, f"{what} is not for a terminal", "name a file with --output, or pipe it")
 
 
-def terminal_width() -> int | None:
-    """Return how wide the terminal is; None where standard output is none."""
-    from rich.console import Console
-
-    console = Console()
-    return console.width if console.is_terminal else None
-
-
 def on_console(write: Callable[[Console], None], *, colour: bool) -> str:
     """Return what is written to a rich console, with colours if standard output is a terminal."""
     from io import StringIO
@@ -77,7 +78,7 @@ def on_console(write: Callable[[Console], None], *, colour: bool) -> str:
     from rich.console import Console
 
     text = StringIO()
-    write(Console(file=text, force_terminal=colour and Console().is_terminal, highlight=False, emoji=False))
+    write(Console(file=text, force_terminal=colour and terminal_width() is not None, highlight=False, emoji=False))
     return text.getvalue()
 
 

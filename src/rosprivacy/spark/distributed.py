@@ -21,7 +21,7 @@ from rosprivacy.analysis.findings.grounds import grounds
 from rosprivacy.analysis.fleet.counts import Counts, counted
 from rosprivacy.analysis.fleet.patterns import different
 from rosprivacy.analysis.fleet.source_leak_pairs import forms
-from rosprivacy.analysis.kernel.arrays import GraphArrays
+from rosprivacy.analysis.kernel.arrays import GraphArrays, of_elements
 from rosprivacy.analysis.kernel.spreading import emitted, fill, meaning
 from rosprivacy.analysis.model import unread
 from rosprivacy.analysis.non_ros import on_day
@@ -247,7 +247,7 @@ class _Run:
                 arrived |= bits
             self._needed |= set(first_of(brought for _, brought in answers).values())
             if np.array_equal(before, arrived):
-                fill(ours, arrives, leaves)
+                fill(ours, of_elements(ours, arrives), of_elements(ours, leaves))
                 return leaving
 
     def _put_together(

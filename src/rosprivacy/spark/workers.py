@@ -16,6 +16,7 @@ from rosprivacy.analysis.findings.concerns import concerns
 from rosprivacy.analysis.findings.grounds import Grounds, grounds
 from rosprivacy.analysis.findings.open_questions import open_bits
 from rosprivacy.analysis.fleet.counts import Counts, counted
+from rosprivacy.analysis.kernel.arrays import of_elements
 from rosprivacy.analysis.kernel.spreading import fill, meaning
 from rosprivacy.analysis.non_ros import on_day, unanswered
 from rosprivacy.analysis.parts.border import Bringer, PartNetwork
@@ -216,7 +217,7 @@ class Asked:
 def filled(part: Ready, leaving: Bits) -> Spread:
     """Return the spread of a part at the fixpoint, right for all but the border."""
     found, cut = _known(part)
-    fill(found, *cut.carried(leaving))
+    fill(found, *(of_elements(found, rows) for rows in cut.carried(leaving)))
     return found
 
 

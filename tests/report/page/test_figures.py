@@ -5,9 +5,11 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Any
 
+import pytest
 from lxml import etree
 from lxml import html as lxml_html
 
+from rosprivacy.analysis.errors import DrawingError
 from rosprivacy.report.finding_order import in_order
 from rosprivacy.report.page import figures as module
 from rosprivacy.report.page import inline
@@ -29,8 +31,6 @@ from tests.helpers.pictures import hostile
 from tests.helpers.reports import care
 
 if TYPE_CHECKING:
-    import pytest
-
     from rosprivacy.analysis.answer import Analysis
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -96,6 +96,16 @@ def test_what_is_not_whole_says_so_and_how_to_get_the_rest() -> None:
     assert "Only the shorter paths are drawn" in page
     assert f"rosprivacy graph … --finding {told.entries[0].id}" in page
     assert "Only the shorter paths" not in html(told, Figures({told.entries[0].id: one}))
+
+
+def test_the_time_that_a_picture_takes_decides_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Rule S14: what takes too long is an error, no smaller picture and no missing one."""
+    monkeypatch.setattr(inline, "SECONDS", 1e-9)
+    found = care_home().analysis
+    with pytest.raises(
+        DrawingError, match=r"^graph: a picture takes more than 1e-09 seconds; try again .*--format markdown$"
+    ):
+        picture_of(found, found.findings[0])
 
 
 def test_hostile_names_stay_text() -> None:

@@ -16,7 +16,7 @@ from rich.console import Console
 
 import rosprivacy
 from rosprivacy.report.finding_order import in_order
-from rosprivacy.report.terminal.analysis import print_report, verdict_line
+from rosprivacy.report.terminal.analysis import print_report, report_text, verdict_line
 from rosprivacy.report.terminal.finding_lines import details, law_lines
 from rosprivacy.report.terminal.wrapped import wrapped
 from tests.helpers.paths import ROOT
@@ -64,6 +64,14 @@ def test_the_report_is_the_golden_one(name: str, width: int) -> None:
 @pytest.mark.parametrize("width", WIDTHS)
 def test_turtlebot3_is_the_golden_one(corpus: Path, width: int) -> None:
     assert printed(turtlebot3(corpus), width) == (GOLDEN / f"turtlebot3-{width}.txt").read_text("utf-8")
+
+
+@pytest.mark.parametrize("options", ["", "verbose", "quiet"])
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_a_file_gets_what_a_console_that_is_no_terminal_prints(name: str, options: str) -> None:
+    report = document(name)
+    how: dict[str, Any] = {options: True} if options else {}
+    assert report_text(report, **how) == printed(report, None, **how)
 
 
 @pytest.mark.parametrize("name", SYSTEMS)

@@ -1,0 +1,166 @@
+"""The liveliness tokens behind a Zenoh router, looked at by a client that declares nothing of ROS.
+
+In: where the router is, or the user's own session file (with TLS). Out: observations, as tokens come and go.
+"""
+
+from __future__ import annotations
+
+import json
+import time
+from collections import deque
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.errors import MiddlewareError, ObservationError, shown
+from rosprivacy.ingest.observe.declared import DDS_TYPE, Declared, declared
+from rosprivacy.ingest.observe.zenoh_tokens import DOOR, observation, tokens_of
+from rosprivacy.ingest.policies.observed_metadata import STILL_CHANGING
+from rosprivacy.ingest.reading.bounded_file import read_regular
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+
+    from rosprivacy.ingest.observe.observation import Observation
+
+ROUTER = "tcp/localhost:7447"
+"""Where the sessions of rmw_zenoh look for theirs."""
+SETTLED = 1.0
+"""What came within so many seconds of the end makes the look one that still changed."""
+QUIET = 0.25
+POLL = 0.05
+LONGEST = 2**20
+"""Bytes of a session file."""
+MISSING = "pip install 'rosprivacy[zenoh]', or give the output of `ros2 node info` (--text)"
+
+
+@dataclass(frozen=True, slots=True)
+class ZenohDoor:
+    """A router to look behind.
+
+    Attributes
+    ----------
+    clock
+        Tells the time, as observations hold it.
+    domain
+        The ROS domain id.
+    endpoint
+        Of the router, such as ``tcp/127.0.0.1:7447``; empty: as the session file says, or rmw_zenoh's own.
+    session_file
+        The user's own, in JSON5, such as one with TLS.
+    """
+
+    clock: Callable[[], str]
+    domain: int
+    endpoint: str = ""
+    session_file: Path | None = None
+
+    def looks(self, seconds: float | None) -> Iterator[Observation]:
+        """Tell what is there, each time that it has changed and been quiet for a moment.
+
+        Raises
+        ------
+        MiddlewareError
+            If there is no router, or the session file is not accepted.
+        ObservationError
+            If the package that asks is not installed.
+        """
+        try:
+            import zenoh
+        except ImportError as error:
+            raise ObservationError(
+                f"--{DOOR}", 0, f"the package eclipse-zenoh is not there ({error})", MISSING
+            ) from error
+        changes: deque[tuple[bool, str]] = deque()
+        messages: deque[tuple[str, bytes]] = deque()
+        with _opened(zenoh, self._configured(zenoh), self.endpoint) as session:
+            since, end = self.clock(), None if seconds is None else time.monotonic() + seconds
+            watched = session.liveliness().declare_subscriber(
+                tokens_of(self.domain),
+                lambda sample: changes.append((sample.kind == zenoh.SampleKind.PUT, str(sample.key_expr))),
+                history=True,
+            )
+            heard = _declarations(session, self.domain, messages)
+            changed, told = time.monotonic(), True
+            tokens: dict[str, str] = {}
+            said: set[Declared] = set()
+            while end is None or time.monotonic() < end:
+                if changes or messages:
+                    _take(changes, tokens, self.clock())
+                    said |= set(_read(messages, self.domain))
+                    changed, told = time.monotonic(), False
+                elif not told and time.monotonic() - changed > QUIET:
+                    told = True
+                    yield observation(tokens, since, self.clock(), self.domain, said)
+                time.sleep(POLL)
+            heard.undeclare()
+            watched.undeclare()
+            last = observation(tokens, since, self.clock(), self.domain, said)
+            late = tokens and time.monotonic() - changed < SETTLED
+            yield replace(last, gaps={**last.gaps, STILL_CHANGING: 1}) if late else last
+
+    def _configured(self, zenoh: Any) -> Any:
+        """The user's own file, or a client of one router; we listen nowhere and ask nobody else."""
+        settings = zenoh.Config() if self.session_file is None else _of_file(zenoh, str(self.session_file))
+        settings.insert_json5("mode", json.dumps("client"))
+        settings.insert_json5("listen/endpoints", "[]")
+        if self.endpoint or self.session_file is None:
+            settings.insert_json5("connect/endpoints", json.dumps([self.endpoint or ROUTER]))
+            settings.insert_json5("scouting/multicast/enabled", "false")
+        return settings
+
+
+def _take(changes: deque[tuple[bool, str]], tokens: dict[str, str], now: str) -> None:
+    while changes:
+        came, key = changes.popleft()
+        if came:
+            tokens.setdefault(key, now)
+        else:
+            tokens.pop(key, None)
+
+
+def _declarations(session: Any, domain: int, messages: deque[tuple[str, bytes]]) -> Any:
+    """Hear what nodes declare of themselves, and what they declared before: no other message is read."""
+    from zenoh.ext import HistoryConfig, declare_advanced_subscriber
+
+    return declare_advanced_subscriber(
+        session,
+        f"{domain}/**/{DDS_TYPE}/*",
+        lambda sample: messages.append((str(sample.key_expr), sample.payload.to_bytes())),
+        history=HistoryConfig(detect_late_publishers=True),
+    )
+
+
+def _read(messages: deque[tuple[str, bytes]], domain: int) -> Iterator[Declared]:
+    """What is no declaration is left out; that nothing was heard on its topic is told then."""
+    while messages:
+        key, payload = messages.popleft()
+        topic = "/" + key.removeprefix(f"{domain}/").rpartition("/")[0].removesuffix(f"/{DDS_TYPE}")
+        with suppress(ValueError):
+            yield declared(topic, payload)
+
+
+def _of_file(zenoh: Any, file: str) -> Any:
+    def fail(line: int, problem: str, hint: str) -> ObservationError:
+        return ObservationError(file, line, problem, hint)
+
+    text = read_regular(file, LONGEST, fail).decode(errors="replace")
+    try:
+        return zenoh.Config.from_json5(text)
+    except zenoh.ZError as error:
+        raise fail(0, f"Zenoh does not accept it: {_why(error)}", "give a session file of Zenoh, in JSON5") from error
+
+
+def _why(error: Exception) -> str:
+    """In one line, without the place in Zenoh's own source."""
+    return shown(str(error).partition(" at /")[0].strip())
+
+
+def _opened(zenoh: Any, settings: Any, endpoint: str) -> Any:
+    try:
+        return zenoh.open(settings)
+    except zenoh.ZError as error:
+        where = f"at {shown(endpoint or ROUTER)}"
+        hint = "start it (ros2 run rmw_zenoh_cpp rmw_zenohd), or say where it is (--router tcp/HOST:7447)"
+        raise MiddlewareError(f"no Zenoh router answers {where}: {_why(error)}; {hint}") from error

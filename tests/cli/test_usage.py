@@ -1,0 +1,143 @@
+"""``rosprivacy diff granted observed --as usage``: policy against reality (rules S5, S6, S16)."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.helpers.command import Cli, refused
+from tests.helpers.observed import AT, node_info
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+GRANTED = """\
+<policy version="0.2.0">
+  <enclaves>
+    <enclave path="/robot">
+      <profiles>
+        <profile ns="/" node="cam">
+          <topics publish="ALLOW">
+            <topic>/image</topic>
+            <topic>/spare</topic>
+            <topic>/shared</topic>
+            <topic>/debug/*</topic>
+          </topics>
+          <actions call="ALLOW">
+            <action>/spin</action>
+          </actions>
+        </profile>
+        <profile ns="/" node="up">
+          <topics subscribe="ALLOW">
+            <topic>/image</topic>
+          </topics>
+        </profile>
+        <profile ns="/" node="sleeper">
+          <topics publish="ALLOW">
+            <topic>/shared</topic>
+          </topics>
+        </profile>
+      </profiles>
+    </enclave>
+  </enclaves>
+</policy>
+"""
+RUNS = node_info("/cam", publishers="/image: s/msg/I; /debug/a: s/msg/D", action_clients="/spin: t/action/Spin")
+READS = node_info("/up", subscribers="/image: s/msg/I")
+
+
+@pytest.fixture
+def robot(tmp_path: Path) -> Path:
+    (tmp_path / "granted.xml").write_text(GRANTED, "utf-8")
+    return tmp_path
+
+
+def usage(cli: Cli, robot: Path, text: str, *more: str) -> tuple[int, dict[str, object]]:
+    (robot / "graph.txt").write_text(text, "utf-8")
+    done = cli("observe", "--text", "graph.txt", "--at", AT, "-o", "seen.policy.xml", cwd=robot)
+    assert done.returncode == 0, done.stderr
+    done = cli("diff", "granted.xml", "seen.policy.xml", "--as", "usage", "-f", "json", *more, cwd=robot)
+    return done.returncode, json.loads(done.stdout)
+
+
+def names(rows: object) -> list[str]:
+    assert isinstance(rows, list)
+    return [f"{row['node']} {row['role']} {row['name']}" for row in rows]
+
+
+def test_all_that_runs_is_granted(cli: Cli, robot: Path) -> None:
+    code, document = usage(cli, robot, RUNS + READS)
+    assert code == 0
+    assert document["not_granted"] == []
+    assert names(document["unused"]) == ["/cam publish /shared", "/cam publish /spare"]
+    assert document["never_seen"] == [{"node": "/sleeper", "grants": 1}]
+
+
+def test_what_runs_and_is_not_granted_ends_with_1(cli: Cli, robot: Path) -> None:
+    more = node_info("/up", subscribers="/image: s/msg/I", publishers="/leak: s/msg/I") + node_info("/new")
+    code, document = usage(cli, robot, RUNS + more + node_info("/new", publishers="/image: s/msg/I"))
+    assert code == 1
+    rows = document["not_granted"]
+    assert names(rows) == ["/new publish /image", "/up publish /leak"]
+    assert isinstance(rows, list)
+    assert [row["why"] for row in rows] == ["no-profile", "not-granted"]
+    assert rows[0]["seen"] == {"by": ["text"], "first": AT, "last": AT}
+
+
+def test_what_is_denied_and_runs_names_the_line(cli: Cli, robot: Path) -> None:
+    denied = GRANTED.replace(
+        '<topics subscribe="ALLOW">',
+        '<topics publish="DENY">\n            <topic>/im*</topic>\n          </topics>\n'
+        '          <topics subscribe="ALLOW">',
+    )
+    (robot / "granted.xml").write_text(denied, "utf-8")
+    code, document = usage(cli, robot, RUNS + READS)
+    assert code == 1
+    rows = document["not_granted"]
+    assert isinstance(rows, list)
+    assert [(row["name"], row["why"], row["denied_by"]) for row in rows] == [
+        ("/image", "denied", [{"file": "granted.xml", "line": 18}])
+    ]
+
+
+def test_only_the_enclave_grants_it(cli: Cli, robot: Path) -> None:
+    """Rule S6: DDS holds /up to what any profile of its enclave may."""
+    text = RUNS + node_info("/up", publishers="/spare: s/msg/S", subscribers="/image: s/msg/I")
+    assert names(usage(cli, robot, text)[1]["not_granted"]) == ["/up publish /spare"]
+    assert usage(cli, robot, text, "--view", "enforced")[0] == 0
+
+
+def test_a_gap_leaves_it_undetermined(cli: Cli, robot: Path) -> None:
+    code, document = usage(cli, robot, RUNS + READS + "/sleeper\n")
+    assert code == 4
+    assert document["gaps"]
+
+
+def test_the_patch_denies_what_was_never_seen_and_takes_nothing_else(cli: Cli, robot: Path) -> None:
+    """/shared is a line of a node that was not seen: a DENY holds for the enclave, so it stays (rule S5)."""
+    code, document = usage(cli, robot, RUNS + READS, "--patch", "least.diff")
+    assert code == 0
+    rows = document["unused"]
+    assert isinstance(rows, list)
+    assert {row["name"]: row["in_patch"] for row in rows} == {"/shared": False, "/spare": True}
+    subprocess.run(["git", "apply", "least.diff"], cwd=robot, check=True)
+    code, again = usage(cli, robot, RUNS + READS)
+    assert (code, again["patch"]) == (0, "")
+    assert names(again["unused"]) == ["/cam publish /shared"]
+
+
+def test_a_text_and_a_comment_say_the_same(cli: Cli, robot: Path) -> None:
+    usage(cli, robot, RUNS + READS)
+    for form, start in (("text", "  "), ("markdown", "- ``")):
+        done = cli("diff", "granted.xml", "seen.policy.xml", "--as", "usage", "-f", form, cwd=robot)
+        assert any(line.startswith(start) and "/cam publish /spare" in line for line in done.stdout.splitlines())
+        assert f"observed from {AT}" in done.stdout
+
+
+def test_the_second_has_to_be_an_observation(cli: Cli, robot: Path) -> None:
+    usage(cli, robot, RUNS)
+    done = cli("diff", "seen.policy.xml", "granted.xml", "--as", "usage", cwd=robot)
+    assert "granted.xml: was not made of an observation; name the policies first" in refused(done)[0]

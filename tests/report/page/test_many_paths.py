@@ -1,0 +1,108 @@
+"""A page with more paths than a browser opens tells the first of each kind, and says how many more there are (S11)."""
+
+from __future__ import annotations
+
+import copy
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+import rosprivacy
+from rosprivacy.report.page.assessment_file import Answers
+from rosprivacy.report.page.shares import MOST, share
+from rosprivacy.report.words.typography import plain
+from rosprivacy.report.words.words import Words
+from tests.helpers.pages import LANGUAGES, page, texts, told
+from tests.helpers.reports import care, policy
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+SIDE = 46
+VIDEO, VOICE = SIDE * SIDE, SIDE  # findings of each kind
+
+
+@pytest.fixture(scope="module")
+def many(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    """2,116 paths of video, 46 of voice, and a sanitizer that none of them passes."""
+    folder = tmp_path_factory.mktemp("many")
+    return copy.deepcopy(_many(folder))
+
+
+@cache
+def _many(folder: Path) -> dict[str, Any]:
+    profiles: dict[str, tuple[list[str], list[str]]] = {f"camera{i:02}": (["t"], []) for i in range(SIDE)}
+    profiles |= {f"cloud{i:02}": ([], ["t"]) for i in range(SIDE)}
+    profiles |= {"blur": ([], ["t"])}
+    (folder / "p.xml").write_text(policy(profiles), "utf-8")
+    (folder / "l.yaml").write_text(
+        "labels: 1\nnodes:\n"
+        "  /camera*: {source: [Video]}\n"
+        "  /camera07: {source: [Video, Voice]}\n"
+        "  /cloud*: {leak: [Video, Voice]}\n"
+        "  /blur: {sanitizer: {Video: anonymise}}\n",
+        "utf-8",
+    )
+    result = rosprivacy.analyze(str(folder / "p.xml"), str(folder / "l.yaml"))
+    assert len(result.findings) == VIDEO + VOICE
+    return result.document()
+
+
+def test_the_share_of_a_kind_is_what_the_others_leave() -> None:
+    assert share([]) == 0
+    assert share([3, 5]) == 5
+    for numbers in ([MOST, MOST], [1, 2, 3 * MOST], [700, 700, 700], [MOST + 1], [1] * (MOST + 1)):
+        each = share(numbers)
+        shown = sum(min(number, each) for number in numbers)
+        assert MOST - len(numbers) < shown <= max(MOST, len(numbers))
+
+
+def test_the_first_paths_of_each_kind_are_told_and_all_are_counted(many: dict[str, Any]) -> None:
+    root, report = page(many), told(many)
+    shown = {
+        kind: root.xpath(f"count(//article[@class='way'][@data-category='{kind}'])") for kind in ("Video", "Voice")
+    }
+    assert shown == {"Video": MOST - VOICE, "Voice": VOICE}
+    assert report.opening.headline == f"You have to decide {VIDEO + VOICE:,} things"
+    assert {kind.name: (kind.to_assess, kind.left) for kind in report.kinds} == {
+        "Video": (VIDEO, VIDEO - MOST + VOICE),
+        "Voice": (VOICE, 0),
+    }
+    assert len(report.assessment.risks) == MOST
+    assert report.assessment.left == VIDEO + VOICE - MOST
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_the_page_says_how_many_it_leaves_out_and_where_they_are(many: dict[str, Any], language: str) -> None:
+    words = Words(language)
+    left = VIDEO + VOICE - MOST
+    for text in texts(many, language):
+        assert text.count(plain(words.count(left, "f.left"))) == 2  # at the beginning, and at their kind
+        assert plain(words.count(left, "risk.left")) in text
+
+
+def test_every_link_of_the_page_leads_somewhere(many: dict[str, Any]) -> None:
+    root = page(many)
+    there = set(root.xpath("//@id"))
+    assert {link for link in root.xpath("//a/@href") if link.startswith("#")} <= {f"#{name}" for name in there}
+
+
+def test_a_sanitizer_names_the_first_paths_past_it_and_counts_the_others(many: dict[str, Any]) -> None:
+    (row,) = told(many).cleanings
+    assert [number for _, number in row.past] == list(range(1, 101))
+    assert row.more == f"and {VIDEO - 100:,} more"
+
+
+def test_what_a_person_has_answered_is_not_left_out(many: dict[str, Any]) -> None:
+    last = [entry for entry in told(many).entries if not entry.told][-1]
+    answers = Answers({f"risk.{last.id}.measures": "none yet"}, "answers.json", "0" * 64)
+    assessment = told(many, answers=answers).assessment
+    assert assessment.unmatched == ()
+    assert [risk.flow.entries[0].id for risk in assessment.risks if risk.fields[3].text] == [last.id]
+    assert len(assessment.risks) == MOST + 1
+
+
+def test_a_page_of_few_paths_leaves_nothing_out() -> None:
+    assert all(entry.told for entry in told(care()).entries)
+    assert all("--format json" not in text for text in texts(care()))
