@@ -22,11 +22,11 @@ from rosprivacy.report.terminal.fleet import fleet_lines
 from rosprivacy.report.terminal.globs import glob_lines, glob_warnings
 from rosprivacy.report.terminal.labels import absent_lines, overruled_lines, standard_lines
 from rosprivacy.report.terminal.ledger import hanging_lines, ledger_lines, taken_away_lines
-from rosprivacy.report.terminal.message_types import type_lines
 from rosprivacy.report.terminal.next_step import next_lines
 from rosprivacy.report.terminal.reliance import reliance_lines
 from rosprivacy.report.terminal.restriction import asked_at_verdict, asked_lines
 from rosprivacy.report.terminal.review import review_lines
+from rosprivacy.report.terminal.types_told import type_lines
 from rosprivacy.report.terminal.unknown_ends import end_lines, ends_at_verdict
 from rosprivacy.report.terminal.wrapped import wrapped
 from rosprivacy.report.words.words import IN_ENGLISH, Words
