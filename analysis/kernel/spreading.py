@@ -217,9 +217,17 @@ class _Does:
 def _set_vertex(spread: Spread, vertex: int, does: _Does) -> None:
     if does.standard:
         spread.standard.add(vertex)
+<<<<<<< HEAD
     if does.gone:
         spread.gone[vertex] = does.gone
     if does.gone == spread.all_bits != 0:
+=======
+    if limited := _bits(spread, decided, lambda fact: fact.limited):
+        spread.limited[vertex] = limited
+    if gone := _bits(spread, decided, lambda fact: fact.method == Method.ABSENT):
+        spread.gone[vertex] = gone
+    if gone == spread.all_bits != 0:
+>>>>>>> main
         spread.absent.add(vertex)
     spread.keeps[vertex] = does.keeps
     spread.leaks[vertex] = does.leaks
