@@ -241,15 +241,11 @@ class _Work:
         except InputErrors as error:
             return replace(row, refused=str(error.errors[0]))
 
-<<<<<<< HEAD
-    def _change(self, less: Bound, statement: Statement, spots: _Spots) -> Spread | None:
-=======
     def _told(self, row: Reliance) -> Reliance:
         """A type reviews nothing: what lies behind it is open as it is (rule S15)."""
         return replace(row, questions=()) if row.statement.role == CANNOT else row
 
-    def _change(self, less: Bound, spots: _Spots) -> Spread | None:
->>>>>>> main
+    def _change(self, less: Bound, statement: Statement, spots: _Spots) -> Spread | None:
         """What the elements and flows do without it, if that is more and nothing less; else None."""
         spread, graph = self.places.spread, self.places.spread.graph
         flows = {index: less.flows[index] for index in spots.flows}

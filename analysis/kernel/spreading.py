@@ -170,6 +170,7 @@ class _Does:
     """What elements do of which the same is said; as of ``Spread``."""
 
     standard: bool
+    limited: int
     gone: int
     keeps: int
     leaks: int
@@ -204,6 +205,7 @@ class _Does:
                 emits |= 0 if fact.through else 1 << plain
         return cls(
             standard=any(fact.standard for fact in decided.values()),
+            limited=_bits(spread, decided, lambda fact: fact.limited),
             gone=_bits(spread, decided, lambda fact: fact.method == Method.ABSENT),
             keeps=keeps,
             leaks=_bits(spread, decided, lambda fact: fact.leaks),
@@ -217,17 +219,11 @@ class _Does:
 def _set_vertex(spread: Spread, vertex: int, does: _Does) -> None:
     if does.standard:
         spread.standard.add(vertex)
-<<<<<<< HEAD
+    if does.limited:
+        spread.limited[vertex] = does.limited
     if does.gone:
         spread.gone[vertex] = does.gone
     if does.gone == spread.all_bits != 0:
-=======
-    if limited := _bits(spread, decided, lambda fact: fact.limited):
-        spread.limited[vertex] = limited
-    if gone := _bits(spread, decided, lambda fact: fact.method == Method.ABSENT):
-        spread.gone[vertex] = gone
-    if gone == spread.all_bits != 0:
->>>>>>> main
         spread.absent.add(vertex)
     spread.keeps[vertex] = does.keeps
     spread.leaks[vertex] = does.leaks
