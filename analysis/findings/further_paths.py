@@ -81,6 +81,7 @@ class Between:
         self.emits = self.states.emitted(source)
         self.width = FIRST + self.bits.merged(net.spread.all_bits).bit_length()
         self.begin = self.state(source, SOURCE)
+        self.reached = len(reach.seen)
         self._reach: Search | None = reach
         self._known: dict[int, list[tuple[int, int]]] = {}
         self.back: dict[State, set[State]] = defaultdict(set)
@@ -175,6 +176,7 @@ class Between:
         memory
             Answers for equal graphs: kinds of data often take the same paths.
         """
+        work.count += self.reached
         if self.one_way_out:
             return 1
         self.link(work)
