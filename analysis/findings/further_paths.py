@@ -176,13 +176,14 @@ class Between:
         memory
             Answers for equal graphs: kinds of data often take the same paths.
         """
-        work.count += self.reached
         if self.one_way_out:
+            work.count += self.reached
             return 1
         self.link(work)
         ends = self._ends(leak)
         last = {before for end in ends for before in self.back.get(end, ())} - ends
         if len(last) == 1 and not any(end in self.into for end in ends):
+            work.count += self.reached
             return 1
         edges, groups = self._leading_to(leak)
         work.count += len(edges) + sum(len(befores) + len(afters) for befores, afters in groups)
