@@ -207,6 +207,13 @@ def test_a_storage_that_is_a_bag_comes_back_from_the_database(
     assert (files["verdict"], stored["verdict"], done.returncode) == ("undetermined", "undetermined", 4)
     (row,) = [one for one in stored["outside"] if one["element"]["name"] == "run1"]
     assert row["holds"] == ["Video"]
+    assert row["recording"] == {
+        "bag": "run", "bytes": (tmp_path / "run" / "run.mcap").stat().st_size, "topics": 2, "messages": 3,
+        "start": "2023-11-14T22:13:20Z", "end": "2023-11-14T22:13:22Z",
+    }  # fmt: skip
+    assert row == next(one for one in files["outside"] if one["element"]["name"] == "run1") | {
+        "element": row["element"]
+    }
     known = ("bag-gap", "recording")
     told = [
         sorted(one["message"] for one in read["diagnostics"] if one.get("code") in known) for read in (files, stored)
