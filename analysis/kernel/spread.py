@@ -86,6 +86,11 @@ class Spread:
         self.bits = CategoryBits(len(self.categories))
         self.all_bits = self.bits.all
 
+    @property
+    def told_apart(self) -> set[int]:
+        """Flows that emit or keep something of their own; all others of a meeting of wildcards are alike."""
+        return {*self.flow_emits, *self.flow_keeps}
+
     def begins(self, vertex: int) -> int:
         """Bits that a vertex emits, along all of its flows or single ones."""
         return self.emits.get(vertex, 0) | self.flow_begins.get(vertex, 0)
