@@ -68,6 +68,7 @@ from rosprivacy.analysis.model.recording import (
     recording_of,
 )
 from rosprivacy.analysis.model.statement import (
+    CANNOT,
     CHANGED,
     CLEANS,
     CONTEXTS,
@@ -75,6 +76,7 @@ from rosprivacy.analysis.model.statement import (
     NAME,
     NO_BASIS,
     NOWHERE,
+    OF_TYPES,
     SEGMENT,
     STANDARD,
     STATED,
@@ -95,6 +97,7 @@ __all__ = [
     "ARTICLE_10",
     "ASSUMED",
     "BAG_GAP",
+    "CANNOT",
     "CAREFUL_DENY",
     "CHANGED",
     "CHANNELS",
@@ -123,6 +126,7 @@ __all__ = [
     "OBSERVATION_GAP",
     "OBSERVED",
     "OF_KIND",
+    "OF_TYPES",
     "PATHS_NOT_COUNTED",
     "REASONS",
     "RECORDING",
