@@ -59,6 +59,7 @@ from rosprivacy.analysis.model.policy import Grant, Policy, Profile, Seen
 from rosprivacy.analysis.model.reason import REASONS, Reason
 from rosprivacy.analysis.model.recording import Bag, BagTopic, BagVerdict, JudgedBag, TopicKinds, iso
 from rosprivacy.analysis.model.statement import (
+    CANNOT,
     CHANGED,
     CLEANS,
     CONTEXTS,
@@ -66,6 +67,7 @@ from rosprivacy.analysis.model.statement import (
     NAME,
     NO_BASIS,
     NOWHERE,
+    OF_TYPES,
     SEGMENT,
     STANDARD,
     STATED,
@@ -86,6 +88,7 @@ __all__ = [
     "ARTICLE_10",
     "ASSUMED",
     "BAG_GAP",
+    "CANNOT",
     "CAREFUL_DENY",
     "CHANGED",
     "CHANNELS",
@@ -114,6 +117,7 @@ __all__ = [
     "OBSERVATION_GAP",
     "OBSERVED",
     "OF_KIND",
+    "OF_TYPES",
     "PATHS_NOT_COUNTED",
     "REASONS",
     "RECORDING",

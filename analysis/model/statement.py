@@ -35,6 +35,7 @@ CLEANS = tuple(method for method in Method if method is not Method.ABSENT)  # wh
 NAME, SEGMENT, GLOB = "name", "segment", "glob"  # how a label names an element
 STANDARD = 0  # the tier of the file of standard channels (rule S13); users' files are above it
 CHANGED = 3  # the tier of what a proposal changes: above all that is said now, in files and in a database
+CANNOT, OF_TYPES = "cannot", (-2, 0)  # role and rank of what a type cannot carry: below all that anybody says (S15)
 STATED = "flow"  # the role of a flow that a person states (rule S9)
 
 
@@ -47,7 +48,7 @@ class Statement:
     role
         Of a node: ``source``, ``leak``, ``sanitizer``, ``conduit``, ``derivation``, and ``no-source`` and ``no-leak``,
         which take back what is said by lower ranks. Of a channel: ``mundane``, ``sensitive``, ``only``, ``never``. Of a
-        flow: ``only``, ``never``.
+        flow: ``only``, ``never``. Of the type of a channel: ``CANNOT``, of exactly the kinds that it names.
     categories
         Names; empty means every category. One name for the roles of a node.
     rank
