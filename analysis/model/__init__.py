@@ -57,7 +57,16 @@ from rosprivacy.analysis.model.flow import Flow, FlowGraph
 from rosprivacy.analysis.model.message_type import OF_KIND, MessageType, kind_of_type
 from rosprivacy.analysis.model.policy import Grant, Policy, Profile, Seen
 from rosprivacy.analysis.model.reason import REASONS, Reason
-from rosprivacy.analysis.model.recording import Bag, BagTopic, BagVerdict, JudgedBag, TopicKinds, iso
+from rosprivacy.analysis.model.recording import (
+    Bag,
+    BagTopic,
+    BagVerdict,
+    JudgedBag,
+    Recording,
+    TopicKinds,
+    iso,
+    recording_of,
+)
 from rosprivacy.analysis.model.statement import (
     CANNOT,
     CHANGED,
@@ -154,6 +163,7 @@ __all__ = [
     "Processing",
     "Profile",
     "Reason",
+    "Recording",
     "Seen",
     "Severity",
     "Situation",
@@ -164,5 +174,6 @@ __all__ = [
     "is_article_9",
     "iso",
     "kind_of_type",
+    "recording_of",
     "unread",
 ]

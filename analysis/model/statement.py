@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.durations import Duration
     from rosprivacy.analysis.model.element import Element
     from rosprivacy.analysis.model.message_type import MessageType
+    from rosprivacy.analysis.model.recording import Recording
 
 
 class Method(StrEnum):
@@ -139,6 +140,8 @@ class NonRosFacts:
         On what it is operated for the controller, such as a contract under Article 28, in a person's words.
     place
         Where it is stated.
+    recording
+        Of a storage that is a bag: its size, its time, how much is in it.
     """
 
     retention: tuple[tuple[str, Duration], ...] = ()
@@ -154,6 +157,7 @@ class NonRosFacts:
     transfer: str = ""
     contract: str = ""
     place: Place = NOWHERE
+    recording: Recording | None = None
 
     @property
     def basis(self) -> str:
