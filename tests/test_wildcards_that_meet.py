@@ -30,7 +30,7 @@ def systems(draw: st.DrawFn) -> tuple[str, str]:
     names = st.sets(st.sampled_from((*NAMES, *NAMES, *DENIED)), max_size=5).map(lambda some: ",".join(sorted(some)))
     profiles = {node: f"{node}>{draw(names)}<{draw(names)}" for node in NODES}
     roles = {node: draw(st.sampled_from(ROLES)) for node in NODES[1:] if draw(st.booleans())}
-    roles["/n0"] = ROLES[0]
+    roles["/n0"] = draw(st.sampled_from((ROLES[0], "{source: {Video: ['/r*']}}", "{source: {Video: ['=/*']}}")))
     granted = [name for text in profiles.values() for name in text.partition(">")[2].replace("<", ",").split(",")]
     own = sorted({name for name in granted if name and name[0] != "!"})
     channels = {name: draw(st.sampled_from(CHANNEL)) for name in own if draw(st.booleans()) and draw(st.booleans())}
