@@ -91,7 +91,7 @@ def ends(graph: FlowGraph, special: Sequence[int]) -> tuple[list[int], list[int]
     >>> from rosprivacy.analysis.example import factory
     >>> sources, targets, _ = ends(factory()[0], [2])
     >>> len(sources) - len(factory()[0].flows), (sources[-1], targets[-1]), targets[2]
-    (1, (18, 11), 18)
+    (1, (9, 8), 9)
     """
     flows, meetings = parted(graph.flows, special)
     place: dict[int, int] = {}
