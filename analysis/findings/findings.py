@@ -137,6 +137,7 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
         outside={graph.elements[vertex]: facts for vertex, facts in sorted(bound.outside.items())},
         unknown_ends=unknown_ends(spread, mask),
         lacking=lacks,
+        types={graph.elements[v]: tuple(sorted({one.name for one in some})) for v, some in bound.types.items()},
     )
 
 

@@ -7,6 +7,7 @@ from functools import cached_property, reduce
 from operator import or_
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.many_flows import one_by_one
 from rosprivacy.analysis.model import CHANNELS, DISCLOSURE
 from rosprivacy.report.pictures.looks import DERIVATION, LEAK, OPEN, REVIEWED, SANITIZER, SOURCE
 from rosprivacy.report.pictures.phrases import Phrases
@@ -60,6 +61,7 @@ class Reached:
         for vertex, element in enumerate(self.graph.elements):
             self._of[element.identity].append(vertex)
         self._ending = ends_of(analysis)
+        self._types = analysis.types
         self._ends = {vertex: reduce(or_, kinds.values()) for vertex, kinds in self._ending.items()}
         self._open: dict[Key, set[str]] = defaultdict(set)
         shown = set(found.names(self._mask))
@@ -107,7 +109,7 @@ class Reached:
 
         Complexity: O(flows), once.
         """
-        found = {index: self._cleaned_along(index) for index in range(len(self.graph.flows))}
+        found = {index: self._cleaned_along(index) for index, _ in enumerate(one_by_one(self.graph.flows))}
         return {index: kinds for index, kinds in found.items() if kinds}
 
     def _cleaned_along(self, index: int) -> tuple[str, ...]:
@@ -167,8 +169,9 @@ class Reached:
         words = self._words(key, bits, made, cleaned, vertices)
         if open_for and set(self._found.names(bits["present"])) != open_for:
             words.append(self._say.of("unreviewed", sorted(open_for), MOST))
-        pattern = self.graph.elements[vertices[0]].pattern
-        return Box(key, (key[2],), look, tuple(words), bool(open_for), pattern=pattern)
+        first = self.graph.elements[vertices[0]]
+        types = self._types.get(first, ())
+        return Box(key, (key[2],), look, tuple(words), bool(open_for), pattern=first.pattern, types=types)
 
     def _said(self, vertices: list[int], present: int) -> tuple[list[str], list[str]]:
         """What labels say that is made of what is here, and how it is cleaned, in words."""

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.answer import Verdict
 from rosprivacy.analysis.findings.flows_to_leaks import FlowsToLeaks, flows_to_leaks
 from rosprivacy.analysis.kernel.states import Net
+from rosprivacy.analysis.many_flows import one_by_one
 from rosprivacy.analysis.model import DISCLOSURE, GOES_NOWHERE, NO_LEAK_NAMED
 from rosprivacy.analysis.text import shortened
 from rosprivacy.report.element_counts import count_elements
@@ -64,6 +65,9 @@ def ros_view(
     graph = analysis.graph
     hidden = set() if standard else {graph.elements[vertex].identity for vertex in analysis.spread.standard}
     boxes = {e.identity: Box.of(e, e.kind) for e in graph.elements if e.identity not in hidden}
+    for element, types in analysis.types.items():
+        if element.identity in boxes:
+            boxes[element.identity] = replace(boxes[element.identity], types=types)
     covered: dict[Key, set[Key]] = defaultdict(set)
     lines = _Lines(boxes)
     for flow in graph.flows:
@@ -207,7 +211,7 @@ def privacy_view(analysis: Analysis, beside: Collection[str] = (), say: Phrases 
     for found in _ways_to_all(analysis, net, open_findings):
         for flow, length in found.items():
             lengths[flow] = min(length, lengths.get(flow, length))
-    lines = data_lines(reached, boxes, range(len(analysis.graph.flows)), lengths, pairs(open_findings))
+    lines = data_lines(reached, boxes, range(len(one_by_one(analysis.graph.flows))), lengths, pairs(open_findings))
     what = listed(map(say.title, analysis.emitted), most=6, words=words)
     unreviewed = count_elements(q.element for q in analysis.open if q.element.robot not in beside).elements
     findings, elements = words.count(len(open_findings), "tty.finding"), words.count(unreviewed, "element")
