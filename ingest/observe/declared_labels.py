@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap
 
+from rosprivacy.analysis.text import blanked
 from rosprivacy.ingest.labels.non_ros_reader import LONGEST
 from rosprivacy.ingest.observe.declared import TYPE
 from rosprivacy.ingest.observe.observed_names import is_name
@@ -72,4 +73,4 @@ def _element(path: str) -> str:
 
 
 def _plain(text: str) -> str:
-    return " ".join("".join(sign if sign.isprintable() else " " for sign in text).split())[:LONGEST]
+    return " ".join(blanked(text).split())[:LONGEST]
