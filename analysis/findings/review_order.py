@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.kernel.dominators import immediate_dominators
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Mapping, Sequence
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.kernel.spread import Spread
@@ -66,15 +66,17 @@ def review_order(analysis: Analysis) -> dict[Shown, Behind]:
         return {}
     spread = analysis.spread
     elements = spread.graph.elements
-    asked = {q.element.shown_as: spread.bits.merged(sum(map(spread.both, q.categories))) for q in analysis.open}
+    kinds = {q.categories: spread.bits.merged(sum(map(spread.both, q.categories))) for q in analysis.open}
+    asked = {q.element.shown_as: kinds[q.categories] for q in analysis.open}
+    along = [spread.along(index) for index in range(len(spread.graph.flows))]
     following: Following = defaultdict(list)
     for index, flow in enumerate(spread.graph.flows):
-        if spread.along(index):
+        if along[index]:
             following[flow.source].append(flow.target)
     following[START] = [vertex for vertex in range(len(elements)) if spread.begins(vertex)]
     reached = _reached(following)
     open_at = dict.fromkeys(vertex for vertex in reached if elements[vertex].shown_as in asked)
-    through = _through(spread, {vertex: asked[elements[vertex].shown_as] for vertex in open_at}, reached)
+    through = _through(spread, along, {vertex: asked[elements[vertex].shown_as] for vertex in open_at}, reached)
     leaks = {vertex for vertex, bits in spread.leaks.items() if bits & spread.present(vertex)}
     ends = {finding.leak for finding in analysis.findings}  # storages and third countries too (rule S10)
     wanted = leaks.union(v for v in reached if elements[v] in ends or (v in open_at and not elements[v].is_channel))
@@ -107,12 +109,12 @@ def _reached(following: Following) -> list[int]:
     return list(reached)
 
 
-def _through(spread: Spread, asked: Mapping[int, int], reached: Iterable[int]) -> dict[int, int]:
+def _through(spread: Spread, along: Sequence[int], asked: Mapping[int, int], reached: Iterable[int]) -> dict[int, int]:
     """Open vertex -> the vertex from which most of the kinds that are open there come along a flow."""
     order = {vertex: place for place, vertex in enumerate(reached)}
     best: dict[int, tuple[int, int, int]] = {}
     for index, flow in enumerate(spread.graph.flows):
-        bits = spread.bits.merged(spread.along(index)) & asked.get(flow.target, 0)
+        bits = spread.bits.merged(along[index]) & asked.get(flow.target, 0)
         if bits:
             one = (-bits.bit_count(), order[flow.source], flow.source)
             best[flow.target] = min(one, best.get(flow.target, one))
