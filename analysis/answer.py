@@ -144,6 +144,25 @@ class Verdict(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
+class ClosedByTypes:
+    """What there would be if the types of channels limited nothing (rule S15).
+
+    Attributes
+    ----------
+    flows
+        How many flows end where a type cannot carry what comes along them.
+    channels
+        (channel or leg of one, kinds that get to it and stop there), sorted.
+    findings
+        Those that only a limit closes, sorted as findings are.
+    """
+
+    flows: int = 0
+    channels: tuple[tuple[Element, tuple[str, ...]], ...] = ()
+    findings: tuple[Finding, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
 class Analysis:
     """The answer: what was found, what is open, what every element carries.
 
@@ -175,6 +194,8 @@ class Analysis:
         What is stated about non-ROS elements (rule S9).
     unknown_ends
         Channels with data that nobody known reads, elements outside ROS that no flow reaches; sorted (rule S11).
+    closed
+        What only the types of channels close; None where no limits of types apply (rule S15).
     lacking
         What 'no leak found' needs and is missing, as the code of a diagnostic; empty if nothing is (rules S11, S12).
     """
@@ -195,6 +216,7 @@ class Analysis:
     outside: Mapping[Element, NonRosFacts] = field(default_factory=dict)
     unknown_ends: tuple[UnknownEnd, ...] = ()
     lacking: str = ""
+    closed: ClosedByTypes | None = None
 
 
 def robot_verdicts(

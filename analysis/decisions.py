@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import DecisionError
@@ -178,7 +179,7 @@ def _covers(written: str, name: str) -> bool:
     return not written or meant(written) == name
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Decisions:
     """A decisions file on a day.
 
@@ -201,9 +202,22 @@ class Decisions:
         """Whether a decision is still valid."""
         return State.EXPIRED if decision.expires and decision.expires < self.today else State.VALID
 
+    @cached_property
+    def _by_id(self) -> dict[str, list[int]]:
+        """Id that entries name, empty for patterns -> their numbers."""
+        found: dict[str, list[int]] = {}
+        for number, entry in enumerate(self.entries):
+            found.setdefault(entry.id, []).append(number)
+        return found
+
+    def near(self, case: Case) -> list[tuple[int, Decision]]:
+        """The entries that name no id, or one of a case's, with their numbers: no other can be about it."""
+        numbers = {number for name in ("", case.id, case.pattern) for number in self._by_id.get(name, ())}
+        return [(number, self.entries[number]) for number in sorted(numbers)]
+
     def foremost(self, case: Case) -> list[Decision]:
         """The decisions of the highest rank about a case, in the order of the file."""
-        about = [entry for entry in self.entries if entry.about(case, self.hierarchy)]
+        about = [entry for _, entry in self.near(case) if entry.about(case, self.hierarchy)]
         highest = max((entry.rank(case, self.hierarchy) for entry in about), default=())
         return [entry for entry in about if entry.rank(case, self.hierarchy) == highest]
 
@@ -301,25 +315,30 @@ def decided(
             raise DecisionError(other.place.file, other.place.line, what, "make one more specific, or remove it")
         if foremost:
             on[finding.id] = foremost[0]
-    about = tuple(
-        tuple(sorted({finding.id for finding, case in cases if entry.about(case, decisions.hierarchy)}))
-        for entry in decisions.entries
-    )
+    ids: list[set[str]] = [set() for _ in decisions.entries]
+    for finding, case in cases:
+        for number, entry in decisions.near(case):
+            if entry.about(case, decisions.hierarchy):
+                ids[number].add(finding.id)
+    about = tuple(tuple(sorted(some)) for some in ids)
     states = tuple(
-        State.ORPHANED if everything and not ids else decisions.state(entry)
-        for entry, ids in zip(decisions.entries, about, strict=True)
+        State.ORPHANED if everything and not some else decisions.state(entry)
+        for entry, some in zip(decisions.entries, about, strict=True)
     )
     changed = {entry: changes(entry.made_about, (now or {}).get(entry.id)) for entry in decisions.entries}
     result = Decided(decisions, on, about, states, (), {entry: found for entry, found in changed.items() if found})
-    said = tuple(_diagnostics(result, {finding.id: finding for finding, _ in cases}, law, list(_former(result, cases))))
+    said = tuple(_diagnostics(result, {finding.id: finding for finding, _ in cases}, law, _former(result, cases)))
     return replace(result, diagnostics=said)
 
 
-def _former(joined: Decided, cases: Iterable[tuple[Finding, Case]]) -> Iterator[int]:
-    """Yield per entry how many findings it decided when one of two robots was enough."""
-    open_cases = [case for finding, case in cases if finding.id not in joined.on]
-    for entry in joined.decisions.entries:
-        yield sum(entry.was_about(case, joined.decisions.hierarchy) for case in open_cases)
+def _former(joined: Decided, cases: Iterable[tuple[Finding, Case]]) -> list[int]:
+    """Return per entry how many findings it decided when one of two robots was enough."""
+    decisions = joined.decisions
+    former = [0] * len(decisions.entries)
+    for case in (case for finding, case in cases if finding.id not in joined.on):
+        for number, entry in decisions.near(case):
+            former[number] += entry.was_about(case, decisions.hierarchy)
+    return former
 
 
 def _diagnostics(

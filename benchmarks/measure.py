@@ -10,6 +10,7 @@ measurement is called before the generator goes on, so that nothing is kept or m
 
 from __future__ import annotations
 
+import gc
 import os
 import resource
 import subprocess
@@ -95,6 +96,7 @@ def side_by_side(
     for number in range(-1, rounds):
         for shift in range(len(sides)):
             side = (number + shift) % len(sides)
+            gc.collect()  # else what one side leaves is counted with the next
             begin = clock()
             sides[side]()
             if number >= 0:

@@ -5,26 +5,38 @@ In: a JSON document of the contract. Out: plain lines; the facts in them (times,
 
 from __future__ import annotations
 
+from collections import defaultdict
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.model import ASSUMED, ENCLAVES_MADE_UP, FOLDED_NAMES, OBSERVED, RECORDING
+from rosprivacy.analysis.model import ASSUMED
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from rosprivacy.report.words.words import Words
 
-WORDS = {
-    OBSERVED: "a.observed",
-    ENCLAVES_MADE_UP: "a.enclaves-made-up",
-    FOLDED_NAMES: "a.folded-names",
-    RECORDING: "a.recording",
-}
+NAMED = 3  # of files that say the same, and of what files of a fleet say of one thing
 
 
 def observed_lines(report: Mapping[str, Any], words: Words) -> Iterator[str]:
-    """Return from when to when somebody looked, and what was made up or folded in the policies that came of it."""
-    for said in report["diagnostics"]:
-        if said.get("code") in ASSUMED:
-            yield words(WORDS[said["code"]], file=shown(said["file"]), said=said["message"])
+    """Return from when to when somebody looked, and what was made up or folded in the policies that came of it.
+
+    Of a fleet, files that say the same are one line; the diagnostics have all.
+    """
+    said: dict[str, dict[str, list[str]]] = {code: defaultdict(list) for code in ASSUMED}
+    for one in report["diagnostics"]:
+        if one.get("code") in said:
+            said[one["code"]][one["message"]].append(shown(one["file"]))
+    for code, messages in said.items():
+        for number, (message, files) in enumerate(messages.items(), 1):
+            if number <= NAMED:
+                yield words(f"a.{code}", file=_named(files), said=message)
+        if len(messages) > NAMED:
+            others = [file for files in list(messages.values())[NAMED:] for file in files]
+            yield words(f"a.{code}", file=_named(others), said="…")
+
+
+def _named(files: list[str]) -> str:
+    more = [f"… (+{len(files) - NAMED:,})"] if len(files) > NAMED else []
+    return ", ".join([*files[:NAMED], *more])

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.kernel.backward import NOTHING_OPENED, Opened, backward
 from rosprivacy.analysis.kernel.nearest import Nearest
-from rosprivacy.analysis.model import Method, Place, Statement
+from rosprivacy.analysis.model import CANNOT, Method, Place, Statement
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.kernel.spread import Spread
 
 Line = Statement | Place
-DENY, STANDARD, ABSENT = "deny", "standard-channel", "absent"
+DENY, STANDARD, ABSENT, TYPE = "deny", "standard-channel", "absent", "type"
 ROUNDS = 64  # lines about several elements that are opened one by one; of others it is said that they may close a path
 PERHAPS = -2  # in place of a vertex, where it was not worked out
 
@@ -34,7 +34,7 @@ class Closure:
     Attributes
     ----------
     by
-        Role of the statement, ``DENY`` or ``STANDARD``.
+        Role of the statement, ``DENY``, ``STANDARD``, or ``TYPE`` where nothing but the type of a channel says so.
     vertex, to
         The element; or the start of a flow and its end (-1 otherwise).
     bits
@@ -103,7 +103,9 @@ def _alone(fact: Facts) -> bool:
 
 
 def _said_by(lines: tuple[Line, ...]) -> str:
-    statements = [line for line in lines if isinstance(line, Statement)]
+    statements = [line for line in lines if isinstance(line, Statement) and line.role != CANNOT]
+    if not statements:
+        return TYPE
     if all(line.shipped for line in statements):
         return STANDARD
     return ABSENT if statements[0].method is Method.ABSENT else statements[0].role

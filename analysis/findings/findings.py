@@ -132,7 +132,7 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
         diagnostics=(
             *(one.diagnostic() for one in spread.overruled),
             *work.not_counted(),
-            *(() if leak or questions else lacking(lacks, restricted=options.categories is not None)),
+            *(() if leak or questions else _lacking(lacks, options, spread)),
         ),
         outside={graph.elements[vertex]: facts for vertex, facts in sorted(bound.outside.items())},
         unknown_ends=unknown_ends(spread, mask),
@@ -357,6 +357,10 @@ def _shown(net: Net, path: list[tuple[int, int, int]]) -> tuple[tuple[Element, .
         steps.append(Step(elements[-1], element, flow.role, *form, flow.grants))
         elements.append(element)
     return tuple(elements), tuple(steps)
+
+
+def _lacking(lacks: str, options: Options, spread: Spread) -> tuple[Diagnostic, ...]:
+    return lacking(lacks, restricted=options.categories is not None, limited=bool(spread.limited))
 
 
 def _carried(spread: Spread, mask: int, hierarchy: Hierarchy) -> tuple[Carried, ...]:

@@ -10,10 +10,13 @@ import hashlib
 from array import array
 from collections import defaultdict, deque
 from dataclasses import dataclass
+from itertools import chain, product
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.findings.disjoint_in_groups import number_in_groups
 from rosprivacy.analysis.kernel.bits import bits_of
 from rosprivacy.analysis.kernel.states import States
+from rosprivacy.analysis.many_flows import one_by_one
 from rosprivacy.analysis.modes import Paths
 
 if TYPE_CHECKING:
@@ -22,8 +25,10 @@ if TYPE_CHECKING:
     from typing import Any
 
     from rosprivacy.analysis.bounds import Tally
+    from rosprivacy.analysis.findings.disjoint_in_groups import Group
     from rosprivacy.analysis.kernel.search import Search
     from rosprivacy.analysis.kernel.states import Net
+    from rosprivacy.analysis.many_flows import Meeting
     from rosprivacy.analysis.model import Element, FlowGraph
 
 State = tuple[int, int]  # vertex, number of the category with which data arrives there
@@ -75,22 +80,42 @@ class Between:
         self.states = States(net, relevant, stop)
         self.emits = self.states.emitted(source)
         self.back: dict[State, set[State]] = defaultdict(set)
+        self.met: dict[tuple[int, int], tuple[Meeting, set[State]]] = {}  # by meeting and bits: who sends these
         self.size = 0
         for before, after in self._edges(reach):
             self.size += 1
             self.back[after].add(before)
+        self.groups = [(befores, set(self._read(meeting, bits))) for (_, bits), (meeting, befores) in self.met.items()]
+        self.into: dict[State, list[int]] = defaultdict(list)
+        for number, (befores, afters) in enumerate(self.groups):
+            self.size += len(befores) + len(afters)
+            for after in afters:
+                self.into[after].append(number)
 
     def _edges(self, reach: Search) -> Iterator[tuple[State, State]]:
         states, single = self.states, self.states.net.spread.flow_emits
-        for _, target, bits in (*states.after(self.source, self.emits), *states.single(self.source)):
+        self._meet((self.source, SOURCE), self.emits)
+        for _, target, bits in (*states.after_alone(self.source, self.emits), *states.single(self.source)):
             yield from (((self.source, SOURCE), state) for state in self._at(target, bits))
         for vertex, seen in reach.seen.items():
             for here in self._at(vertex, seen):
                 arriving = seen & self.bits.both(here[1]) if here[1] != SOURCE else 0
-                for index, target, bits in states.after(vertex, states.leaving(vertex, arriving)):
+                leaving = states.leaving(vertex, arriving)
+                self._meet(here, leaving)
+                for index, target, bits in states.after_alone(vertex, leaving):
                     # what a source emits along a flow does not go there a second time
                     moved = bits & ~single.get(index, 0) if vertex == self.source else bits
                     yield from ((here, state) for state in self._at(target, moved))
+
+    def _meet(self, here: State, leaving: int) -> None:
+        """Note what a state sends to all that its meetings read."""
+        for meeting in self.states.net.meetings.get(here[0], ()) if leaving else ():
+            self.met.setdefault((id(meeting), leaving), (meeting, set()))[1].add(here)
+
+    def _read(self, meeting: Meeting, bits: int) -> Iterator[State]:
+        spread = self.states.net.spread
+        for target in meeting.read:
+            yield from self._at(target, bits & spread.keeps.get(target, spread.all_bits))
 
     def _at(self, vertex: int, bits: int) -> Iterator[State]:
         """The states that data with some bits is in at a vertex, its two planes put together."""
@@ -100,7 +125,10 @@ class Between:
 
     def to(self, leak: int, memory: dict[Any, Any]) -> tuple[list[list[int]], list[tuple[State, State]]]:
         """Return the paths to a leak that share no flow, as vertices, and the edges that they lie among."""
-        edges = self._leading_to(leak)
+        edges, groups = self._leading_to(leak)
+        if groups:
+            one_by_one(self.graph.flows)
+            edges = sorted([*edges, *(pair for group in groups for pair in product(*group))])
         key = self._key(leak, edges)
         if key not in memory:
             memory[key] = _disjoint(edges, (self.source, SOURCE), (leak, LEAK))
@@ -114,11 +142,15 @@ class Between:
         memory
             Answers for equal graphs: kinds of data often take the same paths.
         """
-        edges = self._leading_to(leak)
-        work.count += len(edges)
-        key = "number", self._key(leak, edges)
+        edges, groups = self._leading_to(leak)
+        work.count += len(edges) + sum(len(befores) + len(afters) for befores, afters in groups)
+        alike = [[(state, state) for state in some] for some in chain(*groups)]
+        key = "number", *(self._key(leak, some) for some in (edges, *alike))
         if key not in memory:
-            memory[key] = number_disjoint(edges, (self.source, SOURCE), (leak, LEAK), work)
+            ends = (self.source, SOURCE), (leak, LEAK)
+            memory[key] = (
+                number_in_groups(edges, groups, *ends, work) if groups else number_disjoint(edges, *ends, work)
+            )
         return int(memory[key])
 
     def _key(self, leak: int, edges: Sequence[tuple[State, State]]) -> tuple[int, int, bool, bytes]:
@@ -129,25 +161,32 @@ class Between:
         # on a ring two sources have equal graphs
         return self.source, leak, differs, hashlib.sha256(numbers.tobytes()).digest()
 
-    def _leading_to(self, leak: int) -> list[tuple[State, State]]:
-        """The edges from which a leak can be reached, sorted."""
+    def _leading_to(self, leak: int) -> tuple[list[tuple[State, State]], list[Group]]:
+        """The edges from which a leak can be reached, sorted; of groups, in place of their pairs, what begins and ends.
+
+        Whatever comes to one state of a group comes to all that lead on, so each group is walked back once.
+        """
         pairs = self.derives.get(leak, ())
         category = self.bits.category
         ends = {(leak, category(before)) for before, after in pairs if category(after) == self.category}
         ends.add((leak, self.category))
         edges: set[tuple[State, State]] = set()
         reached, waiting = set(ends), list(ends)
+        groups: dict[int, set[State]] = {}
         while waiting:
             after = waiting.pop()
-            for before in self.back.get(after, ()):
-                if before in ends:
-                    continue
-                edges.add((before, (leak, LEAK) if after in ends else after))
-                if before not in reached:
-                    reached.add(before)
-                    if before[1] != SOURCE:
-                        waiting.append(before)
-        return sorted(edges)
+            shown = (leak, LEAK) if after in ends else after
+            befores = self.back.get(after, set()) - ends
+            edges.update((before, shown) for before in befores)
+            for number in self.into.get(after, ()):
+                if number not in groups:
+                    befores |= self.groups[number][0] - ends
+                groups.setdefault(number, set()).add(shown)
+            new = befores - reached
+            reached |= new
+            waiting += (before for before in new if before[1] != SOURCE)
+        met = ((sorted(self.groups[number][0] - ends), sorted(afters)) for number, afters in groups.items())
+        return sorted(edges), sorted((befores, afters) for befores, afters in met if befores)
 
 
 def _disjoint(edges: list[tuple[State, State]], source: State, leak: State) -> list[list[int]]:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.answer import Verdict
 from rosprivacy.analysis.findings.closures import ABSENT
 from rosprivacy.analysis.findings.ledger import REVIEW
+from rosprivacy.analysis.many_flows import one_by_one
 from rosprivacy.analysis.model import STANDARD
 
 if TYPE_CHECKING:
@@ -98,7 +99,7 @@ def globs(
         if row.glob and (row.by in CLOSERS or row.by == REVIEW):
             for place in row.places:
                 rows[place].append(row)
-    reached = _reached(analysis)
+    reached = _reached(analysis, along=any(row.element and row.to for some in rows.values() for row in some))
     return tuple(
         _use(place, decided[place], rows[place], reached, analysis.verdict)
         for place in sorted(decided, key=lambda place: (place.file, place.line))
@@ -151,20 +152,24 @@ def _of_a_user(statement: Statement) -> bool:
     return statement.glob and statement.rank[0] > STANDARD
 
 
-def _reached(analysis: Analysis) -> dict[str, int]:
-    """How many channels, and how many other elements, data gets to; along how many flows; whether it goes on or not."""
+def _reached(analysis: Analysis, *, along: bool) -> dict[str, int]:
+    """How many channels, and how many other elements, data gets to, and if asked for, along how many flows."""
     spread = analysis.spread
     there = {spread.graph.elements[vertex] for vertex in {*spread.arrives, *spread.leaves}}
-    sent = [
-        _ends(spread.graph, index)
-        for index, flow in enumerate(spread.graph.flows)
-        if spread.sent.get(flow.source, 0) | spread.flow_emits.get(index, 0)
-    ]
     return {
         "channels": len({e.identity for e in there if e.is_channel}),
         "others": len({e.identity for e in there if not e.is_channel}),
-        "flows": len({(source.identity, target.identity) for source, target in sent}),
+        "flows": _with_data(spread) if along else 0,
     }
+
+
+def _with_data(spread: Spread) -> int:
+    sent = (
+        _ends(spread.graph, index)
+        for index, flow in enumerate(one_by_one(spread.graph.flows))
+        if spread.sent.get(flow.source, 0) | spread.flow_emits.get(index, 0)
+    )
+    return len({(source.identity, target.identity) for source, target in sent})
 
 
 def _use(

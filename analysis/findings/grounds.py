@@ -18,6 +18,10 @@ if TYPE_CHECKING:
 
 SPEAKS_OF_LEAKS = ("leak", "no-leak")
 NO_SOURCE_OF_THESE = "no source emits one of the chosen categories: no data was followed"
+GOES_TO_SUCH = (
+    "what the sources bring in goes nowhere but to standard channels and to those whose type cannot carry it: no data "
+    "was followed"
+)
 WHAT = {
     NO_SOURCE: "no label names a source: no data was followed",
     GOES_NOWHERE: "what the sources bring in goes nowhere but to standard channels: no data was followed",
@@ -52,7 +56,8 @@ class Grounds:
 def grounds(spread: Spread, mask: int) -> Grounds:
     """Return the grounds of a spread, for some of its categories.
 
-    What a person closes, or a DENY, was looked at: the data got there. A standard channel is nobody's word.
+    What a person closes, or a DENY, was looked at: the data got there. A standard channel and what
+    the type of a channel cannot carry are nobody's word.
 
     Examples
     --------
@@ -71,7 +76,8 @@ def grounds(spread: Spread, mask: int) -> Grounds:
 
 
 def _onward(spread: Spread, mask: int) -> bool:
-    if any(bits & mask for vertex, bits in spread.arrives.items() if vertex not in spread.standard):
+    arrived = ((v, bits & ~spread.limited.get(v, 0)) for v, bits in spread.arrives.items())
+    if any(bits & mask for vertex, bits in arrived if vertex not in spread.standard):
         return True
     if any(spread.leaves.get(flow.source, 0) & mask for flow in spread.graph.taken_back):
         return True
@@ -87,8 +93,15 @@ def _judged(spread: Spread, vertex: int, asked: tuple[str, ...]) -> bool:
     return any(statement.role in SPEAKS_OF_LEAKS for statement in said)
 
 
-def lacking(code: str, *, restricted: bool) -> tuple[Diagnostic, ...]:
-    """Return the warning about what is missing, if anything; ``restricted`` if only some categories are asked for.
+def lacking(code: str, *, restricted: bool, limited: bool = False) -> tuple[Diagnostic, ...]:
+    """Return the warning about what is missing, if anything.
+
+    Parameters
+    ----------
+    restricted
+        Whether only some categories are asked for.
+    limited
+        Whether there are channels that cannot carry some (rule S15).
 
     >>> [said.message for said in lacking(NO_SOURCE, restricted=True)]
     ['no source emits one of the chosen categories: no data was followed, so this says nothing about the system']
@@ -96,4 +109,5 @@ def lacking(code: str, *, restricted: bool) -> tuple[Diagnostic, ...]:
     if not code:
         return ()
     what = NO_SOURCE_OF_THESE if code == NO_SOURCE and restricted else WHAT[code]
+    what = GOES_TO_SUCH if code == GOES_NOWHERE and limited else what
     return (Diagnostic(Place("labels", 0), Severity.WARNING, f"{what}, so this says nothing about the system", code),)

@@ -14,7 +14,7 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.findings.closures import ABSENT, PERHAPS, Closure, behind, closures, line_key
+from rosprivacy.analysis.findings.closures import ABSENT, PERHAPS, TYPE, Closure, behind, closures, line_key
 from rosprivacy.analysis.findings.concerns import concerns
 from rosprivacy.analysis.kernel.roles import NOTHING_SAID
 from rosprivacy.analysis.model import Place, Statement
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 OUTDONE, REVIEW, DECISION, RESTRICTION = "outdone", "review", "decision", "restriction"
 UNREAD, UNKNOWN_READER = "unread-file", "unknown-reader"
-BY = ("deny", "standard-channel", "mundane", "only", "never", "sanitizer", ABSENT, OUTDONE, REVIEW, DECISION,
+BY = ("deny", "standard-channel", TYPE, "mundane", "only", "never", "sanitizer", ABSENT, OUTDONE, REVIEW, DECISION,
       RESTRICTION, UNREAD, UNKNOWN_READER)  # fmt: skip
 
 

@@ -21,7 +21,7 @@ from rosprivacy.analysis.findings.closures import line_key
 from rosprivacy.analysis.findings.open_questions import open_bits
 from rosprivacy.analysis.findings.reach import Places, Reach
 from rosprivacy.analysis.kernel import spreading
-from rosprivacy.analysis.model import NOWHERE, Bound, Statement
+from rosprivacy.analysis.model import CANNOT, NOWHERE, Bound, Statement
 from rosprivacy.analysis.non_ros import unanswered
 
 if TYPE_CHECKING:
@@ -239,13 +239,17 @@ class _Work:
         try:
             change = self._change(less, spots)
             if change is not None:
-                return self._compared(row, *self._further(change, spots))
+                return self._told(self._compared(row, *self._further(change, spots)))
             if not self.left:
                 return replace(row, perhaps=True)
             self.left -= 1
-            return self._compared(row, *self._anew(less))
+            return self._told(self._compared(row, *self._anew(less)))
         except InputErrors as error:
             return replace(row, refused=str(error.errors[0]))
+
+    def _told(self, row: Reliance) -> Reliance:
+        """A type reviews nothing: what lies behind it is open as it is (rule S15)."""
+        return replace(row, questions=()) if row.statement.role == CANNOT else row
 
     def _change(self, less: Bound, spots: _Spots) -> Spread | None:
         """What the elements and flows do without it, if that is more and nothing less; else None."""

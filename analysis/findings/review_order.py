@@ -7,23 +7,24 @@ wait.
 
 from __future__ import annotations
 
-from collections import defaultdict, deque
+from collections import Counter, defaultdict, deque
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.kernel.dominators import immediate_dominators
+from rosprivacy.analysis.many_flows import parted
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Mapping
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.kernel.spread import Spread
+    from rosprivacy.analysis.many_flows import Meeting
     from rosprivacy.analysis.model import Element
 
 START = -1  # before all sources
 MOST = 200_000  # flows with data; of more it is not worked out what stands behind an element
 Shown = tuple[str, str, str, str]
-Following = dict[int, list[int]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,19 +69,14 @@ def review_order(analysis: Analysis) -> dict[Shown, Behind]:
     elements = spread.graph.elements
     kinds = {q.categories: spread.bits.merged(sum(map(spread.both, q.categories))) for q in analysis.open}
     asked = {q.element.shown_as: kinds[q.categories] for q in analysis.open}
-    along = [spread.along(index) for index in range(len(spread.graph.flows))]
-    following: Following = defaultdict(list)
-    for index, flow in enumerate(spread.graph.flows):
-        if along[index]:
-            following[flow.source].append(flow.target)
-    following[START] = [vertex for vertex in range(len(elements)) if spread.begins(vertex)]
-    reached = _reached(following)
+    following = _Following.of(spread)
+    reached = following.reached()
     open_at = dict.fromkeys(vertex for vertex in reached if elements[vertex].shown_as in asked)
-    through = _through(spread, along, {vertex: asked[elements[vertex].shown_as] for vertex in open_at}, reached)
+    through = _through(following, {vertex: asked[elements[vertex].shown_as] for vertex in open_at}, reached)
     leaks = {vertex for vertex, bits in spread.leaks.items() if bits & spread.present(vertex)}
     ends = {finding.leak for finding in analysis.findings}  # storages and third countries too (rule S10)
     wanted = leaks.union(v for v in reached if elements[v] in ends or (v in open_at and not elements[v].is_channel))
-    going_on = _reaching(following, wanted)
+    going_on = following.reaching(wanted)
     below = _below(following, {elements[v].shown_as: v for v in reversed(open_at)}.values(), leaks)
     result: dict[Shown, Behind] = {}
     for vertex in open_at:
@@ -98,50 +94,134 @@ def _both(one: Behind, other: Behind) -> Behind:
     return Behind(one.through or other.through, first.closes, first.leaks, waits=one.waits and other.waits)
 
 
-def _reached(following: Following) -> list[int]:
-    """Every vertex that data gets to, the nearest to a source first."""
-    reached = dict.fromkeys(sorted(following[START]))
-    waiting = deque(reached)
-    while waiting:
-        new = [there for there in sorted(following.get(waiting.popleft(), ())) if there not in reached]
-        reached.update(dict.fromkeys(new))
-        waiting += new
-    return list(reached)
+@dataclass(frozen=True, slots=True)
+class _Following:
+    """Where data goes on, beginning at ``START``.
+
+    Attributes
+    ----------
+    single
+        Vertex -> where flows with data lead.
+    meetings
+        Of wildcards, with data; few enough of their pairs are among the single flows.
+    """
+
+    spread: Spread
+    single: dict[int, list[int]]
+    meetings: tuple[Meeting, ...]
+
+    @classmethod
+    def of(cls, spread: Spread) -> _Following:
+        own, meetings = parted(spread.graph.flows, spread.told_apart)
+        single: dict[int, list[int]] = defaultdict(list)
+        for index, flow in own:
+            if spread.along(index):
+                single[flow.source].append(flow.target)
+        single[START] = [vertex for vertex in range(len(spread.graph.elements)) if spread.begins(vertex)]
+        result = cls(spread, single, meetings)
+        if meetings and result.number() <= MOST:
+            for source, target in (pair for meeting in meetings for pair in meeting.pairs()):
+                if result.sent(source) & result.taken(target):
+                    single[source].append(target)
+            return cls(spread, {source: sorted(targets) for source, targets in single.items()}, ())
+        return result
+
+    def sent(self, source: int) -> int:
+        """What is written to a wildcard."""
+        return self.spread.sent.get(source, 0)
+
+    def taken(self, target: int) -> int:
+        """What a wildcard that is read takes up."""
+        return self.spread.keeps.get(target, self.spread.all_bits)
+
+    def number(self) -> int:
+        """How many flows have data, with the steps to where it begins."""
+        number = sum(map(len, self.single.values()))
+        for meeting in self.meetings:
+            sent, taken = Counter(map(self.sent, meeting.written)), Counter(map(self.taken, meeting.read))
+            number += sum(n * m for bits, n in sent.items() for others, m in taken.items() if bits & others)
+        return number
+
+    def reached(self) -> list[int]:
+        """Every vertex that data gets to, the nearest to a source first."""
+        written = _by_member((meeting.written, meeting) for meeting in self.meetings)
+        met: dict[int, int] = defaultdict(int)  # bits that have come to all that a meeting reads
+        reached = dict.fromkeys(sorted(self.single[START]))
+        waiting = deque(reached)
+        while waiting:
+            here = waiting.popleft()
+            nexts = list(self.single.get(here, ()))
+            for meeting in written.get(here, ()):
+                new = self.sent(here) & ~met[id(meeting)]
+                met[id(meeting)] |= new
+                nexts += (there for there in meeting.read if new & self.taken(there)) if new else ()
+            found = sorted({there for there in nexts if there not in reached})
+            reached.update(dict.fromkeys(found))
+            waiting += found
+        return list(reached)
+
+    def reaching(self, wanted: Iterable[int]) -> set[int]:
+        """The vertices from which data gets to one of some."""
+        entering: dict[int, list[int]] = defaultdict(list)
+        for here, targets in self.single.items():
+            for there in targets:
+                entering[there].append(here)
+        read = _by_member((meeting.read, meeting) for meeting in self.meetings)
+        met: dict[int, int] = defaultdict(int)  # bits of which all that write them to a meeting are found
+        seen = set(wanted)
+        waiting = deque(seen)
+        while waiting:
+            there = waiting.popleft()
+            nexts = list(entering.get(there, ()))
+            for meeting in read.get(there, ()):
+                new = self.taken(there) & ~met[id(meeting)]
+                met[id(meeting)] |= new
+                nexts += (here for here in meeting.written if new & self.sent(here)) if new else ()
+            for here in nexts:
+                if here not in seen:
+                    seen.add(here)
+                    waiting.append(here)
+        return seen
 
 
-def _through(spread: Spread, along: Sequence[int], asked: Mapping[int, int], reached: Iterable[int]) -> dict[int, int]:
+def _by_member(rows: Iterable[tuple[Iterable[int], Meeting]]) -> dict[int, list[Meeting]]:
+    meetings: dict[int, list[Meeting]] = defaultdict(list)
+    for members, meeting in rows:
+        for member in members:
+            meetings[member].append(meeting)
+    return meetings
+
+
+def _through(following: _Following, asked: Mapping[int, int], reached: Iterable[int]) -> dict[int, int]:
     """Open vertex -> the vertex from which most of the kinds that are open there come along a flow."""
+    spread = following.spread
     order = {vertex: place for place, vertex in enumerate(reached)}
     best: dict[int, tuple[int, int, int]] = {}
-    for index, flow in enumerate(spread.graph.flows):
-        bits = spread.bits.merged(along[index]) & asked.get(flow.target, 0)
+
+    def comes(source: int, target: int, bits: int) -> None:
+        bits = spread.bits.merged(bits) & asked.get(target, 0)
         if bits:
-            one = (-bits.bit_count(), order[flow.source], flow.source)
-            best[flow.target] = min(one, best.get(flow.target, one))
+            one = (-bits.bit_count(), order[source], source)
+            best[target] = min(one, best.get(target, one))
+
+    own, meetings = parted(spread.graph.flows, spread.told_apart)
+    for index, flow in own:
+        comes(flow.source, flow.target, spread.along(index))
+    for meeting in meetings:
+        first: dict[int, int] = {}  # what is sent -> the first that sends it
+        for source in sorted(set(meeting.written) & order.keys(), key=lambda one: -order[one]):
+            first[following.sent(source)] = source
+        for target in meeting.read:
+            for bits, source in first.items():
+                comes(source, target, bits & following.taken(target))
     return {vertex: source for vertex, (_, _, source) in best.items()}
 
 
-def _reaching(following: Following, wanted: Iterable[int]) -> set[int]:
-    """The vertices from which data gets to one of some."""
-    entering: Following = defaultdict(list)
-    for here, targets in following.items():
-        for there in targets:
-            entering[there].append(here)
-    seen = set(wanted)
-    waiting = deque(seen)
-    while waiting:
-        for here in entering.get(waiting.popleft(), ()):
-            if here not in seen:
-                seen.add(here)
-                waiting.append(here)
-    return seen
-
-
-def _below(following: Following, questions: Iterable[int], leaks: Iterable[int]) -> Mapping[int, tuple[int, int]]:
+def _below(following: _Following, questions: Iterable[int], leaks: Iterable[int]) -> Mapping[int, tuple[int, int]]:
     """Vertex -> how many of the questions, and of the leaks, data gets to past it only; without itself."""
-    if not 0 < sum(map(len, following.values())) <= MOST:
+    if not 0 < following.number() <= MOST:
         return {}
-    parents = immediate_dominators(following, START)
+    parents = immediate_dominators(following.single, START)
     asked, leaking = set(questions), set(leaks)
     below: dict[int, tuple[int, int]] = defaultdict(lambda: (0, 0))
     for vertex in asked | leaking:

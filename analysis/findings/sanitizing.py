@@ -9,6 +9,7 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.many_flows import one_by_one
 from rosprivacy.analysis.model import Method
 
 if TYPE_CHECKING:
@@ -172,7 +173,7 @@ class _Around:
 
     def _flows(self) -> tuple[dict[int, list[int]], dict[int, list[int]]]:
         into, out = defaultdict(list), defaultdict(list)
-        for index, flow in enumerate(self._spread.graph.flows):
+        for index, flow in enumerate(one_by_one(self._spread.graph.flows)):
             into[flow.target].append(index)
             out[flow.source].append(index)
         return into, out

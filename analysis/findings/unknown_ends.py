@@ -9,12 +9,14 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.many_flows import parted
 from rosprivacy.analysis.model import NON_ROS, UnknownEnd
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
 
     from rosprivacy.analysis.kernel.spread import Spread
+    from rosprivacy.analysis.many_flows import Meeting
     from rosprivacy.analysis.model import Element, FlowGraph
 
 
@@ -65,16 +67,25 @@ def _readable(graph: FlowGraph) -> Collection[int]:
     """Return the channels that a node reads, by their name or through wildcards that match it (rule S4)."""
     known: set[int] = set()
     before: dict[int, list[int]] = defaultdict(list)
-    for flow in graph.flows:
+    own, meetings = parted(graph.flows)
+    for _, flow in own:
         if not graph.elements[flow.source].is_channel:
             continue
         if graph.elements[flow.target].is_channel:
             before[flow.target].append(flow.source)
         else:
             known.add(flow.source)
+    met: dict[int, list[Meeting]] = defaultdict(list)
+    for meeting in meetings:
+        for target in meeting.read:
+            met[target].append(meeting)
     waiting = list(known)
+    done: set[int] = set()
     while waiting:
-        for channel in before.get(waiting.pop(), ()):
+        read = waiting.pop()
+        new = [meeting for meeting in met.get(read, ()) if id(meeting) not in done]
+        done.update(map(id, new))
+        for channel in (*before.get(read, ()), *(source for meeting in new for source in meeting.written)):
             if channel not in known:
                 known.add(channel)
                 waiting.append(channel)
@@ -84,8 +95,9 @@ def _readable(graph: FlowGraph) -> Collection[int]:
 def _unreached(spread: Spread) -> Iterator[int]:
     """Elements outside ROS that nothing flows into; data may begin at one, then a flow out of it is enough."""
     graph = spread.graph
-    entered = {flow.target for flow in graph.flows}
-    left = {flow.source for flow in graph.flows}
+    own = [flow for _, flow in parted(graph.flows)[0]]  # a meeting is one of channels
+    entered = {flow.target for flow in own}
+    left = {flow.source for flow in own}
     for vertex, element in enumerate(graph.elements):
         if element.kind in NON_ROS and vertex not in entered:
             begins = any("source" in fact.roles for fact in spread.facts.get(vertex, {}).values())

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.kernel.bits import bits_of
 from rosprivacy.analysis.kernel.roles import NOTHING_SAID
 from rosprivacy.analysis.kernel.states import made
+from rosprivacy.analysis.model import CANNOT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -241,7 +242,8 @@ class _Steps:
     def _closed(self, lines: tuple[Statement, ...], vertex: int, target: int, name: str) -> Obstacle:
         elements = self.spread.graph.elements
         to = elements[target] if target >= 0 else None
-        return Obstacle(lines[0].role, elements[vertex], to, name, _sorted(line.place for line in lines))
+        role = next((line.role for line in lines if line.role != CANNOT), CANNOT)
+        return Obstacle(role, elements[vertex], to, name, _sorted(line.place for line in lines))
 
 
 def _sorted(places: Iterator[Place]) -> tuple[Place, ...]:

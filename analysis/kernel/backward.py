@@ -13,7 +13,7 @@ from collections import defaultdict
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.kernel.labelled_graph import LabelledGraph, nodes_of
+from rosprivacy.analysis.kernel.labelled_graph import LabelledGraph, ends, nodes_of
 from rosprivacy.analysis.kernel.least_solution import least_solution
 from rosprivacy.analysis.kernel.states import back_from
 
@@ -102,12 +102,9 @@ def backward(spread: Spread, places: Mapping[int, int], opened: Opened = NOTHING
     graph, count = spread.graph, len(spread.graph.elements)
     keeps = {v: bits | opened.elements.get(v, 0) for v, bits in spread.keeps.items()}
     restricted = sorted(spread.flow_keeps)
-    sources = [flow.source for flow in graph.flows] + [source for source, _ in opened.more]
-    targets = [flow.target for flow in graph.flows] + [target for _, target in opened.more]
-    for number, index in enumerate(restricted, count):
-        sources.append(number)
-        targets.append(targets[index])
-        targets[index] = number
+    sources, targets, meetings = ends(graph, restricted)
+    sources += [source for source, _ in opened.more]
+    targets += [target for _, target in opened.more]
     passing = {n: spread.flow_keeps[i] | opened.flows.get(i, 0) for n, i in enumerate(restricted, count)}
     turned = LabelledGraph(
         count,
@@ -119,6 +116,7 @@ def backward(spread: Spread, places: Mapping[int, int], opened: Opened = NOTHING
         {v: back_from(spread, v, bits, opened.elements.get(v, 0)) for v, bits in places.items()},
         keeps | passing,
         [(vertex, after, before) for vertex, pairs in spread.derives.items() for before, after in pairs],
+        meetings,
     )
     leaving, entering = least_solution(turned)
     return Backward(entering, leaving)

@@ -9,10 +9,13 @@ from bisect import bisect_left
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.many_flows import parted
+
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from rosprivacy.analysis.kernel.spread import Spread
+    from rosprivacy.analysis.model import FlowGraph
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,7 +25,7 @@ class LabelledGraph:
     Attributes
     ----------
     count
-        Number of elements; vertices from it on are flows.
+        Number of elements; vertices from it on are flows, then meetings.
     nodes
         How many of the elements are no channels; they stand first.
     sources, targets
@@ -37,6 +40,8 @@ class LabelledGraph:
         Vertex -> bits that pass as they are; all where absent.
     derivations
         (vertex, bit that arrives, bit that leaves for it).
+    meetings
+        How many vertices behind those of flows stand for a meeting of wildcards.
     """
 
     count: int
@@ -48,30 +53,62 @@ class LabelledGraph:
     emitted: Mapping[int, int]
     keep: Mapping[int, int]
     derivations: Sequence[tuple[int, int, int]]
+    meetings: int = 0
 
     @classmethod
     def of(cls, spread: Spread) -> LabelledGraph:
         """Return what a spread says; O(flows)."""
         graph = spread.graph
         count = len(graph.elements)
-        special = tuple(sorted({*spread.flow_emits, *spread.flow_keeps}))
-        sources = [flow.source for flow in graph.flows]
-        targets = [flow.target for flow in graph.flows]
+        special = tuple(sorted(spread.told_apart))
+        sources, targets, meetings = ends(graph, special)
         emitted, keep = dict(spread.emits), dict(spread.keeps)
         for vertex, index in enumerate(special, count):
-            sources.append(vertex)
-            targets.append(targets[index])
-            targets[index] = vertex
             keep[vertex] = spread.flow_keeps.get(index, spread.all_bits)
             # what never goes along it is not emitted there either
             emitted[vertex] = spread.flow_emits.get(index, 0) & keep[vertex]
         derivations = [(vertex, *pair) for vertex, pairs in spread.derives.items() for pair in pairs]
-        return cls(count, nodes_of(spread), sources, targets, special, spread.all_bits, emitted, keep, derivations)
+        nodes = nodes_of(spread)
+        return cls(count, nodes, sources, targets, special, spread.all_bits, emitted, keep, derivations, meetings)
 
     @property
     def vertices(self) -> int:
-        """How many there are, elements and flows."""
-        return self.count + len(self.special)
+        """How many there are: elements, flows and meetings."""
+        return self.count + len(self.special) + self.meetings
+
+
+def ends(graph: FlowGraph, special: Sequence[int]) -> tuple[list[int], list[int], int]:
+    """Return the two ends of each edge, and the number of meetings.
+
+    Parameters
+    ----------
+    special
+        Numbers of flows that are vertices, those after the elements. Behind them is one for each meeting of wildcards:
+        what comes from any written one goes to each read one.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import factory
+    >>> sources, targets, _ = ends(factory()[0], [2])
+    >>> len(sources) - len(factory()[0].flows), (sources[-1], targets[-1]), targets[2]
+    (1, (9, 8), 9)
+    """
+    flows, meetings = parted(graph.flows, special)
+    place: dict[int, int] = {}
+    sources: list[int] = []
+    targets: list[int] = []
+    for at, (index, flow) in enumerate(flows):
+        place[index] = at
+        sources.append(flow.source)
+        targets.append(flow.target)
+    for vertex, index in enumerate(special, len(graph.elements)):
+        sources.append(vertex)
+        targets.append(targets[place[index]])
+        targets[place[index]] = vertex
+    for vertex, meeting in enumerate(meetings, len(graph.elements) + len(special)):
+        sources += [*meeting.written, *(vertex for _ in meeting.read)]
+        targets += [*(vertex for _ in meeting.written), *meeting.read]
+    return sources, targets, len(meetings)
 
 
 def nodes_of(spread: Spread) -> int:

@@ -10,10 +10,13 @@ from collections import ChainMap, defaultdict
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.many_flows import parted
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, MutableMapping, Sequence
 
     from rosprivacy.analysis.kernel.spread import Spread
+    from rosprivacy.analysis.many_flows import Meeting
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,8 +77,10 @@ class Doing:
 
     Attributes
     ----------
-    moves, into
-        Vertex -> (flow, its target); flow's target -> (flow, its source).
+    moves
+        Vertex -> (flow, its target).
+    meetings
+        Written wildcard -> its meetings, which are flows too.
     keeps, flow_keeps
         Vertex or flow -> what passes as it is; all where absent.
     derives
@@ -90,6 +95,7 @@ class Doing:
 
     lanes: Lanes
     moves: Mapping[int, list[tuple[int, int]]]
+    meetings: Mapping[int, list[Meeting]]
     keeps: MutableMapping[int, int]
     derives: MutableMapping[int, tuple[tuple[int, int], ...]]
     flow_keeps: MutableMapping[int, int]
@@ -103,13 +109,19 @@ class Doing:
         """Return what a spread says, with a lane for each of some sources."""
         lanes = Lanes.of(sources, spread.all_bits.bit_length())
         moves: dict[int, list[tuple[int, int]]] = defaultdict(list)
-        for index, flow in enumerate(spread.graph.flows):
-            moves[flow.source].append((index, flow.target))
         flows = spread.graph.flows
+        own, meetings = parted(flows, spread.told_apart)
+        for index, flow in own:
+            moves[flow.source].append((index, flow.target))
+        met: dict[int, list[Meeting]] = defaultdict(list)
+        for meeting in meetings:
+            for source in meeting.written:
+                met[source].append(meeting)
         begun = {index: lanes.own(flows[index].source, bits) for index, bits in spread.flow_emits.items()}
         return cls(
             lanes,
             moves,
+            met,
             {v: lanes.every(bits) for v, bits in spread.keeps.items() if bits != spread.all_bits},
             {v: pairs for v, pairs in spread.derives.items() if pairs},
             {index: lanes.every(bits) for index, bits in spread.flow_keeps.items()},
@@ -237,13 +249,19 @@ class Flood:
 
     def _follow(self, pending: dict[int, int]) -> None:
         """First in, first out: what comes to one element along several flows goes on together."""
-        moves, flow_keeps = self.doing.moves, self.doing.flow_keeps
+        moves, flow_keeps, meetings = self.doing.moves, self.doing.flow_keeps, self.doing.meetings
+        met: dict[int, int] = defaultdict(int)  # what has come to all that a meeting reads
         while pending:
             vertex = next(iter(pending))
             bits = pending.pop(vertex)
             for index, target in moves.get(vertex, ()):
                 passing = flow_keeps.get(index)
                 self._arrive(target, bits if passing is None else bits & passing, pending)
+            for meeting in meetings.get(vertex, ()):
+                new = bits & ~met[id(meeting)]
+                met[id(meeting)] |= new
+                for target in meeting.read if new else ():
+                    self._arrive(target, new, pending)
 
     def _arrive(self, target: int, bits: int, pending: dict[int, int]) -> None:
         known = self.arrived(target)

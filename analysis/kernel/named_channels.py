@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import LabelError, shown
 from rosprivacy.analysis.kernel.ranks import closes, in_words
 from rosprivacy.analysis.kernel.roles import facts
+from rosprivacy.analysis.many_flows import parted
 from rosprivacy.analysis.model import CHANGED, STATED
 
 if TYPE_CHECKING:
@@ -34,7 +35,7 @@ def stated_flows(graph: FlowGraph) -> dict[int, list[int]]:
     {'/archive': ['disk']}
     """
     stated: dict[int, list[int]] = defaultdict(list)
-    for index, flow in enumerate(graph.flows):
+    for index, flow in parted(graph.flows)[0]:
         if flow.role == STATED:
             stated[flow.source].append(index)
     return dict(stated)

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import LabelError, shown
-from rosprivacy.analysis.model import GLOB, STANDARD, Method
+from rosprivacy.analysis.model import CANNOT, GLOB, STANDARD, Method
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 MAY = frozenset({"leak", "derivation", "only"})
 FARTHEST = 1_000_000  # the distance of a statement about every category
-OF_CHANNELS = frozenset({"mundane", "sensitive", "only", "never"})
+OF_CHANNELS = frozenset({"mundane", "sensitive", "only", "never", CANNOT})
 OF_EVERY_KIND = frozenset({"mundane", "sensitive", "only"})  # two of these at one rank contradict for every category
 OPPOSED = frozenset(
     frozenset(pair)
@@ -103,6 +103,8 @@ def closes(statement: Statement, category: str, hierarchy: Hierarchy) -> bool:
     """
     if statement.role == "only":
         return _named_distance(statement, category, hierarchy) is None
+    if statement.role == CANNOT:
+        return category in statement.categories
     return statement.role == "mundane" or (
         statement.role == "never" and _named_distance(statement, category, hierarchy) is not None
     )
@@ -132,7 +134,7 @@ def in_words(statement: Statement) -> str:
         return f"{statement.role.removeprefix('no-')}: none"
     if statement.role == "sanitizer":
         return "absent" if statement.method is Method.ABSENT else f"sanitizer ({statement.method})"
-    if statement.role in ("only", "never"):
+    if statement.role in ("only", "never", CANNOT):
         return f"{statement.role} [{', '.join(statement.categories)}]"
     if statement.role == "derivation":
         return f"derives {statement.to} from {', '.join(statement.categories)}"
@@ -143,7 +145,7 @@ def _distance(statement: Statement, category: str, hierarchy: Hierarchy) -> int 
     """How far the statement's category is; None if it does not apply; negative if it is narrower or overlaps."""
     if not statement.categories:
         return FARTHEST
-    if statement.role == "source":
+    if statement.role in ("source", CANNOT):
         return 0 if category in statement.categories else None
     distance = _named_distance(statement, category, hierarchy)
     return FARTHEST if distance is None and statement.role == "only" else distance

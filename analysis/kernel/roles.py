@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.kernel.ranks import by_line, closes, decided
-from rosprivacy.analysis.model import Method
+from rosprivacy.analysis.model import CANNOT, Method
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -59,6 +59,8 @@ class Facts:
         Whether it is a sanitizer whose method is taken: the statement that decides does not state it.
     standard
         Whether only a shipped file says that it carries nothing.
+    limited
+        Whether it does not pass only since its type cannot carry the category: nobody has reviewed it (rule S15).
     roles
         Names of the roles that hold, sorted.
     """
@@ -72,6 +74,7 @@ class Facts:
     covered: bool = False
     unstated: bool = False
     standard: bool = False
+    limited: bool = False
     roles: tuple[str, ...] = ()
     method: str = ""
     accepted: tuple[Statement, ...] = ()
@@ -121,7 +124,7 @@ def _sum_up(decided: Decided, category: str, hierarchy: Hierarchy) -> Facts:
     closers = [*sanitizers, *(s for s in accepted if closes(s, category, hierarchy))]
     sources = by_role.get("source", [])
     method = str(sanitizers[0].method) if sanitizers else ""
-    none = {*TAKE_BACK, *(["sanitizer"] if method == Method.ABSENT else [])}  # what is not there cleans nothing
+    none = {*TAKE_BACK, CANNOT, *(["sanitizer"] if method == Method.ABSENT else [])}  # what is not there cleans nothing
     roles = sorted(role for role in by_role if role not in none)
     return Facts(
         emits=bool(sources),
@@ -133,6 +136,7 @@ def _sum_up(decided: Decided, category: str, hierarchy: Hierarchy) -> Facts:
         covered=bool(roles or sanitizers),
         unstated=bool(sanitizers) and not sanitizers[0].stated,
         standard=bool(mundane) and all(s.shipped for s in mundane),
+        limited=bool(closers) and all(s.role == CANNOT for s in closers),
         roles=tuple(roles),
         method=method,
         accepted=accepted,

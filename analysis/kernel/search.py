@@ -11,6 +11,8 @@ from collections import defaultdict
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.many_flows import number
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
@@ -98,6 +100,7 @@ def search(net: Net, starts: Iterable[int], allowed: int, stop: Mapping[int, int
     for vertex, bits in first.items():
         _leave(reach, vertex, bits, START, leaving)
     single = _through_flows(net, first, allowed)
+    met: dict[int, int] = defaultdict(int)  # bits that have come to all that a meeting reads
     while leaving or single:
         level += 1
         arriving: dict[int, int] = defaultdict(int)
@@ -109,6 +112,10 @@ def search(net: Net, starts: Iterable[int], allowed: int, stop: Mapping[int, int
             for index, target, passing in net.flows.get(vertex, ()):
                 if bits & passing:
                     _arrive(reach, target, bits & passing, level, index, arriving)
+            for meeting in net.meetings.get(vertex, ()):
+                new = bits & ~met[id(meeting)]
+                met[id(meeting)] |= new
+                _arrive_at_all(net, reach, vertex, meeting.read if new else (), new, level, arriving)
         leaving = defaultdict(int)
         for vertex in sorted(arriving):
             _pass_on(spread, reach, vertex, arriving[vertex], allowed, stop.get(vertex, 0), leaving)
@@ -145,6 +152,16 @@ def _arrive(reach: Search, target: int, bits: int, level: int, flow: int, arrivi
         reach.seen[target] = reach.seen.get(target, 0) | new
         reach.arrived[target].append((level, new, flow))
         arriving[target] |= new
+
+
+def _arrive_at_all(
+    net: Net, reach: Search, vertex: int, targets: Iterable[int], bits: int, level: int, arriving: dict[int, int]
+) -> None:
+    """What gets from a written wildcard to all read ones of a meeting."""
+    keeps, everything = net.spread.keeps, net.spread.all_bits
+    for target in targets:
+        if some := bits & keeps.get(target, everything) & ~reach.seen.get(target, 0):
+            _arrive(reach, target, some, level, number(net.spread.graph.flows, vertex, target), arriving)
 
 
 def _pass_on(

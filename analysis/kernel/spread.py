@@ -43,6 +43,8 @@ class Spread:
         Channel -> bits that a source names it for.
     standard
         Channels taken as mundane on a shipped file's word alone (rule S13).
+    limited
+        Channel -> bits that stop there only since its type cannot carry them (rule S15).
     absent
         Nodes that a label says are not on the robot; what is sent to them gets to nobody.
     gone
@@ -73,6 +75,7 @@ class Spread:
     flow_begins: dict[int, int] = field(default_factory=dict)
     named: dict[int, int] = field(default_factory=dict)
     standard: set[int] = field(default_factory=set)
+    limited: dict[int, int] = field(default_factory=dict)
     absent: set[int] = field(default_factory=set)
     gone: dict[int, int] = field(default_factory=dict)
     overruled: tuple[Overruled, ...] = ()
@@ -85,6 +88,11 @@ class Spread:
         """Number the bits."""
         self.bits = CategoryBits(len(self.categories))
         self.all_bits = self.bits.all
+
+    @property
+    def told_apart(self) -> set[int]:
+        """Flows that emit or keep something of their own; all others of a meeting of wildcards are alike."""
+        return {*self.flow_emits, *self.flow_keeps}
 
     def begins(self, vertex: int) -> int:
         """Bits that a vertex emits, along all of its flows or single ones."""

@@ -142,6 +142,8 @@ def _set_vertex(spread: Spread, vertex: int, bound: Bound, stated: Mapping[int, 
     decided = spread.facts[vertex]
     if any(fact.standard for fact in decided.values()):
         spread.standard.add(vertex)
+    if limited := _bits(spread, decided, lambda fact: fact.limited):
+        spread.limited[vertex] = limited
     if gone := _bits(spread, decided, lambda fact: fact.method == Method.ABSENT):
         spread.gone[vertex] = gone
     if gone == spread.all_bits != 0:

@@ -9,9 +9,12 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.many_flows import number, parted
 from rosprivacy.analysis.model import GLOB, STANDARD
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Bound, Element
 
@@ -30,15 +33,28 @@ def reached(spread: Spread, mask: int) -> tuple[tuple[Element, tuple[str, ...]],
     elements = spread.graph.elements
     bits: dict[tuple[str, str, str], int] = defaultdict(int)
     first: dict[tuple[str, str, str], Element] = {}
-    for index, flow in enumerate(spread.graph.flows if spread.standard else ()):
-        if flow.target in spread.standard:
-            stopped = spread.sends(index) & mask & ~spread.keeps.get(flow.target, spread.all_bits)
-            standard = [c for c in spread.names(stopped) if spread.facts[flow.target][c].standard]
-            if standard:
-                element = elements[flow.target]
-                bits[element.identity] |= sum(spread.both(name) for name in standard)
-                first.setdefault(element.identity, element)
+    for _, target, sent in sorted(_sent(spread)):
+        stopped = sent & mask & ~spread.keeps.get(target, spread.all_bits)
+        standard = [c for c in spread.names(stopped) if spread.facts[target][c].standard]
+        if standard:
+            element = elements[target]
+            bits[element.identity] |= sum(spread.both(name) for name in standard)
+            first.setdefault(element.identity, element)
     return tuple((first[key], spread.names(bits[key])) for key in sorted(bits))
+
+
+def _sent(spread: Spread) -> Iterator[tuple[int, int, int]]:
+    """(number of a flow to a standard channel, the channel, what is sent along it), of a meeting one for all alike."""
+    own, meetings = parted(spread.graph.flows, spread.told_apart) if spread.standard else ((), ())
+    for index, flow in own:
+        if flow.target in spread.standard:
+            yield index, flow.target, spread.sends(index)
+    for meeting in meetings:
+        senders: dict[int, int] = {}  # what is sent -> the first that sends it
+        for source in reversed(meeting.written):
+            senders[spread.sent.get(source, 0)] = source
+        for target in spread.standard.intersection(meeting.read):
+            yield from ((number(spread.graph.flows, one, target), target, sent) for sent, one in senders.items())
 
 
 def unchanged(spread: Spread, bound: Bound) -> tuple[Element, ...]:

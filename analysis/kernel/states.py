@@ -11,10 +11,13 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.many_flows import number, one_by_one, parted
+
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from rosprivacy.analysis.kernel.spread import Spread
+    from rosprivacy.analysis.many_flows import Meeting
 
 Move = tuple[int, int, int]  # flow, its target, bits that go along it and are taken up there
 
@@ -26,7 +29,9 @@ class Net:
     Attributes
     ----------
     flows
-        All.
+        All but those of meetings.
+    meetings
+        Of wildcards that are written and have data.
     inner
         Those from what is written to a wildcard to what is read from it: one element to the reader, and so no step.
     """
@@ -34,6 +39,7 @@ class Net:
     spread: Spread
     flows: Mapping[int, list[Move]]
     inner: Mapping[int, list[Move]]
+    meetings: Mapping[int, list[Meeting]]
 
     @classmethod
     def of(cls, spread: Spread) -> Net:
@@ -41,14 +47,37 @@ class Net:
         graph = spread.graph
         flows: dict[int, list[Move]] = defaultdict(list)
         inner: dict[int, list[Move]] = defaultdict(list)
-        for index, flow in enumerate(graph.flows):
+        own, meetings = parted(graph.flows, spread.told_apart)
+        for index, flow in own:
             if spread.leaves.get(flow.source):
                 move = (index, flow.target, spread.passing(index))
                 flows[flow.source].append(move)
                 written, read = graph.elements[flow.source], graph.elements[flow.target]
                 if written.pattern and written.shown_as == read.shown_as:
                     inner[flow.source].append(move)
-        return cls(spread, flows, inner)
+        met: dict[int, list[Meeting]] = defaultdict(list)
+        for meeting in meetings:
+            sides: dict[tuple[str, str, str, str], list[int]] = defaultdict(list)
+            for target in meeting.read:
+                sides[graph.elements[target].shown_as].append(target)
+            for source in filter(spread.leaves.get, meeting.written):
+                met[source].append(meeting)
+                for target in sides.get(graph.elements[source].shown_as, ()):
+                    inner[source].append(_move(spread, source, target))
+        return cls(spread, flows, {source: sorted(moves) for source, moves in inner.items()}, met)
+
+    def leaving(self, vertex: int) -> list[Move]:
+        """Return all flows of an element, with the pairs of its meetings."""
+        moves, meetings = self.flows.get(vertex, []), self.meetings.get(vertex, ())
+        if not meetings:
+            return moves
+        one_by_one(self.spread.graph.flows)
+        return sorted([*moves, *(_move(self.spread, vertex, t) for meeting in meetings for t in meeting.read)])
+
+
+def _move(spread: Spread, source: int, target: int) -> Move:
+    """One flow of a meeting: a channel takes up what it carries."""
+    return number(spread.graph.flows, source, target), target, spread.keeps.get(target, spread.all_bits)
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,9 +111,15 @@ class States:
         stop = self.stop.get(vertex, 0)
         return onward(self.net.spread, vertex, bits & ~stop) & self.allowed & ~stop
 
+    def after_alone(self, vertex: int, leaving: int) -> Iterator[Move]:
+        """Yield where bits arrive that leave an element, but for its meetings."""
+        for index, target, passing in self.net.flows.get(vertex, ()) if leaving else ():
+            if bits := leaving & passing:
+                yield index, target, bits
+
     def after(self, vertex: int, leaving: int) -> Iterator[Move]:
         """Yield where bits arrive that leave an element."""
-        for index, target, passing in self.net.flows.get(vertex, ()) if leaving else ():
+        for index, target, passing in self.net.leaving(vertex) if leaving else ():
             if bits := leaving & passing:
                 yield index, target, bits
 

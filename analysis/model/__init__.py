@@ -57,8 +57,18 @@ from rosprivacy.analysis.model.flow import Flow, FlowGraph
 from rosprivacy.analysis.model.message_type import OF_KIND, MessageType, kind_of_type
 from rosprivacy.analysis.model.policy import Grant, Policy, Profile, Seen
 from rosprivacy.analysis.model.reason import REASONS, Reason
-from rosprivacy.analysis.model.recording import Bag, BagTopic, BagVerdict, JudgedBag, TopicKinds, iso
+from rosprivacy.analysis.model.recording import (
+    Bag,
+    BagTopic,
+    BagVerdict,
+    JudgedBag,
+    Recording,
+    TopicKinds,
+    iso,
+    recording_of,
+)
 from rosprivacy.analysis.model.statement import (
+    CANNOT,
     CHANGED,
     CLEANS,
     CONTEXTS,
@@ -66,6 +76,7 @@ from rosprivacy.analysis.model.statement import (
     NAME,
     NO_BASIS,
     NOWHERE,
+    OF_TYPES,
     SEGMENT,
     STANDARD,
     STATED,
@@ -86,6 +97,7 @@ __all__ = [
     "ARTICLE_10",
     "ASSUMED",
     "BAG_GAP",
+    "CANNOT",
     "CAREFUL_DENY",
     "CHANGED",
     "CHANNELS",
@@ -114,6 +126,7 @@ __all__ = [
     "OBSERVATION_GAP",
     "OBSERVED",
     "OF_KIND",
+    "OF_TYPES",
     "PATHS_NOT_COUNTED",
     "REASONS",
     "RECORDING",
@@ -150,6 +163,7 @@ __all__ = [
     "Processing",
     "Profile",
     "Reason",
+    "Recording",
     "Seen",
     "Severity",
     "Situation",
@@ -160,5 +174,6 @@ __all__ = [
     "is_article_9",
     "iso",
     "kind_of_type",
+    "recording_of",
     "unread",
 ]

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from rosprivacy.analysis.model.diagnostic import Place
     from rosprivacy.analysis.model.element import Element
     from rosprivacy.analysis.model.policy import Grant, Profile
@@ -41,7 +43,8 @@ class FlowGraph:
     elements
         The vertices, sorted by ``Element.sort_key``.
     flows
-        Allowed flows, sorted by (source, target, role); at most one of each.
+        Allowed flows, sorted by (source, target, role); at most one of each. Where many wildcards meet as many, these
+        are ``Flows``, which stores none of the pairs.
     denied
         Flows that an ALLOW grants and a DENY takes back (rule S5), sorted alike.
     profiles
@@ -56,7 +59,7 @@ class FlowGraph:
     """
 
     elements: tuple[Element, ...]
-    flows: tuple[Flow, ...]
+    flows: Sequence[Flow]
     denied: tuple[Flow, ...]
     profiles: tuple[Profile, ...]
     view: str = "declared"

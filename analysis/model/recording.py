@@ -5,6 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from enum import StrEnum
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,6 +94,51 @@ def iso(moment: int | None) -> str:
     ('2023-11-14T22:13:20Z', '')
     """
     return f"{datetime.fromtimestamp(moment // 10**9, UTC):%Y-%m-%dT%H:%M:%SZ}" if moment is not None else ""
+
+
+@dataclass(frozen=True, slots=True)
+class Recording:
+    """The bags that a storage is, in numbers.
+
+    Attributes
+    ----------
+    bag
+        Where they are.
+    size
+        Bytes of their files.
+    topics
+        How many different ones.
+    messages
+        How many; None where a bag does not say.
+    start, end
+        Nanoseconds since 1970; None where a bag does not say.
+    """
+
+    bag: str
+    size: int
+    topics: int
+    messages: int | None = None
+    start: int | None = None
+    end: int | None = None
+
+
+def recording_of(path: str, bags: Sequence[Bag]) -> Recording:
+    """Return the numbers of some bags together; what one of them does not say is not known.
+
+    >>> recording_of("runs", (Bag("a", size=5, start=1, end=2), Bag("b", size=7, start=4, end=9)))
+    Recording(bag='runs', size=12, topics=0, messages=0, start=1, end=9)
+    """
+    counts = [bag.messages for bag in bags if bag.messages is not None]
+    starts = [bag.start for bag in bags if bag.start is not None]
+    ends = [bag.end for bag in bags if bag.end is not None]
+    return Recording(
+        path,
+        sum(bag.size for bag in bags),
+        len({topic.name for bag in bags for topic in bag.topics}),
+        sum(counts) if len(counts) == len(bags) else None,
+        min(starts) if len(starts) == len(bags) and starts else None,
+        max(ends) if len(ends) == len(bags) and ends else None,
+    )
 
 
 class BagVerdict(StrEnum):

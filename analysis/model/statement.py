@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.durations import Duration
     from rosprivacy.analysis.model.element import Element
     from rosprivacy.analysis.model.message_type import MessageType
+    from rosprivacy.analysis.model.recording import Recording
 
 
 class Method(StrEnum):
@@ -35,6 +36,7 @@ CLEANS = tuple(method for method in Method if method is not Method.ABSENT)  # wh
 NAME, SEGMENT, GLOB = "name", "segment", "glob"  # how a label names an element
 STANDARD = 0  # the tier of the file of standard channels (rule S13); users' files are above it
 CHANGED = 3  # the tier of what a proposal changes: above all that is said now, in files and in a database
+CANNOT, OF_TYPES = "cannot", (-2, 0)  # role and rank of what a type cannot carry: below all that anybody says (S15)
 STATED = "flow"  # the role of a flow that a person states (rule S9)
 
 
@@ -47,7 +49,7 @@ class Statement:
     role
         Of a node: ``source``, ``leak``, ``sanitizer``, ``conduit``, ``derivation``, and ``no-source`` and ``no-leak``,
         which take back what is said by lower ranks. Of a channel: ``mundane``, ``sensitive``, ``only``, ``never``. Of a
-        flow: ``only``, ``never``.
+        flow: ``only``, ``never``. Of the type of a channel: ``CANNOT``, of exactly the kinds that it names.
     categories
         Names; empty means every category. One name for the roles of a node.
     rank
@@ -138,6 +140,8 @@ class NonRosFacts:
         On what it is operated for the controller, such as a contract under Article 28, in a person's words.
     place
         Where it is stated.
+    recording
+        Of a storage that is a bag: its size, its time, how much is in it.
     """
 
     retention: tuple[tuple[str, Duration], ...] = ()
@@ -153,6 +157,7 @@ class NonRosFacts:
     transfer: str = ""
     contract: str = ""
     place: Place = NOWHERE
+    recording: Recording | None = None
 
     @property
     def basis(self) -> str:

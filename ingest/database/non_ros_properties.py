@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.durations import ordered, parse
-from rosprivacy.analysis.model import NO_BASIS, NonRosFacts, Place
+from rosprivacy.analysis.model import NO_BASIS, NonRosFacts, Place, Recording
 from rosprivacy.analysis.non_ros import EVERY, RECIPIENTS, TRANSFERS
 from rosprivacy.ingest.labels.countries import countries
 
@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
 
     from rosprivacy.analysis.durations import Duration
+
+NUMBERS = ("bag_bytes", "bag_topics", "bag_messages", "bag_start", "bag_end")
 
 
 def properties_of(facts: NonRosFacts) -> dict[str, Any]:
@@ -31,6 +33,7 @@ def properties_of(facts: NonRosFacts) -> dict[str, Any]:
         "recipient": facts.recipient or None,
         "transfer": facts.transfer or None,
         "contract": facts.contract or None,
+        **_recorded(facts.recording),
         "file": facts.place.file or None,
         "line": facts.place.line or None,
     }
@@ -64,8 +67,29 @@ def facts_of(said: Mapping[str, Any], categories: Collection[str]) -> NonRosFact
         transfer=transfer,
         contract=_text(said, "contract"),
         place=Place(_text(said, "file"), int(said.get("line") or 0)),
+        recording=_recording(said),
         **(countries().place(country) if country else {}),
     )
+
+
+def _recorded(recording: Recording | None) -> dict[str, Any]:
+    """The properties of a storage that is a bag; absent of others."""
+    if recording is None:
+        return dict.fromkeys(("bag", *NUMBERS))
+    values = (recording.size, recording.topics, recording.messages, recording.start, recording.end)
+    return {"bag": recording.bag, **dict(zip(NUMBERS, values, strict=True))}
+
+
+def _recording(said: Mapping[str, Any]) -> Recording | None:
+    bag = _text(said, "bag")
+    if not bag:
+        return None
+    numbers = [said.get(key) for key in NUMBERS]
+    for key, number in zip(NUMBERS, numbers, strict=True):
+        if not (number is None or (isinstance(number, int) and not isinstance(number, bool))):
+            raise ValueError(f"{key} is not a whole number")
+    size, topics, messages, start, end = numbers
+    return Recording(bag, size or 0, topics or 0, messages, start, end)
 
 
 def _texts(stated: tuple[tuple[str, Duration], ...]) -> list[str] | None:

@@ -11,7 +11,7 @@ import json
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.model import UNSTATED
+from rosprivacy.analysis.model import CANNOT, UNSTATED
 from rosprivacy.analysis.non_ros import BY_KIND
 from rosprivacy.ingest.database.carrying import Carrying
 from rosprivacy.ingest.database.element_properties import (
@@ -275,7 +275,7 @@ def add_roles(
 ) -> None:
     """Add one relationship per category that a statement names; one about every category goes to those at the top."""
     for statement in said:
-        if statement.rank == BY_KIND:  # nobody said it; whoever reads the graph takes it so too
+        if statement.rank == BY_KIND or statement.role == CANNOT:  # nobody said it; who reads the graph takes it so too
             continue
         properties: Row = {
             "file": statement.place.file,

@@ -76,7 +76,7 @@ def stripped(graph: FlowGraph, namespace: str) -> tuple[FlowGraph, dict[Element,
     number = {element: i for i, element in enumerate(elements)}
     moved = [number[shown[element]] for element in graph.elements]
 
-    def renumbered(flows: tuple[Flow, ...]) -> tuple[Flow, ...]:
+    def renumbered(flows: Sequence[Flow]) -> tuple[Flow, ...]:
         new = [replace(flow, source=moved[flow.source], target=moved[flow.target]) for flow in flows]
         return tuple(sorted(new, key=lambda flow: (flow.source, flow.target, flow.role)))
 

@@ -7,10 +7,12 @@ their flows keeps the line that states it. A name that is not there is an error 
 from __future__ import annotations
 
 from collections import defaultdict
+from dataclasses import replace
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, shown
+from rosprivacy.analysis.many_flows import Flows, Meeting, parted
 from rosprivacy.analysis.model import STATED, Element, Flow, FlowGraph, Grant
 from rosprivacy.analysis.written_names import literal, meant
 from rosprivacy.ingest.labels.bag_storages import recorded
@@ -158,11 +160,16 @@ def with_flows(
         lines[number[source], number[target]].append(place)
     added = [Flow(*ends, FLOW, tuple(line_of(place) for place in _sorted(places))) for ends, places in lines.items()]
 
-    def renumbered(old: tuple[Flow, ...], new: Sequence[Flow] = ()) -> tuple[Flow, ...]:
+    def renumbered(old: Iterable[Flow], new: Sequence[Flow] = ()) -> tuple[Flow, ...]:
         kept = [Flow(moved[f.source], moved[f.target], f.role, f.grants, f.denials) for f in old]
         return tuple(sorted([*kept, *new], key=lambda f: (f.source, f.target, f.role)))
 
-    allowed, denied = renumbered(graph.flows, added), renumbered(graph.denied)
+    own, meetings = parted(graph.flows)
+    allowed: Sequence[Flow] = renumbered((flow for _, flow in own), added)
+    if isinstance(graph.flows, Flows):  # no flow that is stated has both of its ends in a meeting
+        met = (Meeting(*(tuple(moved[end] for end in side) for side in (m.written, m.read))) for m in meetings)
+        allowed = replace(graph.flows, stored=tuple(allowed), meetings=tuple(met))
+    denied = renumbered(graph.denied)
     matches = renumbered(graph.denied_matches)
     return FlowGraph(tuple(known), allowed, denied, graph.profiles, graph.view, matches, graph.careful)
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.bounds import BOUNDS, Tally
 from rosprivacy.analysis.durations import ordered
 from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, shown
+from rosprivacy.analysis.many_flows import at_most, leaving
 from rosprivacy.analysis.model import Bound, Diagnostic, Severity, Surroundings
 from rosprivacy.analysis.non_ros import by_kind
 from rosprivacy.analysis.text import counted
@@ -73,7 +74,7 @@ def join(
     own: dict[int, Surroundings] = {}
     processing: dict[int, list[tuple[tuple[int, int], Processing]]] = defaultdict(list)
     types: dict[int, list[MessageType]] = defaultdict(list)
-    leaving = _leaving(graph)
+    flows_of = leaving(graph.flows)
     problems: list[InputError] = []
     for file in labels:
         for entry in file.entries:
@@ -91,9 +92,9 @@ def join(
             for vertex, one in stated_at(graph, entry, vertices):
                 types[vertex].append(one)
             problems += of_no_channel(graph, entry, vertices)
-            problems += _through(graph, leaving, entry, vertices, through)
+            problems += _through(graph, flows_of, entry, vertices, through)
         for flow in file.flows:
-            indices = _flows(graph, leaving, names, flow)
+            indices = _flows(graph, flows_of, names, flow)
             if not indices:
                 problems.append(names.no_flow(flow))
             for index in indices if flow.statements else ():
@@ -237,28 +238,22 @@ class _Names:
         return [literal(close) for close in get_close_matches(meant(name), known, n=NEAREST, cutoff=0.5)]
 
 
-def _flows(graph: FlowGraph, leaving: Mapping[int, Sequence[int]], names: _Names, entry: FlowEntry) -> list[int]:
+def _flows(graph: FlowGraph, flows_of: Mapping[int, range], names: _Names, entry: FlowEntry) -> list[int]:
     sources, targets = (names.matching(end.name, (end.kind,) if end.kind else None) for end in entry.ends)
-    wanted = set(targets)
-    return [index for source in sources for index in leaving.get(source, ()) if graph.flows[index].target in wanted]
-
-
-def _leaving(graph: FlowGraph) -> dict[int, list[int]]:
-    leaving: dict[int, list[int]] = defaultdict(list)
-    for index, flow in enumerate(graph.flows):
-        leaving[flow.source].append(index)
-    return leaving
+    numbers = [flows_of[source] for source in sources if source in flows_of]
+    flows, wanted = at_most(graph.flows, sum(map(len, numbers))), set(targets)
+    return [index for some in numbers for index in some if flows[index].target in wanted]
 
 
 def _through(
-    graph: FlowGraph, leaving: Mapping[int, Sequence[int]], entry: Entry, vertices: Sequence[int],
+    graph: FlowGraph, flows_of: Mapping[int, range], entry: Entry, vertices: Sequence[int],
     through: dict[tuple[int, tuple[str, ...]], tuple[int, ...]],
 ) -> Iterable[InputError]:  # fmt: skip
     """Find the flows of a source that is one only through some channels; a channel it does not write is an error."""
     for expressions in {statement.through for statement in entry.statements if statement.through}:
         written: set[str] = set()
         for vertex in vertices:
-            flows = {index: graph.elements[graph.flows[index].target].name for index in leaving.get(vertex, ())}
+            flows = {index: graph.elements[graph.flows[index].target].name for index in flows_of.get(vertex, ())}
             written.update(flows.values())
             chosen = {name for expression in expressions for name in covered(expression, set(flows.values()))}
             through[vertex, expressions] = tuple(index for index, name in flows.items() if name in chosen)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Protocol
 from rosprivacy.analysis.durations import Duration, ordered
 from rosprivacy.analysis.durations import parse as parse_duration
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.model import NO_BASIS, NON_ROS, NonRosFacts, Place
+from rosprivacy.analysis.model import NO_BASIS, NON_ROS, NonRosFacts, Place, recording_of
 from rosprivacy.analysis.non_ros import EVERY, RECIPIENTS, TRANSFERS
 from rosprivacy.analysis.written_names import GLOB_SIGNS, LITERAL
 from rosprivacy.ingest.labels.countries import countries
@@ -123,6 +123,7 @@ class _Facts:
     def __init__(self, reader: Reader) -> None:
         self.between: tuple[End, ...] = ()
         self.bags: tuple[Bag, ...] = ()
+        self._bag = ""
         self._reader = reader
         self._retention: list[Limit] = []
         self._texts: dict[str, str] = {}
@@ -131,7 +132,10 @@ class _Facts:
 
     def outside(self, place: Place) -> NonRosFacts:
         retention = ordered(self._retention)
-        return NonRosFacts(retention, (), self._backups, encrypted=self._encrypted, place=place, **self._texts)
+        made = recording_of(self._bag, self.bags) if self.bags else None
+        return NonRosFacts(
+            retention, (), self._backups, encrypted=self._encrypted, place=place, recording=made, **self._texts
+        )
 
     def take(self, key: str, line: int, value: Value) -> None:
         if key == "retention":
@@ -146,7 +150,7 @@ class _Facts:
         elif key == "between":
             self._take_between(line, value)
         elif key == BAG:
-            self.bags = self._reader.bags_at(value)
+            self._bag, self.bags = value.text, self._reader.bags_at(value)
         elif key == "country":
             self._take_country(value)
         else:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.observe.observation import ObservedEndpoint
 
 _PART = re.compile(rf"(.+)/_action/({'|'.join(ACTION_SERVICES + ACTION_TOPICS)})")
-_OF_TYPE = re.compile(r"(.+/action/.+)_(?:SendGoal|GetResult|FeedbackMessage)")
+_OF_TYPE = ("SendGoal", "GetResult", "FeedbackMessage")
 _SIDES = {"publish": "execute", "reply": "execute", "subscribe": "call", "request": "call"}
 GOAL = "send_goal"
 
@@ -56,5 +56,5 @@ def action_type(name: str) -> str:
     >>> action_type("nav2_msgs/action/Spin_SendGoal"), action_type("action_msgs/srv/CancelGoal")
     ('nav2_msgs/action/Spin', '')
     """
-    match = _OF_TYPE.fullmatch(name)
-    return match[1] if match else ""
+    action, _, part = name.rpartition("_")
+    return action if part in _OF_TYPE and "/action/" in action else ""

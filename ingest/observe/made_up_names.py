@@ -19,16 +19,19 @@ if TYPE_CHECKING:
 
     from rosprivacy.ingest.observe.observation import Observation, Span
 
-# What names of one generator begin with, and what it puts after it at each start.
+# What the last parts of names of one generator look like: what stays of them, what is made up at each start.
 GENERATORS = (
-    ("transform_listener_impl", "address", r"(?:0x)?[0-9a-f]{6,16}"),  # tf2_ros::TransformListener
-    ("interactive_marker_display", "address", r"(?:0x)?[0-9a-f]{6,16}"),  # rviz
-    ("launch_ros", "process id", r"[0-9]{1,10}"),  # launch_ros
-    ("_ros2cli", "process id", r"[0-9]{1,10}"),  # ros2cli
-    ("_ros2cli_daemon", "domain and digest", r"[0-9]{1,3}_[0-9a-f]{8,64}"),  # ros2cli's daemon
-    ("moveit", "random number", r"[0-9]{6,20}"),  # MoveIt's own node
+    ("transform_listener_impl", "address", re.compile(r"transform_listener_impl_(?:0x)?[0-9a-f]{6,16}", re.ASCII)),
+    (
+        "interactive_marker_display",
+        "address",
+        re.compile(r"interactive_marker_display_(?:0x)?[0-9a-f]{6,16}", re.ASCII),
+    ),
+    ("launch_ros", "process id", re.compile(r"launch_ros_[0-9]{1,10}", re.ASCII)),
+    ("_ros2cli", "process id", re.compile(r"_ros2cli_[0-9]{1,10}", re.ASCII)),
+    ("_ros2cli_daemon", "domain and digest", re.compile(r"_ros2cli_daemon_[0-9]{1,3}_[0-9a-f]{8,64}", re.ASCII)),
+    ("moveit", "random number", re.compile(r"moveit_[0-9]{6,20}", re.ASCII)),
 )
-_RULES = tuple((base, what, re.compile(rf"(.*/){base}_{made}", re.ASCII)) for base, what, made in GENERATORS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,9 +61,10 @@ def plain_name(name: str) -> tuple[str, str]:
     >>> plain_name("/cam_1"), plain_name("/launch_ros_4711")
     (('/cam_1', ''), ('/launch_ros', 'launch_ros_<process id>'))
     """
-    for base, what, expression in _RULES:
-        if match := expression.fullmatch(name):
-            return f"{match[1]}{base}", f"{base}_<{what}>"
+    namespace, slash, last = name.rpartition("/")
+    for base, what, expression in GENERATORS:
+        if expression.fullmatch(last):
+            return f"{namespace}{slash}{base}", f"{base}_<{what}>"
     return name, ""
 
 
@@ -99,7 +103,9 @@ def _foldable(observation: Observation) -> Iterator[Folded]:
 
 def _moved(name: str, new: Mapping[str, str]) -> str:
     """A channel of a node's own (its parameter services) goes with the node."""
-    for old, plain in new.items():
-        if name == old or name.startswith(f"{old}/"):
-            return plain + name[len(old) :]
+    parts = name.split("/")
+    for last in range(len(parts), 1, -1):
+        head = "/".join(parts[:last])
+        if head in new:
+            return new[head] + name[len(head) :]
     return name

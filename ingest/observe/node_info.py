@@ -39,7 +39,6 @@ SECTIONS = {
 MOST_PROBLEMS = 20
 HINT = "give the output of `ros2 node info`, one node after the other"
 _SECTION = re.compile(r"  ([A-Z][A-Za-z ]+):\s*")
-_ENTRY = re.compile(r"    (\S.*?): ?(.*)")
 _ALIKE = re.compile(r"There are ([0-9]{1,9}) nodes in the graph with the exact name")
 _OF_A_TOOL = re.compile(r"(?:WARNING|\[(?:WARN|INFO|ERROR)\]|[0-9.]+ \[)")
 
@@ -113,12 +112,12 @@ class _Reader:
                 self._gap(UNANSWERED, 1, f"{node}: not all of its sections are there, so not all that it does is known")
 
     def _of_node(self, number: int, line: str) -> None:
-        section, entry = _SECTION.fullmatch(line), _ENTRY.fullmatch(line)
+        section, (name, colon, types) = _SECTION.fullmatch(line), line.partition(":")
         if section and section[1] in SECTIONS and self.node:
             self.role = SECTIONS[section[1]]
             self.told[self.node].add(self.role)
-        elif entry and self.role:
-            self.endpoints.extend(self._endpoints(entry[1], entry[2]))
+        elif colon and self.role and name.startswith("    ") and not name.startswith("     "):
+            self.endpoints.extend(self._endpoints(name[4:], types))
         else:
             what = f"not the output of `ros2 node info`: {shown(repr(line))}"
             self.problems.append(ObservationError(self.file, number, what, HINT))

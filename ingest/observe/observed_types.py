@@ -1,7 +1,7 @@
 """An observation -> which types its channels have, and who writes and reads them with these (rules S15, S16).
 
 In: an observation as it is written. Out: YAML, sorted. Who uses a channel with a type that is not known is not in it,
-so that nobody takes the channel's types for all of them.
+not with another type either, so that nobody takes the channel's types for all of them.
 """
 
 from __future__ import annotations
@@ -32,8 +32,9 @@ def types_yaml(observation: Observation) -> str:
     entries: dict[str, dict[str, dict[tuple[str, str], list[ObservedEndpoint]]]] = {}
     for section, _ in USERS.values():
         entries[section] = defaultdict(lambda: defaultdict(list))
+    unknown = {(one.role, one.name, one.node) for one in observation.endpoints if not one.type}
     for endpoint in observation.endpoints:
-        if endpoint.type:
+        if endpoint.type and (endpoint.role, endpoint.name, endpoint.node) not in unknown:
             entries[USERS[endpoint.role][0]][endpoint.name][endpoint.type, endpoint.hash].append(endpoint)
     document = CommentedMap(types=1, observed=_flow(_observed(observation)))
     for section, channels in entries.items():

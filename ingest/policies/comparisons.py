@@ -52,6 +52,10 @@ class Comparisons:
         self._steps.add(STEPS_OF_A_PAIR + len(ours), self.at)
         return covers(ours, theirs)
 
+    def placed(self, groups: int) -> None:
+        """Count that an expression was put into groups of those that begin and end alike."""
+        self._steps.add(STEPS_OF_A_PAIR * groups, self.at)
+
     def covered(self, expression: str, plain: PlainNames) -> Iterator[tuple[str, Element]]:
         """Those of the channels, each with its DDS name, that an expression covers."""
         matches = matcher(expression)

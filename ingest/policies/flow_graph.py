@@ -9,22 +9,28 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import dataclass, field
+from itertools import product
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.bounds import BOUNDS, Tally
 from rosprivacy.analysis.errors import PolicyError
+from rosprivacy.analysis.many_flows import Flows, Meeting
 from rosprivacy.analysis.model import KINDS, Element, Flow, FlowGraph, Grant, Profile
 from rosprivacy.analysis.modes import View
 from rosprivacy.ingest.policies.comparisons import Comparisons, apart
+from rosprivacy.ingest.policies.meetings import literal_ends, meetings
 from rosprivacy.ingest.policies.name_index import Expressions, PlainNames
 from rosprivacy.ingest.policies.names import dds_names, endpoints, is_pattern
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.bounds import Bounds
     from rosprivacy.analysis.model import Place, Policy
+    from rosprivacy.ingest.policies.meetings import Ends
     from rosprivacy.ingest.policies.names import Endpoint
+
+STORED = 64  # times its members a group of wildcards that meet may have flows that are stored
 
 
 def build(policies: Iterable[Policy], view: str = View.declared, bounds: Bounds = BOUNDS) -> FlowGraph:
@@ -44,7 +50,8 @@ def build(policies: Iterable[Policy], view: str = View.declared, bounds: Bounds 
     Notes
     -----
     Linear in the grants; with wildcards also in the pairs of names whose literal beginnings, or whose literal ends,
-    go together: the fewer of both. Bounded by ``flows`` and ``comparisons``.
+    go together: the fewer of both. Where many meet as many, their pairs are not stored (``Flows``). Bounded by
+    ``flows`` and ``comparisons``.
     """
     policies = tuple(policies)
     profiles = tuple(sorted({p for policy in policies for p in policy.profiles}, key=_profile_key))
@@ -52,7 +59,7 @@ def build(policies: Iterable[Policy], view: str = View.declared, bounds: Bounds 
     rights = list(_rights([grant for grant in grants if grant.allow], profiles, View(view)))
     work = Comparisons(bounds)
     denials = _Denials([grant for grant in grants if not grant.allow and not grant.dead], work)
-    drafts = _Drafts(work, Tally(bounds, "flows", PolicyError))
+    drafts = _Drafts(work, bounds)
     for profile in profiles:
         drafts.elements.add(Element("node", profile.node))
     for grant in grants:
@@ -125,8 +132,8 @@ _MATCH = _Draft()  # of all flows of role ``matches``: no line states them
 class _Drafts:
     """Elements and flows as they are found, not yet numbered."""
 
-    def __init__(self, work: Comparisons, count: Tally) -> None:
-        self.work, self.count = work, count
+    def __init__(self, work: Comparisons, bounds: Bounds) -> None:
+        self.work, self.bounds, self.count = work, bounds, Tally(bounds, "flows", PolicyError)
         self.said: dict[Element, Place] = {}  # of a pattern: the first line of it
         self.elements: set[Element] = set()
         self.plain: dict[tuple[str, str, str], Element] = {}
@@ -135,6 +142,7 @@ class _Drafts:
         self.ordered: dict[Element, list[str]] = {}  # those of patterns, for the same steps in every run
         self.rules: dict[Element, set[Rule]] = defaultdict(set)  # of a pattern: what denies a part of it
         self.refused: dict[tuple[Element, Element], set[Grant]] = {}  # matches that DENYs take out
+        self.meetings: list[tuple[list[Element], list[Element]]] = []
 
     def add_channel(self, grant: Grant) -> None:
         """The concrete channel of a DENY; a denied wildcard grants and names nothing."""
@@ -184,22 +192,53 @@ class _Drafts:
 
     def join(self) -> None:
         """Join each wildcard to the names that it matches and the wildcards that it can meet (rule S4)."""
-        if not any(e.pattern for e in self.elements):
-            return
-        plain = PlainNames((dds, e) for e in self.elements if not e.is_node and not e.pattern for dds in self.dds[e])
         patterns = sorted((e for e in self.elements if e.pattern), key=Element.sort_key)
+        if not patterns:
+            return
         self.ordered = {e: sorted(self.dds[e]) for e in patterns}
-        readers = Expressions((dds, e) for e in patterns if e.side == "read" for dds in self.ordered[e])
+        plain = PlainNames(
+            ((dds, e) for e in self.elements if not e.is_node and not e.pattern for dds in self.dds[e]),
+            [dds for e in patterns for dds in self.ordered[e]],
+        )
         gone = self._denied_whole()
+        by_ends = self._by_ends(gone)
+        everyone, others = (
+            Expressions((dds, e) for e in some if e.side == "read" for dds in self.ordered[e])
+            for some in (patterns, [e for e in patterns if e not in by_ends])
+        )
+        self._meet(by_ends)
         for pattern in patterns:
             self.work.at = self.said[pattern]
             for channel, lines in self._covered(pattern, plain):
                 ends = (pattern, channel) if pattern.side == "write" else (channel, pattern)
                 self._match(*ends, lines | gone.get(pattern, set()))
             if pattern.side == "write":
+                readers = others if pattern in by_ends else everyone
                 for reader in {near: None for dds in self.ordered[pattern] for near in readers.near(dds)}:
                     if (met := self._met(pattern, reader)) is not None:
                         self._match(pattern, reader, met | gone.get(pattern, set()) | gone.get(reader, set()))
+
+    def _by_ends(self, gone: Mapping[Element, set[Grant]]) -> dict[Element, Ends]:
+        """The patterns of which their literal ends tell what they meet: of one DDS topic, and no DENY is about them."""
+        alone = (e for e, dds in self.ordered.items() if len(dds) == 1 and not self.rules.get(e) and e not in gone)
+        return {e: ends for e in alone if (ends := literal_ends(self.ordered[e][0])) is not None}
+
+    def _meet(self, by_ends: Mapping[Element, Ends]) -> None:
+        """Join patterns by their ends; large groups as a whole."""
+
+        def count(element: Element, groups: int) -> None:
+            self.work.at = self.said[element]
+            self.work.placed(groups)
+
+        writers, readers = ({e: ends for e, ends in by_ends.items() if e.side == side} for side in ("write", "read"))
+        for written, read in meetings(writers, readers, count):
+            self.work.at = self.said[written[0]]
+            if len(written) * len(read) > STORED * (len(written) + len(read)):
+                self.count.add(len(written) + len(read), self.work.at)
+                self.meetings.append((written, read))
+                continue
+            for writer, reader in product(written, read):
+                self._match(writer, reader, set())
 
     def _denied_whole(self) -> dict[Element, set[Grant]]:
         """Patterns of which DENYs leave no name, with these lines: nothing is joined to them (rule S4)."""
@@ -262,8 +301,13 @@ class _Drafts:
             Flow(index[source], index[target], "matches", (), tuple(sorted(lines, key=_grant_key)))
             for (source, target), lines in self.refused.items()
         ]
+        flows: Sequence[Flow] = tuple(sorted(allowed, key=_ends))
+        if self.meetings:
+            groups = (tuple(sorted(index[e] for e in group) for group in pair) for pair in self.meetings)
+            met = tuple(sorted((Meeting(*map(tuple, pair)) for pair in groups), key=lambda m: (m.written, m.read)))
+            flows = Flows(tuple(flows), met, self.bounds, self.said[self.meetings[0][0][0]])
         return FlowGraph(
-            elements, tuple(sorted(allowed, key=_ends)), tuple(sorted(denied, key=_ends)), profiles, view,
+            elements, flows, tuple(sorted(denied, key=_ends)), profiles, view,
             tuple(sorted(refused, key=_ends)), tuple(sorted(self.work.careful, key=lambda at: (at.file, at.line))),
         )  # fmt: skip
 

@@ -2,22 +2,28 @@
 
 In: DDS names and expressions, each with its element. Out: for an expression, those that can have a name in common with
 it by their literal beginnings and ends; what is left out has none. Where many names begin alike they mostly end
-differently, or the reverse, so the smaller of both lists is looked at.
+differently, or the reverse, so the smaller of both lists is looked at; of plain names also those that hold what an
+expression holds between its wildcards.
 """
 
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
 from collections import defaultdict
+from functools import cached_property
 from itertools import accumulate
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.expressions import tokens
 from rosprivacy.ingest.policies.names import literal_prefix, literal_suffix
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.model import Element
+
+FEW = 16  # so many names are looked at without asking for better
+LONGEST_RUN = 16  # characters of a literal part that are looked for
 
 
 class Expressions:
@@ -37,19 +43,54 @@ class Expressions:
 
 
 class PlainNames:
-    """Names without wildcards, to find those that an expression can cover."""
+    """Names without wildcards, to find those that an expression can cover.
 
-    def __init__(self, names: Iterable[tuple[str, Element]]) -> None:
+    Parameters
+    ----------
+    expressions
+        That ``near`` is asked for: names are found by what these hold literally inside, too.
+    """
+
+    def __init__(self, names: Iterable[tuple[str, Element]], expressions: Iterable[str] = ()) -> None:
         self._forward = sorted(names)
         self._backward = sorted((name[::-1], element) for name, element in self._forward)
+        self._expressions = expressions
 
     def near(self, expression: str) -> Iterator[tuple[str, Element]]:
-        """Return the names that begin, or that end, as all names of the expression do."""
+        """Return the names that begin, or that end, as all names of the expression do, or that hold a part of it."""
         first, last = _begun(self._forward, literal_prefix(expression))
         other, end = _begun(self._backward, literal_suffix(expression)[::-1])
+        fewest = min(last - first, end - other)
+        if fewest > FEW:
+            inside = min(
+                (self._holding[run] for run in _runs(expression) if run in self._holding), key=len, default=None
+            )
+            if inside is not None and len(inside) < fewest:
+                return (self._forward[at] for at in inside)
         if last - first <= end - other:
             return iter(self._forward[first:last])
         return ((name[::-1], element) for name, element in self._backward[other:end])
+
+    @cached_property
+    def _holding(self) -> Mapping[str, Sequence[int]]:
+        """By a literal part of an expression: where the names stand that hold it."""
+        holding: dict[str, list[int]] = {run: [] for expression in self._expressions for run in _runs(expression)}
+        for length in sorted({len(run) for run in holding}):
+            for at, (name, _) in enumerate(self._forward):
+                for run in {name[i : i + length] for i in range(len(name) - length + 1)} & holding.keys():
+                    holding[run].append(at)
+        return holding
+
+
+def _runs(expression: str) -> list[str]:
+    """What every name that an expression covers holds somewhere: its literal parts, of long ones the first signs."""
+    runs = [""]
+    for token in tokens(expression):
+        if token is not None and len(token) == 1 and token[0][0] == token[0][1]:
+            runs[-1] += chr(token[0][0])
+        else:
+            runs.append("")
+    return [run[:LONGEST_RUN] for run in runs if run]
 
 
 class _Literals:

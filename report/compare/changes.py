@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 ASKED = (
     "view", "categories_asked", "data_types_asked", "identity_factors_asked", "article9_only", "article9_level",
-    "standard_channels", "ontologies", "law_as_of", "rosprivacy",
+    "standard_channels", "type_limits", "ontologies", "law_as_of", "rosprivacy",
 )  # fmt: skip
 READ = ("fleet", "policies", "labels")
 COMPARED = ("pseudonymised", "dismissed", "accepted", "disjoint_paths", "article9", "reason")
@@ -143,8 +143,8 @@ def scope(before: Mapping[str, Any], now: Mapping[str, Any]) -> Iterator[tuple[s
 
 
 def _compared(value: Any) -> Any:
-    """A value without what follows from the system: how many channels a file took as mundane."""
-    return {k: v for k, v in value.items() if k != "taken"} if isinstance(value, dict) else value
+    """A value without what follows from the system: how many channels or flows a file closed."""
+    return {k: v for k, v in value.items() if k not in ("taken", "flows")} if isinstance(value, dict) else value
 
 
 def _shown(value: Any) -> str:

@@ -76,6 +76,23 @@ class TypesFileEntry(FileEntry):
     observed: ObservedEntry
 
 
+class TypeLimitsFile(FileEntry):
+    """The table of what message types cannot carry, and how many flows it closes."""
+
+    flows: int
+
+
+class ClosedEntry(TypedDict):
+    """A finding that there would be if types limited nothing."""
+
+    id: str
+    kind: str
+    category: str
+    source: ElementEntry
+    leak: ElementEntry
+    dismissed: bool
+
+
 class DecisionsFile(FileEntry):
     """The file of decisions, and the day that they are looked at."""
 
@@ -104,6 +121,9 @@ class Given(TypedDict):
     labels: list[FileEntry]
     fleet: NotRequired[list[FileEntry]]
     types: NotRequired[list[TypesFileEntry]]
+    type_limits: NotRequired[TypeLimitsFile | None]
+    type_limits_reached: NotRequired[list[Reached]]
+    closed_by_types: NotRequired[list[ClosedEntry]]
     standard_channels: StandardFile | None
     database: NotRequired[DatabaseEntry]
     decisions: NotRequired[DecisionsFile]

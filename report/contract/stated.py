@@ -173,6 +173,17 @@ class NonRosNotKnown(TypedDict, total=False):
     without_limit: list[str]
 
 
+class RecordingEntry(TypedDict):
+    """What the bag that a storage is says of itself."""
+
+    bag: str
+    bytes: int
+    topics: int
+    messages: NotRequired[int]
+    start: NotRequired[str]
+    end: NotRequired[str]
+
+
 class NonRosStated(TypedDict, total=False):
     """What is stated of a non-ROS element."""
 
@@ -185,6 +196,7 @@ class NonRosStated(TypedDict, total=False):
     recipient: str
     transfer: str
     contract: str
+    recording: RecordingEntry
 
 
 class NonRosEntry(NonRosStated, NonRosNotKnown):

@@ -7,16 +7,25 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.report.document.analysis import element_dict
 
 if TYPE_CHECKING:
+    from rosprivacy.analysis.answer import Finding
     from rosprivacy.analysis.model import Element, MessageType
     from rosprivacy.report.answer import Answer
-    from rosprivacy.report.contract.analysis import AnalysisDocument
+    from rosprivacy.report.contract.analysis import AnalysisDocument, ClosedEntry
     from rosprivacy.report.contract.stated import TypeEntry, TypesEntry
 
 
 def with_types(document: AnalysisDocument, answer: Answer) -> AnalysisDocument:
-    """Return a document with the types of channels, where any are known."""
-    types = _types(answer)
-    return {**document, "types": types} if types else document
+    """Return a document with the types of channels, where any are known, and what only these close."""
+    types, closed = _types(answer), answer.shown.closed
+    if types:
+        document["types"] = types
+    if closed:
+        document["assumptions"]["type_limits_reached"] = [
+            {"element": element_dict(element), "categories": list(categories)}
+            for element, categories in closed.channels
+        ]
+        document["assumptions"]["closed_by_types"] = [_closed(finding) for finding in closed.findings]
+    return document
 
 
 def _types(answer: Answer) -> list[TypesEntry]:
@@ -32,6 +41,17 @@ def _types(answer: Answer) -> list[TypesEntry]:
     return [
         {"element": element_dict(element), "types": [_type(one) for one in some]} for element, some in together.values()
     ]
+
+
+def _closed(finding: Finding) -> ClosedEntry:
+    return {
+        "id": finding.id,
+        "kind": finding.kind,
+        "category": finding.category,
+        "source": element_dict(finding.source),
+        "leak": element_dict(finding.leak),
+        "dismissed": finding.dismissed,
+    }
 
 
 def _type(one: MessageType) -> TypeEntry:

@@ -7,13 +7,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.model import iso
 from rosprivacy.analysis.non_ros import TAKEN, limited, not_stated
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.hierarchy import Hierarchy
-    from rosprivacy.analysis.model import Element, NonRosFacts
-    from rosprivacy.report.contract.stated import NonRosEntry, NonRosNotKnown, NonRosStated
+    from rosprivacy.analysis.model import Element, NonRosFacts, Recording
+    from rosprivacy.report.contract.stated import NonRosEntry, NonRosNotKnown, NonRosStated, RecordingEntry
 
 
 def inventory(analysis: Analysis, hierarchy: Hierarchy) -> list[NonRosEntry]:
@@ -65,6 +66,19 @@ def _facts(facts: NonRosFacts) -> NonRosStated:
         said["transfer"] = facts.transfer
     if facts.contract:
         said["contract"] = facts.contract
+    if facts.recording:
+        said["recording"] = _recording(facts.recording)
+    return said
+
+
+def _recording(recording: Recording) -> RecordingEntry:
+    said: RecordingEntry = {"bag": recording.bag, "bytes": recording.size, "topics": recording.topics}
+    if recording.messages is not None:
+        said["messages"] = recording.messages
+    if recording.start is not None:
+        said["start"] = iso(recording.start)
+    if recording.end is not None:
+        said["end"] = iso(recording.end)
     return said
 
 

@@ -49,6 +49,7 @@ def assumed(index: Index) -> Iterator[str]:
     yield from observed_lines(index.document, words)
     yield _standard(index)
     yield from _stopped(index)
+    yield from _types(index)
     if said["categories_asked"] != ALL:
         yield words("a.categories", names=words.row(map(fit, said["categories_asked"])))
     if said.get("data_types_asked", ALL) != ALL:
@@ -119,6 +120,26 @@ def _globs(index: Index) -> Iterator[str]:
         yield f"{text} {words(f'a.glob.{warning}')}" if warning else text
 
 
+def _types(index: Index) -> Iterator[str]:
+    """When message types were observed, what these close, and the findings that only they close (rules S15, S16)."""
+    words, said = index.words, index.document["assumptions"]
+    for file in said.get("types", ()):
+        seen = file["observed"]
+        if seen["from"]:
+            yield words("a.types.observed", file=fit(file["file"]), start=fit(seen["from"]), end=fit(seen["to"]))
+    if "type_limits" not in said:
+        return
+    limits = said["type_limits"]
+    if limits is None:
+        yield words("a.types.none")
+        return
+    flows = words.count(limits["flows"], "flow")
+    yield words("a.types.limits", flows=flows, file=fit(limits["file"]), sha=limits["sha256"][:12])
+    if closed := said.get("closed_by_types", ()):
+        rows = (f"{index.data(row['category'])}: {name(row['source'])} → {name(row['leak'])}" for row in closed)
+        yield words("a.types.closed", findings=words.row(rows))
+
+
 def _type(kind: str, index: Index) -> str:
     return index.words.known(f"type.{kind}", fit(kind))
 
@@ -147,10 +168,12 @@ def files(index: Index) -> tuple[File, ...]:
     said, words = index.document["assumptions"], index.words
     rows = [
         File(words(f"file.{kind}"), fit(entry["file"]), entry["sha256"])
-        for kind in ("fleet", "policies", "labels", "ontologies")
+        for kind in ("fleet", "policies", "types", "labels", "ontologies")
         for entry in said.get(kind, ())
     ]
     standard = said["standard_channels"]
+    limits = said.get("type_limits")
+    rows += [File(words("file.type-limits"), fit(limits["file"]), limits["sha256"])] if limits else []
     return (*rows, *([File(words("file.standard"), fit(standard["file"]), standard["sha256"])] if standard else []))
 
 

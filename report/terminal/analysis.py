@@ -26,6 +26,7 @@ from rosprivacy.report.terminal.next_step import next_lines
 from rosprivacy.report.terminal.reliance import reliance_lines
 from rosprivacy.report.terminal.restriction import asked_at_verdict, asked_lines
 from rosprivacy.report.terminal.review import review_lines
+from rosprivacy.report.terminal.types_told import type_lines
 from rosprivacy.report.terminal.unknown_ends import end_lines, ends_at_verdict
 from rosprivacy.report.terminal.wrapped import wrapped
 from rosprivacy.report.words.words import IN_ENGLISH, Words
@@ -155,6 +156,7 @@ def _assumed(report: Mapping[str, Any], words: Words, most: int | None) -> Itera
     yield f"   {words(f'tty.view.{view}')}", ""
     yield from ((f"   {line}", "yellow") for line in observed_lines(report, words))
     yield from standard_lines(report, most, words)
+    yield from type_lines(report, most, words)
     yield from taken_away_lines(report, words)
     yield from hanging_lines(report, most, words)
     yield from glob_warnings(report, words)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.findings.why_not import NO_LEAK, NO_SOURCE, THROUGH
+from rosprivacy.analysis.model import CANNOT
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -46,4 +47,5 @@ def _obstacle(obstacle: Obstacle) -> str:
     if obstacle.by in SILENT:
         return f"at {ends}: {SILENT[obstacle.by].format(category=obstacle.category)}"
     where = ", ".join(f"{shown(place.file)}:{place.line}" for place in obstacle.places)
-    return f"at {ends}: {obstacle.by} for {obstacle.category}, {where}"
+    said = "its type cannot carry" if obstacle.by == CANNOT else f"{obstacle.by} for"
+    return f"at {ends}: {said} {obstacle.category}, {where}"

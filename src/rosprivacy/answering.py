@@ -9,11 +9,16 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.answer import ClosedByTypes
 from rosprivacy.analysis.contexts import Contexts
 from rosprivacy.analysis.findings.findings import Options, analyse
+from rosprivacy.analysis.findings.held_by_types import held_by_types
 from rosprivacy.analysis.findings.processed import lacks, processed
+from rosprivacy.analysis.fleet.likeness import pattern_id
 from rosprivacy.analysis.fleet.patterns import FleetView
+from rosprivacy.analysis.kernel.type_limits import under_limits
 from rosprivacy.analysis.model import unread
+from rosprivacy.analysis.modes import Paths, View
 from rosprivacy.assumptions import assumptions_of
 from rosprivacy.decided import accepts, joined_to, law_of
 from rosprivacy.ingest.labels.shipped import infrastructure_of
@@ -52,9 +57,23 @@ def answer(system: System, question: Question) -> Result:
         unread=unread(system.diagnostics),
         bounds=question.settings.bounds,
     )
-    analysis = analyse(system.graph, system.bound, system.vocabulary.hierarchy, options)
+    bound = under_limits(system.graph, system.bound, system.vocabulary.hierarchy, question.type_limits)
+    analysis = analyse(system.graph, bound, system.vocabulary.hierarchy, options)
+    if bound is not system.bound:
+        analysis = _beside(system, options, analysis)
+    elif question.type_limits and system.bound.types and system.graph.view == View.declared:
+        analysis = replace(analysis, closed=ClosedByTypes())
     view = groups.view(analysis) if groups else FleetView.of(analysis, system.likeness) if system.is_fleet else None
-    return concluded(system, question, analysis, view, options)
+    return concluded(replace(system, bound=bound), question, analysis, view, options)
+
+
+def _beside(system: System, options: Options, analysis: Analysis) -> Analysis:
+    """An analysis under what types cannot carry, with what only this closes: the whole is analysed without it, too."""
+    choose = _groups(system) if options.choose else None
+    hierarchy = system.vocabulary.hierarchy
+    without = analyse(system.graph, system.bound, hierarchy, replace(options, choose=choose, paths=Paths.witness))
+    identity = partial(pattern_id, likeness=system.likeness)
+    return held_by_types(analysis, without, identity, all_read=not options.unread)
 
 
 def _groups(system: System) -> Groups:
@@ -90,7 +109,7 @@ def concluded(
         system.bound,
         system.vocabulary,
         system.diagnostics + (joined.diagnostics if joined else ()),
-        assumptions_of(system.rests_on, analysis, question),
+        assumptions_of(system.rests_on, analysis, question, typed=bool(system.bound.types)),
         joined,
         view,
         counts,

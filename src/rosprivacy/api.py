@@ -15,6 +15,7 @@ from rosprivacy.fleet_system import answer_fleet
 from rosprivacy.ingest.labels import label_file
 from rosprivacy.ingest.labels.label_file import STANDARD, Labels
 from rosprivacy.ingest.policies.xinclude import MAX_BYTES
+from rosprivacy.ingest.types.type_table import TABLE
 from rosprivacy.ontology.vocabulary import TOP, load
 from rosprivacy.robot_system import answer_robot
 from rosprivacy.settings import Settings
@@ -42,6 +43,7 @@ def analyze(
     category: str = TOP,
     standard_channels: Path | None = STANDARD,
     types: Paths = (),
+    type_limits: Path | None = TABLE,
     paths: Literal["witness", "disjoint", "all"] = "witness",
     max_paths: int = MAX_PATHS,
     decisions: Path | None = None,
@@ -83,6 +85,8 @@ def analyze(
         Label file of the standard ROS channels; None to take no channel as mundane by itself (rule S13).
     types
         Files of observed message types, as ``rosprivacy observe`` writes them (rule S15).
+    type_limits
+        Table of what message types cannot carry; None to take each to carry everything (rule S15).
     paths
         Further paths to list for each finding: none beside the ``witness``, ``disjoint`` ones, or ``all``.
     max_paths
@@ -131,6 +135,7 @@ def analyze(
         ontologies=_paths(ontologies),
         category=category,
         standard_channels=_path(standard_channels),
+        type_limits=_path(type_limits),
         paths=paths,
         max_paths=max_paths,
         include_root=_path(include_root),
@@ -155,6 +160,7 @@ def analyze_fleet(
     ontologies: Paths = (),
     category: str = TOP,
     standard_channels: Path | None = STANDARD,
+    type_limits: Path | None = TABLE,
     paths: Literal["witness", "disjoint", "all"] = "witness",
     max_paths: int = MAX_PATHS,
     decisions: Path | None = None,
@@ -171,7 +177,7 @@ def analyze_fleet(
     file
         Fleet file, YAML or JSON; it names policies and labels.
     view, categories, article9, article9_level, data_types, identity_factors, ontologies, category, standard_channels,
-    paths, max_paths, decisions, today
+    type_limits, paths, max_paths, decisions, today
         As in ``analyze``.
     include_root, max_bytes, bounds, progress
         As in ``analyze``.
@@ -203,6 +209,7 @@ def analyze_fleet(
         ontologies=_paths(ontologies),
         category=category,
         standard_channels=_path(standard_channels),
+        type_limits=_path(type_limits),
         paths=paths,
         max_paths=max_paths,
         include_root=_path(include_root),

@@ -26,7 +26,9 @@ if TYPE_CHECKING:
     from rosprivacy.settings import Settings
 
 
-def assumptions_of(rests_on: Mapping[str, Any], analysis: Analysis, question: Question) -> dict[str, Any]:
+def assumptions_of(
+    rests_on: Mapping[str, Any], analysis: Analysis, question: Question, *, typed: bool = False
+) -> dict[str, Any]:
     """Return the assumptions of a report (rule S12).
 
     Parameters
@@ -35,6 +37,8 @@ def assumptions_of(rests_on: Mapping[str, Any], analysis: Analysis, question: Qu
         As of ``System``.
     analysis
         Its channels that the file of standard channels takes as mundane are counted.
+    typed
+        Whether the types of any channel are known.
     """
     standard = rests_on["standard_channels"]
     return {
@@ -42,6 +46,7 @@ def assumptions_of(rests_on: Mapping[str, Any], analysis: Analysis, question: Qu
         **({"countries_as_of": countries().as_of} if any(f.country for f in analysis.outside.values()) else {}),
         **rests_on,
         "standard_channels": {**standard, "taken": analysis.standard_channels} if standard else None,
+        **(_type_limits(analysis, question) if typed else {}),
         **_decisions(question.decisions),
     }
 
@@ -66,6 +71,14 @@ def _of_question(analysis: Analysis, question: Question) -> dict[str, Any]:
         "paths": settings.paths,
         "max_paths": settings.max_paths,
     }
+
+
+def _type_limits(analysis: Analysis, question: Question) -> dict[str, Any]:
+    """Which table of what types cannot carry was used; None where types limit nothing (rule S15)."""
+    limits = question.type_limits
+    if analysis.closed is None or limits is None:
+        return {"type_limits": None}
+    return {"type_limits": {"file": limits.file, "sha256": limits.sha256, "flows": analysis.closed.flows}}
 
 
 def files_read(policies: Iterable[Policy], files: Iterable[Labels], settings: Settings) -> dict[str, Any]:

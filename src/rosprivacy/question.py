@@ -14,12 +14,14 @@ from rosprivacy.analysis.errors import InputErrors, OntologyError, shown
 from rosprivacy.analysis.model import ARTICLE_9_VERDICTS, MAY_REVEAL
 from rosprivacy.clock import judged_on
 from rosprivacy.decided import decisions_of
+from rosprivacy.ingest.types.type_table import read_table
 from rosprivacy.ontology.vocabulary import load
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator
 
     from rosprivacy.analysis.decisions import Decisions
+    from rosprivacy.analysis.kernel.type_limits import TypeLimits
     from rosprivacy.analysis.model import Category
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.settings import Settings
@@ -41,6 +43,8 @@ class Question:
         What people decided; None where nobody decided anything.
     today
         Day on which adequacy decisions hold or have ended, ``YYYY-MM-DD``.
+    type_limits
+        What message types cannot carry; None where each is taken to carry everything.
     every
         Make every finding of a fleet, not one of each pattern.
     contexts
@@ -54,6 +58,7 @@ class Question:
     today: str
     every: bool = False
     contexts: frozenset[str] = frozenset()
+    type_limits: TypeLimits | None = None
 
     @property
     def every_finding(self) -> bool:
@@ -72,7 +77,9 @@ def question_of(settings: Settings) -> Question:
     vocabulary = load(ontologies=settings.ontologies)
     asked = asked_for(vocabulary, settings)
     decisions = decisions_of(settings, vocabulary)
-    return Question(settings, vocabulary, asked, decisions, settings.today or judged_on(os.environ))
+    limits = read_table(settings.type_limits, vocabulary, settings.bounds) if settings.type_limits else None
+    today = settings.today or judged_on(os.environ)
+    return Question(settings, vocabulary, asked, decisions, today, type_limits=limits)
 
 
 def in_contexts(question: Question, contexts: Collection[str]) -> Question:

@@ -10,6 +10,7 @@ from rosprivacy.analysis.findings.findings import MAX_PATHS
 from rosprivacy.analysis.modes import Article9Level, Paths, View
 from rosprivacy.ingest.labels.label_file import STANDARD
 from rosprivacy.ingest.policies.xinclude import MAX_BYTES
+from rosprivacy.ingest.types.type_table import TABLE
 from rosprivacy.ontology.vocabulary import TOP
 
 if TYPE_CHECKING:
@@ -44,6 +45,8 @@ class Settings:
         The label file of the standard channels, or None to take none as mundane (rule S13).
     types
         Files of observed message types (rule S15).
+    type_limits
+        The table of what message types cannot carry, or None to take each to carry everything (rule S15).
     paths, max_paths
         See ``Options``.
     include_root, max_bytes
@@ -69,6 +72,7 @@ class Settings:
     category: str = TOP
     standard_channels: str | None = STANDARD
     types: tuple[str, ...] = ()
+    type_limits: str | None = TABLE
     paths: str = Paths.witness
     max_paths: int = MAX_PATHS
     include_root: str | None = None

@@ -17,6 +17,8 @@ from tests.helpers.paths import ROOT
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from rosprivacy.private_neo4j.connection import Connection
+
 SCHEMA = json.loads((ROOT / "docs" / "bags.schema.json").read_text("utf-8"))
 Draft202012Validator.check_schema(SCHEMA)
 POLICY = """<policy version="0.2.0"><enclaves><enclave path="/r"><profiles>
@@ -177,3 +179,44 @@ def test_hostile_names_stay_names(cli: Cli, tmp_path: Path) -> None:
 def test_what_is_no_bag_is_one_line(cli: Cli, tmp_path: Path, named: str) -> None:
     (tmp_path / "notes.txt").write_text("no bag")
     assert refused(cli("bag", named, cwd=tmp_path))
+
+
+@pytest.mark.database
+def test_a_storage_that_is_a_bag_comes_back_from_the_database(
+    cli: Cli, tmp_path: Path, neo4j_server: Connection, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What was recorded, what is known of the bag, and that not all of it is: the verdict stays undetermined (S11)."""
+    del neo4j_server  # it runs, and is the one that commands use
+    rosbag2(tmp_path / "run", topics={"/camera": (IMAGE, 2), "/other": (ODOMETRY, 1)})
+    (tmp_path / "a.policy.xml").write_text(POLICY)
+    said = labels(
+        tmp_path,
+        "nodes: {/cam: {source: {Video: [/camera]}, leak: [Voice]}, /nav: conduit, /log: conduit, /end: conduit}\n"
+        "channels: {/camera: sensitive, /odom: sensitive}\nlimits: {Video: P30D}\n"
+        "elements: {run1: {kind: storage, bag: run, country: DE, retention: P1D, conduit: [Video]}}",
+    )
+    system = (tmp_path / "a.policy.xml", "-l", said)
+    files = json.loads(cli("analyze", *system, "-f", "json").stdout)
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
+    try:
+        assert cli("load", *system, "--robot", "bagged").returncode == 0
+        done = cli("analyze", "--from-database", "-f", "json")
+        stored = json.loads(done.stdout)
+    finally:
+        cli("unload", "--robot", "bagged")
+    assert (files["verdict"], stored["verdict"], done.returncode) == ("undetermined", "undetermined", 4)
+    (row,) = [one for one in stored["outside"] if one["element"]["name"] == "run1"]
+    assert row["holds"] == ["Video"]
+    assert row["recording"] == {
+        "bag": "run", "bytes": (tmp_path / "run" / "run.mcap").stat().st_size, "topics": 2, "messages": 3,
+        "start": "2023-11-14T22:13:20Z", "end": "2023-11-14T22:13:22Z",
+    }  # fmt: skip
+    assert row == next(one for one in files["outside"] if one["element"]["name"] == "run1") | {
+        "element": row["element"]
+    }
+    known = ("bag-gap", "recording")
+    told = [
+        sorted(one["message"] for one in read["diagnostics"] if one.get("code") in known) for read in (files, stored)
+    ]
+    assert told[0] == told[1]
+    assert len(told[0]) == len(known)

@@ -313,3 +313,29 @@ def test_watch_tells_what_comes_and_leaves_and_each_new_finding(robot: Path) -> 
     assert watch.returncode == 0
     assert {grant.node for grant in read_policy(str(robot / "robot.policy.xml")).grants} == {"/cam", "/up"}
     assert sum("new finding" in line for line in told) == 1
+
+
+def test_a_fleet_of_observed_robots_is_told_in_few_lines_and_one_gap_counts(cli: Cli, robot: Path) -> None:
+    """Rules S10, S16: of a hundred robots the same is told once; a gap of one leaves the fleet undetermined."""
+    (robot / "graph.txt").write_text(GRAPH + node_info("/out"), "utf-8")
+    observe(cli, robot)
+    (robot / "labels.yaml").write_text(
+        "labels: 1\nnodes:\n  /cam: {source: [Video]}\n  /up: {sanitizer: {Video: drop}}\n  /out: {leak: [Video]}\n"
+        "channels:\n  /image: sensitive\n",
+        "utf-8",
+    )
+    whole = (robot / "robot.policy.xml").read_text("utf-8")
+    gap = whole.replace(' enclave="made-up"', ' enclave="made-up" gaps="same-name:1"')
+    for number in range(8):
+        (robot / f"r{number}.xml").write_text(gap if number == 7 else whole, "utf-8")
+
+    def analysed(robots: int) -> tuple[int, str]:
+        rows = "".join(f"  r{n}: {{policies: r{n}.xml, labels: labels.yaml}}\n" for n in range(robots))
+        (robot / "fleet.yaml").write_text(f"fleet: 1\nrobots:\n{rows}", "utf-8")
+        done = cli("analyze", "--fleet", "fleet.yaml", cwd=robot)
+        return done.returncode, done.stdout
+
+    without, with_gap = analysed(7), analysed(8)
+    assert (without[0], with_gap[0]) == (0, 4)
+    assert sum("tells what was seen running" in line for line in with_gap[1].splitlines()) == 1
+    assert "r0.xml, r7.xml tells what was seen running" in with_gap[1]

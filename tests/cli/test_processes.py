@@ -46,6 +46,7 @@ ENDINGS = {
     f"diff {BEFORE}": 2,
     "bag examples/care-home/recording -l examples/care-home/care-home.labels.yaml": 1,
     "bag examples/care-home/nope.mcap": 2,
+    "observe --text nope.txt": 2,  # an answer would name the time
     f"report {BEFORE} -f markdown --lang de": 0,
     "report examples/factory/nope.xml": 2,
     f"graph {BEFORE} --format mermaid": 0,
@@ -91,5 +92,6 @@ def test_every_command_is_there_with_an_answer_and_a_refusal() -> None:
     assert all(ends.values()), ends
     answers_only, needs_a_server = {"law", "db"}, {"unload"}
     assert {name for name, codes in ends.items() if not codes & {2, 3}} == answers_only
-    assert {name for name, codes in ends.items() if not codes & {0, 1, 4}} == needs_a_server | {"decide", "load"}
+    refused_only = {"decide", "load", "observe"}
+    assert {name for name, codes in ends.items() if not codes & {0, 1, 4}} == needs_a_server | refused_only
     assert set().union(*ends.values()) == {0, 1, 2, 3, 4}, f"{OWN_ERROR} stands in test_own_errors.py"

@@ -13,21 +13,24 @@ from typing import TYPE_CHECKING, Any
 import rosprivacy
 from rosprivacy.analysis import durations
 from rosprivacy.analysis.errors import InputError
+from rosprivacy.ingest.bags.bag_folders import read_bags
 from rosprivacy.ingest.decisions.decisions_file import read_decisions
 from rosprivacy.ingest.fleet.fleet_file import read_fleet
 from rosprivacy.ingest.labels.label_file import read_labels
 from rosprivacy.ingest.mitigation.limits_file import read_limits
+from rosprivacy.ingest.observe.text_files import TextFiles
 from rosprivacy.ingest.policies import common_names, names
 from rosprivacy.ingest.policies.policy_xml import read_policy
 from rosprivacy.ingest.policies.saved_graph import read_saved
 from rosprivacy.mitigation import run_mitigation
+from rosprivacy.observing import written
 from rosprivacy.ontology.own import with_own
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.queries.library import parse
 from rosprivacy.report.compare.earlier import read_earlier
 from rosprivacy.report.json_text import as_text
 from rosprivacy.spark import parquet
-from tests.fuzzing import label_texts, other_texts, policy_texts
+from tests.fuzzing import bag_texts, label_texts, node_info_texts, other_texts, policy_texts
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
@@ -38,6 +41,7 @@ if TYPE_CHECKING:
     from tests.fuzzing.choices import Choices
 
 TODAY = "2026-06-01"
+SEEN_AT = "2026-06-01T00:00:00Z"
 
 
 @dataclass(frozen=True)
@@ -101,6 +105,26 @@ def _since() -> Result:
     return _base()
 
 
+def _bags() -> None:
+    """The folder, and each of its files alone; what one of them is refused for, the whole command is."""
+    for bag in read_bags(["bag", "bag/bag_0.mcap", "bag/bag_0.db3"]):
+        assert all(one.isprintable() for one in (*bag.gaps, *bag.beside, *bag.notes)), bag
+        assert bag.messages is None or bag.complete
+
+
+def _observed() -> None:
+    """What is made of the text is a policy that is read, of which each grant was seen; of nothing none is made."""
+    door = TextFiles(("graph.txt",), lambda: SEEN_AT, SEEN_AT)
+    made = written(next(door.looks()))
+    Path("seen.policy.xml").unlink(missing_ok=True)
+    if made is None:
+        return
+    Path("seen.policy.xml").write_bytes(made.policy)
+    policy = read_policy("seen.policy.xml")
+    assert all(grant.seen for grant in policy.grants)
+    assert all(one.isprintable() for one in made.remarks), made.remarks
+
+
 def _results() -> None:
     document, rows = parquet.read("results")
     list(rows)
@@ -139,12 +163,12 @@ def _with_base(*more: str) -> tuple[str, ...]:
 
 TARGETS = {target.name: target for target in (
     Target(
-        "policy", 330, policy_texts.policy_files, lambda: read_policy("policy.xml"),
+        "policy", 300, policy_texts.policy_files, lambda: read_policy("policy.xml"),
         lambda: rosprivacy.analyze("policy.xml", "star.yaml", today=TODAY),
         ("analyze", "policy.xml", "-l", "star.yaml"), "policy",
     ),
     Target(
-        "labels", 241, label_texts.labels, lambda: read_labels("labels.yaml", load()),
+        "labels", 211, label_texts.labels, lambda: read_labels("labels.yaml", load()),
         lambda: rosprivacy.analyze("base.xml", "labels.yaml", today=TODAY, paths="all"),
         ("analyze", "base.xml", "-l", "labels.yaml"),
     ),
@@ -183,5 +207,14 @@ TARGETS = {target.name: target for target in (
     Target("parquet", 3, other_texts.parquet, _results, words=""),
     Target("query", 25, other_texts.query, lambda: parse("asked", Path("asked.cypher").read_text("utf-8", "replace"))),
     Target("duration", 25, other_texts.duration, _duration, words=""),
+    Target(
+        "bag", 30, bag_texts.bag, _bags, lambda: rosprivacy.analyze("base.xml", "bag.yaml", today=TODAY),
+        ("bag", "bag", "bag/bag_0.mcap", "bag/bag_0.db3", "-l", "base.yaml"),
+    ),
+    Target(
+        "node-info", 30, node_info_texts.node_info, _observed,
+        lambda: rosprivacy.analyze("seen.policy.xml", "star.yaml", today=TODAY),
+        ("observe", "--text", "graph.txt", "--at", SEEN_AT),
+    ),
     Target("names", 25, other_texts.names, _names, words=""),
 )}  # fmt: skip

@@ -122,7 +122,7 @@ def facts(draw: st.DrawFn, names: tuple[str, ...]) -> tuple[str, NonRosFacts]:
     return draw(st.sampled_from(("storage", "storage", *NON_ROS))), NonRosFacts(
         draw(stated), draw(stated), draw(st.sampled_from([None, None, True, False, parse("P30D")])),
         transfer=draw(st.sampled_from(["", "", "none", "standard-clauses", "derogation"])),
-        place=NOWHERE, encrypted=None,
+        place=NOWHERE, encrypted=None, recording=None,
         **(countries().place(country) if country else {}),
     )  # fmt: skip
 

@@ -34,7 +34,7 @@ from tests.helpers.daily import one_in
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
 
     from neo4j import Driver
 
@@ -102,7 +102,7 @@ def with_storages(graph: FlowGraph, storages: Mapping[str, Any]) -> FlowGraph:
     elements = tuple(sorted({*graph.elements, *(Element("storage", name) for name in storages)}, key=Element.sort_key))
     number = {element: i for i, element in enumerate(elements)}
 
-    def moved(flows: tuple[Flow, ...]) -> list[Flow]:
+    def moved(flows: Sequence[Flow]) -> list[Flow]:
         ends = graph.elements
         return [replace(f, source=number[ends[f.source]], target=number[ends[f.target]]) for f in flows]
 

@@ -26,12 +26,14 @@ from rosprivacy.cli.options import (
     LabelFiles,
     MaxBytes,
     NoStandard,
+    NoTypeLimits,
     Ontologies,
     Policies,
     SavedGraphs,
     Server,
     SixLists,
     Standard,
+    TypeLimitsFile,
     TypesFiles,
     ViewChosen,
 )
@@ -58,6 +60,8 @@ class Inputs:
     standard_channels: Standard = "rosprivacy:standard"
     no_standard_channels: NoStandard = False
     types: TypesFiles = None
+    type_limits: TypeLimitsFile = "rosprivacy:types"
+    no_type_limits: NoTypeLimits = False
     include_root: IncludeRoot = None
     max_bytes: MaxBytes = 64 * 2**20
     bound: BoundsRaised = None
@@ -79,6 +83,7 @@ class Inputs:
             category=self.category,
             standard_channels=None if self.no_standard_channels else self.standard_channels,
             types=tuple(self.types or ()),
+            type_limits=None if self.no_type_limits else self.type_limits,
             include_root=str(self.include_root) if self.include_root else None,
             max_bytes=self.max_bytes,
             bounds=Bounds.raised(self.bound or ()),

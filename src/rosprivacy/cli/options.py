@@ -136,6 +136,16 @@ TypesFiles = Annotated[
         rich_help_panel=READ,
     ),
 ]
+TypeLimitsFile = Annotated[
+    str,
+    typer.Option(
+        "--type-limits", metavar="FILE", help="Table of what message types cannot carry.", rich_help_panel=READ
+    ),
+]
+NoTypeLimits = Annotated[
+    bool,
+    typer.Option("--no-type-limits", help="Take every message type to carry everything.", rich_help_panel=READ),
+]
 IncludeRoot = Annotated[
     Path | None,
     typer.Option(

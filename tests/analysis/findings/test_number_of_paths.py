@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import networkx as nx
 from hypothesis import example, given
 from hypothesis import strategies as st
 
 from rosprivacy.analysis.bounds import BOUNDS, Tally
+from rosprivacy.analysis.findings.disjoint_in_groups import number_in_groups
 from rosprivacy.analysis.findings.further_paths import LEAK, SOURCE, number_disjoint
 
 START, END = (0, SOURCE), (9, LEAK)
@@ -35,3 +38,32 @@ def test_the_work_is_counted_and_is_that_of_a_path_each() -> None:
     work = Tally(BOUNDS, "path_steps")
     assert number_disjoint(wide, START, END, work) == 500
     assert len(wide) <= work.count <= 500 * len(wide)
+
+
+MEMBERS = st.lists(STATES, min_size=1, max_size=4, unique=True).map(sorted)
+
+
+@given(EDGES, st.lists(st.tuples(MEMBERS, MEMBERS), max_size=3))
+def test_groups_are_worth_as_many_paths_as_their_pairs(
+    edges: list[tuple[tuple[int, int], tuple[int, int]]],
+    groups: list[tuple[list[tuple[int, int]], list[tuple[int, int]]]],
+) -> None:
+    """A step is there once: what an earlier group has is no pair of a later one, nor a step of its own."""
+    kept: list[tuple[list[tuple[int, int]], list[tuple[int, int]]]] = []
+    pairs: set[tuple[tuple[int, int], tuple[int, int]]] = set()
+    for befores, afters in groups:
+        new = set(product(befores, afters))
+        if not new & pairs and all(b not in (a, START) and a != END for a, b in new):
+            pairs |= new
+            kept.append((befores, afters))
+    single = [edge for edge in edges if edge not in pairs]
+    found = number_in_groups(single, kept, START, END, Tally(BOUNDS, "path_steps"))
+    assert found == len(list(nx.edge_disjoint_paths(nx.DiGraph([*single, *pairs]), START, END)))
+
+
+def test_a_thousand_times_a_thousand_pairs_take_as_much_work_as_their_members() -> None:
+    written, read = [(i, 0) for i in range(1, 1_001)], [(i, 0) for i in range(2_001, 3_001)]
+    ends = [*((START, state) for state in written), *((state, (4_000, LEAK)) for state in read)]
+    work = Tally(BOUNDS, "path_steps")
+    assert number_in_groups(ends, [(written, read)], START, (4_000, LEAK), work) == 1_000
+    assert work.count < 20 * len(ends)

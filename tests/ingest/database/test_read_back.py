@@ -20,6 +20,8 @@ from rosprivacy.ingest.database.read_back import read_stored
 from rosprivacy.ingest.database.rows import robot_rows
 from rosprivacy.ingest.database.write_back import write_back
 from rosprivacy.ingest.labels.entries import EXACT
+from rosprivacy.ingest.observe.node_info import read_node_info
+from rosprivacy.ingest.observe.observed_policy import policy_xml, prepared
 from rosprivacy.ontology.vocabulary import load as load_vocabulary
 from rosprivacy.private_neo4j import connection
 from rosprivacy.robot_system import robot_of
@@ -30,6 +32,7 @@ from tests.helpers.cases import CASES
 from tests.helpers.daily import one_in
 from tests.helpers.fleet_files import policy
 from tests.helpers.graphs import care_home, dump, factory, rows_of
+from tests.helpers.observed import node_info
 from tests.helpers.random_rows import VOCABULARY as SMALL
 from tests.helpers.random_rows import random_systems
 
@@ -353,3 +356,23 @@ def test_types_come_back_and_a_person_can_state_more_there(driver: Driver, tmp_p
     driver.execute_query("MATCH (t:Topic {name: '/video'}) SET t.type_facts = ['[]']")
     with pytest.raises(InputErrors, match=r"'/video' cannot be understood: type_facts are not what was loaded"):
         answer_stored(driver, Settings())
+
+
+def test_what_was_seen_and_its_gaps_come_back(driver: Driver, tmp_path: Path) -> None:
+    """Rule S16: times and gaps of an observed policy are facts of the system, whatever it is read from."""
+    at = "2026-11-22T10:00:00Z"
+    text = (
+        node_info("/cam", publishers="/image: s/msg/I") + node_info("/up", subscribers="/image: s/msg/I") + "/ghost\n"
+    )
+    file, labels = tmp_path / "robot.policy.xml", tmp_path / "labels.yaml"
+    file.write_bytes(policy_xml(prepared(read_node_info(text, at))))
+    labels.write_text("labels: 1\nnodes:\n  /cam: {source: [Video]}\n  /up: {leak: [Video]}\n", "utf-8")
+    result = rosprivacy.analyze(file, labels)
+    load(driver, [robot_of("r1", result)], VOCABULARY)
+    stored, files = answer_stored(driver, Settings()).document(), result.document()
+    seen = {"by": ["text"], "first": at, "last": at}
+    for document in (stored, files):
+        assert [line["seen"] for step in document["findings"][0]["steps"] for line in step["policy"]] == [seen, seen]
+    codes = [{said.get("code") for said in document["diagnostics"]} for document in (stored, files)]
+    assert codes[0] == codes[1]
+    assert {"observed", "observation-gap", "enclaves-made-up"} <= codes[0]

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import permutations
+from time import perf_counter
 
 from rosprivacy.ingest.observe.made_up_names import with_folded_names
 from rosprivacy.ingest.observe.observation import Span, added_up, continued
 from rosprivacy.ingest.observe.observed_names import with_good_names
-from rosprivacy.ingest.observe.observed_policy import prepared
+from rosprivacy.ingest.observe.observed_policy import policy_xml, prepared
 from rosprivacy.ingest.policies.observed_metadata import NO_NODE, STILL_CHANGING
 from tests.helpers.observed import at, endpoint, looked, saw
 
@@ -108,3 +109,28 @@ def test_parts_of_an_action_are_one_action_for_who_sends_or_takes_goals() -> Non
         ("/nav", "execute", "/spin", "t/action/Spin"),
         ("/log", "subscribe", "/spin/_action/status", "action_msgs/msg/GoalStatusArray"),
     }
+
+
+def test_endpoints_of_no_node_stand_under_a_name_of_their_own_and_are_a_gap() -> None:
+    """Data is followed through them, so nothing is lost (rule S16)."""
+    ready = prepared(saw(endpoint("", "subscribe", "/image", key="k", participant="01:0f/../x")))
+    assert ready.enclaves == {"/_no_node/participant_01_0f_x": ("/_no_node/participant_01_0f_x",)}
+    assert ready.observation.all_gaps == {NO_NODE: 1}
+    text = policy_xml(ready)
+    assert b'gaps="no-node:1"' in text
+    assert b'ns="/_no_node" node="participant_01_0f_x"' in text
+
+
+def test_thousands_of_topics_take_time_in_proportion() -> None:
+    """Ten times as many take about ten times as long, not a hundred; made-up nodes too."""
+
+    def seconds(number: int) -> float:
+        topics = [
+            endpoint(f"/launch_ros_{n}", "publish", f"/launch_ros_{n}/topic_{n}", "t/msg/T") for n in range(number)
+        ]
+        start = perf_counter()
+        policy_xml(prepared(saw(*topics)))
+        return perf_counter() - start
+
+    seconds(50)
+    assert min(seconds(4_000) for _ in range(2)) < 40 * min(seconds(400) for _ in range(3))

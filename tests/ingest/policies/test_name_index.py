@@ -45,9 +45,12 @@ def test_every_expression_that_shares_a_name_is_near(asked: str, others: list[st
 
 @given(WRITTEN, st.lists(PLAIN, max_size=12, unique=True))
 def test_every_name_that_is_covered_is_near(asked: str, names: list[str]) -> None:
-    near = [name for name, _ in PlainNames((name, topic(name)) for name in names).near(asked)]
-    assert len(near) == len(set(near))
-    assert {name for name in names if is_pattern(asked) and covers(asked, name)} <= set(near) <= set(names)
+    for few in (0, 16):  # by what it holds inside, and by its ends alone
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr("rosprivacy.ingest.policies.name_index.FEW", few)
+            near = [name for name, _ in PlainNames(((name, topic(name)) for name in names), [asked]).near(asked)]
+        assert len(near) == len(set(near))
+        assert {name for name in names if is_pattern(asked) and covers(asked, name)} <= set(near) <= set(names)
 
 
 @pytest.mark.parametrize("shape", SHAPES)
@@ -64,3 +67,15 @@ def test_names_are_found_by_their_end() -> None:
     index = PlainNames(names)
     assert [name for name, _ in index.near("/robot*/image17")] == [names[17][0]]
     assert len(list(index.near("/robot1*"))) == 111
+
+
+@pytest.mark.parametrize(
+    "shape", [lambda i: f"/robot*/s{i}/*", lambda i: f"/*/part{i}_*", lambda i: f"*image{i}?"], ids=["s", "part", "?"]
+)
+def test_a_few_of_many_plain_names_are_near(shape: Callable[[int], str]) -> None:
+    """What begins and ends alike is told apart by what stands between the wildcards."""
+    asked = [shape(number) for number in range(1_000)]
+    names = [one.replace("*", "/x").replace("?", "y") for one in asked]
+    index = PlainNames(((name, topic(name)) for name in names), asked)
+    compared = sum(len(list(index.near(one))) for one in asked)
+    assert len(asked) <= compared <= 10 * len(asked)

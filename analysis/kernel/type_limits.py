@@ -1,0 +1,149 @@
+"""What message types cannot carry, at the channels of a graph: statements of the lowest rank (rule S15).
+
+In: a graph, what is bound to it, a table of limits. Out: the same with one statement for each channel, or leg of one,
+of which the types of all writers are known and exclude a kind; and what such statements alone close.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.kernel.ranks import closes
+from rosprivacy.analysis.kernel.spreading import emitted
+from rosprivacy.analysis.model import CANNOT, OF_TYPES, STATED, Statement
+from rosprivacy.analysis.modes import View
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from rosprivacy.analysis.hierarchy import Hierarchy
+    from rosprivacy.analysis.kernel.spread import Spread
+    from rosprivacy.analysis.model import Bound, Element, FlowGraph, MessageType, Place
+
+
+@dataclass(frozen=True, slots=True)
+class TypeLimit:
+    """What one type, or a leg of one, cannot carry: names of kinds, narrower ones too; and the line that says so."""
+
+    kinds: frozenset[str]
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class TypeLimits:
+    """A table of limits, by (name of a type, leg)."""
+
+    file: str
+    sha256: str
+    of: Mapping[tuple[str, str], TypeLimit]
+
+
+def under_limits(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, limits: TypeLimits | None) -> Bound:
+    """Return what is bound to a graph with what the types of its channels cannot carry.
+
+    Several types exclude what all of them exclude. A channel is limited only where what each of its writers sends is
+    known, and only in the declared view. What a derivation makes, and what a label says that a flow there may carry,
+    is not taken away; what labels of the channel and sources say of it outranks these statements by itself.
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> from rosprivacy.analysis.example import VIDEO, factory
+    >>> from rosprivacy.analysis.model import MessageType, Place
+    >>> graph, bound, hierarchy = factory()
+    >>> at = Place("types.yaml", 3)
+    >>> bound = replace(bound, types={VIDEO: (MessageType("std_msgs/msg/Bool", Place("l", 1), stated=True),)})
+    >>> limits = TypeLimits("types.yaml", "", {("std_msgs/msg/Bool", ""): TypeLimit(frozenset(["Video"]), at)})
+    >>> [said.role for said in under_limits(graph, bound, hierarchy, limits).elements[VIDEO]]
+    ['cannot']
+    """
+    if limits is None or not bound.types or graph.view != View.declared:
+        return bound
+    kept, said = _Kept(graph, bound, hierarchy), dict[int, Statement]()
+    begun = emitted(bound.elements.values())
+    for vertex, types in bound.types.items():
+        found = [limits.of.get((one.name, graph.elements[vertex].leg)) for one in types]
+        some = [one for one in found if one]
+        if not some or len(some) < len(found) or not kept.known(vertex, types):
+            continue
+        excluded = frozenset.intersection(*(one.kinds for one in some)) & begun
+        kinds = tuple(sorted(kind for kind in excluded if not kept.keeps(vertex, kind)))
+        if kinds:
+            said[vertex] = Statement(CANNOT, kinds, OF_TYPES, some[0].place, shipped=True)
+    if not said:
+        return bound
+    both = {v: (*bound.elements.get(v, ()), *([said[v]] if v in said else ())) for v in {*bound.elements, *said}}
+    return replace(bound, elements=dict(sorted(both.items())))
+
+
+class _Kept:
+    """Who writes the channels of a graph, and what is not taken away from them."""
+
+    def __init__(self, graph: FlowGraph, bound: Bound, hierarchy: Hierarchy) -> None:
+        self._elements, self._hierarchy = graph.elements, hierarchy
+        self._writers: dict[int, set[int]] = defaultdict(set)
+        self._said: dict[int, list[tuple[bool, tuple[Statement, ...]]]] = defaultdict(list)
+        for index, flow in enumerate(graph.flows):
+            self._writers[flow.target].add(flow.source)
+            stated, said = flow.role == STATED, bound.flows.get(index, ())
+            for vertex in (flow.source, flow.target) if stated or said else ():
+                self._said[vertex].append((stated, said))
+        self._made = _made(graph, bound)
+
+    def known(self, vertex: int, types: tuple[MessageType, ...]) -> bool:
+        """Whether the type of all that comes to a channel is known; what comes through a wildcard only if stated."""
+        writers = (self._elements[writer] for writer in self._writers[vertex])
+        return all(any(one.written_by(writer) for one in types) for writer in writers)
+
+    def keeps(self, vertex: int, kind: str) -> bool:
+        """Whether a node that writes a channel makes a kind of others, or a label says that a flow there carries it."""
+        if kind in self._made.get(vertex, ()):
+            return True
+        for stated, said in self._said.get(vertex, ()):
+            if any(closes(one, kind, self._hierarchy) for one in said):
+                continue
+            if stated or any(one.role == "only" for one in said):
+                return True
+        return False
+
+
+def _made(graph: FlowGraph, bound: Bound) -> dict[int, set[str]]:
+    """Channel -> kinds that a node which writes it makes of others, also through wildcards."""
+    makers = {v: {s.to for s in said if s.role == "derivation"} for v, said in bound.elements.items()}
+    made: dict[int, set[str]] = defaultdict(set)
+    for flow in graph.flows:
+        made[flow.target] |= makers.get(flow.source, set())
+    matches = [flow for flow in graph.flows if flow.role == "matches"]
+    for flow in (*matches, *matches):  # from a written wildcard to a name, and on to a read one
+        made[flow.target] |= made[flow.source]
+    return made
+
+
+def closed(spread: Spread, mask: int) -> tuple[int, tuple[tuple[Element, tuple[str, ...]], ...]]:
+    """Return how many flows end at what a type cannot carry, and (channel, kinds that get to it and stop there).
+
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.kernel.spreading import spread
+    >>> carried = spread(*factory())
+    >>> closed(carried, carried.all_bits)
+    (0, ())
+    """
+    elements = spread.graph.elements
+    bits: dict[tuple[str, str, str, str], int] = defaultdict(int)
+    first: dict[tuple[str, str, str, str], Element] = {}
+    flows = 0
+    for _, vertex, stopped in _stopped(spread, mask):
+        flows += 1
+        element = elements[vertex]
+        bits[element.shown_as] |= stopped
+        first.setdefault(element.shown_as, element)
+    return flows, tuple((first[key], spread.names(bits[key])) for key in sorted(bits))
+
+
+def _stopped(spread: Spread, mask: int) -> Iterator[tuple[int, int, int]]:
+    """(flow, channel at its end, bits that stop there only since its type cannot carry them)."""
+    for index, flow in enumerate(spread.graph.flows if spread.limited else ()):
+        if stopped := spread.sends(index) & mask & spread.limited.get(flow.target, 0):
+            yield index, flow.target, stopped

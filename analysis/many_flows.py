@@ -1,0 +1,253 @@
+"""Flows of which most are alike: where many wildcards meet as many others, each pair is a flow, and none is stored.
+
+In: flows to store, and meetings: some written wildcards, each of which meets each of some read ones. Out: ``Flows``,
+the sequence of all flows, sorted and numbered as if all were stored. Who goes through a meeting as a whole takes it
+from ``parted``; who asks for each flow gets each pair, up to the bound of flows.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left, bisect_right
+from collections import defaultdict
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import accumulate, pairwise
+from typing import TYPE_CHECKING, overload
+
+from rosprivacy.analysis.bounds import BOUNDS, Bounds
+from rosprivacy.analysis.errors import InputErrors, PolicyError
+from rosprivacy.analysis.model import Flow, Place
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Mapping
+
+MATCHES = "matches"
+
+
+@dataclass(frozen=True, slots=True)
+class Meeting:
+    """Written wildcards of which each meets each of some read ones, by index into the elements; both sorted."""
+
+    written: tuple[int, ...]
+    read: tuple[int, ...]
+
+    @property
+    def size(self) -> int:
+        """How many flows it stands for."""
+        return len(self.written) * len(self.read)
+
+    def pairs(self) -> Iterable[tuple[int, int]]:
+        """Return the ends of each flow that it stands for."""
+        return ((source, target) for source in self.written for target in self.read)
+
+
+@dataclass(frozen=True)
+class Flows(Sequence[Flow]):
+    """All flows of a graph; those of meetings are made when somebody asks for them.
+
+    Attributes
+    ----------
+    stored
+        Those of no meeting, sorted by (source, target, role); none has the ends of a pair of a meeting.
+    meetings
+        No two have a pair in common.
+    bounds, place
+        Above the bound of flows the pairs are not made one by one; the line that is named then.
+
+    Examples
+    --------
+    >>> flows = Flows((Flow(0, 1, "publish"),), (Meeting((1, 2), (3, 4)),))
+    >>> len(flows), [(flow.source, flow.target) for flow in flows], flows.number(2, 3)
+    (5, [(0, 1), (1, 3), (1, 4), (2, 3), (2, 4)], 3)
+    """
+
+    stored: tuple[Flow, ...]
+    meetings: tuple[Meeting, ...]
+    bounds: Bounds = field(default=BOUNDS, compare=False)
+    place: Place = field(default=Place("", 0), compare=False)
+
+    def __len__(self) -> int:
+        """Count the pairs of meetings like others."""
+        return self._before[-1]
+
+    @overload
+    def __getitem__(self, at: int) -> Flow: ...
+    @overload
+    def __getitem__(self, at: slice) -> tuple[Flow, ...]: ...
+    def __getitem__(self, at: int | slice) -> Flow | tuple[Flow, ...]:
+        """Return a flow by its number, or some."""
+        if isinstance(at, slice):
+            return tuple(self[number] for number in range(len(self))[at])
+        number = range(len(self))[at]
+        source = self._sources[bisect_right(self._before, number) - 1]
+        low, high = 0, self._highest
+        while low < high:  # the first target up to which there are more flows than before the one asked for
+            middle = (low + high) // 2
+            low, high = (low, middle) if self.number(source, middle + 1) > number else (middle + 1, high)
+        if any(_has(read, low) for read in self._meets.get(source, ())):
+            return Flow(source, low, MATCHES)
+        return self.stored[bisect_left(self._ends, (source, low)) + number - self.number(source, low)]
+
+    def __iter__(self):  # type: ignore[no-untyped-def]  # noqa: ANN204 - as of Sequence
+        """Go through all, one by one."""
+        return iter(self._all)
+
+    def __eq__(self, other: object) -> bool:
+        """Compare as sequences."""
+        if isinstance(other, Flows):
+            return (self.stored, self.meetings) == (other.stored, other.meetings)
+        return isinstance(other, tuple) and len(self) == len(other) and self._all == other
+
+    def __hash__(self) -> int:
+        """Of what is stored."""
+        return hash((self.stored, self.meetings))
+
+    def number(self, source: int, target: int) -> int:
+        """Return the number of a pair of a meeting: so many flows come before it."""
+        place = bisect_left(self._sources, source)
+        stored = bisect_left(self._ends, (source, target)) - bisect_left(self._ends, (source,))
+        return self._before[place] + stored + sum(bisect_left(read, target) for read in self._meets.get(source, ()))
+
+    def apart(self, special: Collection[int] = ()) -> tuple[list[tuple[int, Flow]], tuple[Meeting, ...]]:
+        """Return flows with their numbers, in order, and the meetings that the others make.
+
+        Parameters
+        ----------
+        special
+            Numbers of flows that are told by themselves, with all of their meeting.
+        """
+        ends = [(flow.source, flow.target) for flow in map(self.__getitem__, special) if flow.role == MATCHES]
+        split = {m for m in self.meetings for a, b in ends if _has(m.written, a) and _has(m.read, b)}
+        rows = [(self._number_of_stored(place), flow) for place, flow in enumerate(self.stored)]
+        if split:
+            self.check(sum(meeting.size for meeting in split))
+            pairs = (pair for meeting in split for pair in meeting.pairs())
+            rows = sorted([*rows, *((self.number(*pair), Flow(*pair, MATCHES)) for pair in pairs)], key=_first)
+        return rows, tuple(meeting for meeting in self.meetings if meeting not in split)
+
+    def leaving(self) -> dict[int, range]:
+        """Return the numbers of the flows out of each element that has any."""
+        return {source: range(*ends) for source, ends in zip(self._sources, pairwise(self._before), strict=True)}
+
+    def check(self, number: int) -> None:
+        """Refuse to make more pairs than the bound of flows."""
+        if number > self.bounds.flows:
+            raise InputErrors([PolicyError(self.place.file, self.place.line, *self.bounds.refusal("flows"))])
+
+    @cached_property
+    def _all(self) -> tuple[Flow, ...]:
+        self.check(sum(meeting.size for meeting in self.meetings))
+        pairs = (Flow(*pair, MATCHES) for meeting in self.meetings for pair in meeting.pairs())
+        return tuple(sorted([*self.stored, *pairs], key=lambda flow: (flow.source, flow.target, flow.role)))
+
+    def _number_of_stored(self, place: int) -> int:
+        flow = self.stored[place]
+        return self.number(flow.source, flow.target) + place - bisect_left(self._ends, (flow.source, flow.target))
+
+    @cached_property
+    def _meets(self) -> Mapping[int, list[tuple[int, ...]]]:
+        meets: dict[int, list[tuple[int, ...]]] = defaultdict(list)
+        for meeting in self.meetings:
+            for source in meeting.written:
+                meets[source].append(meeting.read)
+        return dict(meets)
+
+    @cached_property
+    def _ends(self) -> Sequence[tuple[int, ...] | tuple[int, int, str]]:
+        return [(flow.source, flow.target, flow.role) for flow in self.stored]
+
+    @cached_property
+    def _sources(self) -> Sequence[int]:
+        return sorted({*self._meets, *(flow.source for flow in self.stored)})
+
+    @cached_property
+    def _before(self) -> Sequence[int]:
+        """How many flows there are before those of each source, and in all."""
+        number: dict[int, int] = defaultdict(int)
+        for flow in self.stored:
+            number[flow.source] += 1
+        for source, reads in self._meets.items():
+            number[source] += sum(map(len, reads))
+        return list(accumulate((number[source] for source in self._sources), initial=0))
+
+    @cached_property
+    def _highest(self) -> int:
+        return max([flow.target for flow in self.stored] + [meeting.read[-1] for meeting in self.meetings], default=0)
+
+
+def parted(
+    flows: Sequence[Flow], special: Collection[int] = ()
+) -> tuple[Iterable[tuple[int, Flow]], tuple[Meeting, ...]]:
+    """Return flows with their numbers, in order, and the meetings that all others make.
+
+    Parameters
+    ----------
+    special
+        Numbers of flows that are to be among the first.
+
+    Examples
+    --------
+    >>> own, meetings = parted(Flows((Flow(0, 1, "publish"),), (Meeting((1, 2), (3, 4)),)))
+    >>> [number for number, _ in own], len(meetings)
+    ([0], 1)
+    """
+    return flows.apart(special) if isinstance(flows, Flows) else (enumerate(flows), ())
+
+
+def number(flows: Sequence[Flow], source: int, target: int) -> int:
+    """Return the number of a flow of a meeting.
+
+    >>> number(Flows((), (Meeting((1, 2), (3, 4)),)), 2, 3)
+    2
+    """
+    assert isinstance(flows, Flows), "no others have meetings"
+    return flows.number(source, target)
+
+
+def one_by_one(flows: Sequence[Flow]) -> Sequence[Flow]:
+    """Return flows to go through one by one.
+
+    Raises
+    ------
+    InputErrors
+        Where meetings stand for more than the bound of flows.
+
+    Examples
+    --------
+    >>> len(one_by_one(Flows((), (Meeting((1, 2), (3, 4)),))))
+    4
+    """
+    return at_most(flows, len(flows))
+
+
+def at_most(flows: Sequence[Flow], number: int) -> Sequence[Flow]:
+    """Return flows of which so many are asked for; the same, where it is some of them only.
+
+    >>> len(at_most(Flows((), (Meeting((1, 2), (3, 4)),)), 2))
+    4
+    """
+    if isinstance(flows, Flows):
+        flows.check(number)
+    return flows
+
+
+def leaving(flows: Sequence[Flow]) -> Mapping[int, range]:
+    """Return the numbers of the flows out of each element that has any.
+
+    >>> leaving(Flows((Flow(0, 1, "publish"),), (Meeting((1, 2), (3, 4)),)))
+    {0: range(0, 1), 1: range(1, 3), 2: range(3, 5)}
+    """
+    if isinstance(flows, Flows):
+        return flows.leaving()
+    ends = {flow.source: at + 1 for at, flow in enumerate(flows)}
+    return {source: range(first, end) for first, (source, end) in zip((0, *ends.values()), ends.items(), strict=False)}
+
+
+def _has(vertices: Sequence[int], vertex: int) -> bool:
+    at = bisect_left(vertices, vertex)
+    return at < len(vertices) and vertices[at] == vertex
+
+
+def _first(row: tuple[int, Flow]) -> int:
+    return row[0]
