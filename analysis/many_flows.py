@@ -80,6 +80,8 @@ class Flows(Sequence[Flow]):
         if isinstance(at, slice):
             return tuple(self[number] for number in range(len(self))[at])
         number = range(len(self))[at]
+        if "_all" in self.__dict__:  # somebody has asked for all
+            return self._all[number]
         source = self._sources[bisect_right(self._before, number) - 1]
         low, high = 0, self._highest
         while low < high:  # the first target up to which there are more flows than before the one asked for
@@ -206,7 +208,7 @@ def number(flows: Sequence[Flow], source: int, target: int) -> int:
 
 
 def one_by_one(flows: Sequence[Flow]) -> Sequence[Flow]:
-    """Return flows to go through one by one.
+    """Return flows to go through one by one, by number too.
 
     Raises
     ------
@@ -218,7 +220,7 @@ def one_by_one(flows: Sequence[Flow]) -> Sequence[Flow]:
     >>> len(one_by_one(Flows((), (Meeting((1, 2), (3, 4)),))))
     4
     """
-    return at_most(flows, len(flows))
+    return tuple(flows) if isinstance(flows, Flows) else flows
 
 
 def at_most(flows: Sequence[Flow], number: int) -> Sequence[Flow]:

@@ -71,7 +71,7 @@ class Outcome:
         """Return the line for the table, notes below it."""
         row, got = self.row, self.measured
         ratio = "" if got.ratio is None else f"{got.ratio:.3g}"
-        bound = "" if row.bound is None else f"{'goal' if row.goal else 'at most'} {row.bound:g}"
+        bound = "" if row.bound is None else f"{'goal' if row.goal else 'at most'} {row.bound:.3g}"
         verdict = "" if row.bound is None else "held" if self.held else "not reached" if row.goal else "MISSED"
         line = line_of(benchmark, what(row), got.ours, got.against, ratio, bound, verdict)
         again = "" if self.missed_before is None else f"measured twice: {self.missed_before:.3g} before"

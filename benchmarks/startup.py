@@ -42,5 +42,4 @@ def rows(*, quick: bool) -> Iterator[Row]:
                 7 if quick else 25, lambda: run(command, "--version"), lambda: run(sys.executable, bare, "--version")
             ),
             bound=0.3,
-            goal=True,
         )

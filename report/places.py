@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.many_flows import parted
 from rosprivacy.analysis.model import Place
 
 if TYPE_CHECKING:
@@ -115,7 +116,7 @@ def _lines(analysis: Analysis) -> dict[Shown, Place]:
     elements = analysis.graph.elements
     wanted = {question.element.shown_as for question in to_review(analysis) if question.element.is_channel}
     found: dict[Shown, tuple[str, int]] = {}
-    for flow in analysis.graph.flows if wanted else ():
+    for _, flow in parted(analysis.graph.flows)[0] if wanted else ():  # no line states those of meetings
         for end in (elements[flow.source].shown_as, elements[flow.target].shown_as):
             if end in wanted:
                 lines = [(grant.place.file, grant.place.line) for grant in flow.grants if in_a_file(grant.place)]

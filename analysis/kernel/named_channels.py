@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import LabelError, shown
 from rosprivacy.analysis.kernel.ranks import closes, in_words
 from rosprivacy.analysis.kernel.roles import facts
-from rosprivacy.analysis.many_flows import parted
+from rosprivacy.analysis.many_flows import MATCHES, at_most, number, parted
 from rosprivacy.analysis.model import CHANGED, STATED
 
 if TYPE_CHECKING:
@@ -94,23 +94,34 @@ def named(
     """
     rows: list[tuple[str, Statement, int, int]] = []
     matches: dict[int, list[int]] = defaultdict(list)
-    for index, flow in enumerate(graph.flows if bound.through else ()):
-        if flow.role == "matches":
+    met: dict[int, list[int]] = defaultdict(list)
+    own, meetings = parted(graph.flows) if bound.through else ((), ())
+    for index, flow in own:
+        if flow.role == MATCHES:
             matches[flow.source].append(index)
+    for meeting in meetings:
+        for written in meeting.written:
+            met[written] += meeting.read
     for vertex, decided in elements.items():
         for category, fact in decided.items():
             for source in fact.by_role("source")[:1] if fact.through else ():
                 indices = bound.through.get((vertex, fact.through), ())
-                rows += [(category, source, graph.flows[i].target, i) for i in _with_matches(indices, graph, matches)]
+                every = _with_matches(indices, graph, matches, met)
+                rows += [(category, source, graph.flows[i].target, i) for i in every]
     return rows
 
 
-def _with_matches(indices: Iterable[int], graph: FlowGraph, matches: Mapping[int, list[int]]) -> list[int]:
-    """Flows, and those from the wildcards at their ends to the channels that these match."""
+def _with_matches(
+    indices: Iterable[int], graph: FlowGraph, matches: Mapping[int, list[int]], met: Mapping[int, list[int]]
+) -> list[int]:
+    """Flows, and those from the wildcards at their ends to the channels that these match or meet."""
     flows = list(indices)
     seen = set(flows)
     for index in flows:
-        new = [after for after in matches.get(graph.flows[index].target, ()) if after not in seen]
+        end = graph.flows[index].target
+        every = sorted([*matches.get(end, ()), *(number(graph.flows, end, read) for read in met.get(end, ()))])
+        at_most(graph.flows, len(flows) + len(every))
+        new = [after for after in every if after not in seen]
         seen.update(new)
         flows += new
     return flows

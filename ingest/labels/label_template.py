@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import yaml
 
+from rosprivacy.analysis.many_flows import parted
 from rosprivacy.analysis.text import blanked, counted
 from rosprivacy.analysis.written_names import literal
 from rosprivacy.ingest.labels.label_reader import SECTIONS
@@ -140,7 +141,7 @@ def neighbours(
     """Return the channels that each node writes and reads, of those that are listed."""
     writes: dict[str, set[Channel]] = defaultdict(set)
     reads: dict[str, set[Channel]] = defaultdict(set)
-    for flow in graph.flows:
+    for _, flow in parted(graph.flows)[0]:  # a meeting is one of channels
         source, target = graph.elements[flow.source], graph.elements[flow.target]
         if source.is_node and target.is_channel and _channel(target) in listed:
             writes[source.name].add(_channel(target))

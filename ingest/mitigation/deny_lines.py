@@ -11,6 +11,7 @@ from collections import defaultdict
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.many_flows import one_by_one
 from rosprivacy.analysis.mitigation.candidates import Denial
 from rosprivacy.ingest.policies.names import covers, endpoints, is_pattern, overlaps
 
@@ -106,7 +107,7 @@ class _Rights:
 
     def __init__(self, graph: FlowGraph) -> None:
         self.graph = graph
-        self.parts = [tuple(dict.fromkeys(self._of(f))) for f in range(len(graph.flows))]
+        self.parts = [tuple(dict.fromkeys(self._of(f))) for f, _ in enumerate(one_by_one(graph.flows))]
         self.by_part: dict[Part, list[int]] = defaultdict(list)
         self.matches: dict[int, list[int]] = defaultdict(list)
         for f, parts in enumerate(self.parts):

@@ -7,6 +7,7 @@ from functools import cached_property, reduce
 from operator import or_
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.many_flows import one_by_one
 from rosprivacy.analysis.model import CHANNELS, DISCLOSURE
 from rosprivacy.report.pictures.looks import DERIVATION, LEAK, OPEN, REVIEWED, SANITIZER, SOURCE
 from rosprivacy.report.pictures.phrases import Phrases
@@ -107,7 +108,7 @@ class Reached:
 
         Complexity: O(flows), once.
         """
-        found = {index: self._cleaned_along(index) for index in range(len(self.graph.flows))}
+        found = {index: self._cleaned_along(index) for index, _ in enumerate(one_by_one(self.graph.flows))}
         return {index: kinds for index, kinds in found.items() if kinds}
 
     def _cleaned_along(self, index: int) -> tuple[str, ...]:

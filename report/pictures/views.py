@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.answer import Verdict
 from rosprivacy.analysis.findings.flows_to_leaks import FlowsToLeaks, flows_to_leaks
 from rosprivacy.analysis.kernel.states import Net
+from rosprivacy.analysis.many_flows import one_by_one
 from rosprivacy.analysis.model import DISCLOSURE, GOES_NOWHERE, NO_LEAK_NAMED
 from rosprivacy.analysis.text import shortened
 from rosprivacy.report.element_counts import count_elements
@@ -207,7 +208,7 @@ def privacy_view(analysis: Analysis, beside: Collection[str] = (), say: Phrases 
     for found in _ways_to_all(analysis, net, open_findings):
         for flow, length in found.items():
             lengths[flow] = min(length, lengths.get(flow, length))
-    lines = data_lines(reached, boxes, range(len(analysis.graph.flows)), lengths, pairs(open_findings))
+    lines = data_lines(reached, boxes, range(len(one_by_one(analysis.graph.flows))), lengths, pairs(open_findings))
     what = listed(map(say.title, analysis.emitted), most=6, words=words)
     unreviewed = count_elements(q.element for q in analysis.open if q.element.robot not in beside).elements
     findings, elements = words.count(len(open_findings), "tty.finding"), words.count(unreviewed, "element")

@@ -48,6 +48,7 @@ def by_system(result: Result) -> Callable[[str], Said]:
     graph, spread = analysis.graph, analysis.spread
     labels = by_labels(result.labels, result.vocabulary)
     unread_files = unread(result.diagnostics)
+    unreached = {end.element for end in analysis.unknown_ends if end.what == "flow"}  # nobody says what is in these
     vertices: dict[Channel, list[int]] = defaultdict(list)
     patterns: dict[tuple[str, str], list[int]] = defaultdict(list)
     for vertex, element in enumerate(graph.elements):
@@ -87,7 +88,8 @@ def by_system(result: Result) -> Callable[[str], Said]:
             sending = _senders(vertex, writers, analysis)
             if not sending:
                 return (), "no node of the policies writes to it", ""
-            silent = sorted(graph.elements[one].name for one in sending if not bound.elements.get(one))
+            spoken = {one for one in sending if bound.elements.get(one) and graph.elements[one] not in unreached}
+            silent = sorted(graph.elements[one].name for one in sending - spoken)
             if silent:
                 more = f" and {len(silent) - 1} more" if len(silent) > 1 else ""
                 return (), f"no label says what {shown(silent[0])}{more} sends", ""

@@ -111,6 +111,18 @@ def test_by_the_policies_of_the_system(
     assert whole["assumptions"]["policies"][0]["file"] == str(policy)
 
 
+def test_a_storage_of_which_nobody_says_what_is_in_it_is_not_known(cli: Cli, tmp_path: Path, run: Path) -> None:
+    """S11: it plays back what no flow brings there; that it is taken as a conduit says nothing of its data."""
+    policy = tmp_path / "a.policy.xml"
+    policy.write_text(POLICY)
+    nodes = "nodes: {/log: {source: [Voice]}, /cam: conduit, /nav: conduit}"
+    more = "elements: {disk: {kind: storage, country: DE}}\nflows: [{from: disk, to: {topic: /odom}}]"
+    assert topics(document(cli, run, "--policy", policy, "-l", labels(tmp_path, f"{nodes}\n{more}"), code=4)) == {
+        "/camera": "",
+        "/odom": "no label says what disk sends",
+    }
+
+
 def test_topics_that_belong_to_services_actions_and_wildcards(cli: Cli, tmp_path: Path) -> None:
     """S3, S4: what is recorded of an action is the action's; a name that only a wildcard covers is what it carries."""
     policy = tmp_path / "a.policy.xml"

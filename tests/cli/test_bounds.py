@@ -72,9 +72,9 @@ def named_robots(number: int) -> Input:
 
 
 def two_wildcards(number: int) -> Input:
-    """A pair has 4 steps, and one for each character of what is written (``rt/*ww…`` in DDS)."""
-    written = topics("/*" + "w" * (number - len("rt/*") - 4))
-    return Input({"p.xml": policy(f"\n{written}{topics('/*', role='subscribe')}")}, ("analyze", "p.xml"), "p.xml:2: ")
+    """A pair without literal ends has 4 steps, and one for each character of what is written (``rt/ww…?`` in DDS)."""
+    written = topics("/" + "w" * (number - len("rt/?") - 4) + "?")
+    return Input({"p.xml": policy(f"\n{written}{topics('/*?', role='subscribe')}")}, ("analyze", "p.xml"), "p.xml:2: ")
 
 
 def label_globs(number: int) -> Input:
