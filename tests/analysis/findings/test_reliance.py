@@ -109,7 +109,6 @@ def compared(system: Any, options: Options) -> int:
     return len(rows)
 
 
-@given(st.one_of(systems(), ranked(), wildcards(), stated()), st.integers(1, 3))
 def test_where_no_statement_takes_anything_away_no_data_is_followed() -> None:
     """On a fleet that would be most of all that is done (review of performance)."""
     graph, bound, hierarchy = factory()
@@ -121,6 +120,7 @@ def test_where_no_statement_takes_anything_away_no_data_is_followed() -> None:
         assert reliances(analysis, only, hierarchy) == ()
 
 
+@given(st.one_of(systems(), ranked(), wildcards(), stated()), st.integers(1, 3))
 def test_equals_the_analysis_without_the_statement(system: Any, together: int) -> None:
     """However many sources are followed at once."""
     with patch.object(reliance, "TOGETHER", together):
