@@ -194,6 +194,8 @@ class Analysis:
         What is stated about non-ROS elements (rule S9).
     unknown_ends
         Channels with data that nobody known reads, elements outside ROS that no flow reaches; sorted (rule S11).
+    types
+        Names of the message types of each channel, sorted (rule S15).
     closed
         What only the types of channels close; None where no limits of types apply (rule S15).
     lacking
@@ -217,6 +219,7 @@ class Analysis:
     unknown_ends: tuple[UnknownEnd, ...] = ()
     lacking: str = ""
     closed: ClosedByTypes | None = None
+    types: Mapping[Element, tuple[str, ...]] = field(default_factory=dict)
 
 
 def robot_verdicts(

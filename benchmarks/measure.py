@@ -140,12 +140,16 @@ def shown(seconds: Sequence[float]) -> str:
 def run(*command: str | Path) -> None:
     """Run a command in a fresh process, to its end; its output is read and thrown away, as by a pipe.
 
+    Python may keep what it compiles, as an installation does: else ours alone would be compiled anew in each process.
+
     Raises
     ------
     SystemExit
         If it fails: then there is nothing to compare.
     """
-    done = subprocess.run([str(part) for part in command], capture_output=True, text=True, check=False)
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+    words = [str(part) for part in command]
+    done = subprocess.run(words, capture_output=True, text=True, check=False, env=environment)
     if done.returncode:
         sys.exit(f"{' '.join(map(str, command))} ended with {done.returncode}:\n{done.stderr}")
 

@@ -14,7 +14,6 @@ from rosprivacy.analysis.findings.ledger import ledger
 from rosprivacy.analysis.findings.processed import processed
 from rosprivacy.analysis.findings.reliance import Reliance, reliances
 from rosprivacy.analysis.findings.review_order import Behind, review_order
-from rosprivacy.analysis.fleet.counts import Counts, counted
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
@@ -24,6 +23,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.durations import Duration
     from rosprivacy.analysis.findings.ledger import TakenAway
     from rosprivacy.analysis.findings.processed import Processed
+    from rosprivacy.analysis.fleet.counts import Counts
     from rosprivacy.analysis.fleet.patterns import FleetView
     from rosprivacy.analysis.model import Bound, Diagnostic, NonRosFacts, Surroundings
     from rosprivacy.ontology.vocabulary import Vocabulary
@@ -156,6 +156,8 @@ class Answer:
 
     def fleet_counts(self, view: FleetView) -> Counts:
         """Return how many elements, flows and standard channels the fleet has, not its graph."""
+        from rosprivacy.analysis.fleet.counts import counted  # noqa: PLC0415 - light start
+
         return self.counts or counted(self.analysis.graph, self.analysis.spread, view.likeness)
 
 

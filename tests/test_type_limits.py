@@ -14,6 +14,8 @@ from rosprivacy.ingest.types.type_table import TABLE, excluded, read_table
 from rosprivacy.ontology.iris import STORED
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.private_neo4j import connection
+from rosprivacy.report.pictures import views
+from rosprivacy.report.pictures.dot import dot
 from rosprivacy.report.terminal.why_not import lines as why_not_lines
 from rosprivacy.robot_system import robot_of
 from rosprivacy.settings import Settings
@@ -276,6 +278,12 @@ def test_every_format_tells_of_the_table_and_none_breaks() -> None:
     assert "1 finding is closed only by this: Video: /cam -> /sink" in text
     assert "taken away on the data's side: 1 channel by its message type" in text
     assert "its type cannot carry Video" in "\n".join(why_not_lines(result.why_not("/cam", "/sink", "Video")))
+
+
+def test_pictures_have_types_where_one_points_at_a_channel() -> None:
+    result = told("{types: [std_msgs/msg/String]}")
+    for picture in (views.ros_view(result.analysis), views.privacy_view(result.analysis)):
+        assert "std_msgs/msg/String" in dot(picture)
 
 
 @pytest.mark.database

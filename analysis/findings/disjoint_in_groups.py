@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.bounds import Tally
 
-State = tuple[int, int]
+State = int
 Step = tuple[State, State]
 Group = tuple[list[State], list[State]]
 
@@ -35,7 +35,7 @@ def number_in_groups(steps: Sequence[Step], groups: Sequence[Group], source: Sta
     Examples
     --------
     >>> from rosprivacy.analysis.bounds import BOUNDS, Tally
-    >>> camera, left, right, cloud = ((vertex, 0) for vertex in range(4))
+    >>> camera, left, right, cloud = range(4)
     >>> groups = [([camera], [left, right]), ([left, right], [cloud])]
     >>> number_in_groups([], groups, camera, cloud, Tally(BOUNDS, "path_steps"))
     2

@@ -94,8 +94,8 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
     Notes
     -----
     The fixpoint says which leaks are reached; only where one is, searches say from which source and along which path:
-    one or two per source, O(flows) each for a fixed number of categories, and networkx's ``edge_disjoint_paths`` on
-    the part of the graph between the two.
+    one or two per source, O(flows) each for a fixed number of categories, and augmenting paths on the part of the graph
+    between the two.
 
     Examples
     --------
@@ -137,6 +137,7 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
         outside={graph.elements[vertex]: facts for vertex, facts in sorted(bound.outside.items())},
         unknown_ends=unknown_ends(spread, mask),
         lacking=lacks,
+        types={graph.elements[v]: tuple(sorted({one.name for one in some})) for v, some in bound.types.items()},
     )
 
 
@@ -238,7 +239,6 @@ def _findings_of(
                     if (i, anyway) not in between:
                         stop = {} if anyway else stops.of(spread.bits.both(i), accepted)
                         between[i, anyway] = Between(net, chosen, source, i, _relevant(spread, i), stop)
-                        work.paths.count += between[i, anyway].size
                     more = further(between[i, anyway], leak, memory, options.paths, options.max_paths, work.paths)
                     finding = replace(finding, disjoint_paths=more.disjoint, paths=more.paths, bounded=more.bounded)
                 yield leak, i, finding

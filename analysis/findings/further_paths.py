@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.many_flows import Meeting
     from rosprivacy.analysis.model import Element, FlowGraph
 
-State = tuple[int, int]  # vertex, number of the category with which data arrives there
-SOURCE, LEAK = -1, -2  # in place of the category's number: the source and the leak are one state each
+State = int  # vertex * width + form
+LEAK, SOURCE, FIRST = 0, 1, 2  # forms: the leak and the source are one state each; then categories by their number
 SEARCHED = 10  # times the bound: so many paths of data are looked at, of which many may be one to the reader
 
 
@@ -79,37 +79,57 @@ class Between:
         self.bits = net.spread.bits
         self.states = States(net, relevant, stop)
         self.emits = self.states.emitted(source)
+        self.width = FIRST + self.bits.merged(net.spread.all_bits).bit_length()
+        self.begin = self.state(source, SOURCE)
+        self.reached = len(reach.seen)
+        self._reach: Search | None = reach
+        self._known: dict[int, list[tuple[int, int]]] = {}
         self.back: dict[State, set[State]] = defaultdict(set)
         self.met: dict[tuple[int, int], tuple[Meeting, set[State]]] = {}  # by meeting and bits: who sends these
-        self.size = 0
-        for before, after in self._edges(reach):
-            self.size += 1
-            self.back[after].add(before)
-        self.groups = [(befores, set(self._read(meeting, bits))) for (_, bits), (meeting, befores) in self.met.items()]
+        self.groups: list[tuple[set[State], set[State]]] = []
         self.into: dict[State, list[int]] = defaultdict(list)
+        self._meet(self.begin, source, self.emits)
+        for _, target, bits in (*self.states.after_alone(source, self.emits), *self.states.single(source)):
+            for state in self._at(target, bits):
+                self.back[state].add(self.begin)
+        self.one_way_out = len(self.back) == 1 and not self.met
+
+    def state(self, vertex: int, form: int) -> State:
+        """Return the number of a state."""
+        return vertex * self.width + form
+
+    def link(self, work: Tally) -> None:
+        """Link all states to those that follow, once and where it is needed; the work is counted."""
+        if self._reach is None:
+            return
+        for before, after in self._edges(self._reach):
+            work.count += 1
+            self.back[after].add(before)
+        self._reach = None
+        self.groups = [(befores, set(self._read(meeting, bits))) for (_, bits), (meeting, befores) in self.met.items()]
         for number, (befores, afters) in enumerate(self.groups):
-            self.size += len(befores) + len(afters)
+            work.count += len(befores) + len(afters)
             for after in afters:
                 self.into[after].append(number)
 
     def _edges(self, reach: Search) -> Iterator[tuple[State, State]]:
-        states, single = self.states, self.states.net.spread.flow_emits
-        self._meet((self.source, SOURCE), self.emits)
-        for _, target, bits in (*states.after_alone(self.source, self.emits), *states.single(self.source)):
-            yield from (((self.source, SOURCE), state) for state in self._at(target, bits))
+        """The steps from what arrives somewhere; those from the source's own data are linked before."""
+        states, net = self.states, self.states.net
         for vertex, seen in reach.seen.items():
-            for here in self._at(vertex, seen):
-                arriving = seen & self.bits.both(here[1]) if here[1] != SOURCE else 0
-                leaving = states.leaving(vertex, arriving)
-                self._meet(here, leaving)
-                for index, target, bits in states.after_alone(vertex, leaving):
+            moves, single = net.flows.get(vertex, ()), net.spread.flow_emits if vertex == self.source else {}
+            for form, both in self._forms(seen) if moves or vertex in net.meetings else ():
+                if self._begun(vertex, form):
+                    continue
+                here, leaving = self.state(vertex, form), states.leaving(vertex, seen & both)
+                self._meet(here, vertex, leaving)
+                for index, target, passing in moves if leaving else ():
                     # what a source emits along a flow does not go there a second time
-                    moved = bits & ~single.get(index, 0) if vertex == self.source else bits
-                    yield from ((here, state) for state in self._at(target, moved))
+                    if moved := leaving & passing & ~single.get(index, 0):
+                        yield from ((here, state) for state in self._at(target, moved))
 
-    def _meet(self, here: State, leaving: int) -> None:
+    def _meet(self, here: State, vertex: int, leaving: int) -> None:
         """Note what a state sends to all that its meetings read."""
-        for meeting in self.states.net.meetings.get(here[0], ()) if leaving else ():
+        for meeting in self.states.net.meetings.get(vertex, ()) if leaving else ():
             self.met.setdefault((id(meeting), leaving), (meeting, set()))[1].add(here)
 
     def _read(self, meeting: Meeting, bits: int) -> Iterator[State]:
@@ -117,11 +137,24 @@ class Between:
         for target in meeting.read:
             yield from self._at(target, bits & spread.keeps.get(target, spread.all_bits))
 
-    def _at(self, vertex: int, bits: int) -> Iterator[State]:
+    def _at(self, vertex: int, bits: int) -> list[State]:
         """The states that data with some bits is in at a vertex, its two planes put together."""
-        for number in bits_of(self.bits.merged(bits & self.states.allowed)):
-            begun = vertex == self.source and self.emits >> self.bits.plain(number) & 1
-            yield (vertex, SOURCE if begun else number)
+        start = vertex * self.width
+        if vertex != self.source:
+            return [start + form for form, _ in self._forms(bits)]
+        return [self.begin if self._begun(vertex, form) else start + form for form, _ in self._forms(bits)]
+
+    def _forms(self, bits: int) -> list[tuple[int, int]]:
+        """Form and bits of each category among some."""
+        forms = self._known.get(bits)
+        if forms is None:
+            numbers = bits_of(self.bits.merged(bits & self.states.allowed))
+            forms = self._known[bits] = [(number + FIRST, self.bits.both(number)) for number in numbers]
+        return forms
+
+    def _begun(self, vertex: int, form: int) -> bool:
+        """Whether data in this form is what the vertex, as the source, emits anyway."""
+        return vertex == self.source and bool(self.emits >> self.bits.plain(form - FIRST) & 1)
 
     def to(self, leak: int, memory: dict[Any, Any]) -> tuple[list[list[int]], list[tuple[State, State]]]:
         """Return the paths to a leak that share no flow, as vertices, and the edges that they lie among."""
@@ -131,7 +164,8 @@ class Between:
             edges = sorted([*edges, *(pair for group in groups for pair in product(*group))])
         key = self._key(leak, edges)
         if key not in memory:
-            memory[key] = _disjoint(edges, (self.source, SOURCE), (leak, LEAK))
+            paths = _disjoint(edges, self.begin, self.state(leak, LEAK))
+            memory[key] = [[state // self.width for state in path] for path in paths]
         return memory[key], edges
 
     def number_to(self, leak: int, memory: dict[Any, Any], work: Tally) -> int:
@@ -142,40 +176,54 @@ class Between:
         memory
             Answers for equal graphs: kinds of data often take the same paths.
         """
+        if self.one_way_out:
+            work.count += self.reached
+            return 1
+        self.link(work)
+        ends = self._ends(leak)
+        last = {before for end in ends for before in self.back.get(end, ())} - ends
+        if len(last) == 1 and not any(end in self.into for end in ends):
+            work.count += self.reached
+            return 1
         edges, groups = self._leading_to(leak)
         work.count += len(edges) + sum(len(befores) + len(afters) for befores, afters in groups)
         alike = [[(state, state) for state in some] for some in chain(*groups)]
         key = "number", *(self._key(leak, some) for some in (edges, *alike))
         if key not in memory:
-            ends = (self.source, SOURCE), (leak, LEAK)
+            between = self.begin, self.state(leak, LEAK)
             memory[key] = (
-                number_in_groups(edges, groups, *ends, work) if groups else number_disjoint(edges, *ends, work)
+                number_in_groups(edges, groups, *between, work) if groups else number_disjoint(edges, *between, work)
             )
         return int(memory[key])
 
     def _key(self, leak: int, edges: Sequence[tuple[State, State]]) -> tuple[int, int, bool, bytes]:
         """What the answer hangs on; a hash of the edges, which are many."""
         # one kind of data is like another where nothing is made into it
-        differs = any(a[1] not in (SOURCE, self.category) for a, _ in edges)
-        numbers = array("q", (n for edge in edges for state in edge for n in (state if differs else state[:1])))
+        width, own = self.width, {SOURCE, self.category + FIRST}
+        differs = any(before % width not in own for before, _ in edges)
+        states = [state for edge in edges for state in edge]
+        numbers = array("q", states if differs else [state // width for state in states])
         # on a ring two sources have equal graphs
         return self.source, leak, differs, hashlib.sha256(numbers.tobytes()).digest()
+
+    def _ends(self, leak: int) -> set[State]:
+        """The states in which data of the category is at a leak, or what the leak makes it of."""
+        category = self.bits.category
+        made_of = (category(b) for b, after in self.derives.get(leak, ()) if category(after) == self.category)
+        return {self.state(leak, number + FIRST) for number in (*made_of, self.category)}
 
     def _leading_to(self, leak: int) -> tuple[list[tuple[State, State]], list[Group]]:
         """The edges from which a leak can be reached, sorted; of groups, in place of their pairs, what begins and ends.
 
         Whatever comes to one state of a group comes to all that lead on, so each group is walked back once.
         """
-        pairs = self.derives.get(leak, ())
-        category = self.bits.category
-        ends = {(leak, category(before)) for before, after in pairs if category(after) == self.category}
-        ends.add((leak, self.category))
+        ends = self._ends(leak)
         edges: set[tuple[State, State]] = set()
         reached, waiting = set(ends), list(ends)
         groups: dict[int, set[State]] = {}
         while waiting:
             after = waiting.pop()
-            shown = (leak, LEAK) if after in ends else after
+            shown = self.state(leak, LEAK) if after in ends else after
             befores = self.back.get(after, set()) - ends
             edges.update((before, shown) for before in befores)
             for number in self.into.get(after, ()):
@@ -184,20 +232,20 @@ class Between:
                 groups.setdefault(number, set()).add(shown)
             new = befores - reached
             reached |= new
-            waiting += (before for before in new if before[1] != SOURCE)
+            waiting += (before for before in new if before != self.begin)
         met = ((sorted(self.groups[number][0] - ends), sorted(afters)) for number, afters in groups.items())
         return sorted(edges), sorted((befores, afters) for befores, afters in met if befores)
 
 
 def _disjoint(edges: list[tuple[State, State]], source: State, leak: State) -> list[list[int]]:
-    """The paths that share no flow, as vertices, shortest first."""
+    """The paths that share no flow, as states, shortest first."""
     first, last = [b for a, b in edges if a == source], [a for a, b in edges if b == leak]
     if len(first) == 1 or len(last) == 1:  # a flow that all paths share: the shortest is one of them
         return [_shortest(edges, source, leak)]
     import networkx as nx  # noqa: PLC0415 - heavy, and only needed where there may be several
 
     paths = nx.edge_disjoint_paths(nx.DiGraph(edges), source, leak)
-    return sorted(([state[0] for state in path] for path in paths), key=lambda path: (len(path), path))
+    return sorted(paths, key=lambda path: (len(path), path))
 
 
 def number_disjoint(edges: Sequence[tuple[State, State]], source: State, leak: State, work: Tally) -> int:
@@ -207,7 +255,7 @@ def number_disjoint(edges: Sequence[tuple[State, State]], source: State, leak: S
     (Ford and Fulkerson; a search in breadth for each path). O(paths x edges).
 
     >>> from rosprivacy.analysis.bounds import BOUNDS, Tally
-    >>> camera, left, right, cloud = ((vertex, 0) for vertex in range(4))
+    >>> camera, left, right, cloud = range(4)
     >>> edges = [(camera, left), (camera, right), (left, cloud), (right, cloud), (left, right)]
     >>> number_disjoint(edges, camera, cloud, Tally(BOUNDS, "path_steps"))
     2
@@ -266,7 +314,7 @@ def _shortest(edges: list[tuple[State, State]], source: State, leak: State) -> l
     path = [leak]
     while path[-1] != source:
         path.append(came[path[-1]])
-    return [state[0] for state in reversed(path)]
+    return path[::-1]
 
 
 def further(between: Between, leak: int, memory: dict[Any, Any], asked: str, most: int, work: Tally) -> FurtherPaths:
@@ -299,14 +347,15 @@ def further(between: Between, leak: int, memory: dict[Any, Any], asked: str, mos
     mode = Paths(asked)
     if mode is Paths.witness:
         return FurtherPaths(between.number_to(leak, memory, work))
+    between.link(work)
     disjoint, edges = between.to(leak, memory)
     work.count += len(edges) * (1 + len(disjoint))
     chosen: Iterable[list[int]] = disjoint
     if mode is Paths.all:
         import networkx as nx  # noqa: PLC0415 - as above
 
-        paths = nx.shortest_simple_paths(nx.DiGraph(edges), (between.source, SOURCE), (leak, LEAK))
-        chosen = ([state[0] for state in path] for path in paths)
+        paths = nx.shortest_simple_paths(nx.DiGraph(edges), between.begin, between.state(leak, LEAK))
+        chosen = ([state // between.width for state in path] for path in paths)
     shown: dict[tuple[Element, ...], None] = {}
     for number, path in enumerate(chosen):  # two paths of data that differs may be one path to the reader
         shown[_elements(between.graph, path)] = None

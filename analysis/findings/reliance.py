@@ -25,7 +25,7 @@ from rosprivacy.analysis.model import CANNOT, NOWHERE, Bound, Statement
 from rosprivacy.analysis.non_ros import unanswered
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping
+    from collections.abc import Callable, Iterable, Mapping
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.decisions import Case
@@ -196,7 +196,7 @@ class _Work:
     ends: set[int]
     unknown: set[int]
     left: int
-    open: set[tuple[Shown, str]] = field(default_factory=set)
+    open: dict[Shown, int] = field(default_factory=lambda: defaultdict(int))  # as shown -> numbers of categories
 
     @cached_property
     def reaches(self) -> tuple[Reach, ...]:
@@ -215,15 +215,9 @@ class _Work:
             return None
         places = Places.of(spread, bound, hierarchy, asked, accepts)
         work = cls(bound, hierarchy, places, places.vertices(), unknown, ROUNDS)
-        work.open.update(work.asks(spread, open_bits(spread, unknown)))
+        for vertex, bits in open_bits(spread, unknown).items():
+            work.open[elements[vertex].shown_as] |= spread.bits.merged(bits & asked)
         return work
-
-    def asks(self, spread: Spread, bits: Mapping[int, int]) -> Iterator[tuple[Shown, str]]:
-        """(element as it is shown, category) of what is open."""
-        elements = spread.graph.elements
-        for vertex, some in bits.items():
-            for category in spread.names(some & self.places.asked):
-                yield elements[vertex].shown_as, category
 
     def without(self, statement: Statement, spots: _Spots) -> Reliance:
         """What there would be without a statement."""
@@ -237,7 +231,7 @@ class _Work:
         )
         less = _without(self.bound, statement, spots)
         try:
-            change = self._change(less, spots)
+            change = self._change(less, statement, spots)
             if change is not None:
                 return self._told(self._compared(row, *self._further(change, spots)))
             if not self.left:
@@ -251,15 +245,16 @@ class _Work:
         """A type reviews nothing: what lies behind it is open as it is (rule S15)."""
         return replace(row, questions=()) if row.statement.role == CANNOT else row
 
-    def _change(self, less: Bound, spots: _Spots) -> Spread | None:
+    def _change(self, less: Bound, statement: Statement, spots: _Spots) -> Spread | None:
         """What the elements and flows do without it, if that is more and nothing less; else None."""
         spread, graph = self.places.spread, self.places.spread.graph
         flows = {index: less.flows[index] for index in spots.flows}
         elements = {vertex: less.elements[vertex] for vertex in spots.vertices}
         named = {*spots.vertices, *(graph.flows[index].target for index in spots.flows)} & spread.named.keys()
-        if named or any(statement.through for said in elements.values() for statement in said):
+        if named or any(one.through for said in elements.values() for one in said):
             return None
-        now = spreading.meaning(graph, Bound(elements, flows), self.hierarchy, spread.categories)
+        left_out = spreading.LeftOut(spread, statement)
+        now = spreading.meaning(graph, Bound(elements, flows), self.hierarchy, spread.categories, left_out)
         more = all(self._more(now, vertex) for vertex in spots.vertices)
         kept = (not spread.flow_keeps[index] & ~now.flow_keeps[index] for index in spots.flows)
         return now if more and all(kept) else None
@@ -334,9 +329,11 @@ class _Work:
                     found.append(((not stands, i, source, leak, kind), opening))
         asked: dict[Shown, tuple[Element, set[str]]] = {}
         for vertex, some in sorted(bits.items()):
-            for shown, category in self.asks(spread, {vertex: some}):
-                if (shown, category) not in self.open:
-                    asked.setdefault(shown, (elements[vertex], set()))[1].add(category)
+            if not (open_now := spread.bits.merged(some & self.places.asked)):
+                continue
+            shown = elements[vertex].shown_as
+            if new := open_now & ~self.open.get(shown, 0):
+                asked.setdefault(shown, (elements[vertex], set()))[1].update(spread.names(new))
         return replace(
             row,
             findings=tuple(opening for _, opening in sorted(found, key=lambda pair: pair[0])),

@@ -6,17 +6,20 @@ flows let more pass: only what is new is followed, so a small change costs what 
 
 from __future__ import annotations
 
-from collections import ChainMap, defaultdict
+from collections import defaultdict
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
 
 from rosprivacy.analysis.many_flows import parted
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, MutableMapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.many_flows import Meeting
+
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +74,27 @@ class Lanes:
                 yield source, bits
 
 
+class Known(Protocol[T]):
+    """What is known of a vertex or flow, or else what is taken: a dict, or one over another."""
+
+    def get(self, key: int, otherwise: T, /) -> T:
+        """Return it."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Over(Generic[T]):
+    """A few values in place of those of another one, which stays as it is."""
+
+    few: Mapping[int, T]
+    below: Known[T]
+
+    def get(self, key: int, otherwise: T, /) -> T:
+        """Return the value of a key."""
+        value = self.few.get(key)
+        return self.below.get(key, otherwise) if value is None else value
+
+
 @dataclass(frozen=True, slots=True)
 class Doing:
     """What elements and flows do with what comes, in lanes; made for elements without a word of their own too.
@@ -96,9 +120,9 @@ class Doing:
     lanes: Lanes
     moves: Mapping[int, list[tuple[int, int]]]
     meetings: Mapping[int, list[Meeting]]
-    keeps: MutableMapping[int, int]
-    derives: MutableMapping[int, tuple[tuple[int, int], ...]]
-    flow_keeps: MutableMapping[int, int]
+    keeps: Known[int]
+    derives: Known[tuple[tuple[int, int], ...]]
+    flow_keeps: Known[int]
     emits: Mapping[int, int]
     flow_emits: Mapping[int, int]
     allowed: int
@@ -139,9 +163,9 @@ class Doing:
         every = self.lanes.every
         return replace(
             self,
-            keeps=ChainMap({v: every(bits) for v, bits in spread.keeps.items()}, self.keeps),
-            derives=ChainMap(dict(spread.derives), self.derives),
-            flow_keeps=ChainMap({i: every(bits) for i, bits in spread.flow_keeps.items()}, self.flow_keeps),
+            keeps=Over({v: every(bits) for v, bits in spread.keeps.items()}, self.keeps),
+            derives=Over(spread.derives, self.derives),
+            flow_keeps=Over({i: every(bits) for i, bits in spread.flow_keeps.items()}, self.flow_keeps),
         )
 
     def made(self, vertex: int, bits: int) -> int:
@@ -249,14 +273,14 @@ class Flood:
 
     def _follow(self, pending: dict[int, int]) -> None:
         """First in, first out: what comes to one element along several flows goes on together."""
-        moves, flow_keeps, meetings = self.doing.moves, self.doing.flow_keeps, self.doing.meetings
+        moves, flow_keeps, allowed = self.doing.moves, self.doing.flow_keeps, self.doing.allowed
+        meetings = self.doing.meetings
         met: dict[int, int] = defaultdict(int)  # what has come to all that a meeting reads
         while pending:
             vertex = next(iter(pending))
             bits = pending.pop(vertex)
             for index, target in moves.get(vertex, ()):
-                passing = flow_keeps.get(index)
-                self._arrive(target, bits if passing is None else bits & passing, pending)
+                self._arrive(target, bits & flow_keeps.get(index, allowed), pending)
             for meeting in meetings.get(vertex, ()):
                 new = bits & ~met[id(meeting)]
                 met[id(meeting)] |= new

@@ -71,7 +71,8 @@ def keep_named(
                 continue
             kept = [s for s in of[at] if s.by_name or not closes(s, category, hierarchy)]
             name = graph.elements[vertex].name
-            meaning[at][category] = now = facts(name, kept, category, hierarchy)
+            now = facts(name, kept, category, hierarchy)
+            meaning[at] = {**meaning[at], category: now}  # elements of which the same is said share the other one
             for closer in now.closers:
                 if closer.rank[0] < CHANGED and (closer.place, source.place) not in told:
                     told.add((closer.place, source.place))

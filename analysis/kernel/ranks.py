@@ -75,6 +75,8 @@ def decided(name: str, said: Sequence[Statement], category: str, hierarchy: Hier
         for statement in said
         if (distance := _distance(statement, category, hierarchy)) is not None
     ]
+    if len(ranked) < 2:  # noqa: PLR2004 - nothing to weigh
+        return Decided(tuple(statement for _, statement in ranked), ())
     ranked.sort(key=lambda pair: (pair[0], str(pair[1].place)), reverse=True)
     accepted: list[Statement] = []
     outdone: list[tuple[Statement, Statement]] = []
@@ -90,6 +92,18 @@ def decided(name: str, said: Sequence[Statement], category: str, hierarchy: Hier
             outdone.append((statement, _decisive(statement, winners)))
     _check_derivations(name, category, accepted)
     return Decided(tuple(accepted), tuple(sorted(outdone, key=lambda pair: by_line(pair[0]))))
+
+
+def applies(statement: Statement, category: str, hierarchy: Hierarchy) -> bool:
+    """Return whether a statement says anything of a category: what says nothing of it decides nothing for it.
+
+    >>> from rosprivacy.analysis.example import CAMERA, factory
+    >>> _, bound, hierarchy = factory()
+    >>> (source,) = bound.elements[CAMERA]  # source: [Video]
+    >>> applies(source, "Video", hierarchy), applies(source, "FaceTemplate", hierarchy)
+    (True, False)
+    """
+    return _distance(statement, category, hierarchy) is not None
 
 
 def closes(statement: Statement, category: str, hierarchy: Hierarchy) -> bool:

@@ -84,10 +84,14 @@ class Spread:
     leaves: dict[int, int] = field(default_factory=dict)
     sent: dict[int, int] = field(default_factory=dict)
 
+    _both: dict[str, int] = field(init=False, repr=False, compare=False)
+    _names: dict[int, tuple[str, ...]] = field(default_factory=dict, init=False, repr=False, compare=False)
+
     def __post_init__(self) -> None:
         """Number the bits."""
         self.bits = CategoryBits(len(self.categories))
         self.all_bits = self.bits.all
+        self._both = {category: self.bits.both(number) for number, category in enumerate(self.categories)}
 
     @property
     def told_apart(self) -> set[int]:
@@ -100,7 +104,7 @@ class Spread:
 
     def both(self, category: str) -> int:
         """The two bits of a category, as it is and pseudonymised; none of one that nothing here emits."""
-        return self.bits.both(self.categories.index(category)) if category in self.categories else 0
+        return self._both.get(category, 0)
 
     def present(self, vertex: int) -> int:
         """What arrives at or starts from an element, or is carried by a channel; nothing at what is not there."""
@@ -124,7 +128,10 @@ class Spread:
 
     def names(self, bits: int) -> tuple[str, ...]:
         """The categories of some bits, planes put together, in order."""
-        return tuple(self.categories[i] for i in bits_of(self.bits.merged(bits)))
+        names = self._names.get(bits)
+        if names is None:
+            names = self._names[bits] = tuple(self.categories[i] for i in bits_of(self.bits.merged(bits)))
+        return names
 
     def planes(self, bits: int) -> tuple[tuple[str, ...], tuple[str, ...]]:
         """The categories of some bits, as they are and pseudonymised."""

@@ -6,6 +6,7 @@ integers, which have as many bits as are needed (``bits.py``).
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors
@@ -13,13 +14,13 @@ from rosprivacy.analysis.kernel.labelled_graph import LabelledGraph
 from rosprivacy.analysis.kernel.least_solution import least_solution
 from rosprivacy.analysis.kernel.named_channels import keep_named, named, stated_flows
 from rosprivacy.analysis.kernel.overruled import overruled
+from rosprivacy.analysis.kernel.ranks import applies
 from rosprivacy.analysis.kernel.roles import NOTHING_SAID, Facts, facts
 from rosprivacy.analysis.kernel.spread import Spread
 from rosprivacy.analysis.model import Method
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Mapping
-    from typing import Any
+    from collections.abc import Callable, Collection, Iterable, Mapping
 
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.model import Bound, FlowGraph, Statement
@@ -45,13 +46,25 @@ def spread(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy) -> Spread:
     return result
 
 
-def meaning(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, categories: Iterable[str]) -> Spread:
+@dataclass(frozen=True, slots=True)
+class LeftOut:
+    """A statement that is left out of what a spread says: of what it does not apply to, all stays as it was."""
+
+    spread: Spread
+    statement: Statement
+
+
+def meaning(
+    graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, categories: Iterable[str], left_out: LeftOut | None = None
+) -> Spread:
     """Apply labels to a graph, and carry nothing yet.
 
     Parameters
     ----------
     categories
         That have bits: those that are emitted, here or in the other parts of what this is a part of.
+    left_out
+        What was said before of the same elements and flows, but for this; no source names channels there.
 
     Raises
     ------
@@ -66,7 +79,7 @@ def meaning(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, categories: It
     (('FaceTemplate', 'Video'), {})
     """
     spread = Spread(graph, tuple(sorted(categories)))
-    problems = _decide(spread, bound, hierarchy)
+    problems = _decide(spread, bound, hierarchy, left_out)
     spread.overruled = overruled(spread.facts, graph.elements)
     problems += [error for one in spread.overruled if (error := one.error())]
     problems += keep_named(spread.facts, spread.flow_facts, graph, bound, hierarchy)
@@ -75,8 +88,13 @@ def meaning(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, categories: It
     for category, _, vertex, _ in named(spread.facts, graph, bound):
         if category in spread.categories:
             spread.named[vertex] = spread.named.get(vertex, 0) | spread.both(category)
+    alike: dict[int, _Does] = {}
     for vertex in bound.elements:
-        _set_vertex(spread, vertex, bound, stated)
+        decided = spread.facts[vertex]
+        if id(decided) not in alike:
+            alike[id(decided)] = _Does.of(spread, decided)
+        _set_vertex(spread, vertex, alike[id(decided)])
+        _begin_through(spread, vertex, bound, stated)
     for index, kept in spread.flow_facts.items():
         spread.flow_keeps[index] = _bits(spread, kept, lambda fact: fact.passes)
     if problems:
@@ -84,30 +102,39 @@ def meaning(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, categories: It
     return spread
 
 
-def _decide(spread: Spread, bound: Bound, hierarchy: Hierarchy) -> list[InputError]:
+def _decide(spread: Spread, bound: Bound, hierarchy: Hierarchy, left_out: LeftOut | None) -> list[InputError]:
     """Put in what each element and flow does with each category; return where statements contradict each other."""
     elements, flows = spread.graph.elements, spread.graph.flows
     problems: list[InputError] = []
-    decided: dict[tuple[tuple[Statement, ...], str], Facts] = {}
+    alike: dict[tuple[int, ...], dict[str, Facts]] = {}  # globs say the same of many elements
 
-    def decide(said: tuple[Statement, ...], name: str) -> dict[str, Facts]:
+    def decide(said: tuple[Statement, ...], name: str, before: Mapping[str, Facts]) -> dict[str, Facts]:
+        key = tuple(map(id, said))
+        if key in alike:
+            return alike[key]
         mentioned = {category for statement in said for category in statement.categories}
-        result = {}
+        result: dict[str, Facts] = {}
+        known = len(problems)
         for category in sorted(mentioned.union(spread.categories) or hierarchy.ancestors):
-            if (said, category) not in decided:
-                try:
-                    decided[said, category] = facts(name, said, category, hierarchy)
-                except InputError as error:
-                    problems.append(error)
-                    continue
-            result[category] = decided[said, category]
+            if left_out and category in before and not applies(left_out.statement, category, hierarchy):
+                result[category] = before[category]
+                continue
+            try:
+                result[category] = facts(name, said, category, hierarchy)
+            except InputError as error:
+                problems.append(error)
+        if len(problems) == known:
+            alike[key] = result
         return result
 
+    facts_before = left_out.spread.facts if left_out else {}
+    flow_facts_before = left_out.spread.flow_facts if left_out else {}
     for vertex, said in bound.elements.items():
-        spread.facts[vertex] = decide(said, elements[vertex].name)
+        spread.facts[vertex] = decide(said, elements[vertex].name, facts_before.get(vertex, {}))
     for index, said in bound.flows.items():
         source, target = elements[flows[index].source], elements[flows[index].target]
-        spread.flow_facts[index] = decide(said, f"the flow {source.name} -> {target.name}")
+        name = f"the flow {source.name} -> {target.name}"
+        spread.flow_facts[index] = decide(said, name, flow_facts_before.get(index, {}))
     return problems
 
 
@@ -129,52 +156,91 @@ def emitted(elements: Iterable[Iterable[Statement]]) -> set[str]:
     return names
 
 
-def _bits(spread: Spread, decided: Mapping[str, Facts], test: Any) -> int:
+def _bits(spread: Spread, decided: Mapping[str, Facts], test: Callable[[Facts], bool]) -> int:
     """The bits, in both planes, of the emitted categories whose facts pass a test."""
     bits = 0
     for category, fact in decided.items():
-        if category in spread.categories and test(fact):
+        if test(fact):
             bits |= spread.both(category)
     return bits
 
 
-def _set_vertex(spread: Spread, vertex: int, bound: Bound, stated: Mapping[int, Collection[int]]) -> None:
-    decided = spread.facts[vertex]
-    if any(fact.standard for fact in decided.values()):
+@dataclass(frozen=True, slots=True)
+class _Does:
+    """What elements do of which the same is said; as of ``Spread``."""
+
+    standard: bool
+    limited: int
+    gone: int
+    keeps: int
+    leaks: int
+    covered: int
+    derives: tuple[tuple[int, int], ...]
+    emits: int
+    made: frozenset[int]
+
+    @classmethod
+    def of(cls, spread: Spread, decided: Mapping[str, Facts]) -> _Does:
+        keeps = _bits(spread, decided, lambda fact: fact.passes)
+        covered = _bits(spread, decided, lambda fact: fact.covered)
+        for to in {to for fact in decided.values() for to in fact.derives}:  # who makes it knows of it
+            covered |= spread.both(to)
+        number = {category: i for i, category in enumerate(spread.categories)}
+        closed = _closed({c: decided[c].derives for c in spread.categories if c in decided})
+        pairs: set[tuple[int, int]] = set()
+        made: set[int] = set()
+        emits = 0
+        for category, i in number.items():
+            fact = decided.get(category, NOTHING_SAID)
+            plain, pseudonymised = spread.bits.forms(i)
+            after = {number[to] for to in closed.get(category, ())}
+            for j in after:
+                pairs.update(zip((plain, pseudonymised), spread.bits.forms(j), strict=True))
+            made.update(after)
+            if fact.pseudonymises:
+                pairs.add((plain, pseudonymised))
+                keeps |= 1 << pseudonymised  # what is pseudonymised already goes on so (rule S8)
+            if fact.emits:  # what a node makes of its own data leaves it like what it makes of others'
+                emits |= sum(1 << spread.bits.plain(j) for j in after)
+                emits |= 0 if fact.through else 1 << plain
+        return cls(
+            standard=any(fact.standard for fact in decided.values()),
+            limited=_bits(spread, decided, lambda fact: fact.limited),
+            gone=_bits(spread, decided, lambda fact: fact.method == Method.ABSENT),
+            keeps=keeps,
+            leaks=_bits(spread, decided, lambda fact: fact.leaks),
+            covered=covered,
+            derives=tuple(sorted(pairs)),
+            emits=emits,
+            made=frozenset(made),
+        )
+
+
+def _set_vertex(spread: Spread, vertex: int, does: _Does) -> None:
+    if does.standard:
         spread.standard.add(vertex)
-    if limited := _bits(spread, decided, lambda fact: fact.limited):
-        spread.limited[vertex] = limited
-    if gone := _bits(spread, decided, lambda fact: fact.method == Method.ABSENT):
-        spread.gone[vertex] = gone
-    if gone == spread.all_bits != 0:
+    if does.limited:
+        spread.limited[vertex] = does.limited
+    if does.gone:
+        spread.gone[vertex] = does.gone
+    if does.gone == spread.all_bits != 0:
         spread.absent.add(vertex)
-    number = {category: i for i, category in enumerate(spread.categories)}
-    spread.keeps[vertex] = _bits(spread, decided, lambda fact: fact.passes)
-    spread.leaks[vertex] = _bits(spread, decided, lambda fact: fact.leaks)
-    spread.covered[vertex] = _bits(spread, decided, lambda fact: fact.covered)
-    for to in {to for fact in decided.values() for to in fact.derives}:  # who makes it knows of it
-        spread.covered[vertex] |= spread.both(to)
-    made = _closed({c: decided[c].derives for c in spread.categories if c in decided})
-    pairs: set[tuple[int, int]] = set()
-    emits = 0
-    for category, i in number.items():
-        fact = decided.get(category, NOTHING_SAID)
-        plain, pseudonymised = spread.bits.forms(i)
-        after = {number[to] for to in made.get(category, ())}
-        for j in after:
-            pairs.update(zip((plain, pseudonymised), spread.bits.forms(j), strict=True))
-        spread.made.update(after)
-        if fact.pseudonymises:
-            pairs.add((plain, pseudonymised))
-            spread.keeps[vertex] |= 1 << pseudonymised  # what is pseudonymised already goes on so (rule S8)
-        if fact.emits:  # what a node makes of its own data leaves it like what it makes of others'
-            emits |= sum(1 << spread.bits.plain(j) for j in after)
-            emits |= 0 if fact.through else 1 << plain
-        for flow in {*bound.through.get((vertex, fact.through), ()), *stated.get(vertex, ())} if fact.through else ():
-            spread.flow_emits[flow] = spread.flow_emits.get(flow, 0) | 1 << plain
-            spread.flow_begins[vertex] = spread.flow_begins.get(vertex, 0) | 1 << plain
-    spread.derives[vertex] = tuple(sorted(pairs))
-    spread.emits[vertex] = emits
+    spread.keeps[vertex] = does.keeps
+    spread.leaks[vertex] = does.leaks
+    spread.covered[vertex] = does.covered
+    spread.derives[vertex] = does.derives
+    spread.emits[vertex] = does.emits
+    spread.made.update(does.made)
+
+
+def _begin_through(spread: Spread, vertex: int, bound: Bound, stated: Mapping[int, Collection[int]]) -> None:
+    """Put in what an element emits along single flows only."""
+    for category, fact in spread.facts[vertex].items():
+        if fact.emits and fact.through and category in spread.categories:
+            plain = 1 << spread.bits.plain(spread.categories.index(category))
+            for flow in {*bound.through.get((vertex, fact.through), ()), *stated.get(vertex, ())}:
+                spread.flow_emits[flow] = spread.flow_emits.get(flow, 0) | plain
+                spread.flow_begins[vertex] = spread.flow_begins.get(vertex, 0) | plain
 
 
 def _closed(derives: Mapping[str, tuple[str, ...]]) -> dict[str, set[str]]:

@@ -70,6 +70,10 @@ class Grant:
     absolute: bool = False
     seen: Seen | None = None
 
+    def __hash__(self) -> int:
+        """Of what tells nearly all apart: a file that many profiles include has the same lines in each."""
+        return hash((self.node, self.name, self.role, self.place.line))
+
 
 @dataclass(frozen=True, slots=True)
 class Policy:

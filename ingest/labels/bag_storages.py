@@ -41,7 +41,8 @@ def bags_of(file: str, root: str, value: Value) -> tuple[Bag, ...]:
     """
     from rosprivacy.ingest.bags.bag_folders import read_bags  # noqa: PLC0415 - light start: few files name a bag
 
-    written = value.text if value.kind == "text" and value.text.isprintable() else ""
+    whole = value.kind == "text" and value.text.isprintable()
+    written = value.text if whole else ""
     path = str(Path(file).parent / written)
     if not written or (why := unusable(path)):
         what = f"bag: {why}" if written else f"bag takes a path, not {shown(value.text) or f'a {value.kind}'!r}"

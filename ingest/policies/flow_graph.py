@@ -296,9 +296,9 @@ class _Drafts:
             if draft.allowed or role == "matches":
                 allowed.append(Flow(*ends, tuple(draft.allowed)))
             else:
-                denied.append(Flow(*ends, *(tuple(sorted(lines, key=_grant_key)) for lines in draft.taken or ())))
+                denied.append(Flow(*ends, *map(_in_order, draft.taken or ())))
         refused = [
-            Flow(index[source], index[target], "matches", (), tuple(sorted(lines, key=_grant_key)))
+            Flow(index[source], index[target], "matches", (), _in_order(lines))
             for (source, target), lines in self.refused.items()
         ]
         flows: Sequence[Flow] = tuple(sorted(allowed, key=_ends))
@@ -318,6 +318,10 @@ def _ends(flow: Flow) -> tuple[int, int, str]:
 
 def _profile_key(profile: Profile) -> tuple[str, str, str, int]:
     return (profile.enclave, profile.node, profile.place.file, profile.place.line)
+
+
+def _in_order(lines: set[Grant]) -> tuple[Grant, ...]:
+    return tuple(lines) if len(lines) < 2 else tuple(sorted(lines, key=_grant_key))  # noqa: PLR2004 - nothing to sort
 
 
 def _grant_key(grant: Grant) -> tuple[object, ...]:

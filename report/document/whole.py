@@ -5,8 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosprivacy.report.document.analysis import analysis_document
-from rosprivacy.report.document.decisions import with_decisions
-from rosprivacy.report.document.fleet import fleet_document
 from rosprivacy.report.document.message_types import with_types
 from rosprivacy.report.document.processing import with_processing
 
@@ -18,5 +16,12 @@ if TYPE_CHECKING:
 def document(answer: Answer) -> AnalysisDocument:
     """Return the JSON document of an answer."""
     made = with_types(with_processing(analysis_document(answer), answer), answer)
-    made = with_decisions(made, answer.decided) if answer.decided else made
-    return fleet_document(made, answer.fleet, answer.fleet_counts(answer.fleet)) if answer.fleet else made
+    if answer.decided:
+        from rosprivacy.report.document.decisions import with_decisions  # noqa: PLC0415 - light start
+
+        made = with_decisions(made, answer.decided)
+    if answer.fleet:
+        from rosprivacy.report.document.fleet import fleet_document  # noqa: PLC0415 - light start
+
+        made = fleet_document(made, answer.fleet, answer.fleet_counts(answer.fleet))
+    return made

@@ -110,6 +110,7 @@ def hover(picture: Picture, box: Box) -> str:
     said += [picture.say("pic.robot", robot=shortened(box.robot, 60))] if box.robot else []
     if picture.view == "privacy":
         said.append(picture.say(f"pic.look.{box.look}").partition(":")[0].rstrip())
+    said += [shortened(name, 60) for name in box.types[:4]]
     said += box.words
     if box.open and box.look != "open":
         said.append(picture.say("pic.partly"))

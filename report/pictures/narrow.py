@@ -16,7 +16,7 @@ from rosprivacy.report.pictures.looks import MATCHES
 from rosprivacy.report.pictures.picture import Box, Line, Picture, sorted_lines
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Mapping
+    from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 
     from rosprivacy.analysis.answer import Analysis, Finding
     from rosprivacy.analysis.model import Profile
@@ -120,6 +120,12 @@ def _nearest(name: str, names: Iterable[str]) -> str:
     return f"did you mean {', '.join(map(shown, close))}?" if close else f"there are {counted(len(every), 'name')}"
 
 
+def _as_one(some: Sequence[Box]) -> Box:
+    """Boxes that are drawn as one, with the names and the message types of all."""
+    types = tuple(sorted({name for box in some for name in box.types}))
+    return replace(some[0], names=tuple(n for box in some for n in box.names), types=types)
+
+
 def folded(picture: Picture) -> Picture:
     """Return the picture with channels of one kind that have the same ends, lines and role drawn as one box.
 
@@ -138,7 +144,7 @@ def folded(picture: Picture) -> Picture:
         same = (box.robot, box.kind, box.look, box.words, box.open, box.group, frozenset(joins[box.key]))
         alike[same if box.is_channel and not box.pattern else box.key].append(box)
     first = {box.key: boxes[0].key for boxes in alike.values() for box in boxes}
-    boxes = tuple(replace(some[0], names=tuple(n for box in some for n in box.names)) for some in alike.values())
+    boxes = tuple(_as_one(some) for some in alike.values())
     lines: dict[tuple[Key, Key, str], Line] = {}
     for line in picture.lines:
         ends = first[line.source], first[line.target], line.look

@@ -51,6 +51,8 @@ class Box:
         Name of what it is drawn inside of; empty for none.
     pattern
         Whether the name is a wildcard (rule S4).
+    types
+        Message types of a channel.
     """
 
     key: Key
@@ -60,6 +62,7 @@ class Box:
     open: bool = False
     group: str = ""
     pattern: bool = False
+    types: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, element: Element, look: str) -> Box:

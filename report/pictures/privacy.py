@@ -61,6 +61,7 @@ class Reached:
         for vertex, element in enumerate(self.graph.elements):
             self._of[element.identity].append(vertex)
         self._ending = ends_of(analysis)
+        self._types = analysis.types
         self._ends = {vertex: reduce(or_, kinds.values()) for vertex, kinds in self._ending.items()}
         self._open: dict[Key, set[str]] = defaultdict(set)
         shown = set(found.names(self._mask))
@@ -168,8 +169,9 @@ class Reached:
         words = self._words(key, bits, made, cleaned, vertices)
         if open_for and set(self._found.names(bits["present"])) != open_for:
             words.append(self._say.of("unreviewed", sorted(open_for), MOST))
-        pattern = self.graph.elements[vertices[0]].pattern
-        return Box(key, (key[2],), look, tuple(words), bool(open_for), pattern=pattern)
+        first = self.graph.elements[vertices[0]]
+        types = self._types.get(first, ())
+        return Box(key, (key[2],), look, tuple(words), bool(open_for), pattern=first.pattern, types=types)
 
     def _said(self, vertices: list[int], present: int) -> tuple[list[str], list[str]]:
         """What labels say that is made of what is here, and how it is cleaned, in words."""

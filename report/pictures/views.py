@@ -65,6 +65,9 @@ def ros_view(
     graph = analysis.graph
     hidden = set() if standard else {graph.elements[vertex].identity for vertex in analysis.spread.standard}
     boxes = {e.identity: Box.of(e, e.kind) for e in graph.elements if e.identity not in hidden}
+    for element, types in analysis.types.items():
+        if element.identity in boxes:
+            boxes[element.identity] = replace(boxes[element.identity], types=types)
     covered: dict[Key, set[Key]] = defaultdict(set)
     lines = _Lines(boxes)
     for flow in graph.flows:

@@ -53,11 +53,11 @@ def overview(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
     """Return one line for each finding where there are many."""
     if len(report["findings"]) <= MANY:
         return
-    unreviewed = _unreviewed(report)
+    unreviewed = {element for element, _ in _unreviewed(report)}
     yield "", ""
     yield words("tty.findings", n=str(len(report["findings"]))), "bold"
     for number, finding in enumerate(in_order(report["findings"], report.get("fleet")), 1):
-        met = {key(e) for e in finding["witness"]} & {element for element, _ in unreviewed}
+        met = {key(e) for e in finding["witness"]} & unreviewed
         parts = [
             words.count(len(finding["steps"]), "tty.hop"),
             *([words("tty.n.unreviewed", n=len(met))] if met else []),

@@ -8,34 +8,29 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from functools import cache
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.durations import parts
-from rosprivacy.report.words import (
-    words_cnil_de,
-    words_cnil_en,
-    words_cnil_fr,
-    words_pictures_de,
-    words_pictures_en,
-    words_pictures_fr,
-    words_terminal_de,
-    words_terminal_en,
-    words_terminal_fr,
-)
-from rosprivacy.report.words.words_de import WORDS as GERMAN
-from rosprivacy.report.words.words_en import WORDS as ENGLISH
-from rosprivacy.report.words.words_fr import WORDS as FRENCH
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
 DATE = 3  # parts of one
 _ARTICLE = re.compile(r"(?P<article>\d+)(?:\((?P<paragraph>\d+)\))?(?:\((?P<point>[a-z])\))?")
-TABLES = {
-    "en": ENGLISH | words_cnil_en.WORDS | words_terminal_en.WORDS | words_pictures_en.WORDS,
-    "de": GERMAN | words_cnil_de.WORDS | words_terminal_de.WORDS | words_pictures_de.WORDS,
-    "fr": FRENCH | words_cnil_fr.WORDS | words_terminal_fr.WORDS | words_pictures_fr.WORDS,
-}
+PARTS = ("", "cnil_", "terminal_", "pictures_")  # of a language's words, a module each
+
+
+@cache
+def table(language: str) -> Mapping[str, str]:
+    """Return all words of a language; those of the others are not imported.
+
+    >>> table("de")["thousands"]
+    '.'
+    """
+    modules = (import_module(f"rosprivacy.report.words.words_{part}{language}") for part in PARTS)
+    return {key: text for module in modules for key, text in module.WORDS.items()}
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,11 +42,11 @@ class Words:
     def __call__(self, key: str, **values: Any) -> str:
         """Return a sentence with its values in place; numbers as the language writes them."""
         said = {name: self.number(value) if isinstance(value, int) else value for name, value in values.items()}
-        return TABLES[self.language][key].format(**said)
+        return table(self.language)[key].format(**said)
 
     def places(self, key: str) -> str:
         """Return a sentence with its places still open."""
-        return TABLES[self.language][key]
+        return table(self.language)[key]
 
     def number(self, number: int) -> str:
         """Return a number with its thousands apart.
@@ -121,7 +116,7 @@ class Words:
 
     def known(self, key: str, otherwise: str) -> str:
         """Return the word for a value of the contract, or the value itself if there is none yet."""
-        return TABLES[self.language].get(key, otherwise)
+        return table(self.language).get(key, otherwise)
 
     def kind(self, element: Mapping[str, Any]) -> str:
         """Return what an element is.

@@ -15,7 +15,6 @@ from rosprivacy.analysis.findings.findings import Options, analyse
 from rosprivacy.analysis.findings.held_by_types import held_by_types
 from rosprivacy.analysis.findings.processed import lacks, processed
 from rosprivacy.analysis.fleet.likeness import pattern_id
-from rosprivacy.analysis.fleet.patterns import FleetView
 from rosprivacy.analysis.kernel.type_limits import under_limits
 from rosprivacy.analysis.model import unread
 from rosprivacy.analysis.modes import Paths, View
@@ -30,6 +29,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.fleet.counts import Counts
+    from rosprivacy.analysis.fleet.patterns import FleetView
     from rosprivacy.analysis.fleet.patterns_of_pairs import Groups
     from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.question import Question
@@ -63,7 +63,7 @@ def answer(system: System, question: Question) -> Result:
         analysis = _beside(system, options, analysis)
     elif question.type_limits and system.bound.types and system.graph.view == View.declared:
         analysis = replace(analysis, closed=ClosedByTypes())
-    view = groups.view(analysis) if groups else FleetView.of(analysis, system.likeness) if system.is_fleet else None
+    view = _view(system, analysis, groups) if system.is_fleet else None
     return concluded(replace(system, bound=bound), question, analysis, view, options)
 
 
@@ -80,6 +80,12 @@ def _groups(system: System) -> Groups:
     from rosprivacy.analysis.fleet.patterns_of_pairs import Groups  # noqa: PLC0415 - numpy, for fleets only
 
     return Groups(system.likeness)
+
+
+def _view(system: System, analysis: Analysis, groups: Groups | None) -> FleetView:
+    from rosprivacy.analysis.fleet.patterns import FleetView  # noqa: PLC0415 - for fleets only
+
+    return groups.view(analysis) if groups else FleetView.of(analysis, system.likeness)
 
 
 def concluded(

@@ -7,13 +7,9 @@ from typing import TYPE_CHECKING, Any, Literal, TypedDict, overload
 
 from rosprivacy.analysis.errors import InputError
 from rosprivacy.analysis.findings.findings import Options
-from rosprivacy.explanation import explained
-from rosprivacy.finding_table import Findings
 from rosprivacy.formats import Style, TextFormat, written
-from rosprivacy.ingest.labels.replaced import with_entry
 from rosprivacy.report.answer import Answer
 from rosprivacy.report.document.whole import document
-from rosprivacy.report.terminal.analysis import verdict_line
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -23,6 +19,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.findings.why_not import WhyNot
     from rosprivacy.analysis.model import Element, Policy
+    from rosprivacy.finding_table import Findings
     from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.ingest.types.types_file import TypesFile
 
@@ -68,6 +65,8 @@ class Result(Answer):
 
     def _verdict(self) -> str:
         """The line that every report begins with."""
+        from rosprivacy.report.terminal.analysis import verdict_line  # noqa: PLC0415 - light start
+
         return verdict_line(self.document())[0]
 
     @property
@@ -81,6 +80,8 @@ class Result(Answer):
         >>> [(finding.source.name, finding.leak.name) for finding in result.findings]
         [('/robot_camera', '/archive_server'), ('/safety_camera', '/archive_server')]
         """
+        from rosprivacy.finding_table import Findings  # noqa: PLC0415 - light start
+
         return Findings(self.shown.findings, self.fleet, self._verdict)
 
     @property
@@ -184,6 +185,8 @@ class Result(Answer):
         InputError
             If nothing is called so, or nothing emits the category.
         """
+        from rosprivacy.explanation import explained  # noqa: PLC0415 - light start
+
         return explained(self.analysis, self.vocabulary, source, leak, categories)
 
     def with_labels(self, *labels: str | Labels) -> Result:
@@ -230,4 +233,6 @@ class Result(Answer):
         >>> len(result.with_entry("nodes", "/robot_camera", "conduit").findings)
         1
         """
+        from rosprivacy.ingest.labels.replaced import with_entry  # noqa: PLC0415 - light start
+
         return self.with_labels(*with_entry(self.labels, section, name, said, self.vocabulary))

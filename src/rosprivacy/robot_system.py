@@ -23,9 +23,7 @@ from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.ingest.policies.joint_policies import joint_warnings
 from rosprivacy.ingest.policies.merged_policies import merging_notices
 from rosprivacy.ingest.policies.policy_files import read_policies
-from rosprivacy.ingest.policies.saved_graph import read_saved
 from rosprivacy.ingest.types.channel_types import channel_types, matching_nothing
-from rosprivacy.ingest.types.types_file import read_types
 from rosprivacy.question import question_of
 from rosprivacy.system import System
 
@@ -155,6 +153,10 @@ def robot_of(name: str, result: Result) -> RobotRows:
 
 def read_graphs(settings: Settings) -> list[Saved]:
     """Read the saved graphs that are added to."""
+    if not settings.add:
+        return []
+    from rosprivacy.ingest.policies.saved_graph import read_saved  # noqa: PLC0415 - light start
+
     return [read_saved(file) for file in settings.add]
 
 
@@ -185,6 +187,8 @@ def observed_types(settings: Settings, graphs: list[Saved]) -> Types:
     problems: list[InputError] = []
     files: dict[str, TypesFile] = {}
     for name in dict.fromkeys(settings.types):
+        from rosprivacy.ingest.types.types_file import read_types  # noqa: PLC0415 - light start
+
         try:
             files[name] = read_types(name, settings.bounds)
         except InputErrors as error:

@@ -59,7 +59,7 @@ def test_it_is_told_in_one_line_that_names_the_file_to_send(
     cli: Cli, system: Path, temporary: Path, monkeypatch: pytest.MonkeyPatch, error: type[Exception]
 ) -> None:
     there = everything(system)
-    monkeypatch.setattr("rosprivacy.formats.written", raising(error))
+    monkeypatch.setattr("rosprivacy.formats.in_pieces", raising(error))
     done = cli("analyze", "p.xml", "-f", "json", "-o", "out.json", "--save-graph", "g.json", cwd=system)
     assert (done.returncode, done.stdout) == (70, "")
     line = LINE.fullmatch(done.stderr)
@@ -93,7 +93,7 @@ def test_who_ends_it_is_no_finding_either(
     cli: Cli, system: Path, monkeypatch: pytest.MonkeyPatch, error: type[BaseException], code: int
 ) -> None:
     """The library of the command line ends with 1 where a pipe is closed: that says 'leak'."""
-    monkeypatch.setattr("rosprivacy.formats.written", raising(error))
+    monkeypatch.setattr("rosprivacy.formats.in_pieces", raising(error))
     done = cli("analyze", "p.xml", cwd=system)
     assert (done.returncode, done.stdout, done.stderr) == (code, "", "")
 

@@ -7,7 +7,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.report.words.typography import plain
-from rosprivacy.report.words.words import TABLES
+from rosprivacy.report.words.words import table
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping
@@ -26,8 +26,8 @@ OURS = ("Data Privacy Vocabulary", "Code of conduct", "no-leak-found", "the law"
 @cache
 def _english(language: str) -> frozenset[str]:
     """Parts of sentences of the English table that the other language has nowhere."""
-    others = plain("\n".join(TABLES[language].values()))
-    parts = {part.strip(" .,;:'") for text in TABLES["en"].values() for part in _PLACE.split(text)}
+    others = plain("\n".join(table(language).values()))
+    parts = {part.strip(" .,;:'") for text in table("en").values() for part in _PLACE.split(text)}
     return frozenset(part for part in parts if len(part) > LONG and " " in part and part not in others)
 
 

@@ -18,4 +18,7 @@ def main() -> None:
     gc.set_threshold(ENOUGH)
     from rosprivacy.cli.app import main as run
 
-    run()
+    try:
+        run()
+    finally:
+        gc.freeze()  # the process ends: nothing in it has to be looked through once more

@@ -18,7 +18,7 @@ from rosprivacy.ingest.labels.countries import countries
 from rosprivacy.report.page.article30 import record
 from rosprivacy.report.page.markdown import markdown
 from rosprivacy.report.words.typography import plain
-from rosprivacy.report.words.words import TABLES, Words
+from rosprivacy.report.words.words import Words, table
 from tests.helpers.graphs import care_home, hospital
 from tests.helpers.languages import OTHERS, english_in, users_texts
 from tests.helpers.pages import earlier, page, told
@@ -147,7 +147,7 @@ def test_the_key_of_a_reason_says_what_the_english_sentence_says(tmp_path: Path)
 @pytest.mark.parametrize("language", OTHERS)
 def test_whom_a_partial_decision_covers_has_words(language: str) -> None:
     for code in countries().partly:
-        assert f"adequacy.{code}" in TABLES[language]
+        assert f"adequacy.{code}" in table(language)
 
 
 def test_french_spaces_keep_to_their_marks() -> None:
