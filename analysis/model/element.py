@@ -49,10 +49,6 @@ class Element:
         """Without the hash, which is another one in another process."""
         return Element, (self.kind, self.name, self.robot, self.leg, self.side, self.without)
 
-    def __hash__(self) -> int:
-        """Of what tells nearly all apart: elements are looked up all the time."""
-        return hash((self.robot, self.name, self.leg))
-
     @property
     def pattern(self) -> bool:
         """Whether the name is a wildcard expression."""
