@@ -48,16 +48,31 @@ def turtlebots(folder: Path, robots: int) -> str:
     labels.write_text(label_file({name: six_lists(base, i) for i, name in enumerate(names)}), "utf-8")
     model = {"policies": [str(corpus() / POLICY)], "labels": [labels.name]}
     flows = [{"from": "*:/recoveries_server", "to": "cloud"}, {"from": "cloud", "to": "*:/amcl"}]
-    return _written(folder / f"turtlebots{robots}.json", robots, model, flows)
+    return _written(folder / f"turtlebots{robots}.json", {"robot": model}, robots, flows)
 
 
 def small_robots(folder: Path, robots: int) -> str:
     """The same for robots of 20 nodes and 60 topics."""
-    policy = folder / "small.policy.xml"
+    model = _small_model(folder)
+    flows = [{"from": "*:/uplink", "to": "cloud"}, {"from": "cloud", "to": "*:/planner"}]
+    return _written(folder / f"small{robots}.json", {"robot": model}, robots, flows)
+
+
+def different_robots(folder: Path, robots: int) -> str:
+    """The same for robots of which each has a policy of its own, with a topic of its own."""
+    models = {f"robot{i}": _small_model(folder, f"/own{i}") for i in range(robots)}
+    flows = [{"from": "*:/uplink", "to": "cloud"}, {"from": "cloud", "to": "*:/planner"}]
+    return _written(folder / f"different{robots}.json", models, 1, flows)
+
+
+def _small_model(folder: Path, own: str = "") -> dict[str, Any]:
+    """Write policy and labels of a small robot; ``own`` is a topic that one of its nodes writes beside the others."""
+    policy = folder / f"small{own.removeprefix('/')}.policy.xml"
     nodes = [*SMALL, *(f"/node{i:02}" for i in range(20 - len(SMALL)))]
     profiles = []
     for i, node in enumerate(nodes):
         written = "".join(f"<topic>/topic{3 * i + j:02}</topic>" for j in range(3))
+        written += f"<topic>{own}</topic>" if own and node == nodes[-1] else ""
         read = "".join(f"<topic>/topic{(3 * i - 1 - 2 * j) % 60:02}</topic>" for j in range(6))
         lines = f'<topics publish="ALLOW">{written}</topics><topics subscribe="ALLOW">{read}</topics>'
         profiles.append(f'<profile ns="/" node="{node[1:]}">{lines}</profile>')
@@ -66,16 +81,14 @@ def small_robots(folder: Path, robots: int) -> str:
     labels = folder / "small.labels.json"
     said = {"/camera": {"source": ["Video"]}, "/uplink": {"leak": ["Voice"]}, "/base": {"source": ["Location"]}}
     labels.write_text(json.dumps({"labels": 1, "nodes": said}), "utf-8")
-    model = {"policies": [policy.name], "labels": [labels.name]}
-    flows = [{"from": "*:/uplink", "to": "cloud"}, {"from": "cloud", "to": "*:/planner"}]
-    return _written(folder / f"small{robots}.json", robots, model, flows)
+    return {"policies": [policy.name], "labels": [labels.name]}
 
 
-def _written(file: Path, robots: int, model: dict[str, Any], flows: list[dict[str, str]]) -> str:
+def _written(file: Path, models: dict[str, dict[str, Any]], each: int, flows: list[dict[str, str]]) -> str:
     fleet = {
         "fleet": 1,
-        "models": {"robot": model},
-        "groups": [{"robots": robots, "model": "robot"}],
+        "models": models,
+        "groups": [{"robots": each, "model": model} for model in models],
         "elements": {"cloud": {"kind": "external-system", "country": "DE"}},
         "flows": flows,
     }
@@ -126,6 +139,9 @@ def rows(*, quick: bool) -> Iterator[Row]:
         sizes = (10_000 if quick else 100_000, 1_000)
         what = f"per robot, fleet file to report: {sizes[0]:,} equal small ones"
         yield Row(what, f"{sizes[1]:,}", lambda: _small(folder, known, sizes), bound=1.5)
+        different = (200, 50) if quick else (1_000, 100)
+        what = f"per robot, fleet file to report: {different[0]:,} different small ones"
+        yield Row(what, f"{different[1]:,}", lambda: _different(folder, known, different), bound=1.5)
         if quick:
             return
         large, small = 300, 30
@@ -158,6 +174,12 @@ def _small(folder: Path, known: Vocabulary, sizes: tuple[int, int]) -> Measured:
     large, small = (small_robots(folder, robots) for robots in sizes)
     seconds = side_by_side(3, lambda: answered(large, known), lambda: answered(small, known))
     return per_robot(seconds, sizes, "there is little to do for each, so the cost of each falls")
+
+
+def _different(folder: Path, known: Vocabulary, sizes: tuple[int, int]) -> Measured:
+    large, small = (different_robots(folder, robots) for robots in sizes)
+    seconds = side_by_side(3, lambda: answered(large, known), lambda: answered(small, known))
+    return per_robot(seconds, sizes, "80 elements each, and a cloud that joins all")
 
 
 def _placed(

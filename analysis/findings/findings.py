@@ -372,10 +372,8 @@ def _carried(spread: Spread, mask: int, hierarchy: Hierarchy) -> tuple[Carried, 
             element = spread.graph.elements[vertex]
             merged[element.shown_as] |= bits
             first.setdefault(element.shown_as, element)
-    return tuple(
-        Carried(first[key], *(hierarchy.narrowest(names) for names in spread.planes(bits)))
-        for key, bits in merged.items()
-    )
+    narrowest = {bits: tuple(map(hierarchy.narrowest, spread.planes(bits))) for bits in set(merged.values())}
+    return tuple(Carried(first[key], *narrowest[bits]) for key, bits in merged.items())
 
 
 def _roles(spread: Spread, mask: int) -> dict[Element, dict[str, tuple[str, ...]]]:

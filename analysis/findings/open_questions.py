@@ -57,13 +57,14 @@ def open_questions(net: Net, mask: int, unknown: Mapping[int, tuple[str, ...]] =
     nearest = search(net, sources, spread.all_bits, {})
     first = _first(net, sources, uncovered)
     merged: dict[tuple[str, str, str, str], OpenQuestion] = {}
+    names = {bits: spread.names(bits & mask) for bits in set(uncovered.values())}
     for vertex, everything in sorted(uncovered.items()):
         element, bits = elements[vertex], everything & mask
         if not bits:
             continue
         frontier = not element.is_channel and bool(first.get(vertex, 0) & bits)
         missing = unknown.get(vertex, ())
-        question = OpenQuestion(element, spread.names(bits), nearest.level(vertex, bits) or 0, frontier, missing)
+        question = OpenQuestion(element, names[everything], nearest.level(vertex, bits) or 0, frontier, missing)
         known = merged.get(element.shown_as)  # the other side of a wildcard
         if known:
             categories = tuple(sorted({*known.categories, *question.categories}))

@@ -67,7 +67,8 @@ def review_order(analysis: Analysis) -> dict[Shown, Behind]:
         return {}
     spread = analysis.spread
     elements = spread.graph.elements
-    asked = {q.element.shown_as: spread.bits.merged(sum(map(spread.both, q.categories))) for q in analysis.open}
+    kinds = {q.categories: spread.bits.merged(sum(map(spread.both, q.categories))) for q in analysis.open}
+    asked = {q.element.shown_as: kinds[q.categories] for q in analysis.open}
     following = _Following.of(spread)
     reached = following.reached()
     open_at = dict.fromkeys(vertex for vertex in reached if elements[vertex].shown_as in asked)

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.findings.findings import finding_id
+from rosprivacy.analysis.model import Element
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rosprivacy.analysis.answer import Finding
-    from rosprivacy.analysis.model import Element
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +43,8 @@ class Likeness:
 
     def alike(self, element: Element) -> Element:
         """Return the element as it would be on any robot."""
-        return replace(element, robot="") if self.is_robot(element.robot) else element
+        e = element
+        return Element(e.kind, e.name, "", e.leg, e.side, e.without) if self.is_robot(e.robot) else e
 
     def count(self, finding: Finding) -> int:
         """Return for how many findings of the fleet one of the graph stands; 0 if another does."""

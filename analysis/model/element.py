@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 CHANNELS = ("action", "service", "topic")
 NON_ROS = ("device", "display", "external-system", "person", "shared-memory", "side-channel", "storage")  # rule S9
@@ -36,10 +36,18 @@ class Element:
     leg: str = ""
     side: str = ""
     without: tuple[str, ...] = ()
+    _hash: int = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Reckon the hash once: nothing is asked for more often."""
+        object.__setattr__(self, "_hash", hash((self.name, self.robot, self.leg, self.kind)))
 
     def __hash__(self) -> int:
-        """Of what tells nearly all apart: elements are looked up all the time."""
-        return hash((self.robot, self.name, self.leg))
+        return self._hash
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Without the hash, which is another one in another process."""
+        return Element, (self.kind, self.name, self.robot, self.leg, self.side, self.without)
 
     @property
     def pattern(self) -> bool:

@@ -102,7 +102,12 @@ def _without(name: str, namespace: str) -> str:
 
 def alone(member: Member) -> Part:
     """The part of a robot that has a domain of its own: everything in it is the robot's."""
-    return _own_types(member.part.renamed(lambda element: replace(element, robot=member.robot.id)), member.robot)
+    robot = member.robot.id
+
+    def own(e: Element) -> Element:  # as replace(e, robot=robot), in a third of the time
+        return Element(e.kind, e.name, robot, e.leg, e.side, e.without)
+
+    return _own_types(member.part.renamed(own), member.robot)
 
 
 def pseudo_robot(domain: str) -> str:

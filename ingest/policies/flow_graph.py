@@ -100,6 +100,8 @@ class _Denials:
 
     def of(self, grant: Grant, endpoint: Endpoint) -> tuple[list[Grant], list[Rule]]:
         """The lines that deny all of what a grant opens, and the rules that deny a part of its wildcard."""
+        if not self._of:
+            return [], []
         rules, plain, patterns = self._of.get((grant.policy, grant.enclave, endpoint.writes), ((), {}, ()))
         self._work.at = grant.place
         if not is_pattern(endpoint.name):
@@ -115,9 +117,12 @@ class _Denials:
 
 @dataclass(slots=True)
 class _Draft:
-    """A flow in the making: one role of one node on one channel may span several DDS topics."""
+    """A flow in the making: one role of one node on one channel may span several DDS topics.
 
-    allowed: set[Grant] = field(default_factory=set)
+    Grants come in their order.
+    """
+
+    allowed: list[Grant] = field(default_factory=list)
     taken: tuple[set[Grant], set[Grant]] | None = None  # lines that are overridden, and those that deny
 
 
@@ -131,6 +136,7 @@ class _Drafts:
         self.work, self.bounds, self.count = work, bounds, Tally(bounds, "flows", PolicyError)
         self.said: dict[Element, Place] = {}  # of a pattern: the first line of it
         self.elements: set[Element] = set()
+        self.plain: dict[tuple[str, str, str], Element] = {}
         self.flows: dict[tuple[Element, Element, str], _Draft] = {}
         self.dds: dict[Element, set[str]] = defaultdict(set)
         self.ordered: dict[Element, list[str]] = {}  # those of patterns, for the same steps in every run
@@ -148,10 +154,11 @@ class _Drafts:
         """One DDS topic that a grant opens to a node, unless denied."""
         against, part = denials.of(grant, endpoint)
         channel = self._channel(endpoint, tuple(sorted({dds for dds, _ in part})) if part else ())
-        self.said.setdefault(channel, grant.place)
+        if channel.pattern:
+            self.said.setdefault(channel, grant.place)
         if part:
             self.rules[channel].update(part)
-        ends = Element("node", node), channel
+        ends = self._plain("node", node, ""), channel
         key = (*(ends if endpoint.writes else ends[::-1]), grant.role)
         draft = self.flows.get(key)
         if draft is None:
@@ -161,8 +168,8 @@ class _Drafts:
             draft.taken = draft.taken or (set(), set())
             draft.taken[0].add(grant)
             draft.taken[1].update(against)
-        else:
-            draft.allowed.add(grant)
+        elif not draft.allowed or draft.allowed[-1] is not grant:
+            draft.allowed.append(grant)
 
     def _channel(self, endpoint: Endpoint, without: tuple[str, ...]) -> Element:
         if is_pattern(endpoint.name):
@@ -170,15 +177,24 @@ class _Drafts:
             element = Element(endpoint.kind, endpoint.name, "", endpoint.leg, side, without)
             self.dds[element].add(endpoint.dds)
         else:
-            element = Element(endpoint.kind, endpoint.name, "", endpoint.leg)
+            element = self._plain(endpoint.kind, endpoint.name, endpoint.leg)
             if element not in self.elements:
                 self.dds[element].update(dds_names(endpoint.kind, endpoint.name, endpoint.leg))
         self.elements.add(element)
         return element
 
+    def _plain(self, kind: str, name: str, leg: str) -> Element:
+        """An element that is no pattern; made once."""
+        key = kind, name, leg
+        if key not in self.plain:
+            self.plain[key] = Element(kind, name, "", leg)
+        return self.plain[key]
+
     def join(self) -> None:
         """Join each wildcard to the names that it matches and the wildcards that it can meet (rule S4)."""
         patterns = sorted((e for e in self.elements if e.pattern), key=Element.sort_key)
+        if not patterns:
+            return
         self.ordered = {e: sorted(self.dds[e]) for e in patterns}
         plain = PlainNames(
             ((dds, e) for e in self.elements if not e.is_node and not e.pattern for dds in self.dds[e]),
@@ -278,7 +294,7 @@ class _Drafts:
         for (source, target, role), draft in self.flows.items():
             ends = index[source], index[target], role
             if draft.allowed or role == "matches":
-                allowed.append(Flow(*ends, _in_order(draft.allowed)))
+                allowed.append(Flow(*ends, tuple(draft.allowed)))
             else:
                 denied.append(Flow(*ends, *map(_in_order, draft.taken or ())))
         refused = [

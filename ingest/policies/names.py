@@ -76,6 +76,7 @@ class Endpoint:
     dds: str
 
 
+@lru_cache(10_000)  # robots of a fleet use the same names
 def endpoints(role: str, kind: str, name: str) -> tuple[Endpoint, ...]:
     """Return the DDS topics that a grant opens, as sros2's ``permissions.xsl`` writes them (rules S2, S3).
 

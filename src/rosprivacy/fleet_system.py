@@ -181,7 +181,9 @@ class Reader:
         )
         diagnostics += told_of_bags(extended, (stated for labels in files for stated in labels.elements))
         bound = bind(extended, files, settings.bounds, robot.surroundings)
-        part = with_grants(Part.of(extended, bound), lambda grant: as_written(grant, robot.add))
+        part = Part.of(extended, bound)
+        if robot.add:
+            part = with_grants(part, lambda grant: as_written(grant, robot.add))
         return Member(robot, policies, part, full, graph.profiles, tuple(files), tuple(dict.fromkeys(diagnostics)))
 
     def _read_labels(self, robot: Robot) -> list[Labels]:

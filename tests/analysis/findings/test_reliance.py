@@ -109,6 +109,17 @@ def compared(system: Any, options: Options) -> int:
     return len(rows)
 
 
+def test_where_no_statement_takes_anything_away_no_data_is_followed() -> None:
+    """On a fleet that would be most of all that is done (review of performance)."""
+    graph, bound, hierarchy = factory()
+    brings_in = {v: tuple(s for s in said if s.role in BRINGS_IN) for v, said in bound.elements.items()}
+    only = replace(bound, elements=brings_in, flows={})
+    analysis = analyse(graph, only, hierarchy)
+    assert analysis.findings
+    with patch.object(reliance, "Reach", side_effect=AssertionError):
+        assert reliances(analysis, only, hierarchy) == ()
+
+
 @given(st.one_of(systems(), ranked(), wildcards(), stated()), st.integers(1, 3))
 def test_equals_the_analysis_without_the_statement(system: Any, together: int) -> None:
     """However many sources are followed at once."""
