@@ -1,4 +1,7 @@
-"""Start-up: ``rosprivacy --version`` against a bare typer program that does the same, fresh processes."""
+"""Start-up: ``rosprivacy --version`` against a bare typer program that does the same, fresh processes.
+
+Both are started by ``python``: the script that pip puts on the path imports ``re`` or not, as pip's version has it.
+"""
 
 from __future__ import annotations
 
@@ -34,12 +37,13 @@ def rows(*, quick: bool) -> Iterator[Row]:
     with TemporaryDirectory() as folder:
         bare = Path(folder) / "bare.py"
         bare.write_text(BARE, "utf-8")
-        command = Path(sys.executable).parent / "rosprivacy"
         yield Row(
             "rosprivacy --version",
             "a bare typer program",
             lambda: timed(
-                7 if quick else 25, lambda: run(command, "--version"), lambda: run(sys.executable, bare, "--version")
+                7 if quick else 25,
+                lambda: run(sys.executable, "-m", "rosprivacy", "--version"),
+                lambda: run(sys.executable, bare, "--version"),
             ),
-            bound=0.3,
+            bound=0.35 if quick else 0.3,  # few rounds, beside other work
         )
