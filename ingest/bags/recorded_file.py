@@ -53,7 +53,7 @@ def _one(name: str, same: list[BagTopic]) -> BagTopic:
 def moment(nanoseconds: int) -> int | None:
     """Return a time; None for one that nothing can have been recorded at.
 
-    >>> moment(5), moment(-1), moment(2**64 - 1)
+    >>> moment(5), moment(-1), moment(10**21)
     (5, None, None)
     """
     return nanoseconds if 0 < nanoseconds <= LAST_TIME else None

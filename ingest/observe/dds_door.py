@@ -32,8 +32,8 @@ WAITS = (0.25, PATIENCE + 1)
 """Seconds after a change when it is told: when all is quiet, and when no endpoint waits any more."""
 POLL = 0.05
 MISSING = (
-    "pip install 'rosprivacy[dds]'; there is no wheel for Linux on ARM and none for Python 3.14: look from another "
-    "computer in the network, or give the output of `ros2 node info` (--text)"
+    "install the extra [dds] from where rosprivacy came from; there is no wheel for Linux on ARM and none for Python "
+    "3.14: look from another computer in the network, or give the output of `ros2 node info` (--text)"
 )
 
 
@@ -51,12 +51,15 @@ class DdsDoor:
         Hosts to ask by unicast, beside multicast.
     interface
         Of the network; empty: as Cyclone chooses. ``lo`` looks at this computer only.
+    wait
+        Waits so many seconds.
     """
 
     clock: Callable[[], str]
     domain: int
     peers: tuple[str, ...] = ()
     interface: str = ""
+    wait: Callable[[float], None] = time.sleep
 
     def looks(self, seconds: float | None) -> Iterator[Observation]:
         """Tell what is there, each time that it has changed and been quiet for a moment.
@@ -83,7 +86,7 @@ class DdsDoor:
                     now = self.clock()
                     patience = moment(datetime.fromisoformat(now) - timedelta(seconds=PATIENCE))
                     yield observation(graph, since, now, self.domain, patience)
-                time.sleep(POLL)
+                self.wait(POLL)
             last = observation(graph, since, self.clock(), self.domain)
             late = time.monotonic() - changed < SETTLED
             yield replace(last, gaps={**last.gaps, STILL_CHANGING: 1}) if late and graph.participants else last

@@ -44,11 +44,14 @@ class Ros2Program:
         Seconds that one call may take.
     pause
         Seconds between two looks.
+    wait
+        Waits so many seconds.
     """
 
     clock: Callable[[], str]
     patience: float = PATIENCE
     pause: float = PAUSE
+    wait: Callable[[float], None] = time.sleep
 
     def looks(self, seconds: float | None) -> Iterator[Observation]:
         """Look at least once; until the time is over, look again and tell what changed.
@@ -74,7 +77,7 @@ class Ros2Program:
             before = now
             if over:
                 return
-            time.sleep(self.pause)
+            self.wait(self.pause)
 
     def _look(self, program: str) -> Observation:
         at = self.clock()
@@ -105,7 +108,12 @@ class Ros2Program:
             return "", ""
         try:
             done = subprocess.run(  # noqa: S603 - a list of arguments, no shell
-                command, capture_output=True, timeout=self.patience, stdin=subprocess.DEVNULL, check=False
+                command,
+                capture_output=True,
+                timeout=self.patience,
+                stdin=subprocess.DEVNULL,
+                check=False,
+                start_new_session=True,  # Ctrl-C is for us
             )
         except subprocess.TimeoutExpired:
             raise MiddlewareError(

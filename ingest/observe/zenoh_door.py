@@ -32,7 +32,7 @@ QUIET = 0.25
 POLL = 0.05
 LONGEST = 2**20
 """Bytes of a session file."""
-MISSING = "pip install 'rosprivacy[zenoh]', or give the output of `ros2 node info` (--text)"
+MISSING = "install the extra [zenoh] from where rosprivacy came from, or give the output of `ros2 node info` (--text)"
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,12 +49,15 @@ class ZenohDoor:
         Of the router, such as ``tcp/127.0.0.1:7447``; empty: as the session file says, or rmw_zenoh's own.
     session_file
         The user's own, in JSON5, such as one with TLS.
+    wait
+        Waits so many seconds.
     """
 
     clock: Callable[[], str]
     domain: int
     endpoint: str = ""
     session_file: Path | None = None
+    wait: Callable[[float], None] = time.sleep
 
     def looks(self, seconds: float | None) -> Iterator[Observation]:
         """Tell what is there, each time that it has changed and been quiet for a moment.
@@ -93,7 +96,7 @@ class ZenohDoor:
                 elif not told and time.monotonic() - changed > QUIET:
                     told = True
                     yield observation(tokens, since, self.clock(), self.domain, said)
-                time.sleep(POLL)
+                self.wait(POLL)
             heard.undeclare()
             watched.undeclare()
             last = observation(tokens, since, self.clock(), self.domain, said)

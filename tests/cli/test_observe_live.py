@@ -32,6 +32,7 @@ LABELS = "labels: 1\nnodes:\n  /head/camera: {source: [Video]}\n  /uplink: {leak
 IMAGE = "sensor_msgs::msg::dds_::Image_"
 DOMAINS = iter(range(30 + os.getpid() % 30, 100))
 SLACK = 30.0  # seconds; a loaded machine may take some
+PROCESS_SECONDS = 4.0  # for the first analysis of a process beside others, and a bare look that takes next to no time
 
 
 @pytest.fixture
@@ -181,7 +182,8 @@ def test_watch_tells_a_new_path_to_a_leak_and_who_leaves(peer: Peer, other: Peer
         begun = time.monotonic()
         assert any(bare)
         own = time.monotonic() - begun
-        told(lines, "! new finding", own + 1)  # and a second, since own can be near to nothing
+        told(lines, "! new finding", SLACK)
+        assert time.monotonic() - begun <= 2 * own + PROCESS_SECONDS
         finding = next(line for line in lines if "new finding" in line)
         assert "Video: /head/camera -> /image -> /uplink" in finding
         seen = len(lines)
@@ -190,7 +192,7 @@ def test_watch_tells_a_new_path_to_a_leak_and_who_leaves(peer: Peer, other: Peer
         while not any("/uplink" in line for line in lines[seen:]):
             assert time.monotonic() - begun < SLACK, lines
             time.sleep(0.05)
-        process.send_signal(signal.SIGINT)
+        process.send_signal(signal.SIGTERM)  # as a supervisor ends it; tests of the other door send Ctrl-C
         assert process.wait(timeout=SLACK) == 0
     holds_the_finding(robot, made_up=1)  # what was seen once stays (S16)
 
@@ -201,7 +203,7 @@ def test_a_missing_package_is_one_line_that_names_what_to_install(door: str, pac
     (tmp_path / "hidden" / f"{package}.py").write_text("raise ImportError('not installed here')\n")
     done = run("observe", door, cwd=tmp_path, PYTHONPATH=str(tmp_path / "hidden"))
     (line,) = refused(done)
-    assert f"pip install 'rosprivacy[{door.removeprefix('--')}]'" in line
+    assert f"install the extra [{door.removeprefix('--')}]" in line
     assert "--text" in line
 
 

@@ -208,4 +208,5 @@ def test_a_bounded_exploration_finds_nothing(tmp_path: Path, thorough: bool) -> 
     told = json.loads((tmp_path / "record.json").read_text("utf-8"))
     assert told["totals"]["inputs"] >= 0.99 * inputs
     assert told["totals"]["whole"] >= 0.75 * whole
-    assert all(counts["coverage"] for counts in told["targets"].values())
+    few = 10  # inputs, after which no coverage is told yet
+    assert all(counts["coverage"] for counts in told["targets"].values() if counts["inputs"] > few)

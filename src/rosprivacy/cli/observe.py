@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
 
     from rosprivacy.ingest.observe.doors import Door
     from rosprivacy.ingest.observe.observation import Observation
+
+    Wait = Callable[[float], None]
 
 THROUGH = "Through which door"  # panel of help
 SHORTEST = "10s"  # what most middlewares need until all is found
@@ -125,25 +128,32 @@ def observe(
 
     What was not seen proves nothing: the policy says from when to when somebody looked, and which gaps are known.
     """
+    from rosprivacy.ingest.observe.stopping import Stop
     from rosprivacy.observing import observe as looked
     from rosprivacy.observing import seconds_of
 
-    doors = _doors(text, at, ros2=ros2)
+    stop = Stop()
+    wait = stop.wait if watch else time.sleep
+    doors = _doors(text, at, wait, ros2=ros2)
     if (router and not zenoh) or ((peer or interface) and not dds):
         raise typer.BadParameter("--router is for --zenoh; --peer and --interface are for --dds")
     if zenoh:
-        doors.append(_zenoh_door(domain, router, session_file))
+        doors.append(_zenoh_door(domain, router, session_file, wait))
     if dds:
-        doors.append(_dds_door(domain, tuple(peer or ()), interface))
+        doors.append(_dds_door(domain, tuple(peer or ()), interface, wait))
     if not doors:
         raise typer.BadParameter("name a door: --text FILE, --ros2, --zenoh or --dds")
     if watch and (text or len(doors) > 1):
         raise typer.BadParameter("--watch looks through one door to a running system: no --text, and no second door")
-    told = _watching(inputs) if watch else lambda *_: None
-    _write(looked(doors, None if watch else seconds_of(duration), told), output)
+    if not watch:
+        seen = looked(doors, seconds_of(duration))
+    else:
+        with stop.heard():
+            seen = looked(doors, None, _watching(inputs))
+    _write(seen, output)
 
 
-def _doors(text: list[str] | None, at: str | None, *, ros2: bool) -> list[Door]:
+def _doors(text: list[str] | None, at: str | None, wait: Wait, *, ros2: bool) -> list[Door]:
     """The doors that a user named, those that have looked already first."""
     from rosprivacy.ingest.observe.ros2_program import Ros2Program
     from rosprivacy.ingest.observe.text_files import TextFiles
@@ -153,22 +163,22 @@ def _doors(text: list[str] | None, at: str | None, *, ros2: bool) -> list[Door]:
     if text:
         doors.append(TextFiles(tuple(text), now, time_of(at) if at else ""))
     if ros2:
-        doors.append(Ros2Program(now))
+        doors.append(Ros2Program(now, wait=wait))
     return doors
 
 
-def _zenoh_door(domain: int, router: str, session_file: Path | None) -> Door:
+def _zenoh_door(domain: int, router: str, session_file: Path | None, wait: Wait) -> Door:
     from rosprivacy.ingest.observe.zenoh_door import ZenohDoor
     from rosprivacy.observing import now
 
-    return ZenohDoor(now, domain, router, session_file)
+    return ZenohDoor(now, domain, router, session_file, wait)
 
 
-def _dds_door(domain: int, peers: tuple[str, ...], interface: str) -> Door:
+def _dds_door(domain: int, peers: tuple[str, ...], interface: str, wait: Wait) -> Door:
     from rosprivacy.ingest.observe.dds_door import DdsDoor
     from rosprivacy.observing import now
 
-    return DdsDoor(now, domain, peers, interface)
+    return DdsDoor(now, domain, peers, interface, wait)
 
 
 def _watching(inputs: Inputs) -> Callable[[Observation | None, Observation], None]:

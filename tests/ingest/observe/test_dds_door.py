@@ -65,7 +65,12 @@ def looked(domain: int, holds: Callable[[Observation], bool], seconds: float = 4
 
 def has(nodes: int, endpoints: int) -> Callable[[Observation], bool]:
     """As many nodes and endpoints, and nothing that is still to come."""
-    return lambda seen: (len(seen.nodes), len(seen.endpoints)) == (nodes, endpoints) and HIDDEN not in seen.all_gaps
+
+    def holds(seen: Observation) -> bool:
+        distinct = {one.identity for one in seen.endpoints}
+        return (len(seen.nodes), len(distinct)) == (nodes, endpoints) and HIDDEN not in seen.all_gaps
+
+    return holds
 
 
 def robot(peer: Peer, domain: int, gid_bytes: int = 16, enclave: str = "/robot/head") -> None:

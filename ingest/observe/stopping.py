@@ -1,0 +1,45 @@
+"""To stop a look that has no end: by Ctrl-C, or as a supervisor ends a process.
+
+In: signals. Out: the end of a wait. A signal that raises wherever the program is can be lost, in a callback of a
+library for instance; so it is noted, and raises where a door waits.
+"""
+
+from __future__ import annotations
+
+import signal
+import threading
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+SIGNALS = (signal.SIGINT, signal.SIGTERM)
+
+
+class Stop:
+    """Whether somebody has asked to stop."""
+
+    def __init__(self) -> None:
+        self._asked = threading.Event()
+
+    def wait(self, seconds: float) -> None:
+        """Wait a moment.
+
+        Raises
+        ------
+        KeyboardInterrupt
+            If somebody has asked to stop.
+        """
+        if self._asked.wait(seconds):
+            raise KeyboardInterrupt
+
+    @contextmanager
+    def heard(self) -> Iterator[None]:
+        """Note signals, and do nothing else on them; in the main thread."""
+        before = {one: signal.signal(one, lambda *_: self._asked.set()) for one in SIGNALS}
+        try:
+            yield
+        finally:
+            for one, handler in before.items():
+                signal.signal(one, handler)
