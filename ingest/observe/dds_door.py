@@ -7,30 +7,26 @@ from __future__ import annotations
 
 import os
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from datetime import datetime, timedelta
 from typing import TYPE_CHECKING
 from xml.sax.saxutils import quoteattr
 
 from rosprivacy.analysis.errors import ObservationError
-from rosprivacy.ingest.observe.dds_graph import (
-    DOOR,
-    DdsGraph,
-    observation,
-)
-from rosprivacy.ingest.observe.observation import Observation, moment
-from rosprivacy.ingest.policies.observed_metadata import STILL_CHANGING
+from rosprivacy.ingest.observe.dds_graph import DOOR, DdsGraph, observation
+from rosprivacy.ingest.observe.observation import moment
+from rosprivacy.ingest.observe.polling import Pace, polled
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-SETTLED = 3.0
-"""What came within so many seconds of the end makes the look one that still changed."""
+    from rosprivacy.ingest.observe.observation import Observation
+    from rosprivacy.ingest.observe.polling import Wait
+
 PATIENCE = 5
 """Seconds in which an endpoint may wait for its node."""
-WAITS = (0.25, PATIENCE + 1)
-"""Seconds after a change when it is told: when all is quiet, and when no endpoint waits any more."""
-POLL = 0.05
+PACE = Pace(told_after=(0.25, PATIENCE + 1), settled=3)
+"""Told when all is quiet, and when no endpoint waits any more."""
 MISSING = (
     "install the extra [dds] from where rosprivacy came from; there is no wheel for Linux on ARM and none for Python "
     "3.14: look from another computer in the network, or give the output of `ros2 node info` (--text)"
@@ -52,14 +48,14 @@ class DdsDoor:
     interface
         Of the network; empty: as Cyclone chooses. ``lo`` looks at this computer only.
     wait
-        Waits so many seconds.
+        Waits so many seconds, and returns whether somebody has asked to stop.
     """
 
     clock: Callable[[], str]
     domain: int
     peers: tuple[str, ...] = ()
     interface: str = ""
-    wait: Callable[[float], None] = time.sleep
+    wait: Wait = time.sleep
 
     def looks(self, seconds: float | None) -> Iterator[Observation]:
         """Tell what is there, each time that it has changed and been quiet for a moment.
@@ -76,20 +72,14 @@ class DdsDoor:
         except ImportError as error:
             raise ObservationError(f"--{DOOR}", 0, f"the package cyclonedds is not there ({error})", MISSING) from error
         with joined(self.domain, configuration(self.domain, self.peers, self.interface)) as readers:
-            since, end = self.clock(), None if seconds is None else time.monotonic() + seconds
-            changed, told, graph = time.monotonic(), len(WAITS), DdsGraph()
-            while end is None or time.monotonic() < end:
-                if readers.take(graph, self.clock()):
-                    changed, told = time.monotonic(), 0
-                elif told < len(WAITS) and time.monotonic() - changed > WAITS[told]:
-                    told += 1
-                    now = self.clock()
-                    patience = moment(datetime.fromisoformat(now) - timedelta(seconds=PATIENCE))
-                    yield observation(graph, since, now, self.domain, patience)
-                self.wait(POLL)
-            last = observation(graph, since, self.clock(), self.domain)
-            late = time.monotonic() - changed < SETTLED
-            yield replace(last, gaps={**last.gaps, STILL_CHANGING: 1}) if late and graph.participants else last
+            since, graph = self.clock(), DdsGraph()
+
+            def seen(at_the_end: bool) -> Observation:  # noqa: FBT001 - as ``polled`` calls it
+                now = self.clock()
+                patience = "" if at_the_end else moment(datetime.fromisoformat(now) - timedelta(seconds=PATIENCE))
+                return observation(graph, since, now, self.domain, patience)
+
+            yield from polled(lambda: readers.take(graph, self.clock()), seen, PACE, seconds, self.wait)
 
 
 def configuration(domain: int, peers: tuple[str, ...], interface: str) -> str:

@@ -44,7 +44,7 @@ class Door(Protocol):
 def seen_by(
     door: Door, seconds: float | None, told: Callable[[Observation | None, Observation], None] = lambda *_: None
 ) -> Observation | None:
-    """Return all that a door has seen; what a user stops counts until then.
+    """Return all that a door has seen.
 
     Parameters
     ----------
@@ -53,12 +53,8 @@ def seen_by(
     """
     whole: Observation | None = None
     before: Observation | None = None
-    try:
-        for now in door.looks(seconds):
-            whole = now if whole is None else continued(whole, now)
-            told(before, now)
-            before = now
-    except KeyboardInterrupt:
-        if seconds is not None or whole is None:
-            raise
+    for now in door.looks(seconds):
+        whole = now if whole is None else continued(whole, now)
+        told(before, now)
+        before = now
     return whole

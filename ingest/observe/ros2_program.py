@@ -25,6 +25,8 @@ from rosprivacy.ingest.policies.observed_metadata import SAME_NAME, STILL_CHANGI
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
+    from rosprivacy.ingest.observe.polling import Wait
+
 LIST, INFO = ("node", "list", "--all"), ("node", "info", "--include-hidden")
 PATIENCE = 30.0  # seconds for one call
 PAUSE = 1.0  # seconds between two looks
@@ -45,13 +47,13 @@ class Ros2Program:
     pause
         Seconds between two looks.
     wait
-        Waits so many seconds.
+        Waits so many seconds, and returns whether somebody has asked to stop.
     """
 
     clock: Callable[[], str]
     patience: float = PATIENCE
     pause: float = PAUSE
-    wait: Callable[[float], None] = time.sleep
+    wait: Wait = time.sleep
 
     def looks(self, seconds: float | None) -> Iterator[Observation]:
         """Look at least once; until the time is over, look again and tell what changed.
@@ -74,10 +76,12 @@ class Ros2Program:
             over = end is not None and time.monotonic() + self.pause >= end
             if before is None or _facts(now) != _facts(before) or over:
                 yield now
-            before = now
             if over:
                 return
-            self.wait(self.pause)
+            before = now
+            if self.wait(self.pause):
+                yield now  # the end of the look
+                return
 
     def _look(self, program: str) -> Observation:
         at = self.clock()

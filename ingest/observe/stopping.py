@@ -1,7 +1,7 @@
 """To stop a look that has no end: by Ctrl-C, or as a supervisor ends a process.
 
-In: signals. Out: the end of a wait. A signal that raises wherever the program is can be lost, in a callback of a
-library for instance; so it is noted, and raises where a door waits.
+In: signals. Out: whether a look goes on. A signal that raises wherever the program is can be lost, in a callback of a
+library for instance, and with it what a door still had to tell; so it is noted, and a door asks where it waits.
 """
 
 from __future__ import annotations
@@ -23,16 +23,9 @@ class Stop:
     def __init__(self) -> None:
         self._asked = threading.Event()
 
-    def wait(self, seconds: float) -> None:
-        """Wait a moment.
-
-        Raises
-        ------
-        KeyboardInterrupt
-            If somebody has asked to stop.
-        """
-        if self._asked.wait(seconds):
-            raise KeyboardInterrupt
+    def wait(self, seconds: float) -> bool:
+        """Wait a moment; return whether somebody has asked to stop."""
+        return self._asked.wait(seconds)
 
     @contextmanager
     def heard(self) -> Iterator[None]:

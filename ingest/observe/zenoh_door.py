@@ -9,13 +9,13 @@ import json
 import time
 from collections import deque
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import MiddlewareError, ObservationError, shown
 from rosprivacy.ingest.observe.declared import DDS_TYPE, Declared, declared
+from rosprivacy.ingest.observe.polling import Pace, polled
 from rosprivacy.ingest.observe.zenoh_tokens import DOOR, observation, tokens_of
-from rosprivacy.ingest.policies.observed_metadata import STILL_CHANGING
 from rosprivacy.ingest.reading.bounded_file import read_regular
 
 if TYPE_CHECKING:
@@ -23,13 +23,11 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from rosprivacy.ingest.observe.observation import Observation
+    from rosprivacy.ingest.observe.polling import Wait
 
 ROUTER = "tcp/localhost:7447"
 """Where the sessions of rmw_zenoh look for theirs."""
-SETTLED = 1.0
-"""What came within so many seconds of the end makes the look one that still changed."""
-QUIET = 0.25
-POLL = 0.05
+PACE = Pace(told_after=(0.25,), settled=1)
 LONGEST = 2**20
 """Bytes of a session file."""
 MISSING = "install the extra [zenoh] from where rosprivacy came from, or give the output of `ros2 node info` (--text)"
@@ -50,14 +48,14 @@ class ZenohDoor:
     session_file
         The user's own, in JSON5, such as one with TLS.
     wait
-        Waits so many seconds.
+        Waits so many seconds, and returns whether somebody has asked to stop.
     """
 
     clock: Callable[[], str]
     domain: int
     endpoint: str = ""
     session_file: Path | None = None
-    wait: Callable[[float], None] = time.sleep
+    wait: Wait = time.sleep
 
     def looks(self, seconds: float | None) -> Iterator[Observation]:
         """Tell what is there, each time that it has changed and been quiet for a moment.
@@ -78,30 +76,26 @@ class ZenohDoor:
         changes: deque[tuple[bool, str]] = deque()
         messages: deque[tuple[str, bytes]] = deque()
         with _opened(zenoh, self._configured(zenoh), self.endpoint) as session:
-            since, end = self.clock(), None if seconds is None else time.monotonic() + seconds
+            since, tokens, said = self.clock(), dict[str, str](), set[Declared]()
             watched = session.liveliness().declare_subscriber(
                 tokens_of(self.domain),
                 lambda sample: changes.append((sample.kind == zenoh.SampleKind.PUT, str(sample.key_expr))),
                 history=True,
             )
             heard = _declarations(session, self.domain, messages)
-            changed, told = time.monotonic(), True
-            tokens: dict[str, str] = {}
-            said: set[Declared] = set()
-            while end is None or time.monotonic() < end:
-                if changes or messages:
-                    _take(changes, tokens, self.clock())
-                    said |= set(_read(messages, self.domain))
-                    changed, told = time.monotonic(), False
-                elif not told and time.monotonic() - changed > QUIET:
-                    told = True
-                    yield observation(tokens, since, self.clock(), self.domain, said)
-                self.wait(POLL)
+
+            def take() -> bool:
+                some = bool(changes or messages)
+                _take(changes, tokens, self.clock())
+                said.update(_read(messages, self.domain))
+                return some
+
+            def seen(_: bool) -> Observation:  # noqa: FBT001 - as ``polled`` calls it
+                return observation(tokens, since, self.clock(), self.domain, said)
+
+            yield from polled(take, seen, PACE, seconds, self.wait)
             heard.undeclare()
             watched.undeclare()
-            last = observation(tokens, since, self.clock(), self.domain, said)
-            late = tokens and time.monotonic() - changed < SETTLED
-            yield replace(last, gaps={**last.gaps, STILL_CHANGING: 1}) if late else last
 
     def _configured(self, zenoh: Any) -> Any:
         """The user's own file, or a client of one router; we listen nowhere and ask nobody else."""

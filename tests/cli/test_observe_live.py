@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
 import signal
 import subprocess
 import sys
@@ -21,12 +20,13 @@ import pytest
 import yaml
 
 from tests.helpers.command import refused, run
-from tests.helpers.fastdds import Peer, built, running
 from tests.helpers.zenoh_tokens import endpoint, free_endpoint, node, router, session
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterator
     from pathlib import Path
+
+    from tests.helpers.fastdds import Peer
 
 LABELS = "labels: 1\nnodes:\n  /head/camera: {source: [Video]}\n  /uplink: {leak: [Video]}\n"
 IMAGE = "sensor_msgs::msg::dds_::Image_"
@@ -39,25 +39,6 @@ PROCESS_SECONDS = 4.0  # for the first analysis of a process beside others, and 
 def robot(tmp_path: Path) -> Path:
     (tmp_path / "labels.yaml").write_text(LABELS, "utf-8")
     return tmp_path
-
-
-@pytest.fixture(scope="session")
-def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    if shutil.which("g++") is None:
-        pytest.skip("NO g++ and Fast DDS (libfastrtps-dev): observation was tested with no other DDS implementation")
-    return built(tmp_path_factory.mktemp("fastdds"))
-
-
-@pytest.fixture
-def peer(program: Path) -> Iterator[Peer]:
-    with running(program) as one:
-        yield one
-
-
-@pytest.fixture
-def other(program: Path) -> Iterator[Peer]:
-    with running(program) as one:
-        yield one
 
 
 def camera(peer: Peer, domain: int, gid_bytes: int = 16) -> None:
@@ -92,7 +73,6 @@ def holds_the_finding(robot: Path, made_up: int) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.xdist_group("dds")
 @pytest.mark.parametrize("gid_bytes", [16, 24], ids=["Iron and later", "Humble"])
 def test_from_a_dds_domain_to_the_planted_finding(peer: Peer, other: Peer, robot: Path, gid_bytes: int) -> None:
     domain = next(DOMAINS)
@@ -169,7 +149,6 @@ def discovered(domain: int, node: str) -> Generator[bool]:
 
 
 @pytest.mark.slow
-@pytest.mark.xdist_group("dds")
 def test_watch_tells_a_new_path_to_a_leak_and_who_leaves(peer: Peer, other: Peer, robot: Path) -> None:
     """It is told in at most twice the time that the middleware itself needs, measured beside it."""
     domain = next(DOMAINS)

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 from urllib.parse import quote
+
+import pytest
 
 from tests.helpers.paths import ROOT
 
@@ -56,3 +59,24 @@ def running(program: Path) -> Iterator[Peer]:
             yield Peer(process)
         finally:
             process.terminate()
+
+
+@pytest.fixture(scope="session")
+def fastdds(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The program."""
+    if shutil.which("g++") is None:
+        pytest.skip("NO g++ and Fast DDS (libfastrtps-dev): observation was tested with no other DDS implementation")
+    return built(tmp_path_factory.mktemp("fastdds"))
+
+
+@pytest.fixture
+def peer(fastdds: Path) -> Iterator[Peer]:
+    with running(fastdds) as one:
+        yield one
+
+
+@pytest.fixture
+def other(fastdds: Path) -> Iterator[Peer]:
+    """A second one, in a process of its own."""
+    with running(fastdds) as one:
+        yield one

@@ -19,8 +19,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.ingest.observe.doors import Door
     from rosprivacy.ingest.observe.observation import Observation
-
-    Wait = Callable[[float], None]
+    from rosprivacy.ingest.observe.polling import Wait
 
 THROUGH = "Through which door"  # panel of help
 SHORTEST = "10s"  # what most middlewares need until all is found

@@ -7,7 +7,6 @@ comes and who leaves; and nobody sees a ROS node of ours.
 from __future__ import annotations
 
 import os
-import shutil
 import time
 from typing import TYPE_CHECKING
 
@@ -17,37 +16,17 @@ from rosprivacy.ingest.observe.dds_door import DdsDoor
 from rosprivacy.ingest.observe.declared import DDS_TYPE, Declared
 from rosprivacy.ingest.policies.observed_metadata import HIDDEN, NO_NODE, REFUSED, STILL_CHANGING
 from rosprivacy.observing import now
-from tests.helpers.fastdds import Peer, built, running
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
-    from pathlib import Path
 
     from rosprivacy.ingest.observe.observation import Observation
+    from tests.helpers.fastdds import Peer
 
-pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("dds")]
+pytestmark = pytest.mark.slow
 SLACK = 20.0  # seconds; a loaded machine may take some
 IMAGE, TEXT = "sensor_msgs::msg::dds_::Image_", "std_msgs::msg::dds_::String_"
 DOMAINS = iter(range(101 + os.getpid() % 60, 232))
-
-
-@pytest.fixture(scope="session")
-def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    if shutil.which("g++") is None:
-        pytest.skip("NO g++ and Fast DDS (libfastrtps-dev): observation was tested with no other DDS implementation")
-    return built(tmp_path_factory.mktemp("fastdds"))
-
-
-@pytest.fixture
-def peer(program: Path) -> Iterator[Peer]:
-    with running(program) as one:
-        yield one
-
-
-@pytest.fixture
-def other(program: Path) -> Iterator[Peer]:
-    with running(program) as one:
-        yield one
 
 
 @pytest.fixture
