@@ -5,6 +5,7 @@ In: the names of files. Out: ``System``, whose labels can be replaced.
 
 from __future__ import annotations
 
+import os
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
@@ -13,6 +14,8 @@ from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.analysis.model import MERGED, REFUSED_NAME, SEEN_ALTHOUGH_DENIED, SHARED_ENCLAVE
 from rosprivacy.answering import answer
 from rosprivacy.assumptions import files_read, remembered, types_read
+from rosprivacy.clock import today
+from rosprivacy.ingest.keystore.told_apart import deployed
 from rosprivacy.ingest.labels.add_non_ros import extend, extended
 from rosprivacy.ingest.labels.bag_storages import told_of_bags
 from rosprivacy.ingest.labels.binding import bind, join, remarks
@@ -165,14 +168,21 @@ def read_system(policies: tuple[str, ...], settings: Settings, graphs: list[Save
     saved = [policy for graph in graphs for policy in graph.policies]
     read: tuple[Policy, ...] = ()
     diagnostics: tuple[Diagnostic, ...] = ()
-    if policies or not saved:
+    granted, stated = deployed(policies)
+    if stated or not (granted or saved):
         read, diagnostics = read_policies(
-            policies,
+            stated,
             include_root=settings.include_root,
             max_bytes=settings.max_bytes,
             bounds=settings.bounds,
             progress=settings.progress,
         )
+    if granted:
+        from rosprivacy.ingest.keystore.deployed_inputs import read_deployed  # noqa: PLC0415 - light start
+
+        on = settings.today or today(os.environ)
+        more, said = read_deployed(granted, settings.domain, on, allow_unsigned=settings.allow_unsigned)
+        read, diagnostics = (*read, *more), (*diagnostics, *said)
     known = {policy.file for policy in read}  # read again is read anew
     sources = {name for policy in read for name, _ in policy.sources}
     left = (d for graph in graphs for d in graph.left)
