@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Diagnostic, Flow, Grant, Policy, Profile
     from rosprivacy.ingest.fleet.fleet_file import Robot
     from rosprivacy.ingest.labels.label_file import Labels
+    from rosprivacy.ingest.types.types_file import TypesFile
 
 MARK = "\0"  # between robot and name; no policy has it
 
@@ -46,6 +47,8 @@ class Member:
         Its label files.
     diagnostics
         Of its policies and label files.
+    types
+        Its files of observed message types.
     """
 
     robot: Robot
@@ -55,6 +58,7 @@ class Member:
     profiles: tuple[Profile, ...] = ()
     files: tuple[Labels, ...] = ()
     diagnostics: tuple[Diagnostic, ...] = ()
+    types: tuple[TypesFile, ...] = ()
 
 
 def stripped(graph: FlowGraph, namespace: str) -> tuple[FlowGraph, dict[Element, Element]]:
