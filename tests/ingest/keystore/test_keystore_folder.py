@@ -48,7 +48,7 @@ def test_a_keystore_gives_the_grants_of_all_its_enclaves(keystore: Keystore) -> 
     ]
     assert said == ()
     names = [name.removeprefix(f"{keystore.folder}/enclaves/") for name, _ in policies[0].sources]
-    assert names == ["camera/governance.p7s", "camera/permissions.p7s"]
+    assert names == ["camera/permissions.p7s", "governance.p7s"]
 
 
 def test_a_grant_stands_at_its_line_of_the_signed_file(keystore: Keystore) -> None:
