@@ -14,11 +14,10 @@ from rosprivacy.answering import answer
 from rosprivacy.assumptions import assumptions_of, files_read, remembered
 from rosprivacy.ingest.database.fleet_rows import FleetRows
 from rosprivacy.ingest.fleet.alike_robots import Alike, alike
-from rosprivacy.ingest.fleet.dds_domains import Member, stripped, with_grants
+from rosprivacy.ingest.fleet.dds_domains import Member, stripped
 from rosprivacy.ingest.fleet.fleet_file import Fleet, Robot, read_fleet
 from rosprivacy.ingest.fleet.fleet_graph import Placed, place
 from rosprivacy.ingest.fleet.joins import joins_nothing
-from rosprivacy.ingest.fleet.mergeable_graph import Part
 from rosprivacy.ingest.labels.add_non_ros import extend
 from rosprivacy.ingest.labels.bag_storages import told_of_bags
 from rosprivacy.ingest.labels.binding import bind, remarks
@@ -27,7 +26,7 @@ from rosprivacy.ingest.policies.comparisons import careful_notices
 from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.ingest.policies.joint_policies import joint_warnings
 from rosprivacy.ingest.policies.merged_policies import OF_ONE_ROBOT, merging_notices
-from rosprivacy.ingest.policies.namespaces import as_written, pushed, told
+from rosprivacy.ingest.policies.namespaces import pushed, told
 from rosprivacy.ingest.policies.policy_files import read_policies
 from rosprivacy.question import question_of
 from rosprivacy.system import System
@@ -181,10 +180,10 @@ class Reader:
         )
         diagnostics += told_of_bags(extended, (stated for labels in files for stated in labels.elements))
         bound = bind(extended, files, settings.bounds, robot.surroundings)
-        part = Part.of(extended, bound)
-        if robot.add:
-            part = with_grants(part, lambda grant: as_written(grant, robot.add))
-        return Member(robot, policies, part, full, graph.profiles, tuple(files), tuple(dict.fromkeys(diagnostics)))
+        return Member(
+            robot, policies, extended, bound, full, graph.profiles, tuple(files), tuple(dict.fromkeys(diagnostics)),
+            robot.add,
+        )  # fmt: skip
 
     def _read_labels(self, robot: Robot) -> list[Labels]:
         settings = self._settings
