@@ -1,9 +1,10 @@
 """Robots -> groups of robots that are alike, so that each is read and analysed once (rule S10).
 
 In: a fleet. Out: its robots by what they run and how they take part. Two robots are alike if they can change places and
-nothing changes but their names: policies and label files that are read alike, no namespace of their own in a shared
-domain or in their own absolute names, and every line about flows means both or neither. Whether a policy is read alike
-elsewhere is seen by what the parser finds in it: one that includes nothing is its content, any other the file itself.
+nothing changes but their names: policies, label files and types that are read alike, no namespace of their own in a
+shared domain or in their own absolute names, and every line about flows means both or neither. Whether a policy is read
+alike elsewhere is seen by what the parser finds in it: one that includes nothing is its content, any other the file
+itself.
 """
 
 from __future__ import annotations
@@ -125,7 +126,7 @@ class _Contents:
     def of(self, robot: Robot) -> tuple[tuple[str, ...], ...]:
         """Return what stands for all that is read for a robot."""
         labels = (tuple(map(self._label_file, files)) for files in (robot.labels, robot.own))
-        return (tuple(map(self._policy, robot.policies)), *labels)
+        return (tuple(map(self._policy, robot.policies)), *labels, tuple(map(self._label_file, robot.types)))
 
     def namespace(self, robot: Robot) -> str:
         """Return the namespace that is pushed on a robot, where it matters which it is (rule S1)."""

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Diagnostic, Flow, Grant, Policy, Profile
     from rosprivacy.ingest.fleet.fleet_file import Robot
     from rosprivacy.ingest.labels.label_file import Labels
+    from rosprivacy.ingest.types.types_file import TypesFile
 
 MARK = "\0"  # between robot and name; no policy has it
 
@@ -48,6 +49,8 @@ class Member:
         Its label files.
     diagnostics
         Of its policies and label files.
+    types
+        Its files of observed message types.
     pushed
         The namespace that stands before names of its lines: that of the robot for which its policies were read.
     """
@@ -60,6 +63,7 @@ class Member:
     profiles: tuple[Profile, ...] = ()
     files: tuple[Labels, ...] = ()
     diagnostics: tuple[Diagnostic, ...] = ()
+    types: tuple[TypesFile, ...] = ()
     pushed: str = ""
 
 

@@ -247,7 +247,9 @@ class TestSharing:
 
     def test_lines_stand_as_a_policy_writes_them_also_at_the_second_of_robots_that_are_alike(self) -> None:
         """Both are of one policy, under the namespace of the first (rule S1)."""
-        result = run("groups: [{robots: 3, model: eye, namespace: {add: /*}}]\nflows: [{from: '*:/uplink', to: '*:/receiver'}]\n")
+        result = run(
+            "groups: [{robots: 3, model: eye, namespace: {add: /*}}]\nflows: [{from: '*:/uplink', to: '*:/camera'}]\n"
+        )
         grants = [grant for flow in result.analysis.graph.flows for grant in flow.grants if grant.node]
         assert {element.robot for element in result.analysis.graph.elements} == {"eye_1", "eye_2"}
         assert grants
