@@ -43,30 +43,32 @@ def typed(index: Index) -> tuple[Typed, ...]:
     """Return the channels with data of which types are known, in the order of the document."""
     carries = {key(row["element"]): row for row in index.document["carries"]}
     limits = index.document["assumptions"].get("type_limits_reached", ())
-    closed = {key(row["element"]): tuple(row["categories"]) for row in limits}
+    closed = {key(row["element"]): row["categories"] for row in limits}
+
+    def there(row: Mapping[str, Any]) -> tuple[str, str]:
+        at = key(row["element"])
+        return _data(carries.get(at, {}), index), index.all_data(closed.get(at, ()))
 
     def same(row: Mapping[str, Any]) -> Any:
-        at = key(row["element"])
-        there = carries.get(at, {})
-        held = tuple(there.get("categories", ())), tuple(there.get("pseudonymised", ()))
         types = tuple((one["type"], one["file"], one["line"]) for one in row["types"])
-        return at[1:], held, types, closed.get(at, ())
+        return key(row["element"])[1:], there(row), types
 
-    rows = [row for row in index.document.get("types", ()) if {key(row["element"])} & {*carries, *closed}]
-    return tuple(_typed(some, *same(some[0])[1::2], index) for some in grouped(rows, same))
+    with_data = {*carries, *closed}
+    rows = [row for row in index.document.get("types", ()) if key(row["element"]) in with_data]
+    return tuple(_typed(some, there(some[0]), index) for some in grouped(rows, same))
 
 
-def _typed(
-    some: list[Mapping[str, Any]], held: tuple[tuple[str, ...], ...], closed: tuple[str, ...], index: Index
-) -> Typed:
-    whole, hidden = held
-    data = [index.data(category) for category in whole]
+def _data(row: Mapping[str, Any], index: Index) -> str:
+    hidden = (index.data(category, pseudonymised=True) for category in row.get("pseudonymised", ()))
+    return index.words.row([*map(index.data, row.get("categories", ())), *hidden])
+
+
+def _typed(some: list[Mapping[str, Any]], there: tuple[str, str], index: Index) -> Typed:
     return Typed(
-        name=index.words.row(index.names([row["element"] for row in some])),
-        kind=index.words.kind(some[0]["element"]),
-        types=tuple((fit(one["type"]), _origin(one, index)) for one in some[0]["types"]),
-        data=index.words.row([*data, *(index.data(category, pseudonymised=True) for category in hidden)]),
-        closed=index.all_data(closed),
+        index.words.row(index.names([row["element"] for row in some])),
+        index.words.kind(some[0]["element"]),
+        tuple((fit(one["type"]), _origin(one, index)) for one in some[0]["types"]),
+        *there,
     )
 
 
