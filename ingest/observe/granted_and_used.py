@@ -55,7 +55,7 @@ class Usage:
     not_granted
         What runs and is not granted.
     unused
-        ALLOW lines of nodes that were seen running, of which nothing was ever seen.
+        ALLOW lines of nodes that were seen running, of which nothing was ever seen; those that are denied are none.
     to_deny
         Those of them that can be denied without taking anything from others of their enclave.
     never_seen
@@ -85,7 +85,7 @@ def usage(granted: Iterable[Policy], observed: Iterable[Policy], view: str = Vie
         used[node] = set()
     for grant in seen:
         used[plain_name(grant.node)[0]].update((end.writes, end.dds) for end in _ends(grant))
-    lines = [grant for policy in granted for grant in policy.grants if grant.allow]
+    lines = [grant for policy in granted for grant in policy.grants if grant.allow and rights.left(grant)]
     unused, never = [], defaultdict(int)
     for node in sorted({profile.node for policy in granted for profile in policy.profiles}):
         if plain_name(node)[0] not in used:
@@ -164,6 +164,10 @@ class _Rights:
             for line in self._denials(policy, enclave, end)
         }
         return Use(seen, DENIED if lines else NOT_GRANTED, tuple(sorted(lines, key=_key)))
+
+    def left(self, line: Grant) -> bool:
+        """Whether DENYs leave anything of an ALLOW line."""
+        return any(not any(self._denials(line.policy, line.enclave, end)) for end in _ends(line))
 
     def _granted(self, node: str, end: Endpoint) -> bool:
         lines = self.allowed.get((node, end.writes, end.dds), [])

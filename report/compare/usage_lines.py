@@ -44,7 +44,7 @@ def _lines(
         yield f"{mark}{show(_what(row))}: {WHY[row['why']]}{denied}; last seen {row['seen']['last']}"
     yield head(f"what is granted to nodes that ran, and was never seen: {len(unused):,}")
     for row in unused:
-        kept = "" if row["in_patch"] else "; not in the patch: a DENY of it would meet other lines of its enclave"
+        kept = "" if row["in_patch"] or not document["patch"] else "; not in the patch: a DENY of it would meet other lines of its enclave"
         yield f"{mark}{show(_what(row))}: {show(_place(row))}{kept}"
     never = document["never_seen"]
     yield head(f"nodes with a profile that were never seen, of which nothing is proposed: {len(never):,}")
