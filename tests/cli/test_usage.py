@@ -167,6 +167,21 @@ def test_of_an_observation_with_gaps_nothing_is_proposed(cli: Cli, robot: Path) 
     assert "would meet other lines" not in text
 
 
+def test_of_hidden_names_a_text_without_them_proves_nothing(cli: Cli, robot: Path) -> None:
+    """`ros2 node info` leaves hidden names out unless it is asked for them: they may be in use (rule S16)."""
+    hidden = GRANTED.replace("<topic>/spare</topic>", "<topic>/spare</topic>\n            <topic>/cam/_raw</topic>")
+    (robot / "granted.xml").write_text(hidden, "utf-8")
+    _, document = usage(cli, robot, RUNS + READS)
+    rows = {row["name"]: (row["in_patch"], row.get("hidden")) for row in document["unused"]}  # type: ignore[attr-defined]
+    assert rows == {"/shared": (False, None), "/spare": (True, None), "/cam/_raw": (False, True)}
+    assert "/cam/_raw" not in [line.strip() for line in str(document["patch"]).splitlines() if line.startswith("+")]
+    text = cli("diff", "granted.xml", "seen.policy.xml", "--as", "usage", cwd=robot).stdout
+    assert "; a text without `ros2 node info --include-hidden` has no hidden names: it is not in the patch" in text
+    _, document = usage(cli, robot, RUNS + READS + node_info("/more", publishers="/more/_seen: s/msg/I"))
+    rows = {row["name"]: (row["in_patch"], row.get("hidden")) for row in document["unused"]}  # type: ignore[attr-defined]
+    assert rows["/cam/_raw"] == (True, None)
+
+
 def test_a_text_and_a_comment_say_the_same(cli: Cli, robot: Path) -> None:
     usage(cli, robot, RUNS + READS)
     for form, start in (("text", "  "), ("markdown", "- ``")):
