@@ -1,186 +1,138 @@
-"""Enclaves of a keystore, as sros2 lays them out, for tests: made with openssl, which is not what reads them.
-
-What a permissions and a governance file say is stated in Python, in the order in which it is written.
-"""
+"""SROS 2 keystores for tests, made with ``openssl``: CAs, certificates, signed governance and permissions."""
 
 from __future__ import annotations
 
-import shutil
+import os
 import subprocess
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
-from xml.sax.saxutils import escape
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
     from pathlib import Path
 
-ANY_DOMAIN = ((0, 230),)
-CURVE = ("-algorithm", "EC", "-pkeyopt", "ec_paramgen_curve:prime256v1")
+EC = ("-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes")
+TOPIC_RULE = """<topic_rule><topic_expression>{expression}</topic_expression>
+<enable_discovery_protection>{discovery}</enable_discovery_protection>
+<enable_liveliness_protection>{discovery}</enable_liveliness_protection>
+<enable_read_access_control>{reading}</enable_read_access_control>
+<enable_write_access_control>{writing}</enable_write_access_control>
+<metadata_protection_kind>{metadata}</metadata_protection_kind>
+<data_protection_kind>{data}</data_protection_kind></topic_rule>"""
 
 
-@dataclass(frozen=True)
-class Rule:
-    """An allow rule or a deny rule of a grant."""
-
-    allow: bool
-    publish: tuple[str, ...] = ()
-    subscribe: tuple[str, ...] = ()
-    partitions: tuple[str, ...] = ()
-    domains: tuple[tuple[int, int], ...] = ANY_DOMAIN
-
-    @property
-    def xml(self) -> str:
-        name = "allow_rule" if self.allow else "deny_rule"
-        partitions = _each("partition", self.partitions)
-        within = f"<partitions>{partitions}</partitions>" if partitions else ""
-        ways = [("publish", self.publish), ("subscribe", self.subscribe)]
-        criteria = [f"<{way}><topics>{_each('topic', names)}</topics>{within}</{way}>" for way, names in ways if names]
-        return f"<{name}>{_domains(self.domains)}{''.join(criteria)}</{name}>"
+def topic_rule(
+    expression: str = "*",
+    reading: str = "true",
+    writing: str = "true",
+    metadata: str = "ENCRYPT",
+    data: str = "ENCRYPT",
+    discovery: str = "true",
+) -> str:
+    said = {"reading": reading, "writing": writing, "metadata": metadata, "data": data, "discovery": discovery}
+    return TOPIC_RULE.format(expression=expression, **said)
 
 
-@dataclass(frozen=True)
-class Grant:
-    """What the permissions of an enclave grant; for another subject, if one is named."""
-
-    rules: tuple[Rule, ...]
-    default: str = "DENY"
-    valid: tuple[str, str] = ("2020-01-01T00:00:00", "2040-01-01T00:00:00")
-    subject: str = ""
-
-    def xml(self, own: str) -> str:
-        subject = escape(self.subject or own)
-        start, end = self.valid
-        return (
-            f'<grant name="{subject}"><subject_name>CN={subject}</subject_name><validity><not_before>{start}'
-            f"</not_before><not_after>{end}</not_after></validity>{''.join(rule.xml for rule in self.rules)}"
-            f"<default>{self.default}</default></grant>"
-        )
-
-
-@dataclass(frozen=True)
-class TopicRule:
-    """What governance says of topics: whether permissions are asked, and how data are protected."""
-
-    topics: str = "*"
-    read: bool = True
-    write: bool = True
-    protection: str = "ENCRYPT"
-    discovery: bool = True
-    liveliness: bool = True
-
-    @property
-    def xml(self) -> str:
-        said = {
-            "topic_expression": escape(self.topics),
-            "enable_discovery_protection": str(self.discovery).lower(),
-            "enable_liveliness_protection": str(self.liveliness).lower(),
-            "enable_read_access_control": str(self.read).lower(),
-            "enable_write_access_control": str(self.write).lower(),
-            "metadata_protection_kind": self.protection,
-            "data_protection_kind": self.protection,
-        }
-        return f"<topic_rule>{_fields(said)}</topic_rule>"
+def governance(
+    *topics: str,
+    rtps: str = "SIGN",
+    unauthenticated: str = "false",
+    joining: str = "true",
+    discovery: str = "ENCRYPT",
+    domains: str = "<id>0</id>",
+) -> str:
+    return f"""<?xml version="1.0" encoding="UTF-8"?>
+<dds><domain_access_rules><domain_rule>
+<domains>{domains}</domains>
+<allow_unauthenticated_participants>{unauthenticated}</allow_unauthenticated_participants>
+<enable_join_access_control>{joining}</enable_join_access_control>
+<discovery_protection_kind>{discovery}</discovery_protection_kind>
+<liveliness_protection_kind>{discovery}</liveliness_protection_kind>
+<rtps_protection_kind>{rtps}</rtps_protection_kind>
+<topic_access_rules>{"".join(topics or (topic_rule(),))}</topic_access_rules>
+</domain_rule></domain_access_rules></dds>
+"""
 
 
-@dataclass(frozen=True)
-class Governance:
-    """What holds in a domain, by default as sros2 says it."""
-
-    topics: tuple[TopicRule, ...] = (TopicRule(),)
-    join: bool = True
-    unauthenticated: bool = False
-    discovery: str = "ENCRYPT"
-    liveliness: str = "ENCRYPT"
-    rtps: str = "SIGN"
-    domains: tuple[tuple[int, int], ...] = ANY_DOMAIN
-
-    @property
-    def xml(self) -> str:
-        said = {
-            "allow_unauthenticated_participants": str(self.unauthenticated).lower(),
-            "enable_join_access_control": str(self.join).lower(),
-            "discovery_protection_kind": self.discovery,
-            "liveliness_protection_kind": self.liveliness,
-            "rtps_protection_kind": self.rtps,
-        }
-        topics = "".join(rule.xml for rule in self.topics)
-        rule = f"{_domains(self.domains)}{_fields(said)}<topic_access_rules>{topics}</topic_access_rules>"
-        return _document(f"<domain_access_rules><domain_rule>{rule}</domain_rule></domain_access_rules>")
+def rule(
+    kind: str,
+    publish: tuple[str, ...] = (),
+    subscribe: tuple[str, ...] = (),
+    domains: str = "<id>0</id>",
+    partition: str = "",
+) -> str:
+    """``allow`` or ``deny`` some DDS topics."""
+    within = f"<partitions><partition>{partition}</partition></partitions>" if partition else ""
+    parts = [f"<domains>{domains}</domains>"]
+    for direction, topics in (("publish", publish), ("subscribe", subscribe)):
+        if topics:
+            named = "\n".join(f"<topic>{topic}</topic>" for topic in topics)
+            parts.append(f"<{direction}><topics>\n{named}\n</topics>{within}</{direction}>")
+    return f"<{kind}_rule>\n" + "\n".join(parts) + f"\n</{kind}_rule>"
 
 
-@dataclass(frozen=True)
-class Enclave:
-    """What lies in the folder of an enclave, and who signed it."""
+def grant(
+    enclave: str, *rules: str, default: str = "DENY", validity: tuple[str, str] = ("2020-01-01", "2060-01-01")
+) -> str:
+    first, last = validity
+    return f"""<grant name="{enclave}"><subject_name>CN={enclave}</subject_name>
+<validity><not_before>{first}T00:00:00</not_before><not_after>{last}T00:00:00</not_after></validity>
+{chr(10).join(rules)}
+<default>{default}</default></grant>"""
 
-    grants: tuple[Grant, ...]
-    governance: Governance = Governance()
-    identity_by: str = "identity"
-    permissions_by: str = "permissions"
+
+def permissions(*grants: str) -> str:
+    return f'<?xml version="1.0" encoding="UTF-8"?>\n<dds><permissions>\n{chr(10).join(grants)}\n</permissions></dds>\n'
 
 
+def _openssl(*arguments: str) -> None:
+    subprocess.run(["openssl", *arguments], check=True, capture_output=True, timeout=60)
+
+
+@dataclass
 class Keystore:
-    """A folder with authorities (of certificates, of permissions, and others that nobody trusts) and enclaves."""
+    """A keystore in the making; one CA for identities, one for permissions. A copy of a folder goes on where it was."""
 
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
-        self._signed: dict[tuple[str, str], bytes] = {}
-        (folder / "private").mkdir(parents=True)
-        _openssl("genpkey", *CURVE, "-out", folder / "private" / "enclave.pem")  # one for all: they are not enemies
+    folder: Path
 
-    def enclave(self, path: str, enclave: Enclave) -> Path:
-        """Write the folder of an enclave; return it."""
-        folder = self.folder / "enclaves" / path.removeprefix("/")
+    def __post_init__(self) -> None:
+        if self.folder.is_dir() and any(self.folder.iterdir()):
+            return
+        for name in ("public", "private", "enclaves"):
+            (self.folder / name).mkdir(parents=True, exist_ok=True)
+        for name in ("identity_ca", "permissions_ca"):
+            self.authority(name)
+        self.governance(governance())
+
+    def authority(self, name: str) -> None:
+        key, cert = self.folder / "private" / f"{name}.key.pem", self.folder / "public" / f"{name}.cert.pem"
+        _openssl("req", "-x509", *EC, "-keyout", str(key), "-out", str(cert), "-subj", f"/CN={name}", "-days", "3000")
+
+    def governance(self, text: str) -> None:
+        self.sign(text, self.folder / "enclaves" / "governance.p7s")
+
+    def sign(self, text: str, file: Path, authority: str = "permissions_ca") -> None:
+        """Sign a text as sros2 does."""
+        plain = file.with_suffix(".xml")
+        plain.write_text(text, encoding="utf-8")
+        cert, key = f"public/{authority}.cert.pem", f"private/{authority}.key.pem"
+        signer = ("-signer", str(self.folder / cert), "-inkey", str(self.folder / key))
+        _openssl("smime", "-sign", "-text", "-in", str(plain), "-out", str(file), *signer)
+
+    def enclave(
+        self, path: str, text: str, *, subject: str | None = None, days: int = 3000, authority: str = "identity_ca"
+    ) -> Path:
+        """Add an enclave with its certificate and permissions; return its folder."""
+        folder = self.folder / "enclaves" / path.strip("/")
         folder.mkdir(parents=True)
-        shutil.copy(self.folder / "private" / "enclave.pem", folder / "key.pem")
-        shutil.copy(self._authority("identity")[0], folder / "identity_ca.cert.pem")
-        shutil.copy(self._authority("permissions")[0], folder / "permissions_ca.cert.pem")
-        certificate, key = self._authority(enclave.identity_by)
-        request, subject = folder / "request.pem", "/CN=" + path.replace("/", r"\/")
-        _openssl("req", "-new", "-key", folder / "key.pem", "-subj", subject, "-out", request)
-        signer = ("-CA", certificate, "-CAkey", key, "-CAcreateserial", "-days", "3650")
-        _openssl("x509", "-req", "-in", request, *signer, "-out", folder / "cert.pem")
-        request.unlink()
-        permissions = _document(f"<permissions>{''.join(one.xml(path) for one in enclave.grants)}</permissions>")
-        (folder / "permissions.p7s").write_bytes(self._signature(permissions, enclave.permissions_by))
-        (folder / "governance.p7s").write_bytes(self._signature(enclave.governance.xml, enclave.permissions_by))
+        name = (subject or path).replace("/", r"\/")
+        request = str(folder / "request.csr")
+        _openssl("req", *EC, "-keyout", str(folder / "key.pem"), "-out", request, "-subj", f"/CN={name}")
+        ca, key = self.folder / f"public/{authority}.cert.pem", self.folder / f"private/{authority}.key.pem"
+        given = ("-CA", str(ca), "-CAkey", str(key), "-CAcreateserial", "-days", str(days))
+        _openssl("x509", "-req", "-in", request, *given, "-out", str(folder / "cert.pem"))
+        (folder / "request.csr").unlink()
+        self.sign(text, folder / "permissions.p7s")
+        for linked in ("enclaves/governance.p7s", "public/identity_ca.cert.pem", "public/permissions_ca.cert.pem"):
+            target = self.folder / linked
+            (folder / target.name).symlink_to(os.path.relpath(target, folder))
         return folder
-
-    def _authority(self, name: str) -> tuple[Path, Path]:
-        """The certificate and the key of an authority, which is there from now on."""
-        certificate, key = self.folder / f"{name}_ca.cert.pem", self.folder / "private" / f"{name}_ca.key.pem"
-        if not key.exists():
-            _openssl("genpkey", *CURVE, "-out", key)
-            _openssl("req", "-x509", "-new", "-key", key, "-subj", f"/CN={name}", "-days", "3650", "-out", certificate)
-        return certificate, key
-
-    def _signature(self, text: str, authority: str) -> bytes:
-        if (text, authority) not in self._signed:
-            certificate, key = self._authority(authority)
-            plain, signed = self.folder / "private" / "text.xml", self.folder / "private" / "text.p7s"
-            plain.write_text(text, "utf-8")
-            _openssl("smime", "-sign", "-text", "-in", plain, "-out", signed, "-signer", certificate, "-inkey", key)
-            self._signed[text, authority] = signed.read_bytes()
-        return self._signed[text, authority]
-
-
-def _openssl(*words: str | Path) -> None:
-    done = subprocess.run(["openssl", *map(str, words)], capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-
-
-def _document(inside: str) -> str:
-    return f'<?xml version="1.0" encoding="UTF-8"?>\n<dds>{inside}</dds>\n'
-
-
-def _fields(said: dict[str, str]) -> str:
-    return "".join(f"<{name}>{value}</{name}>" for name, value in said.items())
-
-
-def _each(name: str, values: Sequence[str]) -> str:
-    return "".join(f"<{name}>{escape(value)}</{name}>" for value in values)
-
-
-def _domains(ranges: Sequence[tuple[int, int]]) -> str:
-    inside = "".join(f"<id_range><min>{low}</min><max>{high}</max></id_range>" for low, high in ranges)
-    return f"<domains>{inside}</domains>"
