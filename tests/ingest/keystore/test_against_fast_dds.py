@@ -158,7 +158,9 @@ ROWS = {
     "governance: off for the topic": Row(
         governed(topic_rule(CHATTER, *OFF), topic_rule()), ARRIVES, TOLD, "the declared view"
     ),
-    "governance: first rule wins": Row(governed(topic_rule(), topic_rule(CHATTER, *OFF)), NO_WRITER, NONE),
+    "governance: first rule wins": Row(
+        governed(topic_rule(), topic_rule(CHATTER, *OFF)), NO_WRITER, TOLD, "the later one is told too"
+    ),
     "governance: no rule for the topic": Row(governed(topic_rule("rt/other")), NO_WRITER, NONE),
     "open domain": Row(OPEN, ARRIVES, FLOW),
     # Signatures.
