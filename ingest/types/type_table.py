@@ -121,7 +121,7 @@ class _Reader(FileReader):
                 self.problem(item.line, f"an entry without {key}", "write {types: […], kinds: […], why: …, source: …}")
         if not {"types", "kinds"} <= said.keys():
             return
-        kinds = frozenset(self._kinds(said["kinds"], vocabulary))
+        kinds = excluded(vocabulary, frozenset(self._kinds(said["kinds"], vocabulary)))
         leg = said["leg"].text if "leg" in said else ""
         for one in self.list_of(said["types"], "types"):
             kind = kind_of_type(one.text)
@@ -134,7 +134,7 @@ class _Reader(FileReader):
                 hint = f"write leg: {legs}" if legs else "remove its leg"
                 self.problem(one.line, f"{one.text} is the type of a {kind}", hint)
             else:
-                yield (one.text, leg), TypeLimit(excluded(vocabulary, kinds), Place(self.file, item.line))
+                yield (one.text, leg), TypeLimit(kinds, Place(self.file, item.line))
 
     def _kinds(self, value: Value, vocabulary: Vocabulary) -> Iterator[str]:
         for item in self.list_of(value, "kinds"):
