@@ -136,7 +136,7 @@ class NumberOfPaths:
 def _steps(net: Net, reach: Search, source: int, stop: Mapping[int, int]) -> Iterator[tuple[int, int, int]]:
     """The steps of data, with its bits; what comes back to the source as what it emits anyway ends there."""
     spread = net.spread
-    allowed = sum(spread.bits.both(i) for i in range(len(spread.categories)) if i not in spread.made)
+    allowed = spread.all_bits & ~sum(map(spread.bits.both, spread.made))
     states = States(net, allowed, stop)
     begun = spread.bits.in_both_forms(states.emitted(source) & spread.bits.planes(allowed)[0])
     for _, target, bits in (*states.after_alone(source, states.emitted(source)), *states.single(source)):
