@@ -45,7 +45,9 @@ from rosprivacy.analysis.model.diagnostic import (
     Diagnostic,
     Place,
     Severity,
+    observed_when,
     unread,
+    when_observed,
 )
 from rosprivacy.analysis.model.element import (
     CHANNELS,
@@ -90,6 +92,7 @@ from rosprivacy.analysis.model.statement import (
     Surroundings,
     UnknownEnd,
 )
+from rosprivacy.analysis.model.suggestion import Confidence, Suggestion, by_confidence, interface_of
 
 __all__ = [
     "ARTICLE_9",
@@ -147,6 +150,7 @@ __all__ = [
     "Bound",
     "ByCategory",
     "Category",
+    "Confidence",
     "Diagnostic",
     "Element",
     "Flow",
@@ -168,12 +172,17 @@ __all__ = [
     "Severity",
     "Situation",
     "Statement",
+    "Suggestion",
     "Surroundings",
     "TopicKinds",
     "UnknownEnd",
+    "by_confidence",
+    "interface_of",
     "is_article_9",
     "iso",
     "kind_of_type",
+    "observed_when",
     "recording_of",
     "unread",
+    "when_observed",
 ]
