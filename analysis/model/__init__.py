@@ -49,7 +49,9 @@ from rosprivacy.analysis.model.diagnostic import (
     Diagnostic,
     Place,
     Severity,
+    observed_when,
     unread,
+    when_observed,
 )
 from rosprivacy.analysis.model.element import (
     CHANNELS,
@@ -190,6 +192,8 @@ __all__ = [
     "is_article_9",
     "iso",
     "kind_of_type",
+    "observed_when",
     "recording_of",
     "unread",
+    "when_observed",
 ]
