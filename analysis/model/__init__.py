@@ -60,7 +60,7 @@ from rosprivacy.analysis.model.element import (
     Element,
 )
 from rosprivacy.analysis.model.flow import Flow, FlowGraph
-from rosprivacy.analysis.model.lint import Breach, LintRule
+from rosprivacy.analysis.model.lint_rule import Breach, LintRule
 from rosprivacy.analysis.model.message_type import OF_KIND, MessageType, kind_of_type
 from rosprivacy.analysis.model.policy import Grant, Policy, Profile, Seen
 from rosprivacy.analysis.model.reason import REASONS, Reason

@@ -11,7 +11,7 @@ from rosprivacy.analysis.text import counted
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rosprivacy.report.contract.lint import LintDocument
+    from rosprivacy.report.contract.linted import LintDocument
 
 
 def lint_lines(document: LintDocument) -> Iterator[str]:

@@ -49,7 +49,7 @@ def broken(folder: Path, text: str, labels: str = "") -> list[tuple[int, str]]:
     """(line, rule) of each broken rule."""
     file = folder / "p.policy.xml"
     file.write_text(text, encoding="utf-8")
-    stated = ()
+    stated: tuple[str, ...] = ()
     if labels:
         (folder / "l.yaml").write_text(labels, encoding="utf-8")
         stated = (str(folder / "l.yaml"),)
