@@ -213,8 +213,8 @@ def test_what_passes_is_what_we_say_or_more(cli: Cli, outcomes: dict[str, Outcom
     said = ours(cli, outcome.keystore, outcome.domain)
     print(f"{name}: Fast DDS: {outcome.said(CHATTER)}; we: {said} {row.why}")
     assert (outcome.said(CHATTER), said) == (row.fast_dds, row.ours)
-    if said == TOLD:
-        assert (enforced(cli, outcome.keystore, outcome.domain) == FLOW) == (row.fast_dds == ARRIVES)
+    if row.fast_dds == ARRIVES:  # on the control topic, too, so the other way round says nothing
+        assert enforced(cli, outcome.keystore, outcome.domain) == FLOW
 
 
 def test_no_row_calls_no_flow_what_passes_and_each_that_says_more_says_why() -> None:
