@@ -89,8 +89,9 @@ def _recording(said: Mapping[str, Any]) -> Recording | None:
     for key, number in zip(NUMBERS, numbers, strict=True):
         if not (number is None or (isinstance(number, int) and not isinstance(number, bool))):
             raise ValueError(f"{key} is not a whole number")
-    size, topics, messages, *times = numbers
-    return Recording(bag, size or 0, topics or 0, messages, *times)
+    size, topics, messages, start, end, oldest = numbers
+    earliest = next((moment for moment in (oldest, start, end) if moment is not None), None)  # one of an earlier load
+    return Recording(bag, size or 0, topics or 0, messages, start, end, earliest)
 
 
 def _texts(stated: tuple[tuple[str, Duration], ...]) -> list[str] | None:
