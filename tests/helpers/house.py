@@ -49,6 +49,7 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "labels": READING | {"bags"},
         "mitigation": READING,
         "keystore": READING,
+        "zenoh_access": READING,
         "lint": READING,
         "observe": READING | {"labels", "bags"},
         "fleet": READING | {"labels", "types"},
