@@ -51,6 +51,7 @@ from rosprivacy.analysis.model.element import (
     CHANNELS,
     KINDS,
     NON_ROS,
+    PARTICIPANT,
     Element,
 )
 from rosprivacy.analysis.model.flow import Flow, FlowGraph
@@ -127,6 +128,7 @@ __all__ = [
     "OBSERVED",
     "OF_KIND",
     "OF_TYPES",
+    "PARTICIPANT",
     "PATHS_NOT_COUNTED",
     "REASONS",
     "RECORDING",

@@ -22,6 +22,7 @@ from rosprivacy.ingest.policies.observed_metadata import (
     diagnostics_of,
     observed_in,
     observed_of,
+    participants_of,
     seen_of,
     together,
     unreadable,
@@ -120,6 +121,7 @@ class _Reader:
     namespace: str = ""
     observations: list[tuple[Place, Observed]] = field(default_factory=list)
     seen: Mapping[Key, Seen] = field(default_factory=dict)  # of the profiles that are being read (rule S16)
+    participants: Mapping[str, str] = field(default_factory=dict)  # those of them that are of no node
     first: Place | None = None  # where sros2 has read its fill of this enclave: what follows is dead (rule S5)
 
     def policy(self, root: Item) -> None:
@@ -195,27 +197,27 @@ class _Reader:
             self.diagnostics.extend(diagnostics_of(whole, self.observations[0][0]))
 
     def _profiles(self, group: Item, enclave: str | None) -> None:
-        self.seen = self._seen(group)
+        self.seen, self.participants = self._seen(group)
         profiles = list(self._elements(group, {"profile"}))
         if not profiles:
             self._problem(group.place, "<profiles> is empty", "add a <profile>")
         for profile in profiles:
             self._profile(profile, enclave)
 
-    def _seen(self, group: Item) -> Mapping[Key, Seen]:
-        """When the grants of some profiles were seen, if an observation says so in their metadata."""
+    def _seen(self, group: Item) -> tuple[Mapping[Key, Seen], Mapping[str, str]]:
+        """When the grants of some profiles were seen, if an observation says so, and which profiles are of no node."""
         for child in group.element:
             observed = observed_in(child) if child.tag == "metadata" else None
             if observed is not None:
                 place = Place(group.file, observed.sourceline or 0)
                 try:
-                    seen, said = seen_of(observed), observed_of(observed)
+                    seen, participants, said = seen_of(observed), participants_of(observed), observed_of(observed)
                 except ValueError as error:
                     self.diagnostics.append(unreadable(str(error), place))
                 else:
                     self.observations.append((place, said))
-                    return seen
-        return {}
+                    return seen, participants
+        return {}, {}
 
     def _profile(self, profile: Item, enclave: str | None) -> None:
         self._attributes(profile, {"ns", "node"})
@@ -224,7 +226,7 @@ class _Reader:
             message = f"namespace {namespace!r} does not begin with /: its names are taken as sros2 writes them"
             self._warning(profile.place, message)
         name = namespace + node if namespace.endswith("/") else f"{namespace}/{node}"
-        owner = Profile(name if enclave is None else enclave, name, profile.place)
+        owner = Profile(name if enclave is None else enclave, name, profile.place, self.participants.get(name, ""))
         self.profiles.append(owner)
         for group in self._elements(profile, ROLES):
             self._group(group, owner, namespace, node)

@@ -34,6 +34,14 @@ SHORTEST = "10s"  # what most middlewares need until all is found
 )  # fmt: skip
 def observe(
     inputs: Inputs,
+    endpoint: Annotated[
+        str,
+        typer.Argument(
+            metavar="[ENDPOINT]",
+            show_default=False,
+            help="With --zenoh: where the router is; by default tcp/localhost:7447.",
+        ),
+    ] = "",
     text: Annotated[
         list[str] | None,
         typer.Option(
@@ -60,7 +68,12 @@ def observe(
         bool, typer.Option("--dds", help="Join the DDS domain as a reader of discovery.", rich_help_panel=THROUGH)
     ] = False,
     zenoh: Annotated[
-        bool, typer.Option("--zenoh", help="Ask a Zenoh router for the tokens of ROS.", rich_help_panel=THROUGH)
+        bool,
+        typer.Option(
+            "--zenoh",
+            help="Ask a Zenoh router for the tokens of ROS: --zenoh, or --zenoh ENDPOINT.",
+            rich_help_panel=THROUGH,
+        ),
     ] = False,
     domain: Annotated[
         int,
@@ -91,7 +104,7 @@ def observe(
         typer.Option(
             metavar="ENDPOINT",
             show_default=False,
-            help="With --zenoh: where the router is; by default tcp/localhost:7447.",
+            help="The same as ENDPOINT.",
             rich_help_panel=THROUGH,
         ),
     ] = "",
@@ -134,10 +147,14 @@ def observe(
     stop = Stop()
     wait = stop.wait if watch else time.sleep
     doors = _doors(text, at, wait, ros2=ros2)
+    if endpoint and not zenoh:
+        raise typer.BadParameter(f"{shown(endpoint)}: an endpoint is for --zenoh, and each FILE follows a --text")
     if (router and not zenoh) or ((peer or interface) and not dds):
         raise typer.BadParameter("--router is for --zenoh; --peer and --interface are for --dds")
+    if endpoint and router:
+        raise typer.BadParameter("say once where the router is: --zenoh ENDPOINT, or --zenoh --router ENDPOINT")
     if zenoh:
-        doors.append(_zenoh_door(domain, router, session_file, wait))
+        doors.append(_zenoh_door(domain, endpoint or router, session_file, wait))
     if dds:
         doors.append(_dds_door(domain, tuple(peer or ()), interface, wait))
     if not doors:
