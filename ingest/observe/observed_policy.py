@@ -18,7 +18,7 @@ from rosprivacy.ingest.observe.action_parts import whole_actions
 from rosprivacy.ingest.observe.made_up_names import with_folded_names
 from rosprivacy.ingest.observe.observation import added_up
 from rosprivacy.ingest.observe.observed_names import with_good_names
-from rosprivacy.ingest.policies.observed_metadata import FOLDED, GRANT, MADE_UP, NOBODY, OF_NO_NODE, TAG, VERSION
+from rosprivacy.ingest.policies.observed_metadata import FOLDED, GRANT, MADE_UP, NOBODY, OF_NO_NODE, TAG, VERSION, WAS
 from rosprivacy.ingest.policies.policy_xml import ROLES
 
 if TYPE_CHECKING:
@@ -128,7 +128,7 @@ def _metadata(profiles: etree._Element, ready: Prepared, path: str, grants: Mapp
         if one.name in nodes:
             folded = etree.SubElement(observed, FOLDED, name=one.name, rule=one.rule)
             for name in one.names:
-                etree.SubElement(folded, "was").text = name
+                etree.SubElement(folded, WAS).text = name
     for node in nodes:
         if node.startswith(f"{NOBODY}/"):
             etree.SubElement(observed, OF_NO_NODE, node=node)

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Place
 
 TAG, GRANT, FOLDED, OF_NO_NODE = "observed", "grant", "folded", "participant"
+WAS = "was"  # in a folded name: one as it was seen
 NOBODY = "/_no_node"  # namespace of profiles of endpoints of no node
 VERSION = "1"
 MADE_UP = "made-up"  # said of an enclave that no door told

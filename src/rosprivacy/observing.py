@@ -9,9 +9,10 @@ import os
 import re
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from itertools import count
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.errors import InputError, shown
+from rosprivacy.analysis.errors import InputError, InputErrors, shown
 from rosprivacy.analysis.text import counted
 from rosprivacy.clock import source_date
 from rosprivacy.ingest.observe.declared import TYPE
@@ -104,14 +105,29 @@ def types_file(policy: Path) -> Path:
     return _beside(policy, "types")
 
 
-def declared_file(policy: Path) -> Path:
-    """Return the label file with what nodes declare of themselves, beside a policy.
+def declared_file(policy: Path, text: str = "") -> Path:
+    """Return the label file with what nodes declare of themselves, beside a policy; one with another text stays.
 
     >>> from pathlib import Path
     >>> str(declared_file(Path("robot.policy.xml")))
     'robot.declared.labels.yaml'
     """
-    return _beside(policy, "declared.labels")
+    names = (_beside(policy, f"declared{number}.labels") for number in ("", *(f"-{n}" for n in count(2))))
+    return next(file for file in names if not file.is_file() or file.read_bytes() == text.encode())
+
+
+def keeps_what_is_there(policy: Path) -> None:
+    """Refuse to write over what an earlier run wrote, before anybody looks (rule S16).
+
+    Raises
+    ------
+    InputErrors
+        If there is a policy, or a file of types, of that name.
+    """
+    hint = "remove it, or write to another file; --earlier POLICY adds what was seen then"
+    there = [file for file in (policy, types_file(policy)) if file.is_file()]
+    if there:
+        raise InputErrors([InputError(str(file), 0, "is there already and would be lost", hint) for file in there])
 
 
 def _beside(policy: Path, what: str) -> Path:

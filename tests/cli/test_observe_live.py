@@ -84,6 +84,8 @@ def test_from_a_dds_domain_to_the_planted_finding(peer: Peer, other: Peer, robot
         done = run("observe", *words, cwd=robot)
         if done.returncode == 0 and "known gap" not in done.stderr:
             break
+        for file in robot.glob("robot.*"):
+            file.unlink()
     assert done.returncode == 0, done.stderr
     assert "2 nodes, 1 channel: observed from " in done.stderr
     assert "known gap" not in done.stderr

@@ -51,6 +51,15 @@ def observe(
             rich_help_panel=THROUGH,
         ),
     ] = None,
+    earlier: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="POLICY",
+            show_default=False,
+            help="What an earlier run wrote, with the types beside it: adds up; may be repeated.",
+            rich_help_panel=THROUGH,
+        ),
+    ] = None,
     at: Annotated[
         str | None,
         typer.Option(
@@ -141,12 +150,12 @@ def observe(
     What was not seen proves nothing: the policy says from when to when somebody looked, and which gaps are known.
     """
     from rosprivacy.ingest.observe.stopping import Stop
+    from rosprivacy.observing import keeps_what_is_there, seconds_of
     from rosprivacy.observing import observe as looked
-    from rosprivacy.observing import seconds_of
 
     stop = Stop()
     wait = stop.wait if watch else time.sleep
-    doors = _doors(text, at, wait, ros2=ros2)
+    doors = _doors(text, earlier, at, wait, ros2=ros2)
     if endpoint and not zenoh:
         raise typer.BadParameter(f"{shown(endpoint)}: an endpoint is for --zenoh, and each FILE follows a --text")
     if (router and not zenoh) or ((peer or interface) and not dds):
@@ -158,9 +167,14 @@ def observe(
     if dds:
         doors.append(_dds_door(domain, tuple(peer or ()), interface, wait))
     if not doors:
-        raise typer.BadParameter("name a door: --text FILE, --ros2, --zenoh or --dds")
-    if watch and (text or len(doors) > 1):
-        raise typer.BadParameter("--watch looks through one door to a running system: no --text, and no second door")
+        raise typer.BadParameter(
+            "name a door: --text FILE, --ros2, --zenoh, --dds, or what was seen by --earlier POLICY"
+        )
+    if watch and (text or earlier or len(doors) > 1):
+        what = "--watch looks through one door to a running system: no --text, no --earlier, and no second door"
+        raise typer.BadParameter(what)
+    if output:
+        keeps_what_is_there(output)
     if not watch:
         seen = looked(doors, seconds_of(duration))
     else:
@@ -169,13 +183,16 @@ def observe(
     _write(seen, output)
 
 
-def _doors(text: list[str] | None, at: str | None, wait: Wait, *, ros2: bool) -> list[Door]:
+def _doors(text: list[str] | None, earlier: list[str] | None, at: str | None, wait: Wait, *, ros2: bool) -> list[Door]:
     """The doors that a user named, those that have looked already first."""
+    from rosprivacy.ingest.observe.earlier_files import EarlierFiles
     from rosprivacy.ingest.observe.ros2_program import Ros2Program
     from rosprivacy.ingest.observe.text_files import TextFiles
-    from rosprivacy.observing import now, time_of
+    from rosprivacy.observing import now, time_of, types_file
 
     doors: list[Door] = []
+    if earlier:
+        doors.append(EarlierFiles(tuple((file, str(types_file(Path(file)))) for file in earlier)))
     if text:
         doors.append(TextFiles(tuple(text), now, time_of(at) if at else ""))
     if ros2:
@@ -222,7 +239,7 @@ def _write(seen: Observation | None, output: Path | None) -> None:
         raise typer.Exit(UNDETERMINED)
     beside = {types_file(output): made.types} if output else {}
     if output and made.declared:
-        beside[declared_file(output)] = made.declared
+        beside[declared_file(output, made.declared)] = made.declared
     emit(made.policy, output, beside)
     for remark in made.remarks:
         print(remark, file=sys.stderr)
