@@ -91,6 +91,7 @@ from rosprivacy.analysis.model.statement import (
     Surroundings,
     UnknownEnd,
 )
+from rosprivacy.analysis.model.suggestion import Confidence, Suggestion, by_confidence, interface_of
 
 __all__ = [
     "ARTICLE_9",
@@ -149,6 +150,7 @@ __all__ = [
     "Bound",
     "ByCategory",
     "Category",
+    "Confidence",
     "Diagnostic",
     "Element",
     "Flow",
@@ -170,9 +172,12 @@ __all__ = [
     "Severity",
     "Situation",
     "Statement",
+    "Suggestion",
     "Surroundings",
     "TopicKinds",
     "UnknownEnd",
+    "by_confidence",
+    "interface_of",
     "is_article_9",
     "iso",
     "kind_of_type",

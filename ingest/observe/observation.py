@@ -174,8 +174,8 @@ class Observation:
     @property
     def all_gaps(self) -> dict[str, int]:
         """Every gap that is one, with the endpoints of no node, sorted."""
-        strangers = sum(not endpoint.node for endpoint in self.endpoints)
-        gaps = {**self.gaps, **({NO_NODE: strangers} if strangers else {})}
+        strangers = len({(one.participant, one.role, one.name) for one in self.endpoints if not one.node})
+        gaps = {**self.gaps, NO_NODE: max(strangers, self.gaps.get(NO_NODE, 0))}
         return {gap: gaps[gap] for gap in sorted(gaps) if gaps[gap]}
 
 

@@ -24,8 +24,7 @@ from rosprivacy.ingest.policies.policy_xml import ROLES
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from rosprivacy.ingest.observe.made_up_names import Folded
-    from rosprivacy.ingest.observe.observation import Observation, ObservedEndpoint, Span
+    from rosprivacy.ingest.observe.observation import Folded, Observation, ObservedEndpoint, Span
 
 LONGEST_PARTICIPANT = 40
 Grants = dict[tuple[str, str, str], tuple["Span", tuple[str, ...]]]  # kind, role, name -> when, by which doors

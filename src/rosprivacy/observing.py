@@ -9,7 +9,7 @@ import os
 import re
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from itertools import count
+from itertools import chain, count
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors, shown
@@ -105,15 +105,15 @@ def types_file(policy: Path) -> Path:
     return _beside(policy, "types")
 
 
-def declared_file(policy: Path, text: str = "") -> Path:
-    """Return the label file with what nodes declare of themselves, beside a policy; one with another text stays.
+def declared_file(policy: Path) -> Path:
+    """Return the label file with what nodes declare of themselves, beside a policy; one that is there stays.
 
     >>> from pathlib import Path
     >>> str(declared_file(Path("robot.policy.xml")))
     'robot.declared.labels.yaml'
     """
-    names = (_beside(policy, f"declared{number}.labels") for number in ("", *(f"-{n}" for n in count(2))))
-    return next(file for file in names if not file.is_file() or file.read_bytes() == text.encode())
+    numbered = (_beside(policy, f"declared-{number}.labels") for number in count(2))
+    return next(file for file in chain([_beside(policy, "declared.labels")], numbered) if not file.exists())
 
 
 def keeps_what_is_there(policy: Path) -> None:

@@ -7,12 +7,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.analysis.model import MERGED, REFUSED_NAME, SEEN_ALTHOUGH_DENIED, SHARED_ENCLAVE
 from rosprivacy.answering import answer
 from rosprivacy.assumptions import files_read, remembered, types_read
+from rosprivacy.granted import Read, read_granted
 from rosprivacy.ingest.labels.add_non_ros import extend, extended
 from rosprivacy.ingest.labels.bag_storages import told_of_bags
 from rosprivacy.ingest.labels.binding import bind, join, remarks
@@ -22,15 +24,17 @@ from rosprivacy.ingest.policies.comparisons import careful_notices
 from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.ingest.policies.joint_policies import joint_warnings
 from rosprivacy.ingest.policies.merged_policies import merging_notices
-from rosprivacy.ingest.policies.policy_files import read_policies
 from rosprivacy.ingest.types.channel_types import channel_types, matching_nothing
 from rosprivacy.question import question_of
 from rosprivacy.system import System
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from rosprivacy.analysis.model import Bound, Diagnostic, FlowGraph, Policy
     from rosprivacy.ingest.database.rows import RobotRows
     from rosprivacy.ingest.policies.saved_graph import Saved
+    from rosprivacy.ingest.types.channel_types import Written
     from rosprivacy.ingest.types.types_file import TypesFile
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.question import Question
@@ -39,7 +43,6 @@ if TYPE_CHECKING:
 
 ACROSS = (MERGED, SHARED_ENCLAVE, REFUSED_NAME, SEEN_ALTHOUGH_DENIED)  # what is said of policies together
 Types = tuple["TypesFile", ...]
-Read = tuple[tuple["Policy", ...], tuple["Diagnostic", ...]]
 
 
 def answer_robot(policies: tuple[str, ...], labels: tuple[str | Labels, ...], settings: Settings) -> Result:
@@ -96,9 +99,9 @@ def _joined(
     return System(graph, bound, vocabulary, said, rests_on, policies, tuple(files), types=types)
 
 
-def with_types(graph: FlowGraph, bound: Bound, types: Types) -> Bound:
+def with_types(graph: FlowGraph, bound: Bound, types: Types, written: Written = MappingProxyType({})) -> Bound:
     """Return what is bound to a graph with the observed types of its channels beside those that labels state."""
-    seen = channel_types(graph, types)
+    seen = channel_types(graph, types, written)
     both = {v: (*bound.types.get(v, ()), *seen.get(v, ())) for v in {*bound.types, *seen}}
     return replace(bound, types=in_order(both))
 
@@ -166,13 +169,7 @@ def read_system(policies: tuple[str, ...], settings: Settings, graphs: list[Save
     read: tuple[Policy, ...] = ()
     diagnostics: tuple[Diagnostic, ...] = ()
     if policies or not saved:
-        read, diagnostics = read_policies(
-            policies,
-            include_root=settings.include_root,
-            max_bytes=settings.max_bytes,
-            bounds=settings.bounds,
-            progress=settings.progress,
-        )
+        read, diagnostics = read_granted(policies, settings)
     known = {policy.file for policy in read}  # read again is read anew
     sources = {name for policy in read for name, _ in policy.sources}
     left = (d for graph in graphs for d in graph.left)
@@ -184,9 +181,16 @@ def read_system(policies: tuple[str, ...], settings: Settings, graphs: list[Save
 
 def observed_types(settings: Settings, graphs: list[Saved]) -> Types:
     """Read the files of observed types, and those that saved graphs keep; one that is named is read anew."""
+    files = read_types_files(settings.types, settings)
+    saved = {one.file: one for graph in graphs for one in graph.types}
+    return tuple(one for _, one in sorted({**saved, **files}.items()))
+
+
+def read_types_files(names: Iterable[str], settings: Settings) -> dict[str, TypesFile]:
+    """Read files of observed types, each once, with the problems of all of them."""
     problems: list[InputError] = []
     files: dict[str, TypesFile] = {}
-    for name in dict.fromkeys(settings.types):
+    for name in dict.fromkeys(names):
         from rosprivacy.ingest.types.types_file import read_types  # noqa: PLC0415 - light start
 
         try:
@@ -195,8 +199,7 @@ def observed_types(settings: Settings, graphs: list[Saved]) -> Types:
             problems += error.errors
     if problems:
         raise InputErrors(problems)
-    saved = {one.file: one for graph in graphs for one in graph.types}
-    return tuple(one for _, one in sorted({**saved, **files}.items()))
+    return files
 
 
 def standard_channels(graph: FlowGraph, vocabulary: Vocabulary, settings: Settings) -> set[tuple[str, str]]:

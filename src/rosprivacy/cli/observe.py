@@ -239,7 +239,7 @@ def _write(seen: Observation | None, output: Path | None) -> None:
         raise typer.Exit(UNDETERMINED)
     beside = {types_file(output): made.types} if output else {}
     if output and made.declared:
-        beside[declared_file(output, made.declared)] = made.declared
+        beside[declared_file(output)] = made.declared
     emit(made.policy, output, beside)
     for remark in made.remarks:
         print(remark, file=sys.stderr)

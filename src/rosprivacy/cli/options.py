@@ -57,7 +57,7 @@ ASKED = "What is asked"
 
 Policies = Annotated[
     list[str] | None,
-    typer.Argument(metavar="POLICY", help="SROS 2 policies: files, folders or globs.", show_default=False),
+    typer.Argument(metavar="POLICY", help="SROS 2 policies: files, folders or globs; keystores.", show_default=False),
 ]
 LabelFiles = Annotated[
     list[str] | None,
@@ -139,12 +139,33 @@ TypesFiles = Annotated[
 TypeLimitsFile = Annotated[
     str,
     typer.Option(
-        "--type-limits", metavar="FILE", help="Table of what message types cannot carry.", rich_help_panel=READ
+        "--type-limits",
+        metavar="FILE",
+        help="Table of what message types cannot carry, and what they suggest.",
+        rich_help_panel=READ,
     ),
 ]
 NoTypeLimits = Annotated[
     bool,
     typer.Option("--no-type-limits", help="Take every message type to carry everything.", rich_help_panel=READ),
+]
+Domain = Annotated[
+    int | None,
+    typer.Option(
+        min=0,
+        metavar="N",
+        show_default=False,
+        help="DDS domain of the robot, for permissions with rules for several.",
+        rich_help_panel=READ,
+    ),
+]
+AllowUnsigned = Annotated[
+    bool,
+    typer.Option(
+        "--allow-unsigned",
+        help="Read permissions and governance that are not signed by their CA; the report says so.",
+        rich_help_panel=READ,
+    ),
 ]
 IncludeRoot = Annotated[
     Path | None,

@@ -14,6 +14,7 @@ from rosprivacy.ingest.observe.earlier_files import EarlierFiles
 from rosprivacy.ingest.observe.observation import Observation, ObservedNode, Span, added_up
 from rosprivacy.ingest.observe.observed_policy import policy_xml, prepared
 from rosprivacy.ingest.observe.observed_types import types_yaml
+from rosprivacy.observing import declared_file
 from tests.helpers.command import Cli, refused
 from tests.helpers.observed import AT, at, endpoint, looked, node_info, saw
 
@@ -38,10 +39,12 @@ def again(*files: tuple[str, str]) -> Observation:
     return seen
 
 
-def seen_whole(*endpoints: ObservedEndpoint, **more: int) -> Observation:
+def seen_whole(*endpoints: ObservedEndpoint, **gaps: int) -> Observation:
     """Endpoints, and the nodes that they are of, as a door tells them."""
     names = sorted({one.node for one in endpoints if one.node})
-    return replace(saw(*endpoints, **more), nodes=tuple(ObservedNode(name, Span(AT, AT)) for name in names))
+    return replace(
+        saw(*endpoints, door="text", **gaps), nodes=tuple(ObservedNode(name, Span(AT, AT)) for name in names)
+    )
 
 
 def texts(seen: Observation) -> tuple[bytes, str]:
@@ -168,3 +171,10 @@ def test_several_earlier_ones_become_one_without_looking(cli: Cli, tmp_path: Pat
     observed(cli, tmp_path, *words, "-o", "both.policy.xml")
     text = (tmp_path / "both.policy.xml").read_text()
     assert ('node="a"' in text, 'node="b"' in text) == (True, True)
+
+
+def test_what_nodes_declared_before_stays(tmp_path: Path) -> None:
+    policy = tmp_path / "robot.policy.xml"
+    assert declared_file(policy).name == "robot.declared.labels.yaml"
+    declared_file(policy).touch()
+    assert declared_file(policy).name == "robot.declared-2.labels.yaml"
