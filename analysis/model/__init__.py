@@ -23,13 +23,16 @@ from rosprivacy.analysis.model.diagnostic import (
     BAG_GAP,
     CAREFUL_DENY,
     DEAD_DENY,
+    DUPLICATE_ENCLAVE,
     EMPTY_GROUP,
+    EMPTY_INCLUDE,
     ENCLAVES_MADE_UP,
     FALLBACK_TAKEN,
     FOLDED_NAMES,
     GOES_NOWHERE,
     LEGAL_BASIS,
     MERGED,
+    MISTAKEN_TILDE,
     NO_LEAK_NAMED,
     NO_SOURCE,
     NOT_READ,
@@ -40,12 +43,15 @@ from rosprivacy.analysis.model.diagnostic import (
     RECORDING,
     REFUSED_NAME,
     SEEN_ALTHOUGH_DENIED,
+    SEVERAL_PROFILES,
     SHARED_ENCLAVE,
     UNREAD_FILE,
     Diagnostic,
     Place,
     Severity,
+    observed_when,
     unread,
+    when_observed,
 )
 from rosprivacy.analysis.model.element import (
     CHANNELS,
@@ -55,6 +61,7 @@ from rosprivacy.analysis.model.element import (
     Element,
 )
 from rosprivacy.analysis.model.flow import Flow, FlowGraph
+from rosprivacy.analysis.model.lint_rule import Breach, LintRule
 from rosprivacy.analysis.model.message_type import OF_KIND, MessageType, kind_of_type
 from rosprivacy.analysis.model.policy import Grant, Policy, Profile, Seen
 from rosprivacy.analysis.model.reason import REASONS, Reason
@@ -107,7 +114,9 @@ __all__ = [
     "CONTEXTS",
     "DEAD_DENY",
     "DISCLOSURE",
+    "DUPLICATE_ENCLAVE",
     "EMPTY_GROUP",
+    "EMPTY_INCLUDE",
     "ENCLAVES_MADE_UP",
     "FALLBACK_TAKEN",
     "FOLDED_NAMES",
@@ -117,6 +126,7 @@ __all__ = [
     "LEGAL_BASIS",
     "MAY_REVEAL",
     "MERGED",
+    "MISTAKEN_TILDE",
     "NAME",
     "NON_ROS",
     "NOTHING_FOLLOWED",
@@ -136,6 +146,7 @@ __all__ = [
     "REFUSED_NAME",
     "SEEN_ALTHOUGH_DENIED",
     "SEGMENT",
+    "SEVERAL_PROFILES",
     "SHARED_ENCLAVE",
     "SPECIAL",
     "STANDARD",
@@ -148,6 +159,7 @@ __all__ = [
     "BagTopic",
     "BagVerdict",
     "Bound",
+    "Breach",
     "ByCategory",
     "Category",
     "Confidence",
@@ -158,6 +170,7 @@ __all__ = [
     "Grant",
     "JudgedBag",
     "Legal",
+    "LintRule",
     "MessageType",
     "Method",
     "NonRosFacts",
@@ -181,6 +194,8 @@ __all__ = [
     "is_article_9",
     "iso",
     "kind_of_type",
+    "observed_when",
     "recording_of",
     "unread",
+    "when_observed",
 ]
