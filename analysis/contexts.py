@@ -33,6 +33,7 @@ def surrounded(categories: Mapping[str, Category], hierarchy: Hierarchy) -> dict
     >>> both["FaceTemplate"].in_context == CATEGORIES["FaceTemplate"].in_context
     True
     """
+    stated = {name: _stated(category) for name, category in categories.items()}
     near: dict[str, dict[str, None]] = {name: {} for name in categories}
     for name in categories:
         for above in hierarchy.ancestors[name]:
@@ -41,21 +42,25 @@ def surrounded(categories: Mapping[str, Category], hierarchy: Hierarchy) -> dict
     return {
         name: replace(
             category,
-            in_context=_stated(categories[other] for other in sorted(near[name])),
+            in_context=_together(stated[other] for other in sorted(near[name])),
             look_at=tuple(sorted({at for above in hierarchy.ancestors[name] for at in categories[above].look_at})),
         )
         for name, category in categories.items()
     }
 
 
-def _stated(categories: Iterable[Category]) -> tuple[Legal, ...]:
-    """What is stated of some categories themselves, each statement once, with the first of them."""
+def _stated(category: Category) -> tuple[Legal, ...]:
+    """What is stated of a category itself; the rest came from a kind near it."""
+    own = (legal for legal in category.in_context if legal.stated_of in ("", category.name))
+    return tuple(replace(legal, stated_of=category.name) for legal in own)
+
+
+def _together(stated: Iterable[tuple[Legal, ...]]) -> tuple[Legal, ...]:
+    """What is stated of some categories, each statement once, with the first of them."""
     found: dict[tuple[str, str, str], Legal] = {}
-    for category in categories:
-        for legal in category.in_context:
-            if legal.stated_of in ("", category.name):  # else it came from a kind near it
-                stated = replace(legal, stated_of=category.name)
-                found.setdefault((legal.context, legal.name, legal.condition), stated)
+    for statements in stated:
+        for legal in statements:
+            found.setdefault((legal.context, legal.name, legal.condition), legal)
     return tuple(found[key] for key in sorted(found))
 
 

@@ -10,7 +10,6 @@ import hashlib
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from functools import lru_cache
-from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -29,6 +28,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.model import Category
 
+FOLDER = Path(__file__).parent  # what is shipped; importlib.resources would be imported for nothing else
 LARGEST = 4 * 2**20  # bytes of a user's file
 TOP = "PersonalData"
 SHIPPED = ("categories.ttl", "law.ttl", "other_law.ttl", "contexts.ttl", "elements.ttl", "dpv.ttl")
@@ -160,7 +160,7 @@ def load(cache: Path | None = None, ontologies: Sequence[str] = ()) -> Vocabular
     InputErrors
         If an ontology breaks a rule.
     """
-    shipped = tuple(files("rosprivacy.ontology").joinpath(name).read_bytes() for name in SHIPPED)
+    shipped = tuple((FOLDER / name).read_bytes() for name in SHIPPED)
     own = tuple((file, _read(file)) for file in dict.fromkeys(ontologies))
     return _vocabulary(cache or kept.default_folder(), shipped, own)
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.non_ros import ADEQUATE, INSIDE, PARTLY, THIRD
@@ -63,7 +63,7 @@ class Countries:
 @cache
 def countries() -> Countries:
     """Read the list."""
-    file = str(files("rosprivacy.ingest.labels").joinpath("countries.yaml"))
+    file = str(Path(__file__).with_name("countries.yaml"))
     top, _ = yaml_values.read(file, _broken)
     parts = {key: value for key, _, value in top.entries}
     areas: dict[str, str] = {}

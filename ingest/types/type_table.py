@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import hashlib
 from functools import partial
-from importlib.resources import files
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.bounds import BOUNDS
@@ -20,6 +19,7 @@ from rosprivacy.analysis.model import Place, kind_of_type
 from rosprivacy.ingest.reading import yaml_values
 from rosprivacy.ingest.reading.format_reader import FileReader
 from rosprivacy.ontology.iris import STORED
+from rosprivacy.ontology.vocabulary import FOLDER
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -55,7 +55,7 @@ def read_table(file: str, vocabulary: Vocabulary, bounds: Bounds = BOUNDS) -> Ty
     >>> "Video" in twist.kinds, "FaceImage" in twist.kinds, "Location" in twist.kinds
     (True, True, False)
     """
-    path = str(files("rosprivacy.ontology").joinpath("types.yaml")) if file == TABLE else file
+    path = str(FOLDER / "types.yaml") if file == TABLE else file
     try:
         top, data = yaml_values.read(path, partial(TypesError, file), bounds)
     except InputError as error:
@@ -123,6 +123,7 @@ class _Reader(FileReader):
             return
         kinds = frozenset(self._kinds(said["kinds"], vocabulary))
         leg = said["leg"].text if "leg" in said else ""
+        limit = TypeLimit(excluded(vocabulary, kinds), Place(self.file, item.line))
         for one in self.list_of(said["types"], "types"):
             kind = kind_of_type(one.text)
             if not kind:
@@ -134,7 +135,7 @@ class _Reader(FileReader):
                 hint = f"write leg: {legs}" if legs else "remove its leg"
                 self.problem(one.line, f"{one.text} is the type of a {kind}", hint)
             else:
-                yield (one.text, leg), TypeLimit(excluded(vocabulary, kinds), Place(self.file, item.line))
+                yield (one.text, leg), limit
 
     def _kinds(self, value: Value, vocabulary: Vocabulary) -> Iterator[str]:
         for item in self.list_of(value, "kinds"):

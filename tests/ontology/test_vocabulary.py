@@ -254,7 +254,7 @@ class TestCache:
         text = file.read_text().replace("FaceTemplate", "Facetemplate") if damage == "swap" else damage
         file.write_text(text)
         assert anew(tmp_path) == whole
-        assert json.loads(file.read_text())["digest"]  # and written anew
+        assert json.loads(file.read_text().splitlines()[0])["digest"]  # and written anew
 
     def test_a_folder_that_cannot_be_written_is_no_error(self, tmp_path: Path) -> None:
         (tmp_path / "file").write_text("")
