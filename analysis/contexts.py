@@ -6,8 +6,8 @@ reveal there, with the provision that says so. A context never weakens what is s
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.model import ARTICLE_9_VERDICTS, MAY_REVEAL, SPECIAL
 
@@ -89,8 +89,7 @@ def article9_in(category: Category, contexts: Collection[str]) -> str:
     return category.article9
 
 
-@dataclass(frozen=True, slots=True)
-class Contexts:
+class Contexts(NamedTuple):
     """The contexts of a system's sources.
 
     Attributes

@@ -75,7 +75,7 @@ def factory(robot: str = "") -> tuple[FlowGraph, Bound, Hierarchy]:
     lost = _granted(elements, VIDEO, ARCHIVE, len(POLICY) + 1)
     deny = replace(lost.grants[0], allow=False, place=Place("policy.xml", len(POLICY) + 2))
     graph = FlowGraph(
-        elements, (Flow(ARCHIVE, DISK, STATED), *grants), denied=(replace(lost, denials=(deny,)),), profiles=()
+        elements, (Flow(ARCHIVE, DISK, STATED), *grants), denied=(lost._replace(denials=(deny,)),), profiles=()
     )
     bound = Bound(
         {

@@ -47,7 +47,11 @@ def get(folder: Path, key: str) -> Kept | None:
 
 def keep(folder: Path, key: str, categories: tuple[Category, ...], respelt: dict[str, str], pointed: Pointed) -> None:
     """Write them, whole or not at all; a folder that cannot be written is no error."""
-    parts = {"categories": [asdict(category) for category in categories], "respelt": respelt, "pointed": asdict(pointed)}
+    parts = {
+        "categories": [asdict(category) for category in categories],
+        "respelt": respelt,
+        "pointed": asdict(pointed),
+    }
     facts = json.dumps(parts).encode()
     with suppress(OSError):
         folder.mkdir(parents=True, exist_ok=True)

@@ -5,7 +5,7 @@ In: what was found, and what it rests on. Out: ``Answer``. A format is a functio
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.contexts import Contexts
@@ -92,8 +92,7 @@ class Answer:
         if self.fleet is None:
             return row
         beside, between = self._beside, self.fleet.likeness.between
-        return replace(
-            row,
+        return row._replace(
             elements=tuple(e for e in row.elements if e.robot not in beside),
             to=tuple(e for e in row.to if e.robot not in beside),
             findings=tuple(f for f in row.findings if between(f.source.robot, f.leak.robot)),

@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import hashlib
 from collections import defaultdict
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.answer import Analysis, Carried, Finding, Step, Verdict
 from rosprivacy.analysis.bounds import BOUNDS, Tally
@@ -47,8 +47,7 @@ NOWHERE = Place("the analysis", 0)
 Chosen = tuple[str, int, int, bool]  # kind, leak, number of the category, whether beside a pseudonymised one
 
 
-@dataclass(frozen=True, slots=True)
-class Options:
+class Options(NamedTuple):
     """What is asked for.
 
     Attributes

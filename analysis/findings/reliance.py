@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections import defaultdict
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.findings.closures import line_key
@@ -43,8 +43,7 @@ TOGETHER = 64  # sources that are followed at once
 ROUNDS = 64  # statements for which the whole system is analysed again; of more it is said that it was not worked out
 
 
-@dataclass(frozen=True, slots=True)
-class Opening:
+class Opening(NamedTuple):
     """A finding that there would be, or that would be worse.
 
     Attributes
@@ -64,8 +63,7 @@ class Opening:
     new: bool
 
 
-@dataclass(frozen=True, slots=True)
-class Reliance:
+class Reliance(NamedTuple):
     """What hangs on one statement.
 
     Attributes
@@ -235,15 +233,15 @@ class _Work:
             if change is not None:
                 return self._told(self._compared(row, *self._further(change, spots)))
             if not self.left:
-                return replace(row, perhaps=True)
+                return row._replace(perhaps=True)
             self.left -= 1
             return self._told(self._compared(row, *self._anew(less)))
         except InputErrors as error:
-            return replace(row, refused=str(error.errors[0]))
+            return row._replace(refused=str(error.errors[0]))
 
     def _told(self, row: Reliance) -> Reliance:
         """A type reviews nothing: what lies behind it is open as it is (rule S15)."""
-        return replace(row, questions=()) if row.statement.role == CANNOT else row
+        return row._replace(questions=()) if row.statement.role == CANNOT else row
 
     def _change(self, less: Bound, statement: Statement, spots: _Spots) -> Spread | None:
         """What the elements and flows do without it, if that is more and nothing less; else None."""
@@ -334,8 +332,7 @@ class _Work:
             shown = elements[vertex].shown_as
             if new := open_now & ~self.open.get(shown, 0):
                 asked.setdefault(shown, (elements[vertex], set()))[1].update(spread.names(new))
-        return replace(
-            row,
+        return row._replace(
             findings=tuple(opening for _, opening in sorted(found, key=lambda pair: pair[0])),
             questions=tuple((element, tuple(sorted(names))) for element, names in asked.values()),
         )

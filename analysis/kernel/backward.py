@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.kernel.labelled_graph import LabelledGraph, ends, nodes_of
 from rosprivacy.analysis.kernel.least_solution import least_solution
@@ -62,8 +62,7 @@ class Opened:
 NOTHING_OPENED = Opened()
 
 
-@dataclass(frozen=True, slots=True)
-class Backward:
+class Backward(NamedTuple):
     """What leads to the places that count.
 
     Attributes

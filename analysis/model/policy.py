@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.model.diagnostic import Diagnostic, Place
@@ -18,8 +18,7 @@ class Profile:
     place: Place
 
 
-@dataclass(frozen=True, slots=True)
-class Seen:
+class Seen(NamedTuple):
     """When a grant was seen in use, and by which doors to the running system (rule S16).
 
     Attributes

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.model.diagnostic import Place
 
@@ -263,8 +263,7 @@ class Bound:
     types: Mapping[int, tuple[MessageType, ...]] = field(default_factory=dict)
 
 
-@dataclass(frozen=True, slots=True)
-class UnknownEnd:
+class UnknownEnd(NamedTuple):
     """An element at which data's way ends without anybody known, rule S11.
 
     Attributes

@@ -77,7 +77,7 @@ def stripped(graph: FlowGraph, namespace: str) -> tuple[FlowGraph, dict[Element,
     moved = [number[shown[element]] for element in graph.elements]
 
     def renumbered(flows: Sequence[Flow]) -> tuple[Flow, ...]:
-        new = [replace(flow, source=moved[flow.source], target=moved[flow.target]) for flow in flows]
+        new = [flow._replace(source=moved[flow.source], target=moved[flow.target]) for flow in flows]
         return tuple(sorted(new, key=lambda flow: (flow.source, flow.target, flow.role)))
 
     nodes = {element.name: new.name for element, new in shown.items() if element.is_node}

@@ -6,10 +6,9 @@ it lies inside the EEA, outside with an adequacy decision, with one for some rec
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.non_ros import ADEQUATE, INSIDE, PARTLY, THIRD
 from rosprivacy.ingest.reading import yaml_values
@@ -22,8 +21,7 @@ if TYPE_CHECKING:
 MISTAKEN = {"UK": "GB", "EL": "GR", "EU": "the member state", "EEA": "the state"}
 
 
-@dataclass(frozen=True, slots=True)
-class Countries:
+class Countries(NamedTuple):
     """The list that comes with the program.
 
     Attributes

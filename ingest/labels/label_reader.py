@@ -155,7 +155,7 @@ class LabelReader(NameReader):
         stated = read_element(self, name, line, value, NODE_KEYS)
         if stated is None:
             return
-        labels = replace(value, entries=tuple(entry for entry in value.entries if entry[0] in NODE_KEYS))
+        labels = value._replace(entries=tuple(entry for entry in value.entries if entry[0] in NODE_KEYS))
         statements = self._said(labels, self._node(labels, stated.place, self.rank(EXACT)))
         if stated.kind == "device" and all(key in SAYS_NOTHING for key, *_ in labels.entries):
             self.problem(line, f"device {shown(name)!r} does nothing", "say what comes from it: source: [Voice]")

@@ -71,7 +71,7 @@ def _beside(system: System, options: Options, analysis: Analysis) -> Analysis:
     """An analysis under what types cannot carry, with what only this closes: the whole is analysed without it, too."""
     choose = _groups(system) if options.choose else None
     hierarchy = system.vocabulary.hierarchy
-    without = analyse(system.graph, system.bound, hierarchy, replace(options, choose=choose, paths=Paths.witness))
+    without = analyse(system.graph, system.bound, hierarchy, options._replace(choose=choose, paths=Paths.witness))
     identity = partial(pattern_id, likeness=system.likeness)
     return held_by_types(analysis, without, identity, all_read=not options.unread)
 

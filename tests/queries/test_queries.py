@@ -104,7 +104,7 @@ def with_storages(graph: FlowGraph, storages: Mapping[str, Any]) -> FlowGraph:
 
     def moved(flows: Sequence[Flow]) -> list[Flow]:
         ends = graph.elements
-        return [replace(f, source=number[ends[f.source]], target=number[ends[f.target]]) for f in flows]
+        return [f._replace(source=number[ends[f.source]], target=number[ends[f.target]]) for f in flows]
 
     new = [
         Flow(number[source], number[target], "flow")
