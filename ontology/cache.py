@@ -9,7 +9,6 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-import tempfile
 from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
@@ -53,6 +52,8 @@ def keep(folder: Path, key: str, categories: tuple[Category, ...], respelt: dict
         "pointed": asdict(pointed),
     }
     facts = json.dumps(parts).encode()
+    import tempfile  # noqa: PLC0415 - light start
+
     with suppress(OSError):
         folder.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(dir=folder)

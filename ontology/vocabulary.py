@@ -20,13 +20,13 @@ from rosprivacy.analysis.hierarchy import Hierarchy
 from rosprivacy.analysis.legal import close
 from rosprivacy.ontology import cache as kept
 from rosprivacy.ontology.iris import STORED, as_stored
-from rosprivacy.ontology.known import Known
 from rosprivacy.ontology.pointed import Pointed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from rosprivacy.analysis.model import Category
+    from rosprivacy.ontology.known import Known
 
 FOLDER = Path(__file__).parent  # what is shipped; importlib.resources would be imported for nothing else
 LARGEST = 4 * 2**20  # bytes of a user's file
@@ -199,6 +199,7 @@ def _read(file: str) -> bytes:
 
 @lru_cache(maxsize=1)
 def _shipped(texts: tuple[bytes, ...]) -> tuple[Known, dict[str, str]]:
+    from rosprivacy.ontology.known import Known  # noqa: PLC0415 - light start
     from rosprivacy.ontology.turtle import categories_of, read, respelt_of  # noqa: PLC0415 - heavy
 
     graph = read("\n".join(text.decode() for text in texts), "the shipped ontology")

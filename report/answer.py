@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.answer import Analysis
-    from rosprivacy.analysis.decisions import Case, Decided, Decision
+    from rosprivacy.analysis.case import Case
+    from rosprivacy.analysis.decisions import Decided, Decision
     from rosprivacy.analysis.durations import Duration
     from rosprivacy.analysis.findings.ledger import TakenAway
     from rosprivacy.analysis.findings.processed import Processed

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.answer import Analysis, Carried, Finding, Step, Verdict
 from rosprivacy.analysis.bounds import BOUNDS, Tally
-from rosprivacy.analysis.decisions import Case
+from rosprivacy.analysis.case import Case
 from rosprivacy.analysis.findings.arrival import shown_arrivals
 from rosprivacy.analysis.findings.concerns import concerns
 from rosprivacy.analysis.findings.further_paths import Between, further

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING, NamedTuple
 
-from rosprivacy.analysis.decisions import Case
+from rosprivacy.analysis.case import Case
 from rosprivacy.analysis.findings.concerns import concerns
 from rosprivacy.analysis.findings.findings import finding_id
 from rosprivacy.analysis.kernel.bits import bits_of

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
     from rosprivacy.analysis.answer import Analysis
-    from rosprivacy.analysis.decisions import Case
+    from rosprivacy.analysis.case import Case
     from rosprivacy.analysis.findings.reach import Key, State
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.kernel.spread import Spread

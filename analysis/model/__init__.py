@@ -1,6 +1,7 @@
 """The facts that the rooms hand to each other, as frozen dataclasses. Names are those of the glossary.
 
-Nothing here reads or writes anything; validation is done where a fact is made.
+Nothing here reads or writes anything; validation is done where a fact is made. What is known of bags is imported from
+``recording.py``, where there are some.
 """
 
 from rosprivacy.analysis.model.category import (
@@ -57,16 +58,6 @@ from rosprivacy.analysis.model.flow import Flow, FlowGraph
 from rosprivacy.analysis.model.message_type import OF_KIND, MessageType, kind_of_type
 from rosprivacy.analysis.model.policy import Grant, Policy, Profile, Seen
 from rosprivacy.analysis.model.reason import REASONS, Reason
-from rosprivacy.analysis.model.recording import (
-    Bag,
-    BagTopic,
-    BagVerdict,
-    JudgedBag,
-    Recording,
-    TopicKinds,
-    iso,
-    recording_of,
-)
 from rosprivacy.analysis.model.statement import (
     CANNOT,
     CHANGED,
@@ -141,9 +132,6 @@ __all__ = [
     "THIRD_COUNTRY",
     "UNREAD_FILE",
     "UNSTATED",
-    "Bag",
-    "BagTopic",
-    "BagVerdict",
     "Bound",
     "ByCategory",
     "Category",
@@ -152,7 +140,6 @@ __all__ = [
     "Flow",
     "FlowGraph",
     "Grant",
-    "JudgedBag",
     "Legal",
     "MessageType",
     "Method",
@@ -163,17 +150,13 @@ __all__ = [
     "Processing",
     "Profile",
     "Reason",
-    "Recording",
     "Seen",
     "Severity",
     "Situation",
     "Statement",
     "Surroundings",
-    "TopicKinds",
     "UnknownEnd",
     "is_article_9",
-    "iso",
     "kind_of_type",
-    "recording_of",
     "unread",
 ]

@@ -43,7 +43,7 @@ from rosprivacy.ingest.labels.surroundings import read_contexts, read_country
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from rosprivacy.analysis.model import Bag
+    from rosprivacy.analysis.model.recording import Bag
     from rosprivacy.ingest.labels.non_ros_reader import Limit, Stated
     from rosprivacy.ingest.reading.yaml_values import Value
 

@@ -13,7 +13,6 @@ from rosprivacy.analysis.errors import InputError, shown
 from rosprivacy.analysis.legal_bases import transfer_of
 from rosprivacy.analysis.model import NOWHERE, Place, Processing
 from rosprivacy.analysis.non_ros import DEROGATION, EVERY, OCCASIONAL
-from rosprivacy.ingest.reading.legal_basis import read_bases
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -39,6 +38,8 @@ def read_processing(
         if key == "purpose":
             said = replace(said, purposes=_by_category(reader, key, line, value, _purposes))
         elif key == "legal_basis":
+            from rosprivacy.ingest.reading.legal_basis import read_bases  # noqa: PLC0415 - light start
+
             stated = _by_category(reader, key, line, value, read_bases)
             said = replace(said, bases=stated, place=Place(reader.file, line))
         elif key == "controller":

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rosprivacy.analysis.answer import Analysis, Verdict
-from rosprivacy.analysis.decisions import Case
+from rosprivacy.analysis.case import Case
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.findings.findings import Options
 from rosprivacy.analysis.model import (
