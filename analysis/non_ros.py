@@ -6,7 +6,6 @@ nobody stated about an element is taken by its kind: data passes what only holds
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, TypeVar
 
 from rosprivacy.analysis.model import NOWHERE, NonRosFacts, Reason, Statement
@@ -164,7 +163,7 @@ def on_day(outside: Mapping[int, NonRosFacts], today: str) -> dict[int, NonRosFa
     ('partly', 'third')
     """
     return {
-        vertex: replace(facts, area=THIRD) if facts.until and today > facts.until else facts
+        vertex: facts._replace(area=THIRD) if facts.until and today > facts.until else facts
         for vertex, facts in outside.items()
     }
 

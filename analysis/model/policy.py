@@ -32,8 +32,7 @@ class Seen(NamedTuple):
     last: str
 
 
-@dataclass(frozen=True, slots=True)
-class Grant:
+class Grant(NamedTuple):
     """What one policy line allows or denies to one profile.
 
     Attributes

@@ -123,7 +123,7 @@ def shared(domain: str, members: Sequence[Member], view: str, bounds: Bounds = B
 
     def unmarked(grant: Grant) -> Grant:
         robot, node = grant.node.split(MARK)
-        return as_written(replace(grant, enclave=grant.enclave.split(MARK)[1], node=node), added[robot])
+        return as_written(grant._replace(enclave=grant.enclave.split(MARK)[1], node=node), added[robot])
 
     whole = with_grants(Part.of(graph, Bound({})).renamed(names.of_marked), unmarked)
     renamed = (_own_types(member.part.renamed(names.of_member(member)), member.robot) for member in members)
@@ -132,7 +132,7 @@ def shared(domain: str, members: Sequence[Member], view: str, bounds: Bounds = B
 
 def _own_types(part: Part, robot: Robot) -> Part:
     """A part whose message types are told of the writers of one robot: of others in its domain they say nothing."""
-    types = {e: tuple(replace(one, robot=robot.id) for one in some) for e, some in part.types.items()}
+    types = {e: tuple(one._replace(robot=robot.id) for one in some) for e, some in part.types.items()}
     return replace(part, types=types)
 
 
@@ -179,5 +179,5 @@ def _marked(policy: Policy, robot: Robot) -> Policy:
     return replace(
         run,
         profiles=tuple(replace(p, enclave=mark + p.enclave, node=mark + p.node) for p in run.profiles),
-        grants=tuple(replace(g, enclave=mark + g.enclave, node=mark + g.node) for g in run.grants),
+        grants=tuple(g._replace(enclave=mark + g.enclave, node=mark + g.node) for g in run.grants),
     )

@@ -8,7 +8,7 @@ Source: the paper, section II-A, for the roles and the six lists.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, shown
@@ -130,8 +130,8 @@ class LabelReader(NameReader):
     def surrounded(self, known: Surroundings, key: str, value: Value) -> Surroundings:
         """Return where a system works with what one more key says of it."""
         if key == "context":
-            return replace(known, contexts=read_contexts(self, value))
-        return replace(known, country=read_country(self, value))
+            return known._replace(contexts=read_contexts(self, value))
+        return known._replace(country=read_country(self, value))
 
     def system(self, top: Value) -> None:
         """Read what the top says of the whole system; fleet files say it too."""
@@ -161,7 +161,7 @@ class LabelReader(NameReader):
             self.problem(line, f"device {shown(name)!r} does nothing", "say what comes from it: source: [Voice]")
         processing = self._processing(labels, stated.place)
         facts = with_transfer(self, value, stated.outside, processing.bases)
-        self.elements.append(replace(stated, outside=facts))
+        self.elements.append(stated._replace(outside=facts))
         about = self._subjects(labels), processing, self.rank(EXACT), self._contexts(labels)
         self.entries.append(Entry((stated.kind,), name, stated.place, statements, *about))
 
@@ -193,7 +193,7 @@ class LabelReader(NameReader):
         note = label.get("note")
         why = note.text.strip() if note and note.kind == "text" else ""
         author = self._author(label) or self.author
-        return tuple(replace(s, naming=how, why=s.why or why, author=author) for s in statements)
+        return tuple(s._replace(naming=how, why=s.why or why, author=author) for s in statements)
 
     def _author(self, label: Value) -> str:
         value = label.get("author")

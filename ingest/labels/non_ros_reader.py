@@ -6,8 +6,7 @@ may be kept. What is not understood is handed to the reader as a problem.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from rosprivacy.analysis.durations import Duration, ordered
 from rosprivacy.analysis.durations import parse as parse_duration
@@ -55,8 +54,7 @@ class Reader(Protocol):
         """Return the bags that are named; none, and a problem, if they cannot be read."""
 
 
-@dataclass(frozen=True, slots=True)
-class Stated:
+class Stated(NamedTuple):
     """A non-ROS element as a file states it.
 
     Attributes
@@ -139,7 +137,7 @@ class _Facts:
             return facts
         from rosprivacy.analysis.model.recording import recording_of  # noqa: PLC0415 - light start
 
-        return replace(facts, recording=recording_of(self._bag, self.bags))
+        return facts._replace(recording=recording_of(self._bag, self.bags))
 
     def take(self, key: str, line: int, value: Value) -> None:
         if key == "retention":

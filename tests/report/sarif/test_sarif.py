@@ -241,7 +241,7 @@ def test_a_finding_that_no_file_speaks_of_is_at_the_first_line_of_what_it_rests_
         result.analysis.graph, profiles=(), flows=tuple(f._replace(grants=()) for f in result.analysis.graph.flows)
     )
     elements = {
-        vertex: tuple(replace(s, place=Place("the database", 0)) for s in said)
+        vertex: tuple(s._replace(place=Place("the database", 0)) for s in said)
         for vertex, said in result.bound.elements.items()
     }
     bound = replace(result.bound, elements=elements)
