@@ -6,7 +6,6 @@ reveal there, with the provision that says so. A context never weakens what is s
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.model import ARTICLE_9_VERDICTS, MAY_REVEAL, SPECIAL
@@ -40,8 +39,7 @@ def surrounded(categories: Mapping[str, Category], hierarchy: Hierarchy) -> dict
             near[name][above] = None
             near[above][name] = None
     return {
-        name: replace(
-            category,
+        name: category._replace(
             in_context=_together(stated[other] for other in sorted(near[name])),
             look_at=tuple(sorted({at for above in hierarchy.ancestors[name] for at in categories[above].look_at})),
         )
@@ -52,7 +50,7 @@ def surrounded(categories: Mapping[str, Category], hierarchy: Hierarchy) -> dict
 def _stated(category: Category) -> tuple[Legal, ...]:
     """What is stated of a category itself; the rest came from a kind near it."""
     own = (legal for legal in category.in_context if legal.stated_of in ("", category.name))
-    return tuple(replace(legal, stated_of=category.name) for legal in own)
+    return tuple(legal._replace(stated_of=category.name) for legal in own)
 
 
 def _together(stated: Iterable[tuple[Legal, ...]]) -> tuple[Legal, ...]:

@@ -1,4 +1,4 @@
-"""The facts that the rooms hand to each other, as frozen dataclasses. Names are those of the glossary.
+"""The facts that the rooms hand to each other, as named tuples and frozen dataclasses. Names are those of the glossary.
 
 Nothing here reads or writes anything; validation is done where a fact is made. What is known of bags is imported from
 ``recording.py``, where there are some.
