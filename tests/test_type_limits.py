@@ -215,7 +215,7 @@ def test_a_table_that_cannot_be_read_is_refused_with_all_its_lines() -> None:
     with pytest.raises(rosprivacy.InputErrors) as refused:
         read_table("bad.yaml", VOCABULARY)
     assert str(refused.value).splitlines() == [
-        "bad.yaml:2: unknown key 'extra'; one of type_table, version, assumes, cannot",
+        "bad.yaml:2: unknown key 'extra'; one of type_table, version, assumes, cannot, suggests",
         "bad.yaml:4: 'Bool' is not the name of a type; write pkg/msg/Name",
         "bad.yaml:4: unknown category 'Vidoe'; did you mean Video or Voice?",
         "bad.yaml:5: std_srvs/srv/Empty is the type of a service; write leg: request or response",
@@ -254,7 +254,7 @@ def test_every_type_of_the_table_is_bounded_in_every_release_of_foreign_definiti
     """Text, bytes and lists limit nothing (S15), but for lists of places; measured on the type stores of rosbags."""
     from rosbags.typesys import Stores, get_typestore
 
-    limits = read_table(TABLE, VOCABULARY)
+    limits = read_table(TABLE, VOCABULARY).limits
     looked = set()
     for store in STORES:
         definitions = get_typestore(Stores[store])

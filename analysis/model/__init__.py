@@ -81,6 +81,7 @@ from rosprivacy.analysis.model.statement import (
     Surroundings,
     UnknownEnd,
 )
+from rosprivacy.analysis.model.suggestion import Confidence, Suggestion, by_confidence, interface_of
 
 __all__ = [
     "ARTICLE_9",
@@ -135,6 +136,7 @@ __all__ = [
     "Bound",
     "ByCategory",
     "Category",
+    "Confidence",
     "Diagnostic",
     "Element",
     "Flow",
@@ -154,8 +156,11 @@ __all__ = [
     "Severity",
     "Situation",
     "Statement",
+    "Suggestion",
     "Surroundings",
     "UnknownEnd",
+    "by_confidence",
+    "interface_of",
     "is_article_9",
     "kind_of_type",
     "unread",

@@ -7,8 +7,12 @@ from datetime import UTC, datetime
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.model.suggestion import by_confidence
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from rosprivacy.analysis.model.suggestion import Confidence, Suggestion
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,12 +165,15 @@ class TopicKinds:
         Why nobody can say what is in it; empty where that is known.
     why
         What that rests on, in a few words.
+    suggested
+        What its types suggest, the surest first: questions, of which nothing follows but that they are open.
     """
 
     topic: BagTopic
     kinds: tuple[str, ...] = ()
     unknown: str = ""
     why: str = ""
+    suggested: tuple[Suggestion, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,6 +187,15 @@ class JudgedBag:
     def kinds(self) -> tuple[str, ...]:
         """The kinds of data that can be in it, sorted."""
         return tuple(sorted({kind for topic in self.topics for kind in topic.kinds}))
+
+    @property
+    def suggested(self) -> dict[str, Confidence]:
+        """The kinds that its types suggest, sorted, each with the surest confidence."""
+        surest: dict[str, Confidence] = {}
+        for rule in sorted((one for topic in self.topics for one in topic.suggested), key=by_confidence):
+            for kind in rule.kinds:
+                surest.setdefault(kind, rule.confidence)
+        return dict(sorted(surest.items()))
 
     @property
     def open_topics(self) -> tuple[str, ...]:

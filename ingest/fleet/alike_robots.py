@@ -1,15 +1,16 @@
 """Robots -> groups of robots that are alike, so that each is read and analysed once (rule S10).
 
 In: a fleet. Out: its robots by what they run and how they take part. Two robots are alike if they can change places and
-nothing changes but their names: policies and label files that are read alike, no namespace of their own in a shared
-domain or in their own absolute names, and every line about flows means both or neither. Whether a policy is read alike
-elsewhere is seen by what the parser finds in it: one that includes nothing is its content, any other the file itself.
+nothing changes but their names: policies, label files and types that are read alike, no namespace of their own in a
+shared domain or in their own absolute names, and every line about flows means both or neither. Whether a policy is read
+alike elsewhere is seen by what the parser finds in it: one that includes nothing is its content, any other the file
+itself.
 """
 
 from __future__ import annotations
 
 import hashlib
-from collections import defaultdict
+from collections import Counter, defaultdict
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -80,7 +81,7 @@ def alike(fleet: Fleet, told_apart: Callable[[str], object] = lambda _: None) ->
         domains[robot.domain] += 1
     groups: dict[object, list[Robot]] = defaultdict(list)
     joined: dict[object, bool] = {}
-    runs = _Contents()
+    runs = _Contents(file for robot in fleet.robots for file in robot.policies)
     for robot in fleet.robots:
         means = tuple(i for i, test in enumerate(tests) if test(robot.id))
         several = bool(robot.domain) and domains[robot.domain] > 1
@@ -113,10 +114,11 @@ def known_to_flows(fleet: Fleet) -> list[str]:
 
 
 class _Contents:
-    """What stands for files when robots are compared; each file is read once, each distinct policy parsed once."""
+    """What stands for files when robots are compared; each is read once, and parsed only if another has its content."""
 
-    def __init__(self) -> None:
-        self._policies: dict[str, str] = {}
+    def __init__(self, policies: Iterable[str]) -> None:
+        self._digests = {file: _digest(file) for file in dict.fromkeys(policies)}
+        self._shared = {digest for digest, files in Counter(self._digests.values()).items() if files > 1}
         self._labels: dict[str, str] = {}
         self._alone: dict[str, bool] = {}
         self._parsed: dict[tuple[str, ...], tuple[Policy, ...] | None] = {}
@@ -124,7 +126,7 @@ class _Contents:
     def of(self, robot: Robot) -> tuple[tuple[str, ...], ...]:
         """Return what stands for all that is read for a robot."""
         labels = (tuple(map(self._label_file, files)) for files in (robot.labels, robot.own))
-        return (tuple(map(self._policy, robot.policies)), *labels)
+        return (tuple(map(self._policy, robot.policies)), *labels, tuple(map(self._label_file, robot.types)))
 
     def namespace(self, robot: Robot) -> str:
         """Return the namespace that is pushed on a robot, where it matters which it is (rule S1)."""
@@ -141,25 +143,25 @@ class _Contents:
 
     def _policy(self, file: str) -> str:
         """The content, or the path of a folder or glob, and of a policy with which others may be read (rule S10)."""
-        if file not in self._policies:
-            self._policies[file] = self._read(file)
-        return self._policies[file]
-
-    def _read(self, file: str) -> str:
-        data = _bytes(file)
-        if data is None:
-            return file
-        content = hashlib.sha256(data).hexdigest()
+        content = self._digests[file]
+        if content not in self._shared:
+            return file  # nothing else is like it
         if content not in self._alone:
-            self._alone[content] = stands_alone(data)
+            data = _bytes(file)
+            self._alone[content] = data is not None and stands_alone(data)
         return content if self._alone[content] else file
 
     def _label_file(self, file: str) -> str:
         """The content; the name of one that comes with the program."""
         if file not in self._labels:
-            data = None if file.startswith(OURS) else _bytes(file)
-            self._labels[file] = file if data is None else hashlib.sha256(data).hexdigest()
+            self._labels[file] = file if file.startswith(OURS) else _digest(file) or file
         return self._labels[file]
+
+
+def _digest(file: str) -> str:
+    """The SHA-256 of what is in a file; empty where there is none to be read."""
+    data = _bytes(file)
+    return "" if data is None else hashlib.sha256(data).hexdigest()
 
 
 def _bytes(file: str) -> bytes | None:

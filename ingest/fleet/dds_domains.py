@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Diagnostic, Flow, Grant, Policy, Profile
     from rosprivacy.ingest.fleet.fleet_file import Robot
     from rosprivacy.ingest.labels.label_file import Labels
+    from rosprivacy.ingest.types.types_file import TypesFile
 
 MARK = "\0"  # between robot and name; no policy has it
 
@@ -36,25 +37,34 @@ class Member:
     ----------
     policies
         As they are written.
-    part
+    graph
         Its elements under the names that labels and reports use, without its namespace.
+    bound
+        What is said of it.
     full
-        Those of ROS -> the same under their full names.
+        The elements of ROS -> the same under their full names.
     profiles
-        Of the policies, with the nodes under the names of ``part``.
+        Of the policies, with the nodes under the names of ``graph``.
     files
         Its label files.
     diagnostics
         Of its policies and label files.
+    types
+        Its files of observed message types.
+    pushed
+        The namespace that stands before names of its lines: that of the robot for which its policies were read.
     """
 
     robot: Robot
     policies: tuple[Policy, ...]
-    part: Part
+    graph: FlowGraph
+    bound: Bound
     full: Mapping[Element, Element]
     profiles: tuple[Profile, ...] = ()
     files: tuple[Labels, ...] = ()
     diagnostics: tuple[Diagnostic, ...] = ()
+    types: tuple[TypesFile, ...] = ()
+    pushed: str = ""
 
 
 def stripped(graph: FlowGraph, namespace: str) -> tuple[FlowGraph, dict[Element, Element]]:
@@ -89,7 +99,7 @@ def stripped(graph: FlowGraph, namespace: str) -> tuple[FlowGraph, dict[Element,
     return changed, {new: element for element, new in shown.items()}
 
 
-def with_grants(part: Part, change: Callable[[Grant], Grant]) -> Part:
+def _with_grants(part: Part, change: Callable[[Grant], Grant]) -> Part:
     """A part with other grants."""
     flows = {key: tuple(map(change, grants)) for key, grants in part.flows.items()}
     denied = {key: (tuple(map(change, a)), tuple(map(change, b))) for key, (a, b) in part.denied.items()}
@@ -107,7 +117,7 @@ def alone(member: Member) -> Part:
     def own(e: Element) -> Element:  # as replace(e, robot=robot), in a third of the time
         return Element(e.kind, e.name, robot, e.leg, e.side, e.without)
 
-    return _own_types(member.part.renamed(own), member.robot)
+    return _part(member, own)
 
 
 def pseudo_robot(domain: str) -> str:
@@ -125,15 +135,18 @@ def shared(domain: str, members: Sequence[Member], view: str, bounds: Bounds = B
         robot, node = grant.node.split(MARK)
         return as_written(grant._replace(enclave=grant.enclave.split(MARK)[1], node=node), added[robot])
 
-    whole = with_grants(Part.of(graph, Bound({})).renamed(names.of_marked), unmarked)
-    renamed = (_own_types(member.part.renamed(names.of_member(member)), member.robot) for member in members)
-    return together([whole, *renamed])
+    whole = _with_grants(Part.of(graph, Bound({}), names.of_marked), unmarked)
+    return together([whole, *(_part(member, names.of_member(member)) for member in members)])
 
 
-def _own_types(part: Part, robot: Robot) -> Part:
-    """A part whose message types are told of the writers of one robot: of others in its domain they say nothing."""
-    types = {e: tuple(one._replace(robot=robot.id) for one in some) for e, some in part.types.items()}
-    return replace(part, types=types)
+def _part(member: Member, name: Callable[[Element], Element]) -> Part:
+    """The part of a robot under the names of the fleet, with the lines as its policies write them.
+
+    Message types are told of the writers of this robot: of others in its domain they say nothing.
+    """
+    part, robot = Part.of(member.graph, member.bound, name), member.robot.id
+    part.types = {e: tuple(one._replace(robot=robot) for one in some) for e, some in part.types.items()}
+    return _with_grants(part, lambda grant: as_written(grant, member.pushed)) if member.pushed else part
 
 
 class _Names:

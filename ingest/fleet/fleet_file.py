@@ -58,6 +58,8 @@ class Robot:
         Namespace that its policies have and names are shown without, or lack and run under; empty for none.
     surroundings
         Where it works, as the file states it of the fleet, of its model and of itself.
+    types
+        Files of observed message types, of its model and of itself: a channel has those of all (rule S15).
     """
 
     id: str
@@ -70,6 +72,7 @@ class Robot:
     strip: str = ""
     add: str = ""
     surroundings: Surroundings = Surroundings()  # noqa: RUF009 - it is frozen
+    types: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -293,6 +296,7 @@ class _Fleet:
             strip,
             add,
             joined((self._everywhere(), model.surroundings, spec.surroundings)),
+            tuple(dict.fromkeys((*model.types, *spec.types))),
         )
         (self._infrastructure if shared else self._robots)[name] = robot
 
@@ -351,10 +355,11 @@ class _Fleet:
         """Files that are named and are not there, at the line that names them first."""
         seen: set[str] = set()
         for robot in robots:
-            for key, files in (("policies", robot.policies), ("labels", (*robot.labels, *robot.own))):
+            labels = (*robot.labels, *robot.own)
+            for key, files in (("policies", robot.policies), ("labels", labels), ("types", robot.types)):
                 for file in [file for file in files if file not in seen]:
                     seen.add(file)
-                    if file.startswith(OURS):
+                    if key != "types" and file.startswith(OURS):
                         continue
                     if leaves(file, self._root):
                         self._problem(self._place_of(key, file, robot), what_leaves(file, self._root), WIDEN)
@@ -378,4 +383,5 @@ def _of_robot(spec: Spec, name: str) -> Spec:
     """What a group says of one of its robots: the star is its id."""
     policies = tuple(file.replace(STAR, name) for file in spec.policies)
     labels = tuple(file.replace(STAR, name) for file in spec.labels)
-    return replace(spec, policies=policies, labels=labels)
+    types = tuple(file.replace(STAR, name) for file in spec.types)
+    return replace(spec, policies=policies, labels=labels, types=types)

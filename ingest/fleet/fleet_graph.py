@@ -246,7 +246,7 @@ class _Placing:
 
     def _responsible(self, whole: Part) -> dict[str, Processing]:
         """What is said of each robot, and of what is shared: where its label files say nothing, what the fleet says."""
-        own = {member.robot.id: member.part.of_robots.get("", UNSTATED) for member in self._members}
+        own = {member.robot.id: member.bound.of_robots.get("", UNSTATED) for member in self._members}
         owners = sorted({element.robot for element in whole.elements})
         said = {owner: over(own.get(owner, UNSTATED), self._fleet.processing) for owner in owners}
         return {owner: one for owner, one in said.items() if one}

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,199}")
 ID_HINT = "use letters, digits and _ . -, at most 200"
 NAMESPACE = re.compile(r"(/[A-Za-z_*][A-Za-z0-9_*]*)+")
-SPEC = ("policies", "labels", "domain", "namespace", *SURROUNDINGS)
+SPEC = ("policies", "labels", "types", "domain", "namespace", *SURROUNDINGS)
 ROBOT_KEYS, GROUP_KEYS = ("model", *SPEC, "note"), ("robots", "id", "model", *SPEC, "note")
 SECTIONS = (
     "name",
@@ -52,6 +52,7 @@ class Spec:
     model: str = ""
     policies: tuple[str, ...] = ()
     labels: tuple[str, ...] = ()
+    types: tuple[str, ...] = ()
     domain: str = ""
     strip: str = ""
     add: str = ""
@@ -96,7 +97,7 @@ class FleetReader(LabelReader):
             spec.lines[key] = at
             if key == "model":
                 spec.model = self.text_of(said, "a model")
-            elif key in ("policies", "labels"):
+            elif key in ("policies", "labels", "types"):
                 setattr(spec, key, tuple(self._files(key, said)))
             elif key == "domain":
                 spec.domain = self.text_of(said, "a domain")
@@ -108,7 +109,7 @@ class FleetReader(LabelReader):
 
     def _files(self, key: str, value: Value) -> Iterator[str]:
         for item in value.items if value.kind == "list" else (value,):
-            if item.kind == "text" and item.text.startswith(OURS):
+            if key != "types" and item.kind == "text" and item.text.startswith(OURS):
                 yield item.text
             elif file := self.file_of(item, key):
                 yield file

@@ -87,6 +87,7 @@ def _definitions() -> dict[str, Any]:
     spec = {
         "policies": {**_files(), "description": "SROS 2 policies: files, folders or globs, relative to this file."},
         "labels": {**_files(), "description": "Label files; those of a robot outrank those of its model."},
+        "types": {**_files(), "description": "Message types that were observed; those of a robot and its model hold."},
         "domain": {**WORD, "description": "DDS domain that it shares with others; by default it has its own."},
         **SURROUNDINGS,
         "namespace": {

@@ -1,11 +1,14 @@
 """Flow graphs with what is said about them, by element and not by number, so that many become one.
 
-In: graphs and bound statements. Out: ``Part``, which can be renamed and put together; and numbers again.
+In: graphs and bound statements. Out: ``Part``, under other names, which can be put together; and numbers again.
+
+Elements are asked for their hash as seldom as may be: of a large fleet that is much of the work.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from itertools import starmap
 from operator import itemgetter
 from typing import TYPE_CHECKING, TypeVar
 
@@ -13,7 +16,7 @@ from rosprivacy.analysis.model import Bound, Element, Flow, FlowGraph
 from rosprivacy.ingest.labels.stated_types import in_order
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from rosprivacy.analysis.model import Grant, MessageType, NonRosFacts, Processing, Profile, Statement, Surroundings
 
@@ -61,42 +64,27 @@ class Part:
     types: dict[Element, tuple[MessageType, ...]] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, graph: FlowGraph, bound: Bound) -> Part:
-        """Take the numbers out of a graph and its statements."""
-        elements = graph.elements
+    def of(cls, graph: FlowGraph, bound: Bound, name: Callable[[Element], Element]) -> Part:
+        """Take the numbers out of a graph and its statements, without what is said of robots.
+
+        Parameters
+        ----------
+        name
+            Gives each element its name; two may become one.
+        """
+        elements = [name(element) for element in graph.elements]
         keys = [(elements[flow.source], elements[flow.target], flow.role) for flow in graph.flows]
         return cls(
-            {element: bound.elements.get(vertex, ()) for vertex, element in enumerate(elements)},
-            {key: flow.grants for key, flow in zip(keys, graph.flows, strict=True)},
+            _joined([(element, bound.elements.get(vertex, ())) for vertex, element in enumerate(elements)]),
+            _joined([(key, flow.grants) for key, flow in zip(keys, graph.flows, strict=True)]),
             {(elements[f.source], elements[f.target], f.role): (f.grants, f.denials) for f in graph.taken_back},
-            {keys[index]: said for index, said in bound.flows.items()},
+            _joined([(keys[index], said) for index, said in bound.flows.items()]),
             {(elements[v], names): tuple(keys[i] for i in flows) for (v, names), flows in bound.through.items()},
             {elements[vertex]: facts for vertex, facts in bound.outside.items()},
-            {elements[vertex]: groups for vertex, groups in bound.subjects.items()},
+            _joined([(elements[vertex], groups) for vertex, groups in bound.subjects.items()]),
             {elements[vertex]: where for vertex, where in bound.surroundings.items()},
             {elements[vertex]: said for vertex, said in bound.processing.items()},
-            dict(bound.of_robots),
-            {elements[vertex]: types for vertex, types in bound.types.items()},
-        )
-
-    def renamed(self, name: Callable[[Element], Element]) -> Part:
-        """Return the part with other names, without what is said of robots; two elements may become one."""
-        new = {element: name(element) for element in self.elements}
-
-        def key_of(key: Key) -> Key:
-            return (new[key[0]], new[key[1]], key[2])
-
-        return Part(
-            _joined((new[element], said) for element, said in self.elements.items()),
-            _joined((key_of(key), grants) for key, grants in self.flows.items()),
-            {key_of(key): both for key, both in self.denied.items()},
-            _joined((key_of(key), said) for key, said in self.said.items()),
-            {(new[v], names): tuple(map(key_of, keys)) for (v, names), keys in self.through.items()},
-            {new[element]: facts for element, facts in self.outside.items()},
-            _joined((new[element], groups) for element, groups in self.subjects.items()),
-            {new[element]: where for element, where in self.surroundings.items()},
-            {new[element]: said for element, said in self.processing.items()},
-            types=_joined((new[element], types) for element, types in self.types.items()),
+            types=_joined([(elements[vertex], types) for vertex, types in bound.types.items()]),
         )
 
 
@@ -104,17 +92,17 @@ def together(parts: Iterable[Part]) -> Part:
     """Put parts together: what they have in common is one, with all that any of them says of it."""
     parts = list(parts)
     return Part(
-        _joined(pair for part in parts for pair in part.elements.items()),
-        _joined(pair for part in parts for pair in part.flows.items()),
+        _merged([part.elements for part in parts]),
+        _merged([part.flows for part in parts]),
         {key: both for part in parts for key, both in part.denied.items()},
-        _joined(pair for part in parts for pair in part.said.items()),
-        _joined(pair for part in parts for pair in part.through.items()),
+        _merged([part.said for part in parts]),
+        _merged([part.through for part in parts]),
         {element: facts for part in parts for element, facts in part.outside.items()},
-        _joined(pair for part in parts for pair in part.subjects.items()),
+        _merged([part.subjects for part in parts]),
         {element: where for part in parts for element, where in part.surroundings.items()},
         {element: said for part in parts for element, said in part.processing.items()},
         {robot: said for part in parts for robot, said in part.of_robots.items()},
-        _joined(pair for part in parts for pair in part.types.items()),
+        _merged([part.types for part in parts]),
     )
 
 
@@ -130,11 +118,17 @@ def numbered(part: Part, profiles: Mapping[str, tuple[Profile, ...]], view: str)
     sorted_profiles = sorted(everything, key=lambda p: (p.enclave, p.node, p.place.file, p.place.line))
     elements = tuple(sorted(part.elements, key=Element.sort_key))
     number = {element: i for i, element in enumerate(elements)}
-    rows = sorted(((number[a], number[b], role, (a, b, role)) for a, b, role in part.flows), key=itemgetter(0, 1, 2))
-    index = {key: i for i, (*_, key) in enumerate(rows)}
-    flows = tuple(Flow(a, b, role, part.flows[key]) for a, b, role, key in rows)
-    refused = [(number[a], number[b], r, both) for (a, b, r), both in part.denied.items() if (a, b, r) not in index]
-    denied = [Flow(a, b, role, *both) for a, b, role, both in sorted(refused, key=itemgetter(0, 1, 2))]
+
+    def ends(key: Key) -> tuple[int, int, str]:
+        return (number[key[0]], number[key[1]], key[2])
+
+    rows = sorted(
+        [(number[a], number[b], role, grants) for (a, b, role), grants in part.flows.items()]
+    )  # none is twice
+    index = {row[:3]: i for i, row in enumerate(rows)} if part.said or part.through else {}
+    flows = tuple(starmap(Flow, rows))
+    refused = [(*ends(key), *both) for key, both in part.denied.items() if key not in part.flows]
+    denied = [Flow(*row) for row in sorted(refused, key=itemgetter(0, 1, 2))]
     graph = FlowGraph(
         elements,
         flows,
@@ -145,8 +139,11 @@ def numbered(part: Part, profiles: Mapping[str, tuple[Profile, ...]], view: str)
     )
     bound = Bound(
         {number[element]: said for element, said in part.elements.items() if said},
-        {index[key]: said for key, said in part.said.items() if said},
-        {(number[v], names): tuple(sorted(map(index.__getitem__, keys))) for (v, names), keys in part.through.items()},
+        {index[ends(key)]: said for key, said in part.said.items() if said},
+        {
+            (number[v], names): tuple(sorted(index[ends(key)] for key in keys))
+            for (v, names), keys in part.through.items()
+        },
         _by_number(number, part.outside),
         _by_number(number, {element: tuple(sorted(groups)) for element, groups in part.subjects.items()}),
         _by_number(number, part.surroundings),
@@ -161,9 +158,20 @@ def _by_number(number: Mapping[Element, int], said: Mapping[Element, V]) -> dict
     return dict(sorted(((number[element], one) for element, one in said.items()), key=itemgetter(0)))
 
 
-def _joined(pairs: Iterable[tuple[K, tuple[V, ...]]]) -> dict[K, tuple[V, ...]]:
-    """Tuples of one key put together, each value once."""
+def _merged(parts: Sequence[Mapping[K, tuple[V, ...]]]) -> dict[K, tuple[V, ...]]:
+    """Dictionaries put together; most have no key in common."""
     found: dict[K, tuple[V, ...]] = {}
+    for part in parts:
+        found.update(part)
+    return found if len(found) == sum(map(len, parts)) else _joined([pair for part in parts for pair in part.items()])
+
+
+def _joined(pairs: Sequence[tuple[K, tuple[V, ...]]]) -> dict[K, tuple[V, ...]]:
+    """Tuples of one key put together, each value once."""
+    found = dict(pairs)
+    if len(found) == len(pairs):
+        return found
+    found = {}
     for key, values in pairs:
         found[key] = tuple(dict.fromkeys((*found[key], *values))) if key in found else values
     return found

@@ -7,6 +7,7 @@ nothing: observation only adds, so it is no error.
 from __future__ import annotations
 
 from collections import defaultdict
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
@@ -19,28 +20,39 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Element, FlowGraph
     from rosprivacy.ingest.types.types_file import SeenType, TypesFile
 
+    Written = Mapping[Element, Element]
+
 LISTED = 5  # names in a notice
 TYPES_OF_NOTHING = "types-of-nothing"
 
 
-def channel_types(graph: FlowGraph, files: Iterable[TypesFile]) -> dict[int, tuple[MessageType, ...]]:
+def channel_types(
+    graph: FlowGraph, files: Iterable[TypesFile], written: Written = MappingProxyType({})
+) -> dict[int, tuple[MessageType, ...]]:
     """Return the observed types of the channels of a graph, by vertex; a wildcard has none.
 
     A service and an action are two legs: what their clients write their servers read, and the other way round (S2).
+
+    Parameters
+    ----------
+    written
+        Elements that the files call otherwise -> the same under the names of the files.
     """
-    at = _vertices(graph)
+    at, called = _vertices(graph, written), _Called(graph, written)
     found: dict[int, list[MessageType]] = defaultdict(list)
     for file in files:
         for channel in file.channels:
             for vertex in at.get((channel.kind, channel.name), ()):
-                found[vertex] += [_at_leg(one, graph.elements[vertex], file.file) for one in channel.types]
+                found[vertex] += [_at_leg(one, graph.elements[vertex], file.file, called) for one in channel.types]
     return {vertex: tuple(types) for vertex, types in sorted(found.items())}
 
 
-def matching_nothing(graph: FlowGraph, files: Iterable[TypesFile]) -> tuple[Diagnostic, ...]:
+def matching_nothing(
+    graph: FlowGraph, files: Iterable[TypesFile], written: Written = MappingProxyType({})
+) -> tuple[Diagnostic, ...]:
     """Return a notice for each file with names, of channels or of nodes, that nothing of the system is called."""
-    at = _vertices(graph)
-    nodes = {element.name for element in graph.elements if not element.is_channel}
+    at = _vertices(graph, written)
+    nodes = {written.get(element, element).name for element in graph.elements if not element.is_channel}
     said = []
     for file in files:
         lost = {f"{c.kind} {shown(c.name)}" for c in file.channels if (c.kind, c.name) not in at}
@@ -53,16 +65,30 @@ def matching_nothing(graph: FlowGraph, files: Iterable[TypesFile]) -> tuple[Diag
     return tuple(said)
 
 
-def _vertices(graph: FlowGraph) -> Mapping[tuple[str, str], list[int]]:
+class _Called:
+    """What the nodes of a graph are called there that files name."""
+
+    def __init__(self, graph: FlowGraph, written: Written) -> None:
+        nodes = [element for element in graph.elements if not element.is_channel]
+        self._here = {written.get(node, node).name: node.name for node in nodes}
+        self._taken = set(self._here.values())
+
+    def names(self, written: Iterable[str]) -> tuple[str, ...]:
+        """The names of nodes; without those of others that are called there as one of the graph is called here."""
+        known = [self._here.get(name, name) for name in written if name in self._here or name not in self._taken]
+        return tuple(sorted(set(known)))
+
+
+def _vertices(graph: FlowGraph, written: Written) -> Mapping[tuple[str, str], list[int]]:
     at: dict[tuple[str, str], list[int]] = defaultdict(list)
     for vertex, element in enumerate(graph.elements):
         if element.is_channel and not element.pattern:
-            at[element.kind, element.name].append(vertex)
+            at[element.kind, written.get(element, element).name].append(vertex)
     return at
 
 
-def _at_leg(one: SeenType, element: Element, file: str) -> MessageType:
-    first, second = one.ends  # writers and readers, or servers and clients
+def _at_leg(one: SeenType, element: Element, file: str, called: _Called) -> MessageType:
+    first, second = map(called.names, one.ends)  # writers and readers, or servers and clients
     writers, readers = (second, first) if element.leg == "request" else (first, second)
     place = Place(file, one.line)
     return MessageType(one.type, place, False, one.hash, writers, readers, one.first, one.last)

@@ -1,28 +1,30 @@
-"""The table of what message types cannot carry -> ``TypeLimits`` (rule S15): the shipped one, or a user's in its place.
+"""The table of what message types cannot carry, and what they suggest (rule S15): the shipped one, or a user's.
 
-In: ``ontology/types.yaml`` or a file of that format. Out: for each type, or leg of one, the kinds that it excludes,
-with all narrower ones of the shipped ontology. A kind of a user's own is excluded only if the table names it, or if
-all of its broader kinds are excluded and the user's file states no other form of data for it: what cannot be sent as a
-picture may be sent as a number.
+In: ``ontology/types.yaml`` or a file of that format. Out: ``TypeTable``: for each type, or leg of one, the kinds that
+it excludes, with all narrower ones of the shipped ontology, and the rules that suggest kinds. A kind of a user's own
+is excluded only if the table names it, or if all of its broader kinds are excluded and the user's file states no other
+form of data for it: what cannot be sent as a picture may be sent as a number.
 """
 
 from __future__ import annotations
 
 import hashlib
+from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.bounds import BOUNDS
-from rosprivacy.analysis.errors import InputError, InputErrors, TypesError, shown
+from rosprivacy.analysis.errors import InputError, InputErrors, TypesError
 from rosprivacy.analysis.kernel.type_limits import TypeLimit, TypeLimits
-from rosprivacy.analysis.model import Place, kind_of_type
+from rosprivacy.analysis.model import Place, Suggestion, by_confidence, interface_of, kind_of_type
 from rosprivacy.ingest.reading import yaml_values
-from rosprivacy.ingest.reading.format_reader import FileReader
+from rosprivacy.ingest.types.type_entries import LEGS, EntryReader
+from rosprivacy.ingest.types.type_suggestions import read_suggestions
 from rosprivacy.ontology.iris import STORED
 from rosprivacy.ontology.vocabulary import FOLDER
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Mapping
 
     from rosprivacy.analysis.bounds import Bounds
     from rosprivacy.analysis.model import Category
@@ -30,12 +32,49 @@ if TYPE_CHECKING:
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 TABLE = "rosprivacy:types"  # the shipped one, as a report names it
+PARTS = ("type_table", "version", "assumes", "cannot", "suggests")
 KEYS = ("types", "leg", "kinds", "why", "source")
-LEGS = {"topic": ("",), "service": ("request", "response"), "action": ("request", "response")}
+Key = tuple[str, str]  # name of a type, leg
+Rules = tuple[Suggestion, ...]
 
 
-def read_table(file: str, vocabulary: Vocabulary, bounds: Bounds = BOUNDS) -> TypeLimits:
-    """Read a table of limits.
+@dataclass(frozen=True, slots=True)
+class TypeTable:
+    """A table of types.
+
+    Attributes
+    ----------
+    limits
+        What types cannot carry.
+    suggestions
+        The rules that suggest kinds, by (name of a type, leg); none for a type that was looked at and suggests no kind.
+    """
+
+    limits: TypeLimits
+    suggestions: Mapping[Key, Rules]
+
+    def knows(self, name: str) -> bool:
+        """Return whether the table's author looked at what a type suggests, recorded parts of services included."""
+        return any(key in self.suggestions for key in _keys(name))
+
+    def suggested(self, name: str) -> Rules:
+        """Return what a type suggests, the surest first; of a service or an action, what both legs do.
+
+        >>> from rosprivacy.ontology.vocabulary import load
+        >>> [one.kinds for one in read_table(TABLE, load()).suggested("nav_msgs/srv/GetMap_Event")]
+        [('HomeMap',)]
+        """
+        rules = dict.fromkeys(rule for key in _keys(name) for rule in self.suggestions.get(key, ()))
+        return tuple(sorted(rules, key=by_confidence))
+
+
+def _keys(name: str) -> list[Key]:
+    of = interface_of(name)
+    return [(of, leg) for leg in LEGS.get(kind_of_type(of), ())]
+
+
+def read_table(file: str, vocabulary: Vocabulary, bounds: Bounds = BOUNDS) -> TypeTable:
+    """Read a table of types.
 
     Parameters
     ----------
@@ -50,10 +89,12 @@ def read_table(file: str, vocabulary: Vocabulary, bounds: Bounds = BOUNDS) -> Ty
     Examples
     --------
     >>> from rosprivacy.ontology.vocabulary import load
-    >>> limits = read_table(TABLE, load())
-    >>> twist = limits.of["geometry_msgs/msg/Twist", ""]
+    >>> table = read_table(TABLE, load())
+    >>> twist = table.limits.of["geometry_msgs/msg/Twist", ""]
     >>> "Video" in twist.kinds, "FaceImage" in twist.kinds, "Location" in twist.kinds
     (True, True, False)
+    >>> [(str(one.confidence), *one.kinds) for one in table.suggested("sensor_msgs/msg/Joy")]
+    [('likely', 'OperatorInput')]
     """
     path = str(FOLDER / "types.yaml") if file == TABLE else file
     try:
@@ -61,10 +102,10 @@ def read_table(file: str, vocabulary: Vocabulary, bounds: Bounds = BOUNDS) -> Ty
     except InputError as error:
         raise InputErrors([error]) from None
     reader = _Reader(file, error=TypesError, bounds=bounds)
-    found = reader.document(top, vocabulary)
+    limits, suggestions = reader.document(top, vocabulary)
     if reader.problems:
         raise InputErrors(reader.problems)
-    return TypeLimits(file, hashlib.sha256(data).hexdigest(), found)
+    return TypeTable(TypeLimits(file, hashlib.sha256(data).hexdigest(), limits), suggestions)
 
 
 def excluded(vocabulary: Vocabulary, named: frozenset[str]) -> frozenset[str]:
@@ -96,51 +137,29 @@ def _follows(category: Category, broader: list[bool], vocabulary: Vocabulary) ->
     return all(broader) and set(category.data_types) <= forms
 
 
-class _Reader(FileReader):
+class _Reader(EntryReader):
     """One table."""
 
-    def document(self, top: Value, vocabulary: Vocabulary) -> dict[tuple[str, str], TypeLimit]:
-        found: dict[tuple[str, str], TypeLimit] = {}
+    def document(self, top: Value, vocabulary: Vocabulary) -> tuple[dict[Key, TypeLimit], dict[Key, Rules]]:
         if top.kind != "map":
             self.problem(top.line, f"a table of types is a map, not a {top.kind}", "begin with 'type_table: 1'")
-            return found
+            return {}, {}
         self.version(top, "type_table", "table")
-        said = {key: value for key, _, value in self.entries_of(top, ("type_table", "version", "assumes", "cannot"))}
-        for item in self.list_of(said["cannot"], "cannot") if "cannot" in said else ():
-            for key, limit in self._entry(item, vocabulary):
-                if key in found:
-                    what = f"{' '.join(filter(None, key))} again, first in line {found[key].place.line}"
+        said = {key: value for key, _, value in self.entries_of(top, PARTS)}
+        limits = self._limits(self.list_of(said["cannot"], "cannot") if "cannot" in said else (), vocabulary)
+        rules = self.list_of(said["suggests"], "suggests") if "suggests" in said else ()
+        return limits, read_suggestions(self, rules, vocabulary, limits)
+
+    def _limits(self, items: Iterable[Value], vocabulary: Vocabulary) -> dict[Key, TypeLimit]:
+        found: dict[Key, TypeLimit] = {}
+        for item in items:
+            entry = self.entry(item, KEYS, vocabulary)
+            if entry is None:
+                continue
+            limit = TypeLimit(excluded(vocabulary, frozenset(entry.kinds)), Place(self.file, entry.line))
+            for name, leg, _ in entry.types:
+                if (name, leg) in found:
+                    what = f"{name}{' ' if leg else ''}{leg} again, first in line {found[name, leg].place.line}"
                     self.problem(limit.place.line, what, "write all kinds in one entry")
-                found.setdefault(key, limit)
+                found.setdefault((name, leg), limit)
         return found
-
-    def _entry(self, item: Value, vocabulary: Vocabulary) -> Iterator[tuple[tuple[str, str], TypeLimit]]:
-        said = {key: value for key, _, value in self.entries_of(item, KEYS)}
-        for key in ("types", "kinds", "why", "source"):
-            if key not in said:
-                self.problem(item.line, f"an entry without {key}", "write {types: […], kinds: […], why: …, source: …}")
-        if not {"types", "kinds"} <= said.keys():
-            return
-        kinds = frozenset(self._kinds(said["kinds"], vocabulary))
-        leg = said["leg"].text if "leg" in said else ""
-        limit = TypeLimit(excluded(vocabulary, kinds), Place(self.file, item.line))
-        for one in self.list_of(said["types"], "types"):
-            kind = kind_of_type(one.text)
-            if not kind:
-                self.problem(
-                    one.line, f"{shown(one.text or one.kind)!r} is not the name of a type", "write pkg/msg/Name"
-                )
-            elif leg not in LEGS[kind]:
-                legs = " or ".join(LEGS[kind])
-                hint = f"write leg: {legs}" if legs else "remove its leg"
-                self.problem(one.line, f"{one.text} is the type of a {kind}", hint)
-            else:
-                yield (one.text, leg), limit
-
-    def _kinds(self, value: Value, vocabulary: Vocabulary) -> Iterator[str]:
-        for item in self.list_of(value, "kinds"):
-            category = vocabulary.find(item.text) if item.kind == "text" else None
-            if category is None:
-                self.problem(item.line, f"unknown category {shown(item.text)!r}", vocabulary.hint(item.text))
-            else:
-                yield category.name

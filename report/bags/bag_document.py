@@ -9,8 +9,9 @@ from rosprivacy.analysis.model.recording import BagVerdict, iso
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from rosprivacy.analysis.model import Suggestion
     from rosprivacy.analysis.model.recording import JudgedBag, TopicKinds
-    from rosprivacy.report.contract.bags import BagEntry, BagsDocument, BagTopicEntry
+    from rosprivacy.report.contract.bags import BagEntry, BagsDocument, BagTopicEntry, SuggestionEntry
 
 FORMAT = "rosprivacy.bags/1"
 WORST_FIRST = tuple(BagVerdict)
@@ -42,6 +43,7 @@ def _bag(judged: JudgedBag) -> BagEntry:
         "end": iso(bag.end) or None,
         "messages": bag.messages,
         "kinds": list(judged.kinds),
+        "suggested": [{"kind": kind, "confidence": str(sure)} for kind, sure in judged.suggested.items()],
         "open_topics": list(judged.open_topics),
         "topics": [_topic(topic) for topic in judged.topics],
         "gaps": list(bag.gaps),
@@ -58,9 +60,20 @@ def _topic(judged: TopicKinds) -> BagTopicEntry:
         "type_hashes": list(topic.hashes),
         "messages": topic.messages,
         "kinds": list(judged.kinds),
+        "suggested": [_suggested(rule) for rule in judged.suggested],
     }
     if judged.unknown:
         entry["unknown"] = judged.unknown
     if judged.why:
         entry["why"] = judged.why
     return entry
+
+
+def _suggested(rule: Suggestion) -> SuggestionEntry:
+    return {
+        "kinds": list(rule.kinds),
+        "confidence": str(rule.confidence),
+        "type": rule.type,
+        "why": rule.why,
+        "source": rule.source,
+    }

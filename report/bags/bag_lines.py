@@ -47,6 +47,11 @@ def _bag(bag: BagEntry) -> Iterator[str]:
     width = max((len(shown(topic["topic"])) for topic in bag["topics"]), default=0)
     for topic in bag["topics"]:
         yield f"  {shown(topic['topic']):{width}}  {_topic(topic)}"
+        for rule in topic["suggested"]:
+            yield f"    {rule['type']} suggests {', '.join(rule['kinds'])} ({rule['confidence']}): {shown(rule['why'])}"
+    if bag["suggested"]:
+        kinds = ", ".join(f"{one['kind']} ({one['confidence']})" for one in bag["suggested"])
+        yield f"  suggested by its types, confirmed by nobody: {kinds}"
     for what in bag["gaps"]:
         yield f"  not complete: {what}"
     for what in bag["beside"]:

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 HEAD = (
     "bag", "verdict", "kinds", "open_topics", "complete", "storage", "distro", "compression", "bytes", "start", "end",
-    "messages", "topics", "not_known",
+    "messages", "topics", "not_known", "suggested",
 )  # fmt: skip
 
 
@@ -37,4 +37,5 @@ def _row(bag: BagEntry) -> tuple[str | float, ...]:
         "" if bag["messages"] is None else bag["messages"],
         len(bag["topics"]),
         "; ".join([*bag["gaps"], *bag["beside"]]),
+        "; ".join(f"{one['kind']} ({one['confidence']})" for one in bag["suggested"]),
     )

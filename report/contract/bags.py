@@ -5,6 +5,23 @@ from __future__ import annotations
 from typing import Any, NotRequired, TypedDict
 
 
+class SuggestionEntry(TypedDict):
+    """What the type of a topic suggests; nothing follows from it."""
+
+    kinds: list[str]
+    confidence: str
+    type: str
+    why: str
+    source: str
+
+
+class SuggestedKind(TypedDict):
+    """A kind that types of a bag suggest, with the surest confidence."""
+
+    kind: str
+    confidence: str
+
+
 class BagTopicEntry(TypedDict):
     """A topic of a bag, and what can be in it."""
 
@@ -13,6 +30,7 @@ class BagTopicEntry(TypedDict):
     type_hashes: list[str]
     messages: int | None
     kinds: list[str]
+    suggested: list[SuggestionEntry]
     unknown: NotRequired[str]
     why: NotRequired[str]
 
@@ -32,6 +50,7 @@ class BagEntry(TypedDict):
     end: str | None
     messages: int | None
     kinds: list[str]
+    suggested: list[SuggestedKind]
     open_topics: list[str]
     topics: list[BagTopicEntry]
     gaps: list[str]

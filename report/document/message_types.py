@@ -16,7 +16,11 @@ if TYPE_CHECKING:
 
 def with_types(document: AnalysisDocument, answer: Answer) -> AnalysisDocument:
     """Return a document with the types of channels, where any are known, and what only these close."""
-    types, closed = _types(answer), answer.shown.closed
+    closed = answer.shown.closed
+    types: list[TypesEntry] = [
+        {"element": element_dict(element), "types": [_type(one) for one in some]}
+        for element, some in typed_channels(answer)
+    ]
     if types:
         document["types"] = types
     if closed:
@@ -28,8 +32,8 @@ def with_types(document: AnalysisDocument, answer: Answer) -> AnalysisDocument:
     return document
 
 
-def _types(answer: Answer) -> list[TypesEntry]:
-    """The types of each channel that has any, in the order of the graph; both sides of a wildcard once."""
+def typed_channels(answer: Answer) -> list[tuple[Element, tuple[MessageType, ...]]]:
+    """Return the types of each channel that has any, in the order of the graph; both sides of a wildcard once."""
     elements = answer.analysis.graph.elements
     together: dict[Any, tuple[Element, dict[MessageType, None]]] = {}
     beside = answer.fleet.likeness.second if answer.fleet else ()
@@ -38,9 +42,7 @@ def _types(answer: Answer) -> list[TypesEntry]:
         if element.robot in beside:
             continue
         together.setdefault(element.shown_as, (element, {}))[1].update(dict.fromkeys(types))
-    return [
-        {"element": element_dict(element), "types": [_type(one) for one in some]} for element, some in together.values()
-    ]
+    return [(element, tuple(some)) for element, some in together.values()]
 
 
 def _closed(finding: Finding) -> ClosedEntry:

@@ -19,7 +19,7 @@ from rosprivacy.report.rdf.concepts import texts
 from rosprivacy.report.rdf.facts import changes, emitted_by, kinds_along, label_of, legal_of
 from rosprivacy.report.rdf.individuals import below, names_of
 from rosprivacy.report.rdf.process import Processes
-from rosprivacy.report.rdf.provenance import by_path, provenance
+from rosprivacy.report.rdf.provenance import by_path, digest_of, provenance
 from rosprivacy.report.rdf.terms import (
     DPV,
     RISK,
@@ -30,6 +30,7 @@ from rosprivacy.report.rdf.terms import (
     text,
 )
 from rosprivacy.report.rdf.things import Things
+from rosprivacy.report.rdf.typed_channels import type_triples
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -86,6 +87,8 @@ def rdf_graph(answer: Answer, when: datetime | None = None, base: str | None = N
     for finding in analysis.findings:
         for triple in findings.triples(finding):
             graph.add(triple)
+    for triple in type_triples(answer, names.of("analysis", digest_of(told)), files, things):
+        graph.add(triple)
     for triple in things.descriptions():
         graph.add(triple)
     for triple in _robots(answer.fleet, names) if answer.fleet else ():

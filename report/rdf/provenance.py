@@ -50,7 +50,7 @@ def provenance(
     when
         The time to tell, or None.
     """
-    digest = hashlib.sha256(json.dumps(document, sort_keys=True).encode()).hexdigest()[:16]
+    digest = digest_of(document)
     run, answer, assumptions = names.of("run", digest), names.of("analysis", digest), document["assumptions"]
     read = files_read(assumptions)
     moment = [Literal(when)] if when else []
@@ -89,6 +89,11 @@ def provenance(
         yield from _diagnostic(answer, number, diagnostic)
     for number, question in enumerate(analysis.open, 1):
         yield from _open(answer, number, question, things)
+
+
+def digest_of(document: Mapping[str, Any]) -> str:
+    """Return what names the run and its answer."""
+    return hashlib.sha256(json.dumps(document, sort_keys=True).encode()).hexdigest()[:16]
 
 
 def _tool(run: URIRef, assumptions: Mapping[str, Any], names: Names) -> Iterator[Triple]:

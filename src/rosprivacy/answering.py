@@ -57,11 +57,12 @@ def answer(system: System, question: Question) -> Result:
         unread=unread(system.diagnostics),
         bounds=question.settings.bounds,
     )
-    bound = under_limits(system.graph, system.bound, system.vocabulary.hierarchy, question.type_limits)
+    limits = question.type_limits() if question.type_limits and system.bound.types else None
+    bound = under_limits(system.graph, system.bound, system.vocabulary.hierarchy, limits)
     analysis = analyse(system.graph, bound, system.vocabulary.hierarchy, options)
     if bound is not system.bound:
         analysis = _beside(system, options, analysis)
-    elif question.type_limits and system.bound.types and system.graph.view == View.declared:
+    elif limits and system.graph.view == View.declared:
         analysis = replace(analysis, closed=ClosedByTypes())
     view = _view(system, analysis, groups) if system.is_fleet else None
     return concluded(replace(system, bound=bound), question, analysis, view, options)

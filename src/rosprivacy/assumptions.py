@@ -75,9 +75,9 @@ def _of_question(analysis: Analysis, question: Question) -> dict[str, Any]:
 
 def _type_limits(analysis: Analysis, question: Question) -> dict[str, Any]:
     """Which table of what types cannot carry was used; None where types limit nothing (rule S15)."""
-    limits = question.type_limits
-    if analysis.closed is None or limits is None:
+    if analysis.closed is None or question.type_limits is None:
         return {"type_limits": None}
+    limits = question.type_limits()
     return {"type_limits": {"file": limits.file, "sha256": limits.sha256, "flows": analysis.closed.flows}}
 
 

@@ -1,18 +1,20 @@
-"""What kinds of data can be in a bag, by what people said of the channels that were recorded (S7, S8, S11).
+"""What kinds of data can be in a bag, by what people said of the channels, and by types (S7, S8, S11, S15).
 
-In: bags, and an answer about the system that was recorded or label files alone. Out: ``JudgedBag``. A topic of which
-neither says anything is open, never empty.
+In: bags, an answer about the system that was recorded or label files alone, and a table of types. Out: ``JudgedBag``. A
+topic of which people say nothing is open, never empty. What its type suggests is a question beside that: it adds no
+kind, but 'nothing' is then said only where a person's label says it of the topic itself.
 """
 
 from __future__ import annotations
 
 from collections import defaultdict
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.kernel.roles import facts
-from rosprivacy.analysis.model import NOTHING_FOLLOWED, Place, unread
+from rosprivacy.analysis.model import NOTHING_FOLLOWED, Place, by_confidence, unread
 from rosprivacy.analysis.model.recording import JudgedBag, TopicKinds
 from rosprivacy.ingest.policies.names import covered, covers, is_pattern, recorded_channels
 
@@ -20,28 +22,66 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
     from rosprivacy.analysis.answer import Analysis
-    from rosprivacy.analysis.model import Statement
+    from rosprivacy.analysis.model import Statement, Suggestion
     from rosprivacy.analysis.model.recording import Bag, BagTopic
     from rosprivacy.ingest.labels.label_file import Labels
+    from rosprivacy.ingest.types.type_table import TypeTable
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.result import Result
 
-Said = tuple[tuple[str, ...], str, str]  # kinds, why they are not known, what it rests on
 Channel = tuple[str, str, str]  # kind, name, leg
 NO_MESSAGE = "no message of it was recorded"
 
 
-def judged(bags: Iterable[Bag], said_of: Callable[[str], Said]) -> tuple[JudgedBag, ...]:
+@dataclass(frozen=True, slots=True)
+class Said:
+    """What is said of a topic by its name.
+
+    Attributes
+    ----------
+    kinds, unknown, why
+        As of ``TopicKinds``.
+    covered
+        Whether a person's label says it of the topic itself.
+    shipped
+        Whether only the program's own labels say it (S13).
+    """
+
+    kinds: tuple[str, ...] = ()
+    unknown: str = ""
+    why: str = ""
+    covered: bool = False
+    shipped: bool = False
+
+
+def judged(bags: Iterable[Bag], said_of: Callable[[str], Said], table: TypeTable) -> tuple[JudgedBag, ...]:
     """Return bags with what can be in them; ``said_of`` tells it of the name of a topic."""
     known = cache(said_of)
-    return tuple(JudgedBag(bag, tuple(_judged(bag, topic, known) for topic in bag.topics)) for bag in bags)
+    return tuple(JudgedBag(bag, tuple(_judged(bag, topic, known, table) for topic in bag.topics)) for bag in bags)
 
 
-def _judged(bag: Bag, topic: BagTopic, said_of: Callable[[str], Said]) -> TopicKinds:
+def _judged(bag: Bag, topic: BagTopic, said_of: Callable[[str], Said], table: TypeTable) -> TopicKinds:
     if topic.messages == 0 and bag.complete:
         return TopicKinds(topic, why=NO_MESSAGE)
-    kinds, unknown, why = said_of(topic.name)
-    return TopicKinds(topic, kinds, unknown, why)
+    said = said_of(topic.name)
+    suggested = tuple(sorted((rule for name in topic.types for rule in table.suggested(name)), key=by_confidence))
+    if not (said.kinds or said.unknown or said.covered):
+        looked_at = bool(topic.types) and all(table.knows(name) for name in topic.types)
+        said = _asked(said, suggested, looked_at=looked_at)
+    return TopicKinds(topic, said.kinds, said.unknown, said.why, suggested)
+
+
+def _asked(said: Said, suggested: Sequence[Suggestion], *, looked_at: bool) -> Said:
+    """What is said of a topic that no person's label names, under the question of its types."""
+    whose = (
+        "only the program's own labels say that it carries nothing" if said.shipped else "no label of the topic itself"
+    )
+    kinds = sorted({kind for rule in suggested for kind in rule.kinds})
+    if kinds:
+        return replace(said, unknown=f"{whose}, and its type suggests {', '.join(kinds)}", why="")
+    if said.shipped and not looked_at:
+        return replace(said, unknown=f"{whose}, and the table of types does not know its type", why="")
+    return said
 
 
 def by_system(result: Result) -> Callable[[str], Said]:
@@ -71,17 +111,17 @@ def by_system(result: Result) -> Callable[[str], Said]:
     def said_of(topic: str) -> Said:
         here = [vertex for channel in recorded_channels(topic) for vertex in found(channel)]
         if not here:
-            return (), "the policies do not name it", ""
+            return Said(unknown="the policies do not name it")
         kinds = {name for vertex in here for name in spread.names(spread.present(vertex))}
         if kinds:
-            return tuple(sorted(kinds)), "", "what the policies and labels let arrive there"
+            return Said(tuple(sorted(kinds)), why="what the policies and labels let arrive there")
         stated = labels(topic)
-        if not stated[1]:
+        if not stated.unknown:
             return stated
         if analysis.lacking in NOTHING_FOLLOWED:
-            return (), "no label names a source whose data goes anywhere", ""
+            return Said(unknown="no label names a source whose data goes anywhere")
         if unread_files:
-            return (), f"grants were not read: {shown(str(unread_files[0]))}", ""
+            return Said(unknown=f"grants were not read: {shown(str(unread_files[0]))}")
         return by_writers(here)
 
     def by_writers(here: Sequence[int]) -> Said:
@@ -89,13 +129,13 @@ def by_system(result: Result) -> Callable[[str], Said]:
         for vertex in here:
             sending = _senders(vertex, writers, analysis)
             if not sending:
-                return (), "no node of the policies writes to it", ""
+                return Said(unknown="no node of the policies writes to it")
             spoken = {one for one in sending if bound.elements.get(one) and graph.elements[one] not in unreached}
             silent = sorted(graph.elements[one].name for one in sending - spoken)
             if silent:
                 more = f" and {len(silent) - 1} more" if len(silent) > 1 else ""
-                return (), f"no label says what {shown(silent[0])}{more} sends", ""
-        return (), "", "no kind of data gets to those that write to it, and labels speak of all of them"
+                return Said(unknown=f"no label says what {shown(silent[0])}{more} sends")
+        return Said(why="no kind of data gets to those that write to it, and labels speak of all of them")
 
     return said_of
 
@@ -123,17 +163,19 @@ def by_labels(files: Sequence[Labels], vocabulary: Vocabulary) -> Callable[[str]
         names = {name for _, name, _ in channels}
         kinds = {kind for file in files for kind in _named_by_sources(file, names)}
         if kinds:
-            return tuple(sorted(kinds)), "", "sources that name the channel"
+            return Said(tuple(sorted(kinds)), why="sources that name the channel", covered=True)
         said = [statement for file in files for statement in _of_channels(file, channels)]
         decided = {name: facts(topic, said, name, hierarchy) for name in sorted(vocabulary.categories)}
         passing = [name for name, fact in decided.items() if fact.passes]
         if not passing:
-            return (), "", f"{_lines(said)}: it carries no kind of data"
+            own = [statement for statement in said if not statement.shipped]
+            shipped = len(own) < len(said) and any(facts(topic, own, name, hierarchy).passes for name in decided)
+            return Said(why=f"{_lines(said)}: it carries no kind of data", covered=not shipped, shipped=shipped)
         if len(passing) < len(decided) and (only := {s for fact in decided.values() for s in fact.by_role("only")}):
             stated = {name for statement in only for name in statement.categories}.intersection(passing)
             if stated:
-                return tuple(sorted(stated)), "", f"{_lines(only)}: it carries these at most"
-        return (), "no label says what it carries", ""
+                return Said(tuple(sorted(stated)), why=f"{_lines(only)}: it carries these at most", covered=True)
+        return Said(unknown="no label says what it carries")
 
     return said_of
 

@@ -1,7 +1,7 @@
 """Bags, and what is known of the system that was recorded -> the document ``rosprivacy.bags/1``.
 
 In: paths of bags, policies, label files. Out: the document. Without policies the label files alone tell what is in a
-channel.
+channel. What types suggest stands beside that, by the table in force.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.assumptions import files_read
 from rosprivacy.bag_kinds import by_labels, by_system, judged
 from rosprivacy.ingest.bags.bag_folders import read_bags
+from rosprivacy.ingest.types.type_table import TABLE, read_table
 from rosprivacy.question import question_of
 from rosprivacy.report.bags.bag_document import bags_document
 from rosprivacy.robot_system import answer_robot, read_label_files
@@ -38,14 +39,17 @@ def answer_bags(
         With every problem of the input, one line each.
     """
     read = read_bags(bags, progress)
+    vocabulary = question_of(settings).vocabulary
+    table = read_table(settings.type_limits or TABLE, vocabulary, settings.bounds)
+    suggested_by = {"suggested_by": {"file": table.limits.file, "sha256": table.limits.sha256}}
     if policies or settings.add:
         result = answer_robot(policies, labels, settings)
-        return bags_document(judged(read, by_system(result)), result.assumptions)
-    vocabulary = question_of(settings).vocabulary
+        return bags_document(judged(read, by_system(result), table), {**result.assumptions, **suggested_by})
     files = read_label_files(labels, vocabulary, settings)
     rests_on = {
         "rosprivacy": __version__,
         "ontologies": [{"file": name, "sha256": digest} for name, digest in vocabulary.sources],
         **files_read((), files, settings),
+        **suggested_by,
     }
-    return bags_document(judged(read, by_labels(files, vocabulary)), rests_on)
+    return bags_document(judged(read, by_labels(files, vocabulary), table), rests_on)

@@ -11,14 +11,13 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.analysis.model import unread
 from rosprivacy.answering import answer
-from rosprivacy.assumptions import assumptions_of, files_read, remembered
+from rosprivacy.assumptions import assumptions_of, files_read, remembered, types_read
 from rosprivacy.ingest.database.fleet_rows import FleetRows
 from rosprivacy.ingest.fleet.alike_robots import Alike, alike
-from rosprivacy.ingest.fleet.dds_domains import Member, stripped, with_grants
+from rosprivacy.ingest.fleet.dds_domains import Member, stripped
 from rosprivacy.ingest.fleet.fleet_file import Fleet, Robot, read_fleet
 from rosprivacy.ingest.fleet.fleet_graph import Placed, place
 from rosprivacy.ingest.fleet.joins import joins_nothing
-from rosprivacy.ingest.fleet.mergeable_graph import Part
 from rosprivacy.ingest.labels.add_non_ros import extend
 from rosprivacy.ingest.labels.bag_storages import told_of_bags
 from rosprivacy.ingest.labels.binding import bind, remarks
@@ -27,9 +26,11 @@ from rosprivacy.ingest.policies.comparisons import careful_notices
 from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.ingest.policies.joint_policies import joint_warnings
 from rosprivacy.ingest.policies.merged_policies import OF_ONE_ROBOT, merging_notices
-from rosprivacy.ingest.policies.namespaces import as_written, pushed, told
+from rosprivacy.ingest.policies.namespaces import pushed, told
 from rosprivacy.ingest.policies.policy_files import read_policies
+from rosprivacy.ingest.types.channel_types import matching_nothing
 from rosprivacy.question import question_of
+from rosprivacy.robot_system import read_types_files, with_types
 from rosprivacy.system import System
 
 if TYPE_CHECKING:
@@ -103,9 +104,11 @@ def fleet_system(file: str, question: Question) -> FleetSystem:
     diagnostics = dict.fromkeys((*(d for member in members.values() for d in member.diagnostics), *joins))
     policies = [policy for member in members.values() for policy in member.policies]
     files = [{"file": name, "sha256": digest} for name, digest in fleet.sources]
+    seen = {one.file: one for member in members.values() for one in member.types}
+    types = tuple(one for _, one in sorted(seen.items()))
     return FleetSystem(
         placed.graph, placed.bound, vocabulary, tuple(diagnostics),
-        {**files_read(policies, labels, settings), "fleet": files},
+        {**files_read(policies, labels, settings), **types_read(types), "fleet": files},
         tuple({policy.file: policy for policy in policies}.values()), labels, placed.likeness, is_fleet=True,
         fleet=fleet, groups=groups, members=members, placed=placed, joins=joins,
     )  # fmt: skip
@@ -122,9 +125,9 @@ def rows_of_fleet(system: FleetSystem, question: Question, result: Result) -> Fl
     more = {}
     for name, member in system.members.items():
         files = files_read(member.policies, member.files, question.settings)
-        said = assumptions_of(files, result.analysis, question)
+        said = assumptions_of({**files, **types_read(member.types)}, result.analysis, question)
         more[name] = remembered(said, member.diagnostics)
-    everything = {**result.assumptions, "policies": [], "labels": []}
+    everything = {**result.assumptions, "policies": [], "labels": [], "types": []}
     more[system.fleet.name] = remembered(everything, system.joins)
     not_read = [name for name, member in system.members.items() if unread(member.diagnostics)]
     return FleetRows(system.placed, result.analysis, system.vocabulary, more, not_read=not_read)
@@ -143,7 +146,7 @@ class Reader:
 
     def member(self, robot: Robot) -> Member:
         """Return a robot with its graph."""
-        key = (robot.policies, robot.labels, robot.own, robot.strip, robot.add, robot.surroundings)
+        key = (robot.policies, robot.labels, robot.own, robot.strip, robot.add, robot.surroundings, robot.types)
         if key not in self._members:
             self._members[key] = self._made(robot)
         member = self._members[key]
@@ -180,11 +183,14 @@ class Reader:
             *careful_notices(extended.careful),
         )
         diagnostics += told_of_bags(extended, (stated for labels in files for stated in labels.elements))
-        bound = bind(extended, files, settings.bounds, robot.surroundings)
-        part = Part.of(extended, bound)
-        if robot.add:
-            part = with_grants(part, lambda grant: as_written(grant, robot.add))
-        return Member(robot, policies, part, full, graph.profiles, tuple(files), tuple(dict.fromkeys(diagnostics)))
+        types = tuple(one for _, one in sorted(read_types_files(robot.types, settings).items()))
+        written = full if robot.strip else {}
+        diagnostics += matching_nothing(extended, types, written)
+        bound = with_types(extended, bind(extended, files, settings.bounds, robot.surroundings), types, written)
+        return Member(
+            robot, policies, extended, bound, full, graph.profiles, tuple(files), tuple(dict.fromkeys(diagnostics)),
+            types, robot.add,
+        )  # fmt: skip
 
     def _read_labels(self, robot: Robot) -> list[Labels]:
         settings = self._settings

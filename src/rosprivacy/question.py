@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.contexts import article9_in
@@ -14,11 +15,11 @@ from rosprivacy.analysis.errors import InputErrors, OntologyError, shown
 from rosprivacy.analysis.model import ARTICLE_9_VERDICTS, MAY_REVEAL
 from rosprivacy.clock import judged_on
 from rosprivacy.decided import decisions_of
-from rosprivacy.ingest.types.type_table import read_table
+from rosprivacy.ingest.types.type_table import TABLE, read_table
 from rosprivacy.ontology.vocabulary import load
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Iterator
+    from collections.abc import Callable, Collection, Iterable, Iterator
 
     from rosprivacy.analysis.decisions import Decisions
     from rosprivacy.analysis.kernel.type_limits import TypeLimits
@@ -44,7 +45,8 @@ class Question:
     today
         Day on which adequacy decisions hold or have ended, ``YYYY-MM-DD``.
     type_limits
-        What message types cannot carry; None where each is taken to carry everything.
+        What message types cannot carry, as a table that is read when it is asked for; None where each is taken to
+        carry everything.
     every
         Make every finding of a fleet, not one of each pattern.
     contexts
@@ -58,7 +60,7 @@ class Question:
     today: str
     every: bool = False
     contexts: frozenset[str] = frozenset()
-    type_limits: TypeLimits | None = None
+    type_limits: Callable[[], TypeLimits] | None = None
 
     @property
     def every_finding(self) -> bool:
@@ -77,9 +79,21 @@ def question_of(settings: Settings) -> Question:
     vocabulary = load(ontologies=settings.ontologies)
     asked = asked_for(vocabulary, settings)
     decisions = decisions_of(settings, vocabulary)
-    limits = read_table(settings.type_limits, vocabulary, settings.bounds) if settings.type_limits else None
+    limits = _limits(settings, vocabulary) if settings.type_limits else None
     today = settings.today or judged_on(os.environ)
     return Question(settings, vocabulary, asked, decisions, today, type_limits=limits)
+
+
+def _limits(settings: Settings, vocabulary: Vocabulary) -> Callable[[], TypeLimits]:
+    """The limits of a table: a user's is read at once, with its errors; ours only where types are known."""
+
+    @cache
+    def read() -> TypeLimits:
+        return read_table(settings.type_limits or TABLE, vocabulary, settings.bounds).limits
+
+    if settings.type_limits != TABLE:
+        read()
+    return read
 
 
 def in_contexts(question: Question, contexts: Collection[str]) -> Question:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors
@@ -28,9 +29,12 @@ from rosprivacy.question import question_of
 from rosprivacy.system import System
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from rosprivacy.analysis.model import Bound, Diagnostic, FlowGraph, Policy
     from rosprivacy.ingest.database.rows import RobotRows
     from rosprivacy.ingest.policies.saved_graph import Saved
+    from rosprivacy.ingest.types.channel_types import Written
     from rosprivacy.ingest.types.types_file import TypesFile
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.question import Question
@@ -96,9 +100,9 @@ def _joined(
     return System(graph, bound, vocabulary, said, rests_on, policies, tuple(files), types=types)
 
 
-def with_types(graph: FlowGraph, bound: Bound, types: Types) -> Bound:
+def with_types(graph: FlowGraph, bound: Bound, types: Types, written: Written = MappingProxyType({})) -> Bound:
     """Return what is bound to a graph with the observed types of its channels beside those that labels state."""
-    seen = channel_types(graph, types)
+    seen = channel_types(graph, types, written)
     both = {v: (*bound.types.get(v, ()), *seen.get(v, ())) for v in {*bound.types, *seen}}
     return replace(bound, types=in_order(both))
 
@@ -184,9 +188,16 @@ def read_system(policies: tuple[str, ...], settings: Settings, graphs: list[Save
 
 def observed_types(settings: Settings, graphs: list[Saved]) -> Types:
     """Read the files of observed types, and those that saved graphs keep; one that is named is read anew."""
+    files = read_types_files(settings.types, settings)
+    saved = {one.file: one for graph in graphs for one in graph.types}
+    return tuple(one for _, one in sorted({**saved, **files}.items()))
+
+
+def read_types_files(names: Iterable[str], settings: Settings) -> dict[str, TypesFile]:
+    """Read files of observed types, each once, with the problems of all of them."""
     problems: list[InputError] = []
     files: dict[str, TypesFile] = {}
-    for name in dict.fromkeys(settings.types):
+    for name in dict.fromkeys(names):
         from rosprivacy.ingest.types.types_file import read_types  # noqa: PLC0415 - light start
 
         try:
@@ -195,8 +206,7 @@ def observed_types(settings: Settings, graphs: list[Saved]) -> Types:
             problems += error.errors
     if problems:
         raise InputErrors(problems)
-    saved = {one.file: one for graph in graphs for one in graph.types}
-    return tuple(one for _, one in sorted({**saved, **files}.items()))
+    return files
 
 
 def standard_channels(graph: FlowGraph, vocabulary: Vocabulary, settings: Settings) -> set[tuple[str, str]]:

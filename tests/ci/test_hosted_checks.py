@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import re
+import subprocess
+import sys
 import tomllib
 
+import pytest
 import yaml
 
 from tests.helpers.ci_files import (
@@ -40,3 +43,13 @@ def test_before_a_commit_runs_what_ci_runs_from_the_same_environment() -> None:
     checks = [line for line in commands if line.startswith(".venv/bin/") and not line.startswith(".venv/bin/python")]
     assert [hook["entry"] for hook in local["hooks"]] == checks
     assert {hook["language"] for hook in local["hooks"]} == {"system"}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("option", "taken"), [("--slow", False), ("--thorough", True)])
+def test_only_the_run_of_each_week_builds_for_minutes(option: str, taken: bool) -> None:  # noqa: FBT001 - a row
+    """What is not taken is not skipped either: CI calls a skip a failure."""
+    file = "tests/ingest/observe/test_ros2_client.py"
+    command = [sys.executable, "-m", "pytest", "-n0", "--collect-only", "-q", option, file]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=ROOT)
+    assert (f"{file}::test_" in done.stdout) is taken, done.stdout

@@ -56,6 +56,8 @@ def topics(whole: dict[str, Any]) -> dict[str, list[str] | str]:
 
 
 OPEN = "no label says what it carries"
+ASKED = "no label of the topic itself, and its type suggests "
+SEEN = "DepthImage, ThermalImage, Video"
 
 
 @pytest.mark.parametrize(
@@ -88,14 +90,17 @@ def test_by_labels_alone(
     [
         ("", 4, "no label names a source whose data goes anywhere", "no label names a source whose data goes anywhere"),
         ("nodes: {/cam: {source: [Video]}}", 1, ["Video"], ["Video"]),
-        ("nodes: {/cam: {source: [Video]}, /nav: {sanitizer: {Video: drop}}}", 1, ["Video"], ""),
+        ("nodes: {/cam: {source: [Video]}, /nav: {sanitizer: {Video: drop}}}", 1, ["Video"], ASKED + "RobotPosition"),
         ("nodes: {/cam: {source: [Video]}}\nchannels: {/odom: mundane}", 1, ["Video"], ""),
         ("nodes: {/nav: {source: [Location]}}", 1, "no label says what /cam sends", ["Location"]),
-        ("nodes: {/nav: {source: [Location]}, /cam: conduit}", 1, "", ["Location"]),
+        ("nodes: {/nav: {source: [Location]}, /cam: conduit}", 1, ASKED + SEEN, ["Location"]),
+        ("nodes: {/nav: {source: [Location]}, /cam: conduit}\nchannels: {/camera: mundane}", 1, "", ["Location"]),
         ("nodes: {/nav: {source: {Location: [/odom]}}}\nchannels: {/camera: mundane, /odom: mundane}", 2, "", ""),
-        ("nodes: {/log: {source: [Voice]}, /cam: conduit, /nav: conduit}", 0, "", ""),
+        ("nodes: {/log: {source: [Voice]}, /cam: conduit, /nav: conduit}", 4, ASKED + SEEN, ASKED + "RobotPosition"),
+        ("nodes: {/log: {source: [Voice]}, /cam: conduit, /nav: conduit}\nchannels: {/camera: mundane, /odom: mundane}",
+         0, "", ""),
         ("nodes: {/log: {source: [Voice]}, /cam: conduit, /nav: conduit}\nchannels: {/odom: {only: [Location]}}",
-         1, "", ["Location"]),
+         1, ASKED + SEEN, ["Location"]),
     ],
 )  # fmt: skip
 def test_by_the_policies_of_the_system(
@@ -118,7 +123,7 @@ def test_a_storage_of_which_nobody_says_what_is_in_it_is_not_known(cli: Cli, tmp
     nodes = "nodes: {/log: {source: [Voice]}, /cam: conduit, /nav: conduit}"
     more = "elements: {disk: {kind: storage, country: DE}}\nflows: [{from: disk, to: {topic: /odom}}]"
     assert topics(document(cli, run, "--policy", policy, "-l", labels(tmp_path, f"{nodes}\n{more}"), code=4)) == {
-        "/camera": "",
+        "/camera": ASKED + SEEN,
         "/odom": "no label says what disk sends",
     }
 
@@ -137,6 +142,83 @@ def test_topics_that_belong_to_services_actions_and_wildcards(cli: Cli, tmp_path
         "/rosout": "the policies do not name it",
         "/spin/_action/feedback": ["Location"],
     }
+
+
+LOG, CLOCK = "rcl_interfaces/msg/Log", "rosgraph_msgs/msg/Clock"
+
+
+@pytest.mark.parametrize(
+    ("said", "code", "kinds"),
+    [
+        ("", 4, {"/rosout": "PersonalData", "/clock": ""}),
+        ("channels: {/rosout: mundane}", 0, {"/rosout": "", "/clock": ""}),
+        ("channels: {'*': sensitive}", 4, {"/rosout": "PersonalData", "/clock": ""}),
+        ("channels: {'*': mundane}", 0, {"/rosout": "", "/clock": ""}),
+        ("channels: {/rosout: {only: [PersonName]}}", 1, {"/rosout": ["PersonName"], "/clock": ""}),
+    ],
+)
+def test_a_log_that_is_shared_is_told_by_name(
+    cli: Cli, tmp_path: Path, said: str, code: int, kinds: dict[str, list[str] | str]
+) -> None:
+    """S11, S13: in a shared bag the texts of nodes are open until a person's label speaks of them; a clock is not."""
+    names = {"/rosout": (LOG, 1), "/clock": (CLOCK, 1)}
+    found = topics(document(cli, rosbag2(tmp_path / "bag", topics=names), "-l", labels(tmp_path, said), code=code))
+    shipped = "only the program's own labels say that it carries nothing, and its type suggests "
+    assert found == {name: shipped + said if said == "PersonalData" else said for name, said in kinds.items()}
+
+
+def test_a_standard_channel_of_a_type_that_nobody_looked_at_is_open(cli: Cli, tmp_path: Path) -> None:
+    bag = rosbag2(tmp_path / "bag", topics={"/clock": (CLOCK, 1)})
+    table = tmp_path / "table.yaml"
+    table.write_text("type_table: 1\n")
+    said = topics(document(cli, bag, "--type-limits", table, code=4))
+    shipped = "only the program's own labels say that it carries nothing"
+    assert said == {"/clock": f"{shipped}, and the table of types does not know its type"}
+
+
+def test_what_types_suggest_stands_beside_what_labels_say(cli: Cli, tmp_path: Path, run: Path) -> None:
+    """S12, S15: a question with its reason and confidence in every format; no kind and no yes follows from it."""
+    said = labels(tmp_path, "channels: {/camera: mundane, /odom: {only: [Location]}}")
+    whole = document(cli, run, "-l", said, code=1)
+    (bag,) = whole["bags"]
+    assert bag["kinds"] == ["Location"]
+    assert bag["suggested"] == [
+        {"kind": "DepthImage", "confidence": "may"},
+        {"kind": "RobotPosition", "confidence": "may"},
+        {"kind": "ThermalImage", "confidence": "may"},
+        {"kind": "Video", "confidence": "likely"},
+    ]
+    camera = bag["topics"][0]
+    assert (camera["kinds"], "unknown" in camera) == ([], False)  # a person's word stands
+    assert [(one["kinds"], one["confidence"], one["type"]) for one in camera["suggested"]] == [
+        (["Video"], "likely", IMAGE),
+        (["DepthImage", "ThermalImage"], "may", IMAGE),
+    ]
+    assert whole["assumptions"]["suggested_by"]["file"] == "rosprivacy:types"
+    text = cli("bag", run, "-l", said).stdout
+    assert f"{IMAGE} suggests Video (likely): a picture of what is in front of the camera" in text
+    assert "  suggested by its types, confirmed by nobody: DepthImage (may), RobotPosition (may)," in text
+    (row,) = csv.DictReader(io.StringIO(cli("bag", run, "-l", said, "-f", "csv").stdout))
+    assert row["suggested"] == "DepthImage (may); RobotPosition (may); ThermalImage (may); Video (likely)"
+
+
+def test_events_of_services_and_parts_of_actions_suggest_what_these_do(cli: Cli, run: Path) -> None:
+    """S3: what is recorded of a service or an action has a type of its own, made from its."""
+    metadata = run / "metadata.yaml"
+    text = metadata.read_text().replace("/camera", "/map/_service_event").replace("/odom", "/go/_action/feedback")
+    text = text.replace(IMAGE, "nav_msgs/srv/GetMap_Event").replace(ODOMETRY, "hri_msgs/msg/IdsList")
+    metadata.write_text(text)
+    (run / "run.mcap").unlink()
+    (bag,) = document(cli, run, code=4)["bags"]
+    assert [one["kind"] for one in bag["suggested"]] == ["HomeMap", "PersonIdentifier"]
+
+
+def test_a_table_of_ones_own_suggests_in_place_of_the_shipped_one(cli: Cli, tmp_path: Path, run: Path) -> None:
+    table = tmp_path / "table.yaml"
+    rule = "{types: [nav_msgs/msg/Odometry], kinds: [Voice], confidence: certain, why: a test, source: this}"
+    table.write_text(f"type_table: 1\nsuggests: [{rule}]\n")
+    (bag,) = document(cli, run, "--type-limits", table, code=4)["bags"]
+    assert bag["suggested"] == [{"kind": "Voice", "confidence": "certain"}]
 
 
 def test_nothing_recorded_is_nothing_in_it(cli: Cli, tmp_path: Path) -> None:

@@ -50,7 +50,7 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "labels": READING | {"bags"},
         "mitigation": READING,
         "observe": READING | {"labels", "bags"},
-        "fleet": READING | {"labels"},
+        "fleet": READING | {"labels", "types"},
         "database": READING | {"labels", "fleet"},
     },
     "ontology": {"": set()},

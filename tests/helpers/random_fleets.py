@@ -14,7 +14,6 @@ from rosprivacy.ingest.fleet.alike_robots import alike, chosen
 from rosprivacy.ingest.fleet.dds_domains import Member
 from rosprivacy.ingest.fleet.fleet_file import Fleet, Robot
 from rosprivacy.ingest.fleet.fleet_graph import place
-from rosprivacy.ingest.fleet.mergeable_graph import Part
 from rosprivacy.ingest.labels.entries import Entry, FlowEntry
 from rosprivacy.ingest.labels.non_ros_reader import Stated
 from tests.helpers.brute import Brute
@@ -75,7 +74,7 @@ class Case:
     def member(self, robot: Robot) -> Member:
         system = self.robots[robot.id]
         graph = system.graph()
-        return Member(robot, (), Part.of(graph, system.bound()), {e: e for e in graph.elements})
+        return Member(robot, (), graph, system.bound(), {e: e for e in graph.elements})
 
     def analyse(self) -> tuple[Analysis, Placed]:
         placed = self.placed()

@@ -140,6 +140,34 @@ def test_where_robots_work_that_are_not_shown_counts_too(fleet_file: str) -> Non
             assert got[key] == expected[key]
 
 
+TYPED = """fleet: 1
+models: {m: {policies: p.xml, labels: l.yaml, types: t.yaml}, n: {policies: p.xml, labels: l.yaml}}
+groups: [{robots: 2, model: m}, {robots: 3, model: n}]
+"""
+
+
+@pytest.mark.usefixtures("session")
+def test_types_limit_nothing_and_the_answer_says_so(fleet_file: str) -> None:
+    """S15: on the safe side, more findings; else it is the answer in memory without limits."""
+    write(fleet_file, TYPED)
+    write("l.yaml", "labels: 1\nnodes: {/cam: {source: [Video]}, /uplink: {leak: [Video]}}\n")
+    write("p.xml", policy("/cam>/a", "/uplink</a"))
+    write("t.yaml", "types: 1\ntopics: {/a: [{type: std_msgs/msg/Bool, writers: [/cam]}]}\n")
+    said = "message types limit nothing on Spark: in memory there can be fewer findings"
+    got = run_on_spark(fleet_file, Settings()).document()
+    assert [row["message"] for row in got["diagnostics"] if row["file"] == "--engine spark"][1:] == [said]
+    assert got["findings"]
+    assert got["assumptions"]["type_limits"] is None
+    unlimited = run_on_spark(fleet_file, Settings(type_limits=None)).document()
+    assert said not in [row["message"] for row in unlimited["diagnostics"]]
+    expected = answer_fleet(fleet_file, Settings(type_limits=None)).document()
+    for key in ("verdict", "findings", "types"):
+        assert unlimited[key] == got[key] == expected[key]
+    for key in ("types", "type_limits"):
+        assert unlimited["assumptions"][key] == got["assumptions"][key] == expected["assumptions"][key]
+    assert answer_fleet(fleet_file, Settings()).document()["findings"] != expected["findings"]
+
+
 @pytest.mark.usefixtures("session")
 def test_decisions_are_refused(fleet_file: str) -> None:
     with pytest.raises(InputError, match=r"^--decisions: on Spark no decisions are taken into account"):

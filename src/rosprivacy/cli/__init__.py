@@ -7,7 +7,7 @@ from rosprivacy.version import __version__
 
 __all__ = ["main"]
 
-ENOUGH = 1_000_000  # new objects after which it is worth to look for garbage: far less of it is made than is kept
+ENOUGH = 10_000_000  # new objects after which it is worth to look for garbage: far less of it is made than is kept
 
 
 def main() -> None:

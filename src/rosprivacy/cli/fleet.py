@@ -60,6 +60,7 @@ def _lines(fleet: Fleet, groups: tuple[Alike, ...]) -> Iterator[str]:
         what = "infrastructure" if group.fixed else f"model {robot.model}" if robot.model else "no model"
         domain = f", domain {robot.domain}" if robot.domain else ""
         yield f"{named((one.id for one in group.robots), IN_ENGLISH)}  ({len(group.robots):,}; {what}{domain})"
-        for name, files in (("policies", robot.policies), ("labels", robot.labels), ("own labels", robot.own)):
+        labels = ("labels", robot.labels), ("own labels", robot.own)
+        for name, files in (("policies", robot.policies), *labels, ("types", robot.types)):
             if files:
                 yield f"    {name}: {', '.join(files)}"

@@ -139,7 +139,10 @@ TypesFiles = Annotated[
 TypeLimitsFile = Annotated[
     str,
     typer.Option(
-        "--type-limits", metavar="FILE", help="Table of what message types cannot carry.", rich_help_panel=READ
+        "--type-limits",
+        metavar="FILE",
+        help="Table of what message types cannot carry, and what they suggest.",
+        rich_help_panel=READ,
     ),
 ]
 NoTypeLimits = Annotated[

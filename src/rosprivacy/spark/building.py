@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.fleet.fleet_file import Fleet, Robot
     from rosprivacy.ingest.fleet.joins import Met
     from rosprivacy.ingest.labels.non_ros_reader import Limit
+    from rosprivacy.ingest.types.types_file import TypesFile
     from rosprivacy.spark.units import Unit
 
     Read = Callable[[Robot], Member]  # a robot -> the same with its graph
@@ -63,6 +64,10 @@ class Told:
         Places of flows that a label file says more of.
     met
         Where the flows of the fleet file begin and end.
+    types
+        Files of observed message types, without what they say of channels.
+    typed
+        Whether the message type of any channel is known.
     contexts
         (kind, name, context) of its elements: a pattern stands for robots that are not shown, too.
     """
@@ -79,6 +84,8 @@ class Told:
     restated: tuple[Place, ...] = ()
     met: frozenset[Met] = frozenset()
     contexts: frozenset[tuple[str, str, str]] = frozenset()
+    types: frozenset[TypesFile] = frozenset()
+    typed: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,6 +144,8 @@ def told_of(one: Some, members: Sequence[Member]) -> Told:
             for element, where in one.part.surroundings.items()
             for context in where.contexts
         ),
+        types=frozenset(replace(file, channels=()) for member in members for file in member.types),
+        typed=any(one.part.types.values()),
     )
 
 
@@ -163,6 +172,8 @@ def joined(one: Told, other: Told) -> Told:
         restated=(*one.restated, *other.restated),
         met=one.met | other.met,
         contexts=one.contexts | other.contexts,
+        types=one.types | other.types,
+        typed=one.typed or other.typed,
     )
 
 

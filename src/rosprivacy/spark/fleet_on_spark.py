@@ -17,7 +17,7 @@ from rosprivacy.analysis.files_read import note
 from rosprivacy.analysis.findings.findings import Options
 from rosprivacy.analysis.model import Diagnostic, Place, Severity
 from rosprivacy.answering import concluded
-from rosprivacy.assumptions import named_files
+from rosprivacy.assumptions import named_files, types_read
 from rosprivacy.clock import judged_on
 from rosprivacy.fleet_system import Reader
 from rosprivacy.ingest.fleet.alike_robots import alike
@@ -152,6 +152,8 @@ def result(task: Task, found: Found, told: Shown, question: Question) -> Result:
         **named_files(sorted(found.told.sources), sorted(found.told.labels), question.settings),
         "fleet": [{"file": name, "sha256": digest} for name, digest in task.fleet.sources],
         "engine": "spark",
+        **types_read(sorted(found.told.types, key=lambda file: file.file)),
+        **({"type_limits": None} if found.told.typed else {}),
     }
     bounds = (
         f"analysed in parts, {found.open:,} open elements in the whole fleet: ways and distances are the shortest "
@@ -160,7 +162,10 @@ def result(task: Task, found: Found, told: Shown, question: Question) -> Result:
         "and what the answer hangs on"
     )
     joins = joins_nothing(task.fleet, task.groups, found.told.met)
-    said = (*found.told.diagnostics, *joins, Diagnostic(Place("--engine spark", 0), Severity.NOTICE, bounds))
+    unlimited = ("message types limit nothing on Spark: in memory there can be fewer findings",)
+    notices = (bounds, *(unlimited if found.told.typed and question.type_limits else ()))
+    said = (*found.told.diagnostics, *joins)
+    said += tuple(Diagnostic(Place("--engine spark", 0), Severity.NOTICE, notice) for notice in notices)
     policies = {policy.file: policy for member in told.members.values() for policy in member.policies}
     labels = {file.file: file for member in told.members.values() for file in member.files}
     system = System(

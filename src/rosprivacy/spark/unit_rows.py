@@ -14,7 +14,7 @@ from rosprivacy.analysis.answer import robot_verdicts
 from rosprivacy.analysis.findings.findings import Options, analyse
 from rosprivacy.analysis.fleet.source_leak_pairs import pairs
 from rosprivacy.analysis.model import unread
-from rosprivacy.assumptions import assumptions_of, files_read, remembered
+from rosprivacy.assumptions import assumptions_of, files_read, remembered, types_read
 from rosprivacy.ingest.database.fleet_rows import FleetRows
 from rosprivacy.ingest.database.rows import rows_of
 from rosprivacy.ingest.fleet.dds_domains import pseudo_robot
@@ -171,7 +171,7 @@ def _fleet_rows(placed: Placed, members: Mapping[str, Member], plan: Plan, mine:
         Options(choose=choose, today=plan.settings.today or "", bounds=plan.settings.bounds),
     )
     said = {name: _more(member, analysis, plan, vocabulary) for name, member in members.items()}
-    said[plan.fleet.name] = remembered({**plan.assumptions, "policies": [], "labels": []}, plan.joins)
+    said[plan.fleet.name] = remembered({**plan.assumptions, "policies": [], "labels": [], "types": []}, plan.joins)
     not_read = [name for name, member in members.items() if unread(member.diagnostics)]
     analysis = replace(analysis, lacking=plan.lacking)
     verdicts = robot_verdicts(analysis, said, lambda element: element.robot, not_read, plan.leaking)
@@ -180,7 +180,7 @@ def _fleet_rows(placed: Placed, members: Mapping[str, Member], plan: Plan, mine:
 
 
 def _more(member: Member, analysis: Analysis, plan: Plan, vocabulary: Any) -> dict[str, str]:
-    files = files_read(member.policies, member.files, plan.settings)
+    files = {**files_read(member.policies, member.files, plan.settings), **types_read(member.types)}
     question = Question(plan.settings, vocabulary, None, None, plan.settings.today or "")
     said = assumptions_of(files, analysis, question)
     if said["standard_channels"]:

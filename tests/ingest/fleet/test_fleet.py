@@ -245,6 +245,16 @@ class TestSharing:
         names = {(e.robot, e.name) for e in run(group).analysis.graph.elements if e.is_channel}
         assert names == {("a", "/image"), ("b", "/image"), ("domain 1", "/map")}
 
+    def test_lines_stand_as_a_policy_writes_them_also_at_the_second_of_robots_that_are_alike(self) -> None:
+        """Both are of one policy, under the namespace of the first (rule S1)."""
+        result = run(
+            "groups: [{robots: 3, model: eye, namespace: {add: /*}}]\nflows: [{from: '*:/uplink', to: '*:/camera'}]\n"
+        )
+        grants = [grant for flow in result.analysis.graph.flows for grant in flow.grants if grant.node]
+        assert {element.robot for element in result.analysis.graph.elements} == {"eye_1", "eye_2"}
+        assert grants
+        assert not [grant for grant in grants if grant.node.startswith("/eye_")]
+
     def test_another_robot_may_name_a_channel_by_its_namespace(self) -> None:
         write("a.xml", policy("/a/camera>/a/image"))
         write("b.xml", policy("/b/screen</a/image"))
