@@ -7,11 +7,10 @@ under the hash of all files (``cache.py``), so that rdflib is imported only afte
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass, field
 from difflib import get_close_matches
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.contexts import surrounded
 from rosprivacy.analysis.errors import InputErrors, OntologyError, reason
@@ -40,8 +39,7 @@ PREFIXES = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class Vocabulary:
+class Vocabulary(NamedTuple):
     """The categories of an ontology.
 
     Attributes
@@ -60,9 +58,9 @@ class Vocabulary:
 
     categories: Mapping[str, Category]
     hierarchy: Hierarchy
-    respelt: Mapping[str, str] = field(default_factory=dict)
+    respelt: Mapping[str, str] = {}
     sources: tuple[tuple[str, str], ...] = ()
-    pointed: Pointed = field(default_factory=Pointed)
+    pointed: Pointed = Pointed()
 
     @classmethod
     def of(

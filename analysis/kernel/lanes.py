@@ -7,7 +7,7 @@ flows let more pass: only what is new is followed, so a small change costs what 
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Generic, NamedTuple, Protocol, TypeVar
 
 from rosprivacy.analysis.many_flows import parted
@@ -94,8 +94,7 @@ class Over(Generic[T]):
         return self.below.get(key, otherwise) if value is None else value
 
 
-@dataclass(frozen=True, slots=True)
-class Doing:
+class Doing(NamedTuple):
     """What elements and flows do with what comes, in lanes; made for elements without a word of their own too.
 
     Attributes
@@ -125,7 +124,7 @@ class Doing:
     emits: Mapping[int, int]
     flow_emits: Mapping[int, int]
     allowed: int
-    stop: Mapping[int, int] = field(default_factory=dict)
+    stop: Mapping[int, int] = {}
 
     @classmethod
     def of(cls, spread: Spread, sources: Sequence[int]) -> Doing:
@@ -155,13 +154,12 @@ class Doing:
 
     def stopped(self, stop: Mapping[int, int], allowed: int) -> Doing:
         """Return the same for some bits, some of which are not followed on from some elements; both in lanes."""
-        return replace(self, stop={v: bits & allowed for v, bits in stop.items() if bits & allowed}, allowed=allowed)
+        return self._replace(stop={v: bits & allowed for v, bits in stop.items() if bits & allowed}, allowed=allowed)
 
     def changed(self, spread: Spread) -> Doing:
         """Return the same with what another spread says of the elements and flows that it is about."""
         every = self.lanes.every
-        return replace(
-            self,
+        return self._replace(
             keeps=Over({v: every(bits) for v, bits in spread.keeps.items()}, self.keeps),
             derives=Over(spread.derives, self.derives),
             flow_keeps=Over({i: every(bits) for i, bits in spread.flow_keeps.items()}, self.flow_keeps),

@@ -9,8 +9,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model.diagnostic import Diagnostic, Place
 
 
-@dataclass(frozen=True, slots=True)
-class Profile:
+class Profile(NamedTuple):
     """A node's entry in an enclave, ``<profile ns node>``."""
 
     enclave: str

@@ -91,7 +91,7 @@ def stripped(graph: FlowGraph, namespace: str) -> tuple[FlowGraph, dict[Element,
         return tuple(sorted(new, key=lambda flow: (flow.source, flow.target, flow.role)))
 
     nodes = {element.name: new.name for element, new in shown.items() if element.is_node}
-    profiles = tuple(replace(profile, node=nodes[profile.node]) for profile in graph.profiles)
+    profiles = tuple(profile._replace(node=nodes[profile.node]) for profile in graph.profiles)
     changed = FlowGraph(
         elements, renumbered(graph.flows), renumbered(graph.denied), profiles, graph.view,
         renumbered(graph.denied_matches), graph.careful,
@@ -191,6 +191,6 @@ def _marked(policy: Policy, robot: Robot) -> Policy:
     mark, run = f"{robot.id}{MARK}", pushed(policy, robot.add)
     return replace(
         run,
-        profiles=tuple(replace(p, enclave=mark + p.enclave, node=mark + p.node) for p in run.profiles),
+        profiles=tuple(p._replace(enclave=mark + p.enclave, node=mark + p.node) for p in run.profiles),
         grants=tuple(g._replace(enclave=mark + g.enclave, node=mark + g.node) for g in run.grants),
     )

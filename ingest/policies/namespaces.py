@@ -28,7 +28,7 @@ def pushed(policy: Policy, namespace: str) -> Policy:
         return policy
     return replace(
         policy,
-        profiles=tuple(replace(p, node=_under(namespace, p.node)) for p in policy.profiles),
+        profiles=tuple(p._replace(node=_under(namespace, p.node)) for p in policy.profiles),
         grants=tuple(
             g._replace(node=_under(namespace, g.node), name=g.name if g.absolute else _under(namespace, g.name))
             for g in policy.grants

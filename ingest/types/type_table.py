@@ -18,6 +18,7 @@ from rosprivacy.analysis.errors import InputError, InputErrors, TypesError
 from rosprivacy.analysis.kernel.type_limits import TypeLimit, TypeLimits
 from rosprivacy.analysis.model import Place, Suggestion, by_confidence, interface_of, kind_of_type
 from rosprivacy.ingest.reading import yaml_values
+from rosprivacy.ingest.types import TABLE
 from rosprivacy.ingest.types.type_entries import LEGS, EntryReader
 from rosprivacy.ingest.types.type_suggestions import read_suggestions
 from rosprivacy.ontology.iris import STORED
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.reading.yaml_values import Value
     from rosprivacy.ontology.vocabulary import Vocabulary
 
-TABLE = "rosprivacy:types"  # the shipped one, as a report names it
 PARTS = ("type_table", "version", "assumes", "cannot", "suggests")
 KEYS = ("types", "leg", "kinds", "why", "source")
 Key = tuple[str, str]  # name of a type, leg

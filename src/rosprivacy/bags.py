@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 from rosprivacy.assumptions import files_read
 from rosprivacy.bag_kinds import by_labels, by_system, judged
 from rosprivacy.ingest.bags.bag_folders import read_bags
-from rosprivacy.ingest.types.type_table import TABLE, read_table
+from rosprivacy.ingest.types import TABLE
+from rosprivacy.ingest.types.type_table import read_table
 from rosprivacy.question import question_of
 from rosprivacy.report.bags.bag_document import bags_document
 from rosprivacy.robot_system import answer_robot, read_label_files
