@@ -141,7 +141,7 @@ def _outside(analysis: Analysis) -> dict[int, NonRosFacts]:
     return {v: analysis.outside[e] for v, e in enumerate(analysis.graph.elements) if e in analysis.outside}
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class _Spots:
     """Where one statement is said, and whether any data is there."""
 
@@ -184,7 +184,7 @@ def _takes(statement: Statement) -> bool:
     return statement.role not in BRINGS_IN and statement.place != NOWHERE
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class _Work:
     """The answer as it is, for comparison, and how many analyses of the whole are left."""
 

@@ -179,7 +179,7 @@ class Doing(NamedTuple):
         return (bits & self.keeps.get(vertex, self.allowed) | self.made(vertex, bits)) & self.allowed & ~stop
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class Flood:
     """What arrives and what leaves, in lanes; of one that was taken further only what is more.
 

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import StrEnum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.model.diagnostic import Place
@@ -22,8 +21,7 @@ class Confidence(StrEnum):
     MAY = "may"
 
 
-@dataclass(frozen=True, slots=True)
-class Suggestion:
+class Suggestion(NamedTuple):
     """One rule of a table of types, at one type.
 
     Attributes

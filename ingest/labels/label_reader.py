@@ -78,7 +78,7 @@ NONE = "none"  # in place of categories: takes back what labels of lower rank sa
 LONGEST_GROUP = 100  # characters of a group of persons, or of the name of an author
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class LabelReader(NameReader):
     """Walks the file once, from the outside in."""
 

@@ -115,7 +115,7 @@ class _Denials:
         return [], part
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class _Draft:
     """A flow in the making: one role of one node on one channel may span several DDS topics.
 

@@ -99,7 +99,7 @@ def read_policy(
     )
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class _Reader:
     """Walks the document once, from the outside in."""
 

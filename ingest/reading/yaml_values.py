@@ -103,7 +103,7 @@ def parse(text: str, fail: Callable[[int, str, str], InputError], bounds: Bounds
     return builder.top
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class _Open:
     """A list or map that is not closed yet."""
 
