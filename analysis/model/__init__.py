@@ -46,7 +46,9 @@ from rosprivacy.analysis.model.diagnostic import (
     Diagnostic,
     Place,
     Severity,
+    observed_when,
     unread,
+    when_observed,
 )
 from rosprivacy.analysis.model.element import (
     CHANNELS,
@@ -163,5 +165,7 @@ __all__ = [
     "interface_of",
     "is_article_9",
     "kind_of_type",
+    "observed_when",
     "unread",
+    "when_observed",
 ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from enum import StrEnum
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -31,6 +32,28 @@ NO_SOURCE = "no-source"  # what 'no leak found' lacks, so that it says nothing (
 GOES_NOWHERE = "goes-nowhere"
 NO_LEAK_NAMED = "no-leak-named"
 NOTHING_FOLLOWED = (NO_SOURCE, GOES_NOWHERE)
+
+
+_WHEN = r"observed from (\S+) to (\S+) by (.+); what was not seen proves nothing"
+
+
+def when_observed(first: str, last: str, doors: Iterable[str]) -> str:
+    """Return the message from when to when somebody looked, and by which doors (rule S16).
+
+    >>> when_observed("2026-11-22T10:00:00Z", "2026-11-22T10:05:00Z", ["dds", "text"])
+    'observed from 2026-11-22T10:00:00Z to 2026-11-22T10:05:00Z by dds, text; what was not seen proves nothing'
+    """
+    return f"observed from {first} to {last} by {', '.join(doors)}; what was not seen proves nothing"
+
+
+def observed_when(message: str) -> tuple[str, str, tuple[str, ...]] | None:
+    """Return what ``when_observed`` was made of; None for another message.
+
+    >>> observed_when(when_observed("a", "b", ["dds", "text"])), observed_when("something else")
+    (('a', 'b', ('dds', 'text')), None)
+    """
+    match = re.fullmatch(_WHEN, message)
+    return (match[1], match[2], tuple(match[3].split(", "))) if match else None
 
 
 class Place(NamedTuple):

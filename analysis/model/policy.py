@@ -41,9 +41,9 @@ class Grant(NamedTuple):
     role
         As written: ``publish``, ``subscribe``, ``reply``, ``request``, ``call`` or ``execute``.
     kind
-        Of the channel as written: ``topic``, ``service`` or ``action``.
+        Of the channel as written: ``topic``, ``service`` or ``action``; ``dds`` of a DDS topic, as permissions name it.
     name
-        Fully qualified.
+        Fully qualified; of a DDS topic with its prefix, such as ``rt/scan``.
     policy
         The policy file that was read, whatever it includes: a DENY counts in its own policy only (rule S5).
     dead
@@ -53,6 +53,9 @@ class Grant(NamedTuple):
         Whether the policy writes the name so: then it stays as it is under a namespace that is pushed (rule S1).
     seen
         When it was seen in use, of an observed policy (rule S16).
+    rank
+        Of permissions, the place of its rule, from 1: the first rule that matches decides, so a DENY takes away only
+        from what comes after it. 0 in a policy, where DENY wins wherever it stands (rule S5).
     """
 
     allow: bool
@@ -66,6 +69,7 @@ class Grant(NamedTuple):
     dead: bool = False
     absolute: bool = False
     seen: Seen | None = None
+    rank: int = 0
 
     def __hash__(self) -> int:
         """Of what tells nearly all apart: a file that many profiles include has the same lines in each."""

@@ -47,7 +47,14 @@ class Suggestion(NamedTuple):
 
 
 def by_confidence(rule: Suggestion) -> int:
-    """Return a key that sorts the surest first."""
+    """Return a key that sorts the surest first.
+
+    >>> from rosprivacy.analysis.model.diagnostic import Place
+    >>> said = ("MAY", "CERTAIN")
+    >>> rules = [Suggestion("a/msg/A", ("Video",), Confidence[one], "", "", Place("types.yaml", 1)) for one in said]
+    >>> [str(rule.confidence) for rule in sorted(rules, key=by_confidence)]
+    ['certain', 'may']
+    """
     return tuple(Confidence).index(rule.confidence)
 
 

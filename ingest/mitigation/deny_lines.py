@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.many_flows import one_by_one
 from rosprivacy.analysis.mitigation.candidates import Denial
-from rosprivacy.ingest.policies.names import covers, endpoints, is_pattern, overlaps
+from rosprivacy.ingest.policies.names import DDS, covers, endpoints, is_pattern, overlaps
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Sequence
@@ -48,7 +48,7 @@ def denials(policies: Iterable[Policy], graph: FlowGraph, flows: Collection[int]
     wanted = sorted(flows)
     concerned = {part for f in wanted for part in rights.parts[f]}
     first = {grant for f in wanted for grant in graph.flows[f].grants}
-    lines = [grant for policy in policies for grant in policy.grants if grant.allow]
+    lines = [grant for policy in policies for grant in policy.grants if grant.allow and grant.kind != DDS]
     found: dict[frozenset[Part], Denial] = {}
     ordered = sorted(dict.fromkeys(lines), key=lambda grant: grant not in first)
     by_line: dict[tuple[Place, str, str], list[Grant]] = defaultdict(list)
@@ -123,6 +123,8 @@ class _Rights:
         flow = self.graph.flows[f]
         writes = self.graph.elements[flow.target].is_channel
         channel = self.graph.elements[flow.target if writes else flow.source]
+        if any(grant.kind == DDS for grant in flow.grants):
+            return  # permissions are signed: what they allow is changed in the policy that they were made of
         for grant in flow.grants:
             for end in endpoints(grant.role, grant.kind, grant.name):
                 if (end.writes, end.kind, end.name, end.leg) == (writes, channel.kind, channel.name, channel.leg):

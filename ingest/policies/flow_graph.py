@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.bounds import BOUNDS, Tally
 from rosprivacy.analysis.errors import PolicyError
 from rosprivacy.analysis.many_flows import Flows, Meeting
-from rosprivacy.analysis.model import KINDS, Element, Flow, FlowGraph, Grant, Profile
+from rosprivacy.analysis.model import Element, Flow, FlowGraph, Grant, Profile
 from rosprivacy.analysis.modes import View
 from rosprivacy.ingest.policies.comparisons import Comparisons, apart
 from rosprivacy.ingest.policies.meetings import literal_ends, meetings
@@ -104,6 +104,8 @@ class _Denials:
             return [], []
         rules, plain, patterns = self._of.get((grant.policy, grant.enclave, endpoint.writes), ((), {}, ()))
         self._work.at = grant.place
+        if grant.rank:  # of permissions: the first rule that matches decides
+            rules, plain, patterns = _before(grant.rank, rules)
         if not is_pattern(endpoint.name):
             return [*plain.get(endpoint.dds, ()), *(g for dds, g in patterns if self._work.hold(dds, endpoint.dds))], []
         whole = [line for dds, line in rules if self._work.hold(dds, endpoint.dds)]
@@ -113,6 +115,12 @@ class _Denials:
         if part and not self._work.name_left((endpoint.dds,), part):
             return [line for _, line in part], []
         return [], part
+
+
+def _before(rank: int, rules: Iterable[Rule]) -> tuple[list[Rule], dict[str, list[Grant]], list[Rule]]:
+    """The rules of permissions that are looked at before one of a rank."""
+    first = [rule for rule in rules if rule[1].rank < rank]
+    return (first, *apart(first))
 
 
 @dataclass(slots=True, eq=False, repr=False)
@@ -326,6 +334,5 @@ def _in_order(lines: set[Grant]) -> tuple[Grant, ...]:
 
 def _grant_key(grant: Grant) -> tuple[object, ...]:
     place = grant.place
-    kind = KINDS.index(grant.kind)
-    line = (place.file, place.line, grant.enclave, grant.node, kind, grant.name, grant.role, grant.allow)
-    return (*line, grant.policy, grant.dead)
+    line = (place.file, place.line, grant.enclave, grant.node, grant.kind, grant.name, grant.role, grant.allow)
+    return (*line, grant.policy, grant.dead, grant.rank)

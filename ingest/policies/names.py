@@ -26,6 +26,7 @@ ACTION_TOPICS = ("feedback", "status")
 EVENTS = "/_service_event"  # the topic on which a service tells what it is asked and what it answers
 
 _OUT = {"publish", "request", "call"}
+DDS = "dds"  # kind of a grant that names a DDS topic, and what the name of a topic that is none of ROS begins with
 _PART = re.compile(rf"(.+)/_action/({'|'.join(ACTION_SERVICES + ACTION_TOPICS)})", re.DOTALL)
 
 
@@ -82,8 +83,12 @@ def endpoints(role: str, kind: str, name: str) -> tuple[Endpoint, ...]:
     [(True, 'request', 'rq/addRequest'), (False, 'response', 'rr/addReply')]
     >>> endpoints("publish", "topic", "/spin/_action/status")[0].kind
     'action'
+    >>> endpoints("subscribe", "dds", "rq/addRequest")
+    (Endpoint(writes=False, kind='service', name='/add', leg='request', dds='rq/addRequest'),)
     """
     asks = role in _OUT
+    if kind == DDS:
+        return (Endpoint(asks, *_ros_channel(name), name),)
     if kind == "topic":
         folded = None if is_pattern(name) else _PART.fullmatch(name)
         if folded and folded[2] in ACTION_TOPICS:
@@ -103,14 +108,29 @@ def endpoints(role: str, kind: str, name: str) -> tuple[Endpoint, ...]:
     )
 
 
+def _ros_channel(dds: str) -> tuple[str, str, str]:
+    """(kind, name, leg) of the channel that a DDS topic, or an expression of such, is a part of."""
+    if dds.startswith("rt/"):
+        kind, name, leg = "topic", dds[2:], ""
+    elif dds.startswith("rq/") and dds.endswith("Request"):
+        kind, name, leg = "service", dds[2:-7], "request"
+    elif dds.startswith("rr/") and dds.endswith("Reply"):
+        kind, name, leg = "service", dds[2:-5], "response"
+    else:
+        return "topic", f"{DDS}/{dds}", ""
+    folded = None if is_pattern(name) else _PART.fullmatch(name)
+    of_action = folded is not None and folded[2] in (ACTION_SERVICES if leg else ACTION_TOPICS)
+    return ("action", folded[1], leg or "response") if folded and of_action else (kind, name, leg)
+
+
 def dds_names(kind: str, name: str, leg: str) -> tuple[str, ...]:
     """Return the DDS topics that make up a channel, or one leg of it.
 
-    >>> dds_names("topic", "/scan", "")
-    ('rt/scan',)
+    >>> dds_names("topic", "/scan", ""), dds_names("topic", "dds/Square", "")
+    (('rt/scan',), ('Square',))
     """
     if kind == "topic":
-        return (f"rt{name}",)
+        return (name.removeprefix(f"{DDS}/"),) if name.startswith(f"{DDS}/") else (f"rt{name}",)
     if kind == "service":
         return (f"rq{name}Request",) if leg == "request" else (f"rr{name}Reply",)
     if leg == "request":

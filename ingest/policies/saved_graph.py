@@ -29,6 +29,7 @@ from rosprivacy.analysis.model import (
     Seen,
     Severity,
 )
+from rosprivacy.ingest.policies.names import DDS
 from rosprivacy.ingest.policies.policy_xml import ROLES
 from rosprivacy.ingest.reading.bounded_file import read_regular
 from rosprivacy.ingest.types import types_file
@@ -149,6 +150,7 @@ def _policy(policy: Policy) -> dict[str, Any]:
                 "rule": "ALLOW" if grant.allow else "DENY",
                 "role": grant.role,
                 "name": grant.name,
+                **({"kind": grant.kind, "rank": grant.rank} if grant.kind == DDS else {}),
                 "absolute": grant.absolute,
                 "enclave": grant.enclave,
                 "node": grant.node,
@@ -191,7 +193,7 @@ def _read_policy(saved: dict[str, Any]) -> Policy:
         Grant(
             allow=g["rule"] == "ALLOW",
             role=g["role"],
-            kind=_ROLES[g["role"]],
+            kind=g.get("kind", _ROLES[g["role"]]),
             name=g["name"],
             enclave=g["enclave"],
             node=g["node"],
@@ -200,6 +202,7 @@ def _read_policy(saved: dict[str, Any]) -> Policy:
             dead=g.get("dead", False),
             absolute=g.get("absolute", True),
             seen=_read_seen(g["seen"]) if "seen" in g else None,
+            rank=g.get("rank", 0),
         )
         for g in saved["grants"]
     ]

@@ -215,7 +215,7 @@ class Documents:
         if known:
             return known[0]
         data = _read(path, file, place)
-        root = _parse(data, file)
+        root = parsed(data, file)
         self.sources[file] = hashlib.sha256(data).hexdigest()
         self._parsed[path] = (root, size)
         return root
@@ -224,7 +224,7 @@ class Documents:
 def stands_alone(data: bytes) -> bool:
     """Whether an XML text is read from these bytes only: it is XML that we take, and nothing in it is an include."""
     try:
-        root = _parse(data, "")
+        root = parsed(data, "")
     except PolicyError:
         return False
     return next(root.iter(*(f"{{{namespace}}}*" for namespace in NAMESPACES)), None) is None
@@ -267,7 +267,14 @@ def _read(path: Path, file: str, place: Place) -> bytes:
         raise _error(place, f"cannot be read: {error.strerror}", "check its permissions") from None
 
 
-def _parse(data: bytes, file: str) -> etree._Element:
+def parsed(data: bytes, file: str) -> etree._Element:
+    """Return the root element of an XML text.
+
+    Raises
+    ------
+    PolicyError
+        If it is not XML that we take: no entities, no DTD, no network.
+    """
     parser = etree.XMLParser(
         resolve_entities=False, no_network=True, load_dtd=False, remove_comments=True, remove_pis=True
     )

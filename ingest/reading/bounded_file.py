@@ -34,6 +34,20 @@ def contents(path: Path, name: str = "") -> bytes:
         return noted(file, name or str(path)).read()
 
 
+def beginning(path: Path, size: int) -> bytes:
+    """Read the first bytes of a regular file; none of anything else.
+
+    Raises
+    ------
+    OSError, ValueError
+        If it cannot be read.
+    """
+    if not path.is_file():
+        return b""
+    with path.open("rb") as file:
+        return noted(file, str(path)).read(size)
+
+
 def nearest_file(path: Path) -> str:
     """Return what to do about a file that is not there: the nearest names in its folder."""
     try:

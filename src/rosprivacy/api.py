@@ -49,6 +49,8 @@ def analyze(
     decisions: Path | None = None,
     today: str | None = None,
     add: Paths = (),
+    domain: int | None = None,
+    allow_unsigned: bool = False,
     include_root: Path | None = None,
     max_bytes: int = MAX_BYTES,
     bounds: Bounds = BOUNDS,
@@ -98,6 +100,10 @@ def analyze(
         ``SOURCE_DATE_EPOCH``.
     add
         Saved graphs to add the policies to.
+    domain
+        DDS domain of the robot, for permissions with rules for several.
+    allow_unsigned
+        Read permissions and governance that are not signed by their CA too.
     include_root
         Folder that includes may read from; by default the policy's own.
     max_bytes
@@ -138,6 +144,8 @@ def analyze(
         type_limits=_path(type_limits),
         paths=paths,
         max_paths=max_paths,
+        domain=domain,
+        allow_unsigned=allow_unsigned,
         include_root=_path(include_root),
         max_bytes=max_bytes,
         bounds=bounds,
@@ -165,6 +173,8 @@ def analyze_fleet(
     max_paths: int = MAX_PATHS,
     decisions: Path | None = None,
     today: str | None = None,
+    domain: int | None = None,
+    allow_unsigned: bool = False,
     include_root: Path | None = None,
     max_bytes: int = MAX_BYTES,
     bounds: Bounds = BOUNDS,
@@ -179,7 +189,7 @@ def analyze_fleet(
     view, categories, article9, article9_level, data_types, identity_factors, ontologies, category, standard_channels,
     type_limits, paths, max_paths, decisions, today
         As in ``analyze``.
-    include_root, max_bytes, bounds, progress
+    domain, allow_unsigned, include_root, max_bytes, bounds, progress
         As in ``analyze``.
 
     Returns
@@ -212,6 +222,8 @@ def analyze_fleet(
         type_limits=_path(type_limits),
         paths=paths,
         max_paths=max_paths,
+        domain=domain,
+        allow_unsigned=allow_unsigned,
         include_root=_path(include_root),
         max_bytes=max_bytes,
         bounds=bounds,

@@ -12,6 +12,7 @@ from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.analysis.model import unread
 from rosprivacy.answering import answer
 from rosprivacy.assumptions import assumptions_of, files_read, remembered, types_read
+from rosprivacy.granted import read_granted
 from rosprivacy.ingest.database.fleet_rows import FleetRows
 from rosprivacy.ingest.fleet.alike_robots import Alike, alike
 from rosprivacy.ingest.fleet.dds_domains import Member, stripped
@@ -27,7 +28,6 @@ from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.ingest.policies.joint_policies import joint_warnings
 from rosprivacy.ingest.policies.merged_policies import OF_ONE_ROBOT, merging_notices
 from rosprivacy.ingest.policies.namespaces import pushed, told
-from rosprivacy.ingest.policies.policy_files import read_policies
 from rosprivacy.ingest.types.channel_types import matching_nothing
 from rosprivacy.question import question_of
 from rosprivacy.robot_system import read_types_files, with_types
@@ -157,14 +157,7 @@ class Reader:
     def _read_policies(self, robot: Robot) -> tuple[tuple[Policy, ...], tuple[Diagnostic, ...]]:
         settings = self._settings
         if robot.policies not in self._policies:
-            policies, said = read_policies(
-                robot.policies,
-                include_root=settings.include_root,
-                within=self._root,
-                max_bytes=settings.max_bytes,
-                bounds=settings.bounds,
-                progress=settings.progress,
-            )
+            policies, said = read_granted(robot.policies, settings, self._root)
             said += (*joint_warnings(policies), *merging_notices(policies, OF_ONE_ROBOT))
             self._policies[robot.policies] = policies, said
         return self._policies[robot.policies]

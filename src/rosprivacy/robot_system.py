@@ -14,6 +14,7 @@ from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.analysis.model import MERGED, REFUSED_NAME, SEEN_ALTHOUGH_DENIED, SHARED_ENCLAVE
 from rosprivacy.answering import answer
 from rosprivacy.assumptions import files_read, remembered, types_read
+from rosprivacy.granted import Read, read_granted
 from rosprivacy.ingest.labels.add_non_ros import extend, extended
 from rosprivacy.ingest.labels.bag_storages import told_of_bags
 from rosprivacy.ingest.labels.binding import bind, join, remarks
@@ -23,7 +24,6 @@ from rosprivacy.ingest.policies.comparisons import careful_notices
 from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.ingest.policies.joint_policies import joint_warnings
 from rosprivacy.ingest.policies.merged_policies import merging_notices
-from rosprivacy.ingest.policies.policy_files import read_policies
 from rosprivacy.ingest.types.channel_types import channel_types, matching_nothing
 from rosprivacy.question import question_of
 from rosprivacy.system import System
@@ -43,7 +43,6 @@ if TYPE_CHECKING:
 
 ACROSS = (MERGED, SHARED_ENCLAVE, REFUSED_NAME, SEEN_ALTHOUGH_DENIED)  # what is said of policies together
 Types = tuple["TypesFile", ...]
-Read = tuple[tuple["Policy", ...], tuple["Diagnostic", ...]]
 
 
 def answer_robot(policies: tuple[str, ...], labels: tuple[str | Labels, ...], settings: Settings) -> Result:
@@ -170,13 +169,7 @@ def read_system(policies: tuple[str, ...], settings: Settings, graphs: list[Save
     read: tuple[Policy, ...] = ()
     diagnostics: tuple[Diagnostic, ...] = ()
     if policies or not saved:
-        read, diagnostics = read_policies(
-            policies,
-            include_root=settings.include_root,
-            max_bytes=settings.max_bytes,
-            bounds=settings.bounds,
-            progress=settings.progress,
-        )
+        read, diagnostics = read_granted(policies, settings)
     known = {policy.file for policy in read}  # read again is read anew
     sources = {name for policy in read for name, _ in policy.sources}
     left = (d for graph in graphs for d in graph.left)

@@ -51,6 +51,10 @@ class Settings:
         See ``Options``.
     include_root, max_bytes
         See ``read_policy``.
+    domain
+        That of the robot, for permissions with rules for several domains.
+    allow_unsigned
+        Whether permissions and governance are read that are not signed by their CA.
     bounds
         How much of what is read or made at most.
     progress
@@ -77,6 +81,8 @@ class Settings:
     max_paths: int = MAX_PATHS
     include_root: str | None = None
     max_bytes: int = MAX_BYTES
+    domain: int | None = None
+    allow_unsigned: bool = False
     bounds: Bounds = BOUNDS
     progress: Callable[[Sequence[str]], Iterable[str]] = field(default=lambda files: files)
     decisions: str | None = None

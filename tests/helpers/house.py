@@ -49,6 +49,7 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "bags": {"reading"},
         "labels": READING | {"bags"},
         "mitigation": READING,
+        "keystore": READING,
         "observe": READING | {"labels", "bags"},
         "fleet": READING | {"labels", "types"},
         "database": READING | {"labels", "fleet"},

@@ -16,9 +16,11 @@ from rosprivacy.analysis.bounds import Bounds
 from rosprivacy.analysis.modes import View
 from rosprivacy.cli.driver import driver_of
 from rosprivacy.cli.options import (
+    AllowUnsigned,
     BoundsRaised,
     Categories,
     DecisionsFile,
+    Domain,
     FleetFile,
     FromDatabase,
     IncludeRoot,
@@ -60,6 +62,8 @@ class Inputs(NamedTuple):
     types: TypesFiles = None
     type_limits: TypeLimitsFile = "rosprivacy:types"
     no_type_limits: NoTypeLimits = False
+    domain: Domain = None
+    allow_unsigned: AllowUnsigned = False
     include_root: IncludeRoot = None
     max_bytes: MaxBytes = 64 * 2**20
     bound: BoundsRaised = None
@@ -82,6 +86,8 @@ class Inputs(NamedTuple):
             standard_channels=None if self.no_standard_channels else self.standard_channels,
             types=tuple(self.types or ()),
             type_limits=None if self.no_type_limits else self.type_limits,
+            domain=self.domain,
+            allow_unsigned=self.allow_unsigned,
             include_root=str(self.include_root) if self.include_root else None,
             max_bytes=self.max_bytes,
             bounds=Bounds.raised(self.bound or ()),
@@ -124,8 +130,8 @@ class Inputs(NamedTuple):
 
 
 OF_FILES = (
-    "policies", "labels", "add", "fleet", "standard_channels", "no_standard_channels", "types", "include_root",
-    "max_bytes", "category", "view",
+    "policies", "labels", "add", "fleet", "standard_channels", "no_standard_channels", "types", "domain",
+    "allow_unsigned", "include_root", "max_bytes", "category", "view",
 )  # fmt: skip
 OPTIONS = get_type_hints(Inputs, include_extras=True)
 DEFAULTS = Inputs._field_defaults

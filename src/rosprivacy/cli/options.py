@@ -57,7 +57,7 @@ ASKED = "What is asked"
 
 Policies = Annotated[
     list[str] | None,
-    typer.Argument(metavar="POLICY", help="SROS 2 policies: files, folders or globs.", show_default=False),
+    typer.Argument(metavar="POLICY", help="SROS 2 policies: files, folders or globs; keystores.", show_default=False),
 ]
 LabelFiles = Annotated[
     list[str] | None,
@@ -148,6 +148,24 @@ TypeLimitsFile = Annotated[
 NoTypeLimits = Annotated[
     bool,
     typer.Option("--no-type-limits", help="Take every message type to carry everything.", rich_help_panel=READ),
+]
+Domain = Annotated[
+    int | None,
+    typer.Option(
+        min=0,
+        metavar="N",
+        show_default=False,
+        help="DDS domain of the robot, for permissions with rules for several.",
+        rich_help_panel=READ,
+    ),
+]
+AllowUnsigned = Annotated[
+    bool,
+    typer.Option(
+        "--allow-unsigned",
+        help="Read permissions and governance that are not signed by their CA; the report says so.",
+        rich_help_panel=READ,
+    ),
 ]
 IncludeRoot = Annotated[
     Path | None,

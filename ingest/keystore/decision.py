@@ -1,0 +1,33 @@
+"""What permissions decide of one DDS topic: the first rule that matches, else the default.
+
+In: a grant of permissions, a domain, a direction and a topic. Out: whether it is allowed in the default partition, the
+one of ROS 2. This is the plain form of what the flow graph says of all topics at once; tests hold the two together.
+
+Source: DDS-Security 1.1, 9.4.1.3.2.3.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosprivacy.ingest.keystore.grants import is_about_ros
+from rosprivacy.ingest.policies.names import covers
+
+if TYPE_CHECKING:
+    from rosprivacy.ingest.keystore.permissions_file import SubjectGrant
+
+
+def may(grant: SubjectGrant, domain: int, direction: str, dds: str) -> bool:
+    """Return whether a subject may ``publish`` or ``subscribe`` a DDS topic.
+
+    Linear in the topics of the grant.
+    """
+    for rule in grant.rules:
+        if domain in rule.domains and any(
+            covers(expression, dds)
+            for criterion in rule.criteria
+            if criterion.direction == direction and (rule.allow or is_about_ros(criterion))
+            for expression, _ in criterion.topics
+        ):
+            return rule.allow
+    return grant.allow

@@ -1,0 +1,57 @@
+"""What a reader has to know of a governance: where permissions do not hold, and what is sent in the open (rule S11).
+
+In: a governance and the permissions beside it. Out: warnings at its lines.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.model import Diagnostic, Severity
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rosprivacy.analysis.model import Place
+    from rosprivacy.ingest.keystore.governance_file import DomainRule, Governance
+    from rosprivacy.ingest.keystore.permissions_file import Permissions
+
+
+def governance_remarks(governance: Governance, permissions: Permissions, domain: int | None) -> Iterator[Diagnostic]:
+    """Yield what is to be said of the domains that permissions are about."""
+    if domain is None:
+        named = {rule.domains for grant in permissions.grants for rule in grant.rules}
+        rules = {id(rule): rule for domains in named for rule in map(governance.of, _first(domains.ranges)) if rule}
+        of_domain = list(rules.values())
+    else:
+        rule = governance.of(domain)
+        of_domain = [rule] if rule else []
+    if not of_domain and governance.rules:
+        where = "the domains of the permissions" if domain is None else f"domain {domain}"
+        yield _warning(governance.rules[0].place, f"no rule for {where}: no participant starts there")
+    for rule in of_domain:
+        yield from _of_domain(rule)
+
+
+def _first(ranges: tuple[tuple[int, int], ...]) -> list[int]:
+    return [first for first, _ in ranges]
+
+
+def _of_domain(rule: DomainRule) -> Iterator[Diagnostic]:
+    if rule.unauthenticated:
+        yield _warning(rule.place, "a participant without a certificate may join")
+    if not rule.joining:
+        yield _warning(rule.place, "who has a certificate may join, whatever its permissions say of the domain")
+    for topic in rule.topics:
+        free = [word for word, checked in (("read", topic.reading), ("write", topic.writing)) if not checked]
+        named = f"DDS topics {topic.expression}"
+        if free:
+            message = f"{named}: permissions are not asked, so every participant may {' and '.join(free)} there"
+            yield _warning(topic.place, f"{message}; the declared view takes each to keep to its permissions (rule S6)")
+        if not rule.encrypted(topic):
+            yield _warning(topic.place, f"{named} are sent without encryption: who is on the network can read them")
+
+
+def _warning(place: Place, message: str) -> Diagnostic:
+    return Diagnostic(place, Severity.WARNING, shown(message))

@@ -1,0 +1,169 @@
+"""DDS-Security XML from anybody -> elements in their order, with every problem at its line.
+
+In: the text of a permissions or governance file. Out: a ``Section`` that is asked for its children one after the other,
+as the schemas demand them, and notes what is missing, misplaced or no value of its kind.
+
+Source: DDS-Security 1.1, 9.4.1.2 (governance) and 9.4.1.3 (permissions), with their XML schemas. Where the middlewares
+take more than the schema (``TRUE``, elements of a topic rule in another order), it is taken here too.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.errors import InputErrors, PolicyError, shown
+from rosprivacy.analysis.model import Place
+from rosprivacy.ingest.keystore.domains import LAST_DOMAIN, Domains
+from rosprivacy.ingest.policies.xinclude import parsed
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterator
+
+    from lxml import etree
+
+    from rosprivacy.analysis.errors import InputError
+
+BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """Where a text stands, and what was found wrong in it.
+
+    Attributes
+    ----------
+    before
+        Lines of the file before the text, as in a signed file.
+    """
+
+    file: str
+    before: int = 0
+    problems: list[InputError] = field(default_factory=list)
+
+    def place(self, element: etree._Element) -> Place:
+        """Return file and line of an element."""
+        return Place(self.file, self.before + (element.sourceline or 0))
+
+    def problem(self, element: etree._Element, what: str, hint: str) -> None:
+        """Note what is wrong at an element, once: its children are gone through for each name."""
+        error = PolicyError(self.file, self.place(element).line, what, hint)
+        if str(error) not in map(str, self.problems):
+            self.problems.append(error)
+
+    def check(self) -> None:
+        """Raise what was found wrong, by line."""
+        if self.problems:
+            raise InputErrors(sorted(self.problems, key=lambda error: error.line))
+
+
+def security_document(data: bytes, source: Source, section: str) -> Section | None:
+    """Return ``<dds><section>`` of a text; None, with the problem noted, if it is something else.
+
+    Raises
+    ------
+    InputErrors
+        If it is not XML that we take.
+    """
+    try:
+        root = parsed(data, source.file)
+    except PolicyError as error:
+        line = error.line + source.before if error.line else 0
+        raise InputErrors([PolicyError(error.file, line, error.problem, error.hint)]) from None
+    top = Section(root, source)
+    if top.tag != "dds":
+        source.problem(root, f"the root element is <{shown(top.tag)}>, not <dds>", f"name a file with <{section}>")
+        return None
+    return top.one(section)
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """An element and where it stands."""
+
+    element: etree._Element
+    source: Source
+
+    @property
+    def tag(self) -> str:
+        """Its name without a namespace."""
+        return str(self.element.tag).rpartition("}")[2]
+
+    @property
+    def place(self) -> Place:
+        """File and line."""
+        return self.source.place(self.element)
+
+    @property
+    def text(self) -> str:
+        """What stands in it, as the middlewares read it: comments taken out, nothing trimmed."""
+        return self.element.text or ""
+
+    def children(self, allowed: Collection[str]) -> Iterator[Section]:
+        """Yield the children that belong here; what does not is a problem."""
+        for element in self.element:
+            child = Section(element, self.source)
+            if child.tag in allowed:
+                yield child
+            else:
+                expected = " or ".join(f"<{name}>" for name in sorted(allowed))
+                self.source.problem(element, f"<{shown(child.tag)}> in <{self.tag}>", f"here comes {expected}")
+
+    def one(self, tag: str, among: Collection[str] = ()) -> Section | None:
+        """Return the child of a name; that it is missing or there twice is a problem.
+
+        Parameters
+        ----------
+        among
+            The names that the other children may have.
+        """
+        found = [child for child in self.children({tag, *among}) if child.tag == tag]
+        if not found:
+            self.source.problem(self.element, f"<{self.tag}> without <{tag}>", f"add <{tag}>")
+            return None
+        for extra in found[1:]:
+            self.source.problem(extra.element, f"second <{tag}> in <{self.tag}>", "remove it")
+        return found[0]
+
+    def chosen(self, values: Collection[str], default: str) -> str:
+        """Return the text, which is one of some values; the default, with the problem noted, if it is another."""
+        text = self.text.strip()
+        if text in values:
+            return text
+        self.source.problem(
+            self.element, f"{shown(repr(text))} in <{self.tag}>", f"write {' or '.join(sorted(values))}"
+        )
+        return default
+
+    def boolean(self) -> bool:
+        """Return the truth value that is written."""
+        text = self.text.strip().lower()
+        if text in BOOLEANS:
+            return BOOLEANS[text]
+        self.source.problem(self.element, f"{shown(repr(text))} in <{self.tag}>", "write true or false")
+        return False
+
+    def domains(self) -> Domains:
+        """Return the domains of ``<domains>`` (9.4.1.2.4.1, 9.4.1.3.2.3.1.1)."""
+        ranges = []
+        for child in self.children({"id", "id_range"}):
+            if child.tag == "id":
+                number = child.number()
+                ranges.append((number, number))
+                continue
+            ends = {end.tag: end.number() for end in child.children({"min", "max"})}
+            low, high = ends.get("min", 0), ends.get("max", LAST_DOMAIN)
+            if not ends or low > high:
+                self.source.problem(child.element, "<id_range> that holds no domain", "write <min> and <max>")
+            ranges.append((low, high))
+        if not ranges:
+            self.source.problem(self.element, "<domains> is empty", "add <id>0</id>")
+        return Domains(tuple(sorted(set(ranges))))
+
+    def number(self) -> int:
+        """Return the number of a domain that is written; 0, with the problem noted, if it is none."""
+        text = self.text.strip()
+        if text.isascii() and text.isdecimal() and len(text) < len(str(2**32)):
+            return int(text)
+        self.source.problem(self.element, f"{shown(repr(text))} in <{self.tag}>", "write the number of a domain")
+        return 0

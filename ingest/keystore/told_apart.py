@@ -1,0 +1,48 @@
+"""What the user names, told apart by what is in it: SROS 2 policies, or permissions files and keystores.
+
+In: paths. Out: two lists of them. Light, since every command asks it.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rosprivacy.ingest.reading.bounded_file import beginning
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+HEAD = 4096  # bytes in which a file says what it is
+SIGNED = b"multipart/signed"
+PARTS = ("enclaves", "public")  # folders of a keystore
+
+
+def deployed(arguments: Iterable[str]) -> tuple[list[str], list[str]]:
+    """Return which of some arguments are permissions files or keystores, and which are something else."""
+    ours: list[str] = []
+    others: list[str] = []
+    for argument in dict.fromkeys(arguments):
+        (ours if _is_deployed(argument) else others).append(argument)
+    return ours, others
+
+
+def _is_deployed(argument: str) -> bool:
+    try:
+        head = beginning(Path(argument), HEAD)
+    except (OSError, ValueError):
+        return False  # who reads it says why not
+    return is_signed(head) or b"<dds" in head or is_keystore(argument)
+
+
+def is_keystore(folder: str) -> bool:
+    """Return whether a folder is an SROS 2 keystore."""
+    try:
+        return all((Path(folder) / name).is_dir() for name in PARTS)
+    except (OSError, ValueError):
+        return False
+
+
+def is_signed(data: bytes) -> bool:
+    """Return whether a file says of itself that it is signed (S/MIME)."""
+    return SIGNED in data[:HEAD].partition(b"<dds")[0]

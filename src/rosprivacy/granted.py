@@ -1,0 +1,70 @@
+"""What a user names -> policies: SROS 2 policies, permissions files and keystores, each by its reader.
+
+In: paths, and the settings. Out: policies with what a reader has to know of them.
+"""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.errors import InputErrors, PolicyError
+from rosprivacy.clock import today
+from rosprivacy.ingest.keystore.told_apart import deployed
+from rosprivacy.ingest.policies.policy_files import read_policies
+from rosprivacy.ingest.reading.confined import WIDEN, leaves, what_leaves
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rosprivacy.analysis.model import Diagnostic, Policy
+    from rosprivacy.settings import Settings
+
+Read = tuple[tuple["Policy", ...], tuple["Diagnostic", ...]]
+
+
+def read_granted(names: Iterable[str], settings: Settings, within: str | None = None) -> Read:
+    """Read all that is named.
+
+    Parameters
+    ----------
+    within
+        A folder that no file may lie outside of, its own links followed; for names that a file states.
+
+    Raises
+    ------
+    InputErrors
+        With the problems of all files.
+    """
+    granted, stated = deployed(names)
+    policies: tuple[Policy, ...] = ()
+    said: tuple[Diagnostic, ...] = ()
+    if stated or not granted:
+        policies, said = read_policies(
+            stated,
+            include_root=settings.include_root,
+            within=within,
+            max_bytes=settings.max_bytes,
+            bounds=settings.bounds,
+            progress=settings.progress,
+        )
+    if granted:
+        more, told = _deployed(granted, settings, within)
+        policies, said = (*policies, *more), (*said, *told)
+    return policies, said
+
+
+def _deployed(names: list[str], settings: Settings, within: str | None) -> Read:
+    from rosprivacy.ingest.keystore.deployed_inputs import read_deployed  # noqa: PLC0415 - light start
+
+    _confined(names, within)
+    on = settings.today or today(os.environ)
+    policies, said = read_deployed(names, settings.domain, on, allow_unsigned=settings.allow_unsigned)
+    _confined([file for policy in policies for file, _ in policy.sources], within)
+    return policies, said
+
+
+def _confined(files: Iterable[str], within: str | None) -> None:
+    outside = dict.fromkeys(file for file in files if within is not None and leaves(file, within))
+    if outside:
+        raise InputErrors([PolicyError(file, 0, what_leaves(file, within or ""), WIDEN) for file in outside])
