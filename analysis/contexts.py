@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from rosprivacy.analysis.model import ARTICLE_9_VERDICTS, MAY_REVEAL, SPECIAL
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Mapping
+    from collections.abc import Collection, Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.answer import Finding
     from rosprivacy.analysis.hierarchy import Hierarchy
@@ -32,33 +32,33 @@ def surrounded(categories: Mapping[str, Category], hierarchy: Hierarchy) -> dict
     >>> both["FaceTemplate"].in_context == CATEGORIES["FaceTemplate"].in_context
     True
     """
-    stated = {name: _stated(category) for name, category in categories.items()}
     near: dict[str, dict[str, None]] = {name: {} for name in categories}
     for name in categories:
         for above in hierarchy.ancestors[name]:
             near[name][above] = None
             near[above][name] = None
+    stated = {name: [*_stated(category)] for name, category in categories.items()}
     return {
         name: category._replace(
-            in_context=_together(stated[other] for other in sorted(near[name])),
+            in_context=_each_once(said for other in sorted(near[name]) for said in stated[other]),
             look_at=tuple(sorted({at for above in hierarchy.ancestors[name] for at in categories[above].look_at})),
         )
         for name, category in categories.items()
     }
 
 
-def _stated(category: Category) -> tuple[Legal, ...]:
-    """What is stated of a category itself; the rest came from a kind near it."""
-    own = (legal for legal in category.in_context if legal.stated_of in ("", category.name))
-    return tuple(legal._replace(stated_of=category.name) for legal in own)
+def _stated(category: Category) -> Iterator[Legal]:
+    """What is stated of a category itself."""
+    for legal in category.in_context:
+        if legal.stated_of in ("", category.name):  # else it came from a kind near it
+            yield legal._replace(stated_of=category.name)
 
 
-def _together(stated: Iterable[tuple[Legal, ...]]) -> tuple[Legal, ...]:
-    """What is stated of some categories, each statement once, with the first of them."""
+def _each_once(statements: Iterable[Legal]) -> tuple[Legal, ...]:
+    """Each statement once, with the first category of which it is made."""
     found: dict[tuple[str, str, str], Legal] = {}
-    for statements in stated:
-        for legal in statements:
-            found.setdefault((legal.context, legal.name, legal.condition), legal)
+    for legal in statements:
+        found.setdefault((legal.context, legal.name, legal.condition), legal)
     return tuple(found[key] for key in sorted(found))
 
 

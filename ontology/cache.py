@@ -19,7 +19,7 @@ from rosprivacy.ontology.pointed import Pointed
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-FORMAT = 9  # one more when what is kept, or what is refused, changes
+FORMAT = 10  # one more when what is kept, or what is refused, changes
 
 
 def default_folder() -> Path:
@@ -35,11 +35,11 @@ Kept = tuple[tuple[Category, ...], dict[str, str], Pointed]
 def get(folder: Path, key: str) -> Kept | None:
     """Return what an earlier run kept, if it is whole and of these files."""
     try:
-        first, _, facts = _path(folder, key).read_bytes().partition(b"\n")
-        if first != _first(key, facts):
+        digest, text = _path(folder, key).read_bytes().split(b"\n", 1)
+        if digest != _digest(key, text):
             return None
-        kept = json.loads(facts)
-        categories = tuple(_category(stated) for stated in kept["categories"])
+        kept = json.loads(text)
+        categories = tuple(_category(row) for row in kept["categories"])
         return categories, dict(kept["respelt"]), _pointed(kept["pointed"])
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return None
@@ -49,13 +49,13 @@ def keep(folder: Path, key: str, categories: tuple[Category, ...], respelt: dict
     """Write them, whole or not at all; a folder that cannot be written is no error."""
     import tempfile  # noqa: PLC0415 - light start
 
-    facts = json.dumps({"categories": categories, "respelt": respelt, "pointed": pointed}).encode()
+    text = json.dumps({"categories": categories, "respelt": respelt, "pointed": pointed}).encode()
     with suppress(OSError):
         folder.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(dir=folder)
         try:
             with os.fdopen(handle, "wb") as file:
-                file.write(_first(key, facts) + b"\n" + facts)
+                file.write(_digest(key, text) + b"\n" + text)
             Path(name).replace(_path(folder, key))
         except BaseException:
             Path(name).unlink(missing_ok=True)
@@ -66,9 +66,9 @@ def _path(folder: Path, key: str) -> Path:
     return folder / f"categories-{FORMAT}-{key[:16]}.json"
 
 
-def _first(key: str, facts: bytes) -> bytes:
-    """The first line: of which files, and that the second line is whole."""
-    return json.dumps({"key": key, "digest": hashlib.sha256(facts).hexdigest()}).encode()
+def _digest(key: str, text: bytes) -> bytes:
+    """The first line of a file: of which Turtle files it is, and that it is whole."""
+    return hashlib.sha256(key.encode() + text).hexdigest().encode()
 
 
 def _frozen(row: list[Any]) -> Iterator[Any]:

@@ -8,7 +8,6 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
-import pytest
 from hypothesis import Phase, assume, given, settings
 from hypothesis import strategies as st
 
@@ -218,7 +217,9 @@ def answers(system: System) -> tuple[Result, Result]:
         raise
 
 
-def held_to_the_rule(system: System) -> None:
+@given(systems())
+@settings(max_examples=8 * settings().max_examples)
+def test_random_systems_follow_the_rule_word_for_word(system: System) -> None:
     with TemporaryDirectory() as folder, chdir(folder):
         under, without = answers(system)
         assert found(without) == system.findings(limits=False)
@@ -234,19 +235,6 @@ def held_to_the_rule(system: System) -> None:
         assert saved.document() == under.document()
         enforced = rosprivacy.analyze("p.xml", "l.yaml", types="t.yaml", type_limits="table.yaml", view="enforced")
         assert not enforced.analysis.closed
-
-
-@given(systems())
-@settings(max_examples=60, deadline=None)
-def test_random_systems_follow_the_rule_word_for_word(system: System) -> None:
-    held_to_the_rule(system)
-
-
-@pytest.mark.slow
-@given(systems())
-@settings(max_examples=1500, deadline=None)
-def test_more_of_them(system: System) -> None:
-    held_to_the_rule(system)
 
 
 def test_many_of_them_are_limited_and_some_findings_only_so_closed() -> None:

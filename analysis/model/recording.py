@@ -7,7 +7,7 @@ from datetime import UTC, datetime
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.model.suggestion import by_confidence
+from rosprivacy.analysis.model.suggestion import surest
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -175,6 +175,11 @@ class TopicKinds:
     why: str = ""
     suggested: tuple[Suggestion, ...] = ()
 
+    @property
+    def surest(self) -> dict[str, Confidence]:
+        """The kinds that its types suggest, sorted, each with the surest confidence."""
+        return surest(self.suggested)
+
 
 @dataclass(frozen=True, slots=True)
 class JudgedBag:
@@ -191,11 +196,7 @@ class JudgedBag:
     @property
     def suggested(self) -> dict[str, Confidence]:
         """The kinds that its types suggest, sorted, each with the surest confidence."""
-        surest: dict[str, Confidence] = {}
-        for rule in sorted((one for topic in self.topics for one in topic.suggested), key=by_confidence):
-            for kind in rule.kinds:
-                surest.setdefault(kind, rule.confidence)
-        return dict(sorted(surest.items()))
+        return surest(rule for topic in self.topics for rule in topic.suggested)
 
     @property
     def open_topics(self) -> tuple[str, ...]:
