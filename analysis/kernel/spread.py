@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import FlowGraph
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class Spread:
     """What labels mean for a graph, and the fixpoint of it. Made by ``spread``, then only read.
 

@@ -7,7 +7,6 @@ names that exist, never silence (rule S11).
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import replace
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
@@ -185,7 +184,7 @@ def _outside(graph: FlowGraph, labels: Iterable[Labels]) -> dict[int, NonRosFact
     found = _seen(graph)
     for vertex, element in enumerate(graph.elements):
         if facts := stated.get((element.kind, element.name)):
-            found[vertex] = replace(facts, limits=limits)
+            found[vertex] = facts._replace(limits=limits)
     return dict(sorted(found.items()))
 
 
