@@ -197,7 +197,6 @@ class _Work:
     unknown: set[int]
     left: int
     open: dict[Shown, int] = field(default_factory=lambda: defaultdict(int))  # as shown -> numbers of categories
-    today: dict[tuple[int, int], Mapping[Key, State]] = field(default_factory=dict)  # by one of ``reaches`` and its end
 
     @cached_property
     def reaches(self) -> tuple[Reach, ...]:
@@ -286,19 +285,13 @@ class _Work:
         new = {v: spread.present(v) for v in spots.vertices}  # of others only what is more
         for reach in self.reaches if opened or along else ():
             more = reach.further(now, [v for v in opened if reach.whole.arrived(v)], along)
-            pairs += [(self._states(reach, v), more.states(v)) for v in more.touched & self.ends]
+            pairs += [(reach.states(v), more.states(v)) for v in more.touched & self.ends]
             for vertex, bits in more.new().items():
                 new[vertex] = new.get(vertex, 0) | bits
         covered = {v: now.covered.get(v, 0) if v in now.facts else spread.covered.get(v, 0) for v in new}
         return pairs, {
             v: bits & ~spread.gone.get(v, 0) & ~(0 if v in self.unknown else covered[v]) for v, bits in new.items()
         }
-
-    def _states(self, reach: Reach, vertex: int) -> Mapping[Key, State]:
-        """The findings that end at an element today."""
-        if (id(reach), vertex) not in self.today:
-            self.today[id(reach), vertex] = reach.states(vertex)
-        return self.today[id(reach), vertex]
 
     def _anew(self, less: Bound) -> tuple[list[Pair], dict[int, int]]:
         """The same by an analysis of the whole."""
