@@ -116,6 +116,8 @@ class Recording:
         How many; None where a bag does not say.
     start, end
         Nanoseconds since 1970; None where a bag does not say.
+    oldest
+        The earliest time that any of the bags says, whatever the others do.
     """
 
     bag: str
@@ -124,13 +126,14 @@ class Recording:
     messages: int | None = None
     start: int | None = None
     end: int | None = None
+    oldest: int | None = None
 
 
 def recording_of(path: str, bags: Sequence[Bag]) -> Recording:
     """Return the numbers of some bags together; what one of them does not say is not known.
 
     >>> recording_of("runs", (Bag("a", size=5, start=1, end=2), Bag("b", size=7, start=4, end=9)))
-    Recording(bag='runs', size=12, topics=0, messages=0, start=1, end=9)
+    Recording(bag='runs', size=12, topics=0, messages=0, start=1, end=9, oldest=1)
     """
     counts = [bag.messages for bag in bags if bag.messages is not None]
     starts = [bag.start for bag in bags if bag.start is not None]
@@ -142,6 +145,7 @@ def recording_of(path: str, bags: Sequence[Bag]) -> Recording:
         sum(counts) if len(counts) == len(bags) else None,
         min(starts) if len(starts) == len(bags) and starts else None,
         max(ends) if len(ends) == len(bags) and ends else None,
+        min(starts + ends, default=None),
     )
 
 

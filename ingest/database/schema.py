@@ -132,6 +132,7 @@ ELEMENT = NodeKind(
         Property("bag_messages", INTEGER, "how many messages, where it says so"),
         Property("bag_start", INTEGER, "from when, in nanoseconds since 1970"),
         Property("bag_end", INTEGER, "to when"),
+        Property("bag_oldest", INTEGER, "the earliest time that any of its bags says"),
         Property("country", STRING, "ISO 3166-1 code; of a node that of its system, where it is stated"),
         Property("operator", STRING, "outside ROS: who runs it"),
         Property("recipient", STRING, "outside ROS: controller, joint-controller, processor or third-party"),
