@@ -19,6 +19,7 @@ from rosprivacy.analysis.model.category import (
     is_article_9,
 )
 from rosprivacy.analysis.model.diagnostic import (
+    ACCESS_GAP,
     ASSUMED,
     BAG_GAP,
     CAREFUL_DENY,
@@ -29,6 +30,7 @@ from rosprivacy.analysis.model.diagnostic import (
     ENCLAVES_MADE_UP,
     FALLBACK_TAKEN,
     FOLDED_NAMES,
+    GAPS,
     GOES_NOWHERE,
     LEGAL_BASIS,
     MERGED,
@@ -100,6 +102,7 @@ from rosprivacy.analysis.model.statement import (
 from rosprivacy.analysis.model.suggestion import Confidence, Suggestion, by_confidence, interface_of
 
 __all__ = [
+    "ACCESS_GAP",
     "ARTICLE_9",
     "ARTICLE_9_VERDICTS",
     "ARTICLE_10",
@@ -119,6 +122,7 @@ __all__ = [
     "ENCLAVES_MADE_UP",
     "FALLBACK_TAKEN",
     "FOLDED_NAMES",
+    "GAPS",
     "GLOB",
     "GOES_NOWHERE",
     "KINDS",

@@ -30,6 +30,8 @@ ENCLAVES_MADE_UP = "enclaves-made-up"
 FOLDED_NAMES = "folded-names"
 OBSERVATION_GAP = "observation-gap"  # what an observation is known to miss: the verdict is undetermined at best (S16)
 BAG_GAP = "bag-gap"  # what is not known of a bag that is a storage: the verdict is undetermined at best (S11)
+ACCESS_GAP = "access-gap"  # permissions are not asked: what a participant does is not known (rules S6, S11)
+GAPS = (UNREAD_FILE, OBSERVATION_GAP, BAG_GAP, ACCESS_GAP)  # each makes the verdict undetermined at best
 RECORDING = "recording"  # a bag that is a storage: its size, its time, its topics
 SEEN_ALTHOUGH_DENIED = "seen-although-denied"
 ASSUMED = (OBSERVED, ENCLAVES_MADE_UP, FOLDED_NAMES, RECORDING)  # notices that stand under Assumed
@@ -97,11 +99,11 @@ class Diagnostic:
 
 
 def unread(diagnostics: Iterable[Diagnostic]) -> tuple[Place, ...]:
-    """Return where grants stand that were not read, or where an observation has a gap (rules S11, S16), sorted.
+    """Return where something stands that is known to be missing: ``GAPS`` (rules S11, S16), sorted.
 
     >>> said = [Diagnostic(Place(file, 1), Severity.WARNING, "", UNREAD_FILE) for file in ("b.xml", "a.xml")]
     >>> list(map(str, unread([*said, Diagnostic(Place("c.xml", 1), Severity.NOTICE, "")])))
     ['a.xml:1', 'b.xml:1']
     """
-    places = {said.place for said in diagnostics if said.code in (UNREAD_FILE, OBSERVATION_GAP, BAG_GAP)}
+    places = {said.place for said in diagnostics if said.code in GAPS}
     return tuple(sorted(places, key=lambda place: (place.file, place.line)))

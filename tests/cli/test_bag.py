@@ -197,7 +197,7 @@ def test_what_types_suggest_stands_beside_what_labels_say(cli: Cli, tmp_path: Pa
     assert whole["assumptions"]["suggested_by"]["file"] == "rosprivacy:types"
     text = cli("bag", run, "-l", said).stdout
     assert f"{IMAGE} suggests Video (likely): a picture of what is in front of the camera" in text
-    assert "  suggested by its types, confirmed by nobody: DepthImage (may), RobotPosition (may)," in text
+    assert "  suggested by its types, as questions: DepthImage (may), RobotPosition (may)," in text
     (row,) = csv.DictReader(io.StringIO(cli("bag", run, "-l", said, "-f", "csv").stdout))
     assert row["suggested"] == "DepthImage (may); RobotPosition (may); ThermalImage (may); Video (likely)"
 
