@@ -63,7 +63,14 @@ def by_confidence(rule: Suggestion) -> int:
 
 
 def surest(rules: Iterable[Suggestion]) -> dict[str, Confidence]:
-    """Return the kinds that some rules suggest, sorted, each with the surest confidence."""
+    """Return the kinds that some rules suggest, sorted, each with the surest confidence.
+
+    >>> from rosprivacy.analysis.model.diagnostic import Place
+    >>> said = ("MAY", "CERTAIN")
+    >>> rules = [Suggestion("a/msg/A", ("Video",), Confidence[one], "", "", Place("types.yaml", 1)) for one in said]
+    >>> {kind: str(confidence) for kind, confidence in surest(rules).items()}
+    {'Video': 'certain'}
+    """
     found: dict[str, Confidence] = {}
     for rule in sorted(rules, key=by_confidence):
         for kind in rule.kinds:
