@@ -7,9 +7,9 @@ flows let more pass: only what is new is followed, so a small change costs what 
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.many_flows import parted
 
@@ -23,8 +23,7 @@ if TYPE_CHECKING:
 NOTHING: Mapping[int, int] = MappingProxyType({})
 
 
-@dataclass(frozen=True, slots=True)
-class Lanes:
+class Lanes(NamedTuple):
     """How the bits of several sources stand side by side in one number.
 
     Attributes
@@ -75,8 +74,7 @@ class Lanes:
                 yield source, bits
 
 
-@dataclass(frozen=True, slots=True)
-class Doing:
+class Doing(NamedTuple):
     """What elements and flows do with what comes, in lanes; made for elements without a word of their own too.
 
     Attributes
@@ -114,9 +112,9 @@ class Doing:
     emits: Mapping[int, int]
     flow_emits: Mapping[int, int]
     allowed: int
-    stop: Mapping[int, int] = field(default_factory=dict)
-    now: Mapping[int, tuple[int, tuple[tuple[int, int], ...]]] = field(default_factory=dict)
-    flows_now: Mapping[int, int] = field(default_factory=dict)
+    stop: Mapping[int, int] = {}
+    now: Mapping[int, tuple[int, tuple[tuple[int, int], ...]]] = {}
+    flows_now: Mapping[int, int] = {}
 
     @classmethod
     def of(cls, spread: Spread, sources: Sequence[int]) -> Doing:
@@ -152,13 +150,13 @@ class Doing:
 
     def stopped(self, stop: Mapping[int, int], allowed: int) -> Doing:
         """Return the same for some bits, some of which are not followed on from some elements; both in lanes."""
-        return replace(self, stop={v: bits & allowed for v, bits in stop.items() if bits & allowed}, allowed=allowed)
+        return self._replace(stop={v: bits & allowed for v, bits in stop.items() if bits & allowed}, allowed=allowed)
 
     def changed(self, spread: Spread) -> Doing:
         """Return the same with what another spread says of the elements and flows that it is about."""
         every = self.lanes.every
         now = {v: (every(bits), spread.derives[v]) for v, bits in spread.keeps.items()}
-        return replace(self, now=now, flows_now={i: every(bits) for i, bits in spread.flow_keeps.items()})
+        return self._replace(now=now, flows_now={i: every(bits) for i, bits in spread.flow_keeps.items()})
 
     def made(self, vertex: int, bits: int) -> int:
         """Return what an element makes of what arrives, in the same lanes."""
@@ -185,7 +183,7 @@ class Doing:
         return bits & (self.flow_keeps.get(flow, bits) if keeps is None else keeps) & self.allowed
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class Flood:
     """What arrives and what leaves, in lanes; of one that was taken further only what is more.
 

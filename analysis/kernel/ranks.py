@@ -10,8 +10,7 @@ outdone by a glob of the user's whose last segment is not written out. Equals th
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import LabelError, shown
 from rosprivacy.analysis.model import CANNOT, GLOB, STANDARD, Method
@@ -44,8 +43,7 @@ NONE_OF = {"source": "no-source", "leak": "no-leak"}  # role -> what takes it ba
 Rank = tuple[int, int, int]
 
 
-@dataclass(frozen=True, slots=True)
-class Decided:
+class Decided(NamedTuple):
     """The statements that hold, the highest rank first; and those of sources and leaks that do not, with what won."""
 
     accepted: tuple[Statement, ...]

@@ -22,7 +22,7 @@ def _both(categories: tuple[str, ...]) -> Mapping[str, int]:
     return {category: bits.both(number) for number, category in enumerate(categories)}
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class Spread:
     """What labels mean for a graph, and the fixpoint of it. Made by ``spread``, then only read.
 

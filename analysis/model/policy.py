@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.model.diagnostic import Diagnostic, Place
 
 
-@dataclass(frozen=True, slots=True)
-class Profile:
+class Profile(NamedTuple):
     """A node's entry in an enclave, ``<profile ns node>``."""
 
     enclave: str
@@ -18,8 +17,7 @@ class Profile:
     place: Place
 
 
-@dataclass(frozen=True, slots=True)
-class Seen:
+class Seen(NamedTuple):
     """When a grant was seen in use, and by which doors to the running system (rule S16).
 
     Attributes
@@ -33,8 +31,7 @@ class Seen:
     last: str
 
 
-@dataclass(frozen=True, slots=True)
-class Grant:
+class Grant(NamedTuple):
     """What one policy line allows or denies to one profile.
 
     Attributes

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.bounds import Bounds
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class _Expanded:
     """The files behind the arguments; ``found`` by folder or glob."""
 
