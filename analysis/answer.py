@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.model.fact import fact
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping
 
@@ -92,7 +94,7 @@ class Finding:
         return not self.dismissed and not self.accepted
 
 
-@dataclass(frozen=True, slots=True)
+@fact
 class OpenQuestion:
     """An element that a category reaches and that no label covers for it, rule S11.
 
@@ -115,7 +117,7 @@ class OpenQuestion:
     missing: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@fact
 class Carried:
     """What an element carries: emitted categories, sorted; ``pseudonymised`` is a plane of its own (rule S8)."""
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.kernel.dominators import immediate_dominators
 from rosprivacy.analysis.many_flows import parted
+from rosprivacy.analysis.model.fact import fact
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -28,7 +29,7 @@ MOST = 200_000  # flows with data; of more it is not worked out what stands behi
 Shown = tuple[str, str, str, str]
 
 
-@dataclass(frozen=True, slots=True)
+@fact
 class Behind:
     """What a person wants to know of an open element before looking at it.
 

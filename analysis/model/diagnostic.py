@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.model.fact import fact
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
@@ -34,7 +36,7 @@ NO_LEAK_NAMED = "no-leak-named"
 NOTHING_FOLLOWED = (NO_SOURCE, GOES_NOWHERE)
 
 
-@dataclass(frozen=True, slots=True)
+@fact
 class Place:
     """A line of a file; line 0 where there is none."""
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.model.fact import fact
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -13,7 +15,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model.policy import Grant, Profile
 
 
-@dataclass(frozen=True, slots=True)
+@fact
 class Flow:
     """A directed step along which data can go, by index into ``FlowGraph.elements``.
 

@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.model.fact import fact
+
 if TYPE_CHECKING:
     from rosprivacy.analysis.model.diagnostic import Diagnostic, Place
 
 
-@dataclass(frozen=True, slots=True)
+@fact
 class Profile:
     """A node's entry in an enclave, ``<profile ns node>``."""
 
@@ -33,7 +35,7 @@ class Seen:
     last: str
 
 
-@dataclass(frozen=True, slots=True)
+@fact
 class Grant:
     """What one policy line allows or denies to one profile.
 
