@@ -6,6 +6,7 @@ In: what was found, and what it rests on. Out: ``Answer``. A format is a functio
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.contexts import Contexts
@@ -29,9 +30,9 @@ if TYPE_CHECKING:
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Answer:
-    """An analysis and what it rests on.
+    """An analysis and what it rests on; what many formats ask of it is found once.
 
     Attributes
     ----------
@@ -76,13 +77,13 @@ class Answer:
         """Return what closes the open findings, a mitigation document; or why there is none, a word."""
         return "fleet" if self.fleet else "graph"
 
-    @property
+    @cached_property
     def taken_away(self) -> tuple[TakenAway, ...]:
         """The ledger: what was taken away on the data's side, and on whose word; of robots that are alike of one."""
         rows = ledger(self.analysis, self.bound, self.vocabulary.hierarchy, self.diagnostics)
         return tuple(row for row in rows if row.element is None or row.element.robot not in self._beside)
 
-    @property
+    @cached_property
     def hangs_on(self) -> tuple[Reliance, ...]:
         """What the answer hangs on, statement by statement; of robots that are alike of one."""
         rows = reliances(self.analysis, self.bound, self.vocabulary.hierarchy, self.accepts)

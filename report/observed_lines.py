@@ -1,6 +1,6 @@
 """What an answer rests on that was seen and not granted: lines under Assumed, in every language (rule S16).
 
-In: a JSON document of the contract. Out: plain lines; the facts in them (times, doors, names) are as the reader said.
+In: a JSON document of the contract. Out: plain lines; the facts in them (names, numbers) are as the reader said.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from collections import defaultdict
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.model import ASSUMED
+from rosprivacy.analysis.model import ASSUMED, observed_when
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -31,10 +31,20 @@ def observed_lines(report: Mapping[str, Any], words: Words) -> Iterator[str]:
     for code, messages in said.items():
         for number, (message, files) in enumerate(messages.items(), 1):
             if number <= NAMED:
-                yield words(f"a.{code}", file=_named(files), said=message)
+                yield words(f"a.{code}", file=_named(files), said=_told(message, words))
         if len(messages) > NAMED:
             others = [file for files in list(messages.values())[NAMED:] for file in files]
             yield words(f"a.{code}", file=_named(others), said="…")
+
+
+def _told(message: str, words: Words) -> str:
+    """What the reader of an input said; from when to when somebody looked, and by which doors, in the language."""
+    when = observed_when(message)
+    if when is None:
+        return message
+    start, end, doors = when
+    named = words.row(words.known(f"door.{door}", shown(door)) for door in doors)
+    return words("a.observed.when", start=words.moment(start), end=words.moment(end), doors=named)
 
 
 def _named(files: list[str]) -> str:

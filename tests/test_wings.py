@@ -44,6 +44,7 @@ SAME_PART = {
     "non_ros": {"analysis", "report/document", "report/page"},  # what is told of non-ROS elements
     "robots": {"report", "report/sarif"},  # which robots a finding stands for, in words and in SARIF
     "why_not": {"analysis/findings", "cli", "report/document", "report/terminal"},  # the question, and its answer
+    "typed_channels": {"report/page", "report/rdf"},  # types of channels, as rows and as triples
     "unknown_ends": {"analysis/findings", "report/terminal"},  # what nobody knows the end of, and how it is told
 }
 

@@ -49,12 +49,13 @@ class Search:
         """Flows from a start to the nearest arrival of one of some bits; 0 if they start there."""
         if self.begun.get(vertex, 0) & bits:
             return 0
-        levels = [level for level, new, _ in self.arrived.get(vertex, ()) if new & bits]
+        arrived = self.arrived.get(vertex, ())
+        levels = [level for level, new, _ in arrived if new & bits]
         made = [
             level
             for bits_out, origin in self.left.get(vertex, ())
             if bits_out & bits and origin is not None and origin != START
-            for level, new, _ in self.arrived.get(vertex, ())
+            for level, new, _ in arrived
             if new >> origin & 1
         ]
         return min(levels + made, default=None)

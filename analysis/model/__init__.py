@@ -19,17 +19,22 @@ from rosprivacy.analysis.model.category import (
     is_article_9,
 )
 from rosprivacy.analysis.model.diagnostic import (
+    ACCESS_GAP,
     ASSUMED,
     BAG_GAP,
     CAREFUL_DENY,
     DEAD_DENY,
+    DUPLICATE_ENCLAVE,
     EMPTY_GROUP,
+    EMPTY_INCLUDE,
     ENCLAVES_MADE_UP,
     FALLBACK_TAKEN,
     FOLDED_NAMES,
+    GAPS,
     GOES_NOWHERE,
     LEGAL_BASIS,
     MERGED,
+    MISTAKEN_TILDE,
     NO_LEAK_NAMED,
     NO_SOURCE,
     NOT_READ,
@@ -40,12 +45,15 @@ from rosprivacy.analysis.model.diagnostic import (
     RECORDING,
     REFUSED_NAME,
     SEEN_ALTHOUGH_DENIED,
+    SEVERAL_PROFILES,
     SHARED_ENCLAVE,
     UNREAD_FILE,
     Diagnostic,
     Place,
     Severity,
+    observed_when,
     unread,
+    when_observed,
 )
 from rosprivacy.analysis.model.element import (
     CHANNELS,
@@ -54,6 +62,7 @@ from rosprivacy.analysis.model.element import (
     Element,
 )
 from rosprivacy.analysis.model.flow import Flow, FlowGraph
+from rosprivacy.analysis.model.lint_rule import Breach, LintRule
 from rosprivacy.analysis.model.message_type import OF_KIND, MessageType, kind_of_type
 from rosprivacy.analysis.model.policy import Grant, Policy, Profile, Seen
 from rosprivacy.analysis.model.reason import REASONS, Reason
@@ -93,6 +102,7 @@ from rosprivacy.analysis.model.statement import (
 from rosprivacy.analysis.model.suggestion import Confidence, Suggestion, by_confidence, interface_of
 
 __all__ = [
+    "ACCESS_GAP",
     "ARTICLE_9",
     "ARTICLE_9_VERDICTS",
     "ARTICLE_10",
@@ -106,16 +116,20 @@ __all__ = [
     "CONTEXTS",
     "DEAD_DENY",
     "DISCLOSURE",
+    "DUPLICATE_ENCLAVE",
     "EMPTY_GROUP",
+    "EMPTY_INCLUDE",
     "ENCLAVES_MADE_UP",
     "FALLBACK_TAKEN",
     "FOLDED_NAMES",
+    "GAPS",
     "GLOB",
     "GOES_NOWHERE",
     "KINDS",
     "LEGAL_BASIS",
     "MAY_REVEAL",
     "MERGED",
+    "MISTAKEN_TILDE",
     "NAME",
     "NON_ROS",
     "NOTHING_FOLLOWED",
@@ -134,6 +148,7 @@ __all__ = [
     "REFUSED_NAME",
     "SEEN_ALTHOUGH_DENIED",
     "SEGMENT",
+    "SEVERAL_PROFILES",
     "SHARED_ENCLAVE",
     "SPECIAL",
     "STANDARD",
@@ -146,6 +161,7 @@ __all__ = [
     "BagTopic",
     "BagVerdict",
     "Bound",
+    "Breach",
     "ByCategory",
     "Category",
     "Confidence",
@@ -156,6 +172,7 @@ __all__ = [
     "Grant",
     "JudgedBag",
     "Legal",
+    "LintRule",
     "MessageType",
     "Method",
     "NonRosFacts",
@@ -179,6 +196,8 @@ __all__ = [
     "is_article_9",
     "iso",
     "kind_of_type",
+    "observed_when",
     "recording_of",
     "unread",
+    "when_observed",
 ]

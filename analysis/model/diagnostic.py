@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING
@@ -20,6 +21,10 @@ SHARED_ENCLAVE = "shared-enclave"
 MERGED = "merged"  # policies that make one graph, and may not have been meant to
 FALLBACK_TAKEN = "fallback-taken"
 EMPTY_GROUP = "empty-group"
+EMPTY_INCLUDE = "empty-include"
+DUPLICATE_ENCLAVE = "duplicate-enclave"
+SEVERAL_PROFILES = "several-profiles"
+MISTAKEN_TILDE = "mistaken-tilde"
 REFUSED_NAME = "refused-name"
 LEGAL_BASIS = "legal-basis"  # one that is stated lacks something that the law asks for
 OBSERVED = "observed"  # from when to when, by which doors: what was not seen proves nothing (rule S16)
@@ -27,6 +32,8 @@ ENCLAVES_MADE_UP = "enclaves-made-up"
 FOLDED_NAMES = "folded-names"
 OBSERVATION_GAP = "observation-gap"  # what an observation is known to miss: the verdict is undetermined at best (S16)
 BAG_GAP = "bag-gap"  # what is not known of a bag that is a storage: the verdict is undetermined at best (S11)
+ACCESS_GAP = "access-gap"  # permissions are not asked: what a participant does is not known (rules S6, S11)
+GAPS = (UNREAD_FILE, OBSERVATION_GAP, BAG_GAP, ACCESS_GAP)  # each makes the verdict undetermined at best
 RECORDING = "recording"  # a bag that is a storage: its size, its time, its topics
 SEEN_ALTHOUGH_DENIED = "seen-although-denied"
 ASSUMED = (OBSERVED, ENCLAVES_MADE_UP, FOLDED_NAMES, RECORDING)  # notices that stand under Assumed
@@ -34,6 +41,28 @@ NO_SOURCE = "no-source"  # what 'no leak found' lacks, so that it says nothing (
 GOES_NOWHERE = "goes-nowhere"
 NO_LEAK_NAMED = "no-leak-named"
 NOTHING_FOLLOWED = (NO_SOURCE, GOES_NOWHERE)
+
+
+_WHEN = re.compile(r"observed from (\S+) to (\S+) by (.+); what was not seen proves nothing")
+
+
+def when_observed(first: str, last: str, doors: Iterable[str]) -> str:
+    """Return the message from when to when somebody looked, and by which doors (rule S16).
+
+    >>> when_observed("2026-11-22T10:00:00Z", "2026-11-22T10:05:00Z", ["dds", "text"])
+    'observed from 2026-11-22T10:00:00Z to 2026-11-22T10:05:00Z by dds, text; what was not seen proves nothing'
+    """
+    return f"observed from {first} to {last} by {', '.join(doors)}; what was not seen proves nothing"
+
+
+def observed_when(message: str) -> tuple[str, str, tuple[str, ...]] | None:
+    """Return what ``when_observed`` was made of; None for another message.
+
+    >>> observed_when(when_observed("a", "b", ["dds", "text"])), observed_when("something else")
+    (('a', 'b', ('dds', 'text')), None)
+    """
+    match = _WHEN.fullmatch(message)
+    return (match[1], match[2], tuple(match[3].split(", "))) if match else None
 
 
 @fact
@@ -72,11 +101,11 @@ class Diagnostic:
 
 
 def unread(diagnostics: Iterable[Diagnostic]) -> tuple[Place, ...]:
-    """Return where grants stand that were not read, or where an observation has a gap (rules S11, S16), sorted.
+    """Return where something stands that is known to be missing: ``GAPS`` (rules S11, S16), sorted.
 
     >>> said = [Diagnostic(Place(file, 1), Severity.WARNING, "", UNREAD_FILE) for file in ("b.xml", "a.xml")]
     >>> list(map(str, unread([*said, Diagnostic(Place("c.xml", 1), Severity.NOTICE, "")])))
     ['a.xml:1', 'b.xml:1']
     """
-    places = {said.place for said in diagnostics if said.code in (UNREAD_FILE, OBSERVATION_GAP, BAG_GAP)}
+    places = {said.place for said in diagnostics if said.code in GAPS}
     return tuple(sorted(places, key=lambda place: (place.file, place.line)))

@@ -7,11 +7,12 @@ know: a topic that no policy names, and whatever is not known of a bag, so that 
 from __future__ import annotations
 
 import os
+from collections import defaultdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputErrors, LabelError, shown
-from rosprivacy.analysis.model import BAG_GAP, RECORDING, Diagnostic, Element, Severity, iso
+from rosprivacy.analysis.model import BAG_GAP, RECORDING, Diagnostic, Element, MessageType, Severity, iso
 from rosprivacy.analysis.text import counted
 from rosprivacy.ingest.policies.names import covers, is_pattern, recorded_channels
 from rosprivacy.ingest.reading.confined import WIDEN, leaves, unusable, what_leaves
@@ -65,6 +66,16 @@ def recorded(graph: FlowGraph, stated: Stated) -> Iterator[tuple[Element, Elemen
             yield from ((channel, storage, stated.place) for channel in _channels(graph, topic.name))
 
 
+def recorded_types(graph: FlowGraph, elements: Iterable[Stated]) -> defaultdict[int, list[MessageType]]:
+    """Return the types of the topics of bags, by vertex; who sent them no bag tells, so these limit nothing (S15)."""
+    topics = {e.name: v for v, e in enumerate(graph.elements) if e.kind == "topic" and not e.pattern}
+    found: defaultdict[int, list[MessageType]] = defaultdict(list)
+    for stated in elements:
+        for topic in (topic for bag in stated.bags for topic in bag.topics if topic.name in topics):
+            found[topics[topic.name]] += [MessageType(name, stated.place) for name in topic.types]
+    return found
+
+
 def told_of_bags(graph: FlowGraph, elements: Iterable[Stated]) -> Iterator[Diagnostic]:
     """Yield what a reader has to know of storages that are bags."""
     for stated in elements:
@@ -72,6 +83,9 @@ def told_of_bags(graph: FlowGraph, elements: Iterable[Stated]) -> Iterator[Diagn
             yield Diagnostic(stated.place, Severity.NOTICE, _about(stated.name, bag), RECORDING)
             for what in (*bag.gaps, *(f"{what} can hold anything" for what in bag.beside)):
                 said = f"not all of the bag {shown(bag.path)} is known: {what}"
+                yield Diagnostic(stated.place, Severity.WARNING, said, BAG_GAP)
+            if stated.outside.retention and bag.start is None and bag.messages != 0 and bag.complete:
+                said = f"nothing says when the bag {shown(bag.path)} was recorded, so its age is not judged"
                 yield Diagnostic(stated.place, Severity.WARNING, said, BAG_GAP)
             unknown = [topic.name for topic in _with_messages(bag) if not _channels(graph, topic.name)]
             if unknown:

@@ -19,6 +19,7 @@ from rosprivacy.analysis.model import Bound, Diagnostic, Severity, Surroundings
 from rosprivacy.analysis.non_ros import by_kind
 from rosprivacy.analysis.text import counted
 from rosprivacy.analysis.written_names import is_glob, literal, meant
+from rosprivacy.ingest.labels.bag_storages import recorded_types
 from rosprivacy.ingest.labels.label_file import OURS
 from rosprivacy.ingest.labels.stated_processing import two_of_one, united
 from rosprivacy.ingest.labels.stated_types import in_order, of_no_channel, stated_at
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.bounds import Bounds
-    from rosprivacy.analysis.model import FlowGraph, MessageType, NonRosFacts, Place, Processing, Statement
+    from rosprivacy.analysis.model import FlowGraph, NonRosFacts, Place, Processing, Statement
     from rosprivacy.ingest.labels.entries import Entry, FlowEntry
     from rosprivacy.ingest.labels.label_file import Labels
 
@@ -73,7 +74,7 @@ def join(
     subjects: dict[int, set[str]] = defaultdict(set)
     own: dict[int, Surroundings] = {}
     processing: dict[int, list[tuple[tuple[int, int], Processing]]] = defaultdict(list)
-    types: dict[int, list[MessageType]] = defaultdict(list)
+    types = recorded_types(graph, (stated for file in labels for stated in file.elements))
     flows_of = leaving(graph.flows)
     problems: list[InputError] = []
     for file in labels:

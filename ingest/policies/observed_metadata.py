@@ -20,6 +20,7 @@ from rosprivacy.analysis.model import (
     Diagnostic,
     Seen,
     Severity,
+    when_observed,
 )
 
 if TYPE_CHECKING:
@@ -81,8 +82,7 @@ class Observed:
 
 def diagnostics_of(observed: Observed, place: Place) -> Iterator[Diagnostic]:
     """Return what a reader has to know of a policy that was made of an observation."""
-    when = f"observed from {observed.first} to {observed.last} by {', '.join(observed.by)}"
-    yield Diagnostic(place, Severity.NOTICE, f"{when}; what was not seen proves nothing", OBSERVED)
+    yield Diagnostic(place, Severity.NOTICE, when_observed(observed.first, observed.last, observed.by), OBSERVED)
     if observed.made_up_enclaves:
         message = f"enclaves are made up: one per node ({observed.made_up_enclaves:,})"
         yield Diagnostic(place, Severity.NOTICE, message, ENCLAVES_MADE_UP)

@@ -126,7 +126,12 @@ def _types(index: Index) -> Iterator[str]:
     for file in said.get("types", ()):
         seen = file["observed"]
         if seen["from"]:
-            yield words("a.types.observed", file=fit(file["file"]), start=fit(seen["from"]), end=fit(seen["to"]))
+            yield words(
+                "a.types.observed",
+                file=fit(file["file"]),
+                start=words.moment(fit(seen["from"])),
+                end=words.moment(fit(seen["to"])),
+            )
     if "type_limits" not in said:
         return
     limits = said["type_limits"]

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.model import SPECIAL
 from rosprivacy.analysis.text import fit
 from rosprivacy.report.compare.changes import ASKED, Changes, changes
-from rosprivacy.report.document.analysis import bag_gaps, files_not_read, lacking, observation_gaps
+from rosprivacy.report.document.analysis import known_gap, lacking
 from rosprivacy.report.document.ledger import by_globs
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.finding_order import REVEALS, strength
@@ -35,6 +35,7 @@ from rosprivacy.report.page.opening import Opening, flows, opening
 from rosprivacy.report.page.purposes import Row, processed, signed
 from rosprivacy.report.page.reliance import Hanging, hanging
 from rosprivacy.report.page.review import Group, review, unknown_ends
+from rosprivacy.report.page.typed_channels import Typed, only_by_types, typed
 from rosprivacy.report.words.words import Words
 
 if TYPE_CHECKING:
@@ -45,7 +46,7 @@ if TYPE_CHECKING:
 DECIDE = "decide"  # its heading is what there is to decide
 SECTIONS = (
     DECIDE, "closing", "hangs", "changes", "fleet", "findings", "questions", "tables", "rights", "outside",
-    "sanitizers", "risks", "criteria", "sign", "kinds", "assumptions", "inventory", "method",
+    "sanitizers", "types", "risks", "criteria", "sign", "kinds", "assumptions", "inventory", "method",
 )  # fmt: skip
 NAMED = 3  # robots or policies in the title
 PARAGRAPHS = 10  # of the method note
@@ -134,6 +135,8 @@ class Outline:
     outside: tuple[Outside, ...]
     cleanings: tuple[sanitizers.Cleaning, ...]
     makings: tuple[sanitizers.Making, ...]
+    typed: tuple[Typed, ...]
+    only_by_types: tuple[tuple[str, str], ...]
     questions: tuple[Group, ...]
     ends: tuple[Group, ...]
     criteria: tuple[Criterion, ...]
@@ -190,7 +193,8 @@ def outline(
     links = tables.Links(entries)
     subjects, silent = tables.subjects(index, links)
     closes = closing(index, entries, proposals)
-    there = {"closing": bool(closes), "changes": bool(differ), "fleet": bool(index.alike)}
+    of_types = bool(document.get("types"))
+    there = {"closing": bool(closes), "changes": bool(differ), "fleet": bool(index.alike), "types": of_types}
     names = [name for name in SECTIONS if there.get(name, True)]
     return Outline(
         words=words,
@@ -225,6 +229,8 @@ def outline(
         outside=outside(index),
         cleanings=sanitizers.cleanings(index, entries),
         makings=sanitizers.makings(index),
+        typed=typed(index),
+        only_by_types=only_by_types(index),
         questions=review(index),
         ends=unknown_ends(index),
         criteria=criteria(index),
@@ -267,8 +273,7 @@ def _law(assumptions: Mapping[str, Any], words: Words) -> str:
 def _verdict(index: Index) -> str:
     """The verdict; ``nothing``, ``goes-nowhere`` or ``no-leak-named`` where it lacks grounds (rules S11, S12)."""
     verdict = str(index.document["verdict"])
-    unread = files_not_read(index.document) or observation_gaps(index.document) or bag_gaps(index.document)
-    asked = verdict != "undetermined" or index.document["open"] or unread
+    asked = verdict != "undetermined" or index.document["open"] or known_gap(index.document)
     followed = index.document["categories"] and asked
     return verdict if followed else lacking(index.document) or "nothing"
 

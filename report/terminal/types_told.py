@@ -23,7 +23,8 @@ def type_lines(report: Mapping[str, Any], most: int | None, words: Words) -> Ite
     assumptions = report["assumptions"]
     for file in assumptions.get("types", ()):
         seen = file["observed"]
-        times = words("tty.types.times", start=shown(seen["from"]), end=shown(seen["to"])) if seen["from"] else ""
+        start, end = (words.moment(shown(seen[at])) for at in ("from", "to"))
+        times = words("tty.types.times", start=start, end=end) if start else ""
         yield f"   {words('tty.types.file', file=shown(file['file']), sha=file['sha256'][:12], times=times)}", ""
     if "type_limits" not in assumptions:
         return

@@ -65,6 +65,16 @@ class Words:
         parts = date.split("-")
         return self("date", **dict(zip(("year", "month", "day"), parts, strict=True))) if len(parts) == DATE else date
 
+    def moment(self, time: str) -> str:
+        """Return a time, ``YYYY-MM-DDThh:mm:ssZ``, as the language writes it; anything else as it is.
+
+        >>> Words("de").moment("2026-04-30T10:00:00Z"), Words("fr").moment("?")
+        ('30.04.2026, 10:00:00 Uhr UTC', '?')
+        """
+        day, utc, hours = time.partition("T")
+        whole = utc and hours.endswith("Z") and day.count("-") == DATE - 1
+        return self("moment", date=self.date(day), time=hours.removesuffix("Z")) if whole else time
+
     def duration(self, text: str) -> str:
         """Return an ISO 8601 duration in words; what is none as it is.
 

@@ -682,6 +682,25 @@ WORDS = {
     "c.from": "Of",
     "c.to": "It makes",
     "s.special": "can be a special category from here on",
+    # --- message types
+    "h.types": "Message types of channels",
+    "ty.intro": "What programs send through these channels is of these types. Where the types of all writers are known and none of them can hold a kind of data, it ends there. That is no review: what lies behind stays to be reviewed, and who was not seen writing proves nothing.",
+    "ty.none": "No data gets to a channel of which message types are known.",
+    "t.typed": "Channels with data, and their types",
+    "t.only_types": "Closed only by a type: without it there would be a path",
+    "c.channel": "Channel",
+    "c.types": "Message types, and from where each is known",
+    "c.cannot": "Ends there, since no type can hold it",
+    "c.no_path": "From where to where",
+    "ty.stated": "stated, {place}",
+    "ty.observed": "observed, {place}",
+    "ty.recorded": "in a recording, {place}",
+    # --- observations
+    "moment": "{date}T{time}Z",
+    "a.observed.when": "observed from {start} to {end} by {doors}; what was not seen proves nothing",
+    "door.text": "text",
+    "door.dds": "dds",
+    "door.zenoh": "zenoh",
     # --- open questions
     "q.none": "Every element that data gets to is covered by a label.",
     "q.intro": (

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from jsonschema import Draft202012Validator
 
+from rosprivacy.private_neo4j import connection
 from tests.helpers.bags import IMAGE, ODOMETRY, mcap, rosbag2
 from tests.helpers.command import Cli, refused
 from tests.helpers.paths import ROOT
@@ -197,7 +198,7 @@ def test_what_types_suggest_stands_beside_what_labels_say(cli: Cli, tmp_path: Pa
     assert whole["assumptions"]["suggested_by"]["file"] == "rosprivacy:types"
     text = cli("bag", run, "-l", said).stdout
     assert f"{IMAGE} suggests Video (likely): a picture of what is in front of the camera" in text
-    assert "  suggested by its types, confirmed by nobody: DepthImage (may), RobotPosition (may)," in text
+    assert "  suggested by its types, as questions: DepthImage (may), RobotPosition (may)," in text
     (row,) = csv.DictReader(io.StringIO(cli("bag", run, "-l", said, "-f", "csv").stdout))
     assert row["suggested"] == "DepthImage (may); RobotPosition (may); ThermalImage (may); Video (likely)"
 
@@ -280,14 +281,15 @@ def test_a_storage_that_is_a_bag_comes_back_from_the_database(
     cli: Cli, tmp_path: Path, neo4j_server: Connection, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """What was recorded, what is known of the bag, and that not all of it is: the verdict stays undetermined (S11)."""
-    del neo4j_server  # it runs, and is the one that commands use
+    with connection.open_driver(neo4j_server) as driver:  # the one that commands use
+        driver.execute_query("MATCH (n) DETACH DELETE n")
     rosbag2(tmp_path / "run", topics={"/camera": (IMAGE, 2), "/other": (ODOMETRY, 1)})
     (tmp_path / "a.policy.xml").write_text(POLICY)
     said = labels(
         tmp_path,
         "nodes: {/cam: {source: {Video: [/camera]}, leak: [Voice]}, /nav: conduit, /log: conduit, /end: conduit}\n"
         "channels: {/camera: sensitive, /odom: sensitive}\nlimits: {Video: P30D}\n"
-        "elements: {run1: {kind: storage, bag: run, country: DE, retention: P1D, conduit: [Video]}}",
+        "elements: {run1: {kind: storage, bag: run, country: DE, retention: P20D, conduit: [Video]}}",
     )
     system = (tmp_path / "a.policy.xml", "-l", said)
     files = json.loads(cli("analyze", *system, "-f", "json").stdout)
@@ -298,12 +300,15 @@ def test_a_storage_that_is_a_bag_comes_back_from_the_database(
         stored = json.loads(done.stdout)
     finally:
         cli("unload", "--robot", "bagged")
-    assert (files["verdict"], stored["verdict"], done.returncode) == ("undetermined", "undetermined", 4)
+    assert (files["verdict"], stored["verdict"], done.returncode) == ("leak", "leak", 1)
+    assert [one["because"] for one in stored["findings"]] == [one["because"] for one in files["findings"]]
+    assert stored["findings"][0]["because"]["values"] == {"since": "2023-11-14", "kept": "P20D", "ended": "2023-12-04"}
     (row,) = [one for one in stored["outside"] if one["element"]["name"] == "run1"]
     assert row["holds"] == ["Video"]
     assert row["recording"] == {
         "bag": "run", "bytes": (tmp_path / "run" / "run.mcap").stat().st_size, "topics": 2, "messages": 3,
         "start": "2023-11-14T22:13:20Z", "end": "2023-11-14T22:13:22Z",
+        "oldest": "2023-11-14T22:13:20Z",
     }  # fmt: skip
     assert row == next(one for one in files["outside"] if one["element"]["name"] == "run1") | {
         "element": row["element"]

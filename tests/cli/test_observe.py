@@ -229,16 +229,27 @@ def test_a_saved_graph_keeps_what_was_seen_and_its_gaps(cli: Cli, robot: Path) -
     assert again["diagnostics"] == first["diagnostics"]
 
 
+WHEN = {
+    "en": f"observed from {AT} to {AT} by text; what was not seen proves nothing",
+    "de": "was nicht gesehen wurde, beweist nichts (beobachtet vom {at} bis zum {at} über die Textausgabe von ROS 2)",
+    "fr": "ce qui n'a pas été vu ne prouve rien (observé du {at} au {at} par la sortie texte de ROS 2)",
+}
+MOMENT = {"en": AT, "de": "22.11.2026, 10:00:00 Uhr UTC", "fr": "22/11/2026 à 10:00:00 UTC"}
+
+
 @pytest.mark.parametrize("language", ["en", "de", "fr"])
 def test_every_report_says_from_when_to_when_under_assumed(cli: Cli, robot: Path, language: str) -> None:
+    """S16: in the words of the reader's language, times and doors too."""
     observe(cli, robot)
-    said = f"observed from {AT} to {AT} by text; what was not seen proves nothing"
-    text = cli("analyze", "robot.policy.xml", "-l", "labels.yaml", "--lang", language, cwd=robot).stdout
+    said = WHEN[language].format(at=MOMENT[language])
+    words = ("robot.policy.xml", "-l", "labels.yaml", "--types", "robot.types.yaml", "--lang", language)
+    text = cli("analyze", *words, cwd=robot).stdout
     assert said in text
-    page = cli(
-        "report", "robot.policy.xml", "-l", "labels.yaml", "--lang", language, "-f", "markdown", cwd=robot
-    ).stdout
-    assert page.replace("\\", "").count(said) >= 1
+    page = cli("report", *words, "-f", "markdown", cwd=robot).stdout.replace("\\", "")
+    assert page.count(said) >= 1
+    if language != "en":
+        assert "observed from" not in text
+        assert all(AT not in line for line in page.splitlines() if MOMENT[language] in line)
 
 
 def test_sarif_has_a_result_where_only_a_gap_is_left(cli: Cli, robot: Path) -> None:

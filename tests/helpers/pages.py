@@ -30,7 +30,10 @@ def page(document: dict[str, Any], language: str = "en", **options: Any) -> Any:
 
 def texts(document: dict[str, Any], language: str = "en", **options: Any) -> Iterator[str]:
     """The report in both forms, as text without marks, with plain spaces."""
-    report = told(document, language, **options)
+    return texts_of(told(document, language, **options))
+
+
+def texts_of(report: Outline) -> Iterator[str]:
     for text in (lxml_html.document_fromstring(html(report)).text_content(), re.sub(r"\\(.)", r"\1", markdown(report))):
         yield plain(text)
 

@@ -12,6 +12,7 @@ from rdflib import OWL, SKOS, Graph, URIRef
 import rosprivacy
 from rosprivacy.ontology.iris import PUBLISHED, STORED, as_published, as_stored
 from rosprivacy.ontology.vocabulary import load
+from tests.helpers.daily import one_in
 from tests.helpers.ontologies import SHIPPED
 from tests.helpers.paths import ROOT
 
@@ -44,10 +45,13 @@ def old(tmp_path_factory: pytest.TempPathFactory) -> Vocabulary:
 
 @pytest.mark.parametrize(
     "parent",
-    [
-        "rp:Health", f"<{STORED}Health>", f"<{PUBLISHED}Health>",
-        "<https://w3id.org/\\u0072osprivacy#Health>",  # an escape of Turtle
-    ],
+    one_in(
+        2,
+        [
+            "rp:Health", f"<{STORED}Health>", f"<{PUBLISHED}Health>",
+            "<https://w3id.org/\\u0072osprivacy#Health>",  # an escape of Turtle
+        ],
+    ),
 )  # fmt: skip
 @pytest.mark.parametrize("namespace", [STORED, PUBLISHED])
 def test_an_ontology_of_users_says_the_same_with_either(

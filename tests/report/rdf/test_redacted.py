@@ -115,8 +115,8 @@ def test_it_says_as_much_of_as_many_things_under_the_same_ids(system: str) -> No
 @pytest.mark.parametrize(
     ("system", "base"),
     [
-        ("care-home", None),
-        ("fleet", None),
+        pytest.param("care-home", None, marks=pytest.mark.slow),
+        pytest.param("fleet", None, marks=pytest.mark.slow),
         ("care-home", "urn:x-rosprivacy:"),
         ("fleet", "https://w3id.org/rosprivacy#"),
     ],

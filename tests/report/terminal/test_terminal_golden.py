@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 from contextlib import chdir
+from functools import cache
 from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -37,6 +38,7 @@ SYSTEMS = {
 }
 
 
+@cache
 def document(name: str) -> dict[str, Any]:
     given = SYSTEMS[name]
     with chdir(ROOT / "examples"):
@@ -44,6 +46,7 @@ def document(name: str) -> dict[str, Any]:
     return result.document()
 
 
+@cache
 def turtlebot3(corpus: Path) -> dict[str, Any]:
     with chdir(corpus):
         return rosprivacy.analyze(TURTLEBOT3, rosprivacy.parse_labels(COSTMAP + MEMORY)).document()
