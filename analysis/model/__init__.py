@@ -1,6 +1,7 @@
-"""The facts that the rooms hand to each other, as frozen dataclasses. Names are those of the glossary.
+"""The facts that the rooms hand to each other, as named tuples and frozen dataclasses. Names are those of the glossary.
 
-Nothing here reads or writes anything; validation is done where a fact is made.
+Nothing here reads or writes anything; validation is done where a fact is made. What is known of bags is imported from
+``recording.py``, where there are some.
 """
 
 from rosprivacy.analysis.model.category import (
@@ -66,16 +67,6 @@ from rosprivacy.analysis.model.lint_rule import Breach, LintRule
 from rosprivacy.analysis.model.message_type import OF_KIND, MessageType, kind_of_type
 from rosprivacy.analysis.model.policy import Grant, Policy, Profile, Seen
 from rosprivacy.analysis.model.reason import REASONS, Reason
-from rosprivacy.analysis.model.recording import (
-    Bag,
-    BagTopic,
-    BagVerdict,
-    JudgedBag,
-    Recording,
-    TopicKinds,
-    iso,
-    recording_of,
-)
 from rosprivacy.analysis.model.statement import (
     CANNOT,
     CHANGED,
@@ -157,9 +148,6 @@ __all__ = [
     "THIRD_COUNTRY",
     "UNREAD_FILE",
     "UNSTATED",
-    "Bag",
-    "BagTopic",
-    "BagVerdict",
     "Bound",
     "Breach",
     "ByCategory",
@@ -170,7 +158,6 @@ __all__ = [
     "Flow",
     "FlowGraph",
     "Grant",
-    "JudgedBag",
     "Legal",
     "LintRule",
     "MessageType",
@@ -182,22 +169,18 @@ __all__ = [
     "Processing",
     "Profile",
     "Reason",
-    "Recording",
     "Seen",
     "Severity",
     "Situation",
     "Statement",
     "Suggestion",
     "Surroundings",
-    "TopicKinds",
     "UnknownEnd",
     "by_confidence",
     "interface_of",
     "is_article_9",
-    "iso",
     "kind_of_type",
     "observed_when",
-    "recording_of",
     "unread",
     "when_observed",
 ]

@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from enum import StrEnum
-from typing import TYPE_CHECKING
-
-from rosprivacy.analysis.model.fact import fact
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -43,7 +40,7 @@ NO_LEAK_NAMED = "no-leak-named"
 NOTHING_FOLLOWED = (NO_SOURCE, GOES_NOWHERE)
 
 
-_WHEN = re.compile(r"observed from (\S+) to (\S+) by (.+); what was not seen proves nothing")
+_WHEN = r"observed from (\S+) to (\S+) by (.+); what was not seen proves nothing"
 
 
 def when_observed(first: str, last: str, doors: Iterable[str]) -> str:
@@ -61,12 +58,11 @@ def observed_when(message: str) -> tuple[str, str, tuple[str, ...]] | None:
     >>> observed_when(when_observed("a", "b", ["dds", "text"])), observed_when("something else")
     (('a', 'b', ('dds', 'text')), None)
     """
-    match = _WHEN.fullmatch(message)
+    match = re.fullmatch(_WHEN, message)
     return (match[1], match[2], tuple(match[3].split(", "))) if match else None
 
 
-@fact
-class Place:
+class Place(NamedTuple):
     """A line of a file; line 0 where there is none."""
 
     file: str
@@ -84,8 +80,7 @@ class Severity(StrEnum):
     NOTICE = "notice"
 
 
-@dataclass(frozen=True, slots=True)
-class Diagnostic:
+class Diagnostic(NamedTuple):
     """Something that the reader of a report has to know about an input.
 
     Attributes

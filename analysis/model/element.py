@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import field
-
-from rosprivacy.analysis.model.fact import fact
+from dataclasses import dataclass, field
 
 CHANNELS = ("action", "service", "topic")
 NON_ROS = ("device", "display", "external-system", "person", "shared-memory", "side-channel", "storage")  # rule S9
@@ -12,7 +10,7 @@ KINDS = ("node", *NON_ROS, *CHANNELS)  # channels last: kernel/fixpoint.py sweep
 _RANKS = {kind: rank for rank, kind in enumerate(KINDS)}
 
 
-@fact
+@dataclass(frozen=True, slots=True)
 class Element:
     """Anything in the graph; identity is (robot, kind, name), rule S1.
 

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
-
-from rosprivacy.analysis.model.fact import fact
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.model.diagnostic import Diagnostic, Place
 
 
-@fact
-class Profile:
+class Profile(NamedTuple):
     """A node's entry in an enclave, ``<profile ns node>``."""
 
     enclave: str
@@ -20,8 +17,7 @@ class Profile:
     place: Place
 
 
-@dataclass(frozen=True, slots=True)
-class Seen:
+class Seen(NamedTuple):
     """When a grant was seen in use, and by which doors to the running system (rule S16).
 
     Attributes
@@ -35,8 +31,7 @@ class Seen:
     last: str
 
 
-@fact
-class Grant:
+class Grant(NamedTuple):
     """What one policy line allows or denies to one profile.
 
     Attributes

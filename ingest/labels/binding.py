@@ -7,7 +7,6 @@ names that exist, never silence (rule S11).
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import replace
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
@@ -183,7 +182,7 @@ def _outside(graph: FlowGraph, labels: Iterable[Labels]) -> dict[int, NonRosFact
     stated = {(entry.kind, entry.name): entry.outside for file in ranked for entry in file.elements}
     limits = ordered({limit for file in files for limit in file.limits})
     return {
-        vertex: replace(stated[element.kind, element.name], limits=limits)
+        vertex: stated[element.kind, element.name]._replace(limits=limits)
         for vertex, element in enumerate(graph.elements)
         if (element.kind, element.name) in stated
     }

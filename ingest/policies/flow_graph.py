@@ -125,7 +125,7 @@ def _before(rank: int, rules: Iterable[Rule]) -> tuple[list[Rule], dict[str, lis
     return (first, *apart(first))
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class _Draft:
     """A flow in the making: one role of one node on one channel may span several DDS topics.
 

@@ -8,8 +8,7 @@ like ours and cannot be read is told, and counts as a gap, since nobody knows wh
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import (
@@ -56,8 +55,7 @@ NAMED = 3  # of folded names
 Key = tuple[str, str, str, str]  # node, kind, role, name
 
 
-@dataclass(frozen=True, slots=True)
-class Observed:
+class Observed(NamedTuple):
     """What an observation says of itself, in the policy that was made of it (rule S16).
 
     Attributes

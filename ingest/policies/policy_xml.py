@@ -30,18 +30,12 @@ from rosprivacy.analysis.model import (
     Severity,
 )
 from rosprivacy.ingest.policies.names import resolve
-from rosprivacy.ingest.policies.observed_metadata import (
-    diagnostics_of,
-    observed_in,
-    observed_of,
-    seen_of,
-    together,
-    unreadable,
-)
 from rosprivacy.ingest.policies.xinclude import MAX_BYTES, Documents, Item, has_text
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping
+
+    from lxml import etree
 
     from rosprivacy.analysis.bounds import Bounds
     from rosprivacy.analysis.model import Seen
@@ -117,7 +111,7 @@ def read_policy(
     )
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class _Reader:
     """Walks the document once, from the outside in."""
 
@@ -207,6 +201,8 @@ class _Reader:
     def observed(self) -> None:
         """What the observations say that the policy was made of, as one."""
         if self.observations:
+            from rosprivacy.ingest.policies.observed_metadata import diagnostics_of, together  # noqa: PLC0415 - light start
+
             whole = together([observed for _, observed in self.observations])
             self.diagnostics.extend(diagnostics_of(whole, self.observations[0][0]))
 
@@ -221,17 +217,26 @@ class _Reader:
     def _seen(self, group: Item) -> Mapping[Key, Seen]:
         """When the grants of some profiles were seen, if an observation says so in their metadata."""
         for child in group.element:
-            observed = observed_in(child) if child.tag == "metadata" else None
-            if observed is not None:
-                place = Place(group.file, observed.sourceline or 0)
-                try:
-                    seen, said = seen_of(observed), observed_of(observed)
-                except ValueError as error:
-                    self.diagnostics.append(unreadable(str(error), place))
-                else:
-                    self.observations.append((place, said))
-                    return seen
+            seen = self._seen_in(child, group.file) if child.tag == "metadata" else None
+            if seen is not None:
+                return seen
         return {}
+
+    def _seen_in(self, metadata: etree._Element, file: str) -> Mapping[Key, Seen] | None:
+        """What some metadata says of an observation, if it can be read."""
+        from rosprivacy.ingest.policies import observed_metadata  # noqa: PLC0415 - light start
+
+        observed = observed_metadata.observed_in(metadata)
+        if observed is None:
+            return None
+        place = Place(file, observed.sourceline or 0)
+        try:
+            seen, said = observed_metadata.seen_of(observed), observed_metadata.observed_of(observed)
+        except ValueError as error:
+            self.diagnostics.append(observed_metadata.unreadable(str(error), place))
+            return None
+        self.observations.append((place, said))
+        return seen
 
     def _profile(self, profile: Item, enclave: str | None) -> None:
         self._attributes(profile, {"ns", "node"})

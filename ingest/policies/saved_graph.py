@@ -226,7 +226,7 @@ def _of_earlier_version(grants: list[Grant], said: Iterable[Diagnostic]) -> tupl
     for grant in grants:
         file, line = grant.place.file, grant.place.line
         starts = [p for p, path in again if path == grant.enclave and (p.file != file or p.line <= line)]
-        read.append(replace(grant, dead=bool(starts)))
+        read.append(grant._replace(dead=bool(starts)))
         if starts and not grant.allow:
             message = f"DENY of {shown(grant.name)} is taken as dead: the graph was saved by an earlier version, which"
             told[Diagnostic(grant.place, Severity.WARNING, f"{message} does not say; {AGAIN}", DEAD_DENY)] = None

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.model import BagVerdict
+from rosprivacy.analysis.model.recording import BagVerdict
 from rosprivacy.analysis.text import counted
 
 if TYPE_CHECKING:

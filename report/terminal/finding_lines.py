@@ -6,8 +6,7 @@ In: a JSON document of the contract. Out: lines. What a person decides first sta
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import CHANNELS
@@ -178,8 +177,7 @@ def _unreviewed(report: Mapping[str, Any], findings: Iterable[Mapping[str, Any]]
     return {(element, name) for element, question in open_here if element in told for name in question["categories"]}
 
 
-@dataclass(frozen=True, slots=True)
-class _Way:
+class _Way(NamedTuple):
     """How a witness is told, hop by hop.
 
     Attributes

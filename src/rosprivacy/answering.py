@@ -12,10 +12,8 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.answer import ClosedByTypes
 from rosprivacy.analysis.contexts import Contexts
 from rosprivacy.analysis.findings.findings import Options, analyse
-from rosprivacy.analysis.findings.held_by_types import held_by_types
 from rosprivacy.analysis.findings.processed import lacks, processed
 from rosprivacy.analysis.fleet.likeness import pattern_id
-from rosprivacy.analysis.kernel.type_limits import under_limits
 from rosprivacy.analysis.model import unread
 from rosprivacy.analysis.modes import Paths, View
 from rosprivacy.assumptions import assumptions_of
@@ -58,7 +56,11 @@ def answer(system: System, question: Question) -> Result:
         bounds=question.settings.bounds,
     )
     limits = question.type_limits() if question.type_limits and system.bound.types else None
-    bound = under_limits(system.graph, system.bound, system.vocabulary.hierarchy, limits)
+    bound = system.bound
+    if limits is not None:
+        from rosprivacy.analysis.kernel.type_limits import under_limits  # noqa: PLC0415 - light start
+
+        bound = under_limits(system.graph, bound, system.vocabulary.hierarchy, limits)
     analysis = analyse(system.graph, bound, system.vocabulary.hierarchy, options)
     if bound is not system.bound:
         analysis = _beside(system, options, analysis)
@@ -70,9 +72,11 @@ def answer(system: System, question: Question) -> Result:
 
 def _beside(system: System, options: Options, analysis: Analysis) -> Analysis:
     """An analysis under what types cannot carry, with what only this closes: the whole is analysed without it, too."""
+    from rosprivacy.analysis.findings.held_by_types import held_by_types  # noqa: PLC0415 - light start
+
     closed = _closed(system, analysis) if options.choose else None
     hierarchy = system.vocabulary.hierarchy
-    without = analyse(system.graph, system.bound, hierarchy, replace(options, choose=closed, paths=Paths.witness))
+    without = analyse(system.graph, system.bound, hierarchy, options._replace(choose=closed, paths=Paths.witness))
     gone = closed.of(without.findings) if closed else _gone(system, analysis, without)
     return held_by_types(analysis, without, gone, all_read=not options.unread)
 
