@@ -346,7 +346,7 @@ def _without(bound: Bound, statement: Statement, spots: _Spots) -> Bound:
 
 
 def _less(said: tuple[Statement, ...], statement: Statement) -> tuple[Statement, ...]:
-    return tuple(one for one in said if one != statement)
+    return tuple(one for one in said if one.categories != statement.categories or one != statement)
 
 
 def _distinct(elements: Iterable[Element]) -> tuple[Element, ...]:

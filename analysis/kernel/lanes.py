@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.many_flows import parted
@@ -17,6 +18,9 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.many_flows import Meeting
+
+
+NOTHING: Mapping[int, int] = MappingProxyType({})
 
 
 class Lanes(NamedTuple):
@@ -261,7 +265,9 @@ class Flood:
         more = Flood(doing, self)
         pending: dict[int, int] = {}
         for vertex in vertices:
-            more._leave(vertex, doing.onward(vertex, self.arrived(vertex)), pending)
+            if new := doing.onward(vertex, self.arrived(vertex)) & ~self.left(vertex):
+                more.leaves[vertex] = self.left(vertex) | new
+                pending[vertex] = new
         for index, source, target in flows:
             bits = self.left(source) | doing.flow_emits.get(index, 0)
             more._arrive((target,), doing.along(index, bits), pending)
@@ -284,17 +290,15 @@ class Flood:
                 self._arrive(meeting.read if new else (), new, pending)
 
     def _arrive(self, targets: Iterable[int], bits: int, pending: dict[int, int]) -> None:
-        doing, arrives = self.doing, self.arrives
-        before = self.before.arrives if self.before else {}
+        doing, arrives, leaves = self.doing, self.arrives, self.leaves
+        arrived, left = (self.before.arrives, self.before.leaves) if self.before else (NOTHING, NOTHING)
         for target in targets:
-            known = arrives[target] if target in arrives else before.get(target, 0)
-            if new := bits & ~known:
-                arrives[target] = known | new
-                if onward := doing.onward(target, new) if target in doing.labelled else new:
-                    self._leave(target, onward, pending)
-
-    def _leave(self, vertex: int, bits: int, pending: dict[int, int]) -> None:
-        known = self.left(vertex)
-        if new := bits & ~known:
-            self.leaves[vertex] = known | new
-            pending[vertex] = pending.get(vertex, 0) | new
+            known = arrives[target] if target in arrives else arrived.get(target, 0)
+            if not (new := bits & ~known):
+                continue
+            arrives[target] = known | new
+            onward = doing.onward(target, new) if target in doing.labelled else new
+            known = leaves[target] if target in leaves else left.get(target, 0)
+            if new := onward & ~known:
+                leaves[target] = known | new
+                pending[target] = pending.get(target, 0) | new

@@ -94,9 +94,11 @@ def named(
     [('Video', '/video', 2)]
     """
     rows: list[tuple[str, Statement, int, int]] = []
+    if not bound.through:
+        return rows
     matches: dict[int, list[int]] = defaultdict(list)
     met: dict[int, list[int]] = defaultdict(list)
-    own, meetings = parted(graph.flows) if bound.through else ((), ())
+    own, meetings = parted(graph.flows)
     for index, flow in own:
         if flow.role == MATCHES:
             matches[flow.source].append(index)

@@ -169,12 +169,11 @@ def _distance(statement: Statement, category: str, hierarchy: Hierarchy) -> int 
 
 
 def _named_distance(statement: Statement, category: str, hierarchy: Hierarchy) -> int | None:
-    up = [hierarchy.distance(category, named) for named in statement.categories]
-    broader = [d for d in up if d is not None]
-    if broader:
-        return min(broader)
-    down = [hierarchy.overlap(category, named) for named in statement.categories if statement.role in MAY]
-    common = [d for d in down if d is not None]
+    above, near = hierarchy.ancestors[category], hierarchy.overlaps[category]
+    broader = [above[named] for named in statement.categories if named in above]
+    if broader or statement.role not in MAY:
+        return min(broader, default=None)
+    common = [near[named] for named in statement.categories if named in near]
     return -min(common) if common else None
 
 
