@@ -51,7 +51,7 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "mitigation": READING,
         "keystore": READING,
         "lint": READING,
-        "observe": READING | {"labels", "bags"},
+        "observe": READING | {"labels", "bags", "types"},
         "fleet": READING | {"labels", "types"},
         "database": READING | {"labels", "fleet"},
     },
