@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.model import ARTICLE_9_VERDICTS, MAY_REVEAL, SPECIAL
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Mapping
+    from collections.abc import Collection, Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.answer import Finding
     from rosprivacy.analysis.hierarchy import Hierarchy
@@ -38,24 +38,29 @@ def surrounded(categories: Mapping[str, Category], hierarchy: Hierarchy) -> dict
         for above in hierarchy.ancestors[name]:
             near[name][above] = None
             near[above][name] = None
+    stated = {name: [*_stated(category)] for name, category in categories.items()}
     return {
         name: replace(
             category,
-            in_context=_stated(categories[other] for other in sorted(near[name])),
+            in_context=_each_once(said for other in sorted(near[name]) for said in stated[other]),
             look_at=tuple(sorted({at for above in hierarchy.ancestors[name] for at in categories[above].look_at})),
         )
         for name, category in categories.items()
     }
 
 
-def _stated(categories: Iterable[Category]) -> tuple[Legal, ...]:
-    """What is stated of some categories themselves, each statement once, with the first of them."""
+def _stated(category: Category) -> Iterator[Legal]:
+    """What is stated of a category itself."""
+    for legal in category.in_context:
+        if legal.stated_of in ("", category.name):  # else it came from a kind near it
+            yield replace(legal, stated_of=category.name)
+
+
+def _each_once(statements: Iterable[Legal]) -> tuple[Legal, ...]:
+    """Each statement once, with the first category of which it is made."""
     found: dict[tuple[str, str, str], Legal] = {}
-    for category in categories:
-        for legal in category.in_context:
-            if legal.stated_of in ("", category.name):  # else it came from a kind near it
-                stated = replace(legal, stated_of=category.name)
-                found.setdefault((legal.context, legal.name, legal.condition), stated)
+    for legal in statements:
+        found.setdefault((legal.context, legal.name, legal.condition), legal)
     return tuple(found[key] for key in sorted(found))
 
 

@@ -10,8 +10,9 @@ another if it is from one of these days on, so that doubt is shown and not passe
 
 from __future__ import annotations
 
+from calendar import monthrange
 from dataclasses import dataclass
-from datetime import date, timedelta
+from datetime import date, datetime, timedelta
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -50,6 +51,20 @@ class Duration:
         """Return its length in seconds from the first day of a month on."""
         months = start.year * 12 + start.month - 1 + self.months
         return (date(months // 12, months % 12 + 1, 1) - start) / _SECOND + self.seconds
+
+    def ends(self, start: datetime) -> datetime:
+        """Return when it ends that begins at a time; months of no such day end on their last one.
+
+        >>> parse("P1M").ends(datetime(2026, 1, 31)), parse("P1000Y").ends(datetime(9999, 1, 1)) == datetime.max
+        (datetime.datetime(2026, 2, 28, 0, 0), True)
+        """
+        months = start.year * 12 + start.month - 1 + self.months
+        year, month = months // 12, months % 12 + 1
+        try:
+            day = min(start.day, monthrange(year, month)[1])
+            return start.replace(year=year, month=month, day=day) + timedelta(seconds=self.seconds)
+        except (OverflowError, ValueError):  # after the year 9999
+            return datetime.max.replace(tzinfo=start.tzinfo)
 
     def can_be_longer(self, other: Duration) -> bool:
         """Return whether it is longer from some day on.

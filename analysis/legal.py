@@ -93,7 +93,8 @@ def _with_narrower(category: Category, narrower: Iterable[Category]) -> Category
             if legal.name not in covered and not (legal.special and ARTICLE_9 in covered):
                 provisions.setdefault(legal.name, []).append((kind, legal))
     more = [_may_reveal(kinds) for _, kinds in sorted(provisions.items())]
-    return replace(category, law=tuple(sorted((*category.law, *more), key=lambda legal: (legal.name, legal.stated_of))))
+    law = tuple(sorted((*category.law, *more), key=lambda legal: (legal.name, legal.stated_of)))
+    return category if law == category.law else replace(category, law=law)
 
 
 def _may_reveal(kinds: list[tuple[Category, Legal]]) -> Legal:

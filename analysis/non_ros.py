@@ -7,6 +7,7 @@ nobody stated about an element is taken by its kind: data passes what only holds
 from __future__ import annotations
 
 from dataclasses import replace
+from datetime import UTC, datetime
 from typing import TYPE_CHECKING, TypeVar
 
 from rosprivacy.analysis.model import NOWHERE, NonRosFacts, Reason, Statement
@@ -91,7 +92,8 @@ def not_stated(element: Element, facts: NonRosFacts) -> tuple[str, ...]:
 def kept_too_long(facts: NonRosFacts, category: str, hierarchy: Hierarchy) -> Reason | None:
     """Return why a storage keeps a category too long; None if it does not.
 
-    The data may be of any narrower kind (rule S7), so each of these is held against the limit nearest to it.
+    The data may be of any narrower kind (rule S7), so each of these is held against the limit nearest to it. Where
+    nothing else is wrong, the age of a recording is held against its retention, on the day that is asked.
 
     >>> from rosprivacy.analysis.durations import parse
     >>> from rosprivacy.analysis.example import factory
@@ -101,6 +103,7 @@ def kept_too_long(facts: NonRosFacts, category: str, hierarchy: Hierarchy) -> Re
     """
     if facts.backups is True:
         return Reason(why.ENDLESS_BACKUPS)
+    past: list[Reason] = []
     for kind in sorted(hierarchy.ancestors, key=lambda kind: (kind != category, kind)):
         if category not in hierarchy.ancestors[kind]:
             continue
@@ -115,7 +118,27 @@ def kept_too_long(facts: NonRosFacts, category: str, hierarchy: Hierarchy) -> Re
                     if facts.backups:
                         return Reason.of(why.KEPT_LONGER_IN_BACKUPS, **said, backups=facts.backups)
                     return Reason.of(why.KEPT_LONGER, **said)
-    return None
+            past += kept_past(facts, duration)
+    return past[0] if past else None
+
+
+def kept_past(facts: NonRosFacts, kept: Duration) -> list[Reason]:
+    """Return that a recording is older than it is kept; nothing where it is not, or where its age is not known.
+
+    >>> from rosprivacy.analysis.durations import parse
+    >>> from rosprivacy.analysis.model import Recording
+    >>> bag = Recording("run1", 0, 0, oldest=1_700_000_000 * 10**9)
+    >>> [len(kept_past(NonRosFacts(recording=bag, day=day), parse("P30D"))) for day in ("2023-12-14", "2023-12-15")]
+    [0, 1]
+    """
+    oldest = facts.recording.oldest if facts.recording else None
+    if oldest is None or not facts.day:
+        return []
+    since = datetime.fromtimestamp(oldest // 10**9, UTC)
+    ended = kept.ends(since).date().isoformat()
+    if facts.day <= ended:
+        return []
+    return [Reason.of(why.KEPT_PAST, since=since.date().isoformat(), kept=kept, ended=ended)]
 
 
 def limited(facts: NonRosFacts, category: str, hierarchy: Hierarchy) -> bool:
@@ -159,14 +182,20 @@ def nearest(stated: Iterable[tuple[str, T]], category: str, hierarchy: Hierarchy
 def on_day(outside: Mapping[int, NonRosFacts], today: str) -> dict[int, NonRosFacts]:
     """Return facts as they are on a day: where an adequacy decision has ended, there is none (rule S10).
 
+    The age of a recording is held against that day.
+
     >>> facts = NonRosFacts(country="US", area=PARTLY, until="2026-06-30")
     >>> on_day({0: facts}, "2026-06-30")[0].area, on_day({0: facts}, "2026-07-01")[0].area
     ('partly', 'third')
     """
-    return {
-        vertex: replace(facts, area=THIRD) if facts.until and today > facts.until else facts
-        for vertex, facts in outside.items()
-    }
+    return {vertex: _on_day(facts, today) for vertex, facts in outside.items()}
+
+
+def _on_day(facts: NonRosFacts, today: str) -> NonRosFacts:
+    ended = facts.until and today > facts.until
+    if not (ended or facts.recording):
+        return facts
+    return replace(facts, area=THIRD if ended else facts.area, day=today if facts.recording else "")
 
 
 def transferred(facts: NonRosFacts) -> Reason | None:

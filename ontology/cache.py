@@ -18,8 +18,7 @@ from typing import Any
 from rosprivacy.analysis.model import Category, Legal, Pointer, Situation
 from rosprivacy.ontology.pointed import Pointed
 
-FORMAT = 8  # one more when what is kept, or what is refused, changes
-PARTS = ("categories", "respelt", "pointed")
+FORMAT = 9  # one more when what is kept, or what is refused, changes
 _TUPLES = ("broader", "synonyms", "data_types", "identity_factors", "same_as", "within", "stated_of", "look_at")
 
 
@@ -36,9 +35,10 @@ Kept = tuple[tuple[Category, ...], dict[str, str], Pointed]
 def get(folder: Path, key: str) -> Kept | None:
     """Return what an earlier run kept, if it is whole and of these files."""
     try:
-        kept = json.loads(_path(folder, key).read_text("utf-8"))
-        if kept["key"] != key or kept["digest"] != _digest(*(kept[part] for part in PARTS)):
+        digest, text = _path(folder, key).read_bytes().split(b"\n", 1)
+        if digest != _digest(key, text):
             return None
+        kept = json.loads(text)
         categories = tuple(_category(facts) for facts in kept["categories"])
         return categories, dict(kept["respelt"]), _pointed(kept["pointed"])
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
@@ -47,15 +47,14 @@ def get(folder: Path, key: str) -> Kept | None:
 
 def keep(folder: Path, key: str, categories: tuple[Category, ...], respelt: dict[str, str], pointed: Pointed) -> None:
     """Write them, whole or not at all; a folder that cannot be written is no error."""
-    facts = json.loads(json.dumps([asdict(category) for category in categories]))
-    parts = dict(zip(PARTS, (facts, respelt, json.loads(json.dumps(asdict(pointed)))), strict=True))
-    text = json.dumps({"key": key, "digest": _digest(*parts.values()), **parts})
+    facts = [asdict(category) for category in categories]
+    text = json.dumps({"categories": facts, "respelt": respelt, "pointed": asdict(pointed)}).encode()
     with suppress(OSError):
         folder.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(dir=folder)
         try:
-            with os.fdopen(handle, "w", encoding="utf-8") as file:
-                file.write(text)
+            with os.fdopen(handle, "wb") as file:
+                file.write(_digest(key, text) + b"\n" + text)
             Path(name).replace(_path(folder, key))
         except BaseException:
             Path(name).unlink(missing_ok=True)
@@ -66,8 +65,9 @@ def _path(folder: Path, key: str) -> Path:
     return folder / f"categories-{FORMAT}-{key[:16]}.json"
 
 
-def _digest(*parts: Any) -> str:
-    return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()
+def _digest(key: str, text: bytes) -> bytes:
+    """The first line of a file: of which Turtle files it is, and that it is whole."""
+    return hashlib.sha256(key.encode() + text).hexdigest().encode()
 
 
 def _category(facts: dict[str, Any]) -> Category:

@@ -65,11 +65,16 @@ def closures(spread: Spread) -> list[Closure]:
 
 
 def _elements(spread: Spread) -> Iterator[Closure]:
+    alike: dict[tuple[int, int], list[tuple[int, tuple[Line, ...], bool]]] = {}  # the same is said of many elements
     for vertex, keeps in sorted(spread.keeps.items()):
+        decided = spread.facts[vertex]
         stopped = spread.arrives.get(vertex, 0) & ~keeps
-        for lines, categories in _by_lines(spread, spread.facts[vertex], stopped).items():
-            bits = stopped & sum(map(spread.both, categories))
-            itself = any(_alone(spread.facts[vertex][category]) for category in categories)
+        if (id(decided), stopped) not in alike:
+            alike[id(decided), stopped] = [
+                (stopped & sum(map(spread.both, categories)), lines, any(_alone(decided[c]) for c in categories))
+                for lines, categories in _by_lines(spread, decided, stopped).items()
+            ]
+        for bits, lines, itself in alike[id(decided), stopped]:
             yield Closure(_said_by(lines), vertex, -1, bits, lines, itself)
 
 
@@ -175,20 +180,31 @@ def _nearest(
 
 def _extents(spread: Spread, lines: set[Line]) -> dict[Line, Opened]:
     """All that each of some lines closes, reached or not; only lines that close more than one element or flow."""
-    elements: dict[Line, dict[int, int]] = defaultdict(lambda: defaultdict(int))
-    flows: dict[Line, dict[int, int]] = defaultdict(lambda: defaultdict(int))
+    elements: dict[Line, dict[int, int]] = defaultdict(dict)
+    flows: dict[Line, dict[int, int]] = defaultdict(dict)
     more: dict[Line, set[tuple[int, int]]] = defaultdict(set)
+    alike: dict[int, dict[Line, int]] = {}  # the same is said of many elements
     for facts, closed in ((spread.facts, elements), (spread.flow_facts, flows)):
         for number, decided in facts.items():
-            for category in spread.categories:
-                for line in decided[category].closers if category in decided else ():
-                    closed[line][number] |= spread.both(category)
+            if id(decided) not in alike:
+                alike[id(decided)] = _closing(spread, decided)
+            for line, bits in alike[id(decided)].items():
+                closed[line][number] = bits
     for flow in spread.graph.taken_back:
         for denial in flow.denials:
             more[denial.place].add((flow.source, flow.target))
     extents = {line: Opened(elements[line], flows[line], tuple(sorted(more[line]))) for line in lines}
     several = [(line, opened) for line, opened in extents.items() if opened.size > 1]
     return dict(sorted(several, key=lambda pair: line_key(pair[0])))
+
+
+def _closing(spread: Spread, decided: Mapping[str, Facts]) -> dict[Line, int]:
+    """What each line closes, where this is decided."""
+    closing: dict[Line, int] = defaultdict(int)
+    for category in spread.categories:
+        for line in decided[category].closers if category in decided else ():
+            closing[line] |= spread.both(category)
+    return closing
 
 
 def line_key(line: Line) -> tuple[str, int, str]:

@@ -19,9 +19,9 @@ from rosprivacy.analysis.bounds import BOUNDS, Tally
 from rosprivacy.analysis.decisions import Case
 from rosprivacy.analysis.findings.arrival import shown_arrivals
 from rosprivacy.analysis.findings.concerns import concerns
-from rosprivacy.analysis.findings.further_paths import Between, further
 from rosprivacy.analysis.findings.grounds import grounds, lacking
 from rosprivacy.analysis.findings.open_questions import open_questions
+from rosprivacy.analysis.findings.paths_of_source import PathsOfSource
 from rosprivacy.analysis.findings.unknown_ends import unknown_ends
 from rosprivacy.analysis.kernel import spreading, standard_channels
 from rosprivacy.analysis.kernel.bits import bits_of
@@ -41,6 +41,8 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Bound, FlowGraph
+
+    Followed = tuple[Search, Mapping[int, int]]  # a search, with what it did not follow: vertex -> bits
 
 MAX_PATHS = 100
 NOWHERE = Place("the analysis", 0)
@@ -213,33 +215,30 @@ def _findings_of(
     Only disclosures are dismissed: no leak on the path cures a retention or a transfer (rule S10).
     """
     spread = net.spread
-    between: dict[tuple[int, bool], Between] = {}
+    paths = PathsOfSource(net, source, memory, options.paths, options.max_paths, work.paths)
     accepted = _accepted(spread, source, concern.kind, reached, options)
-    free: dict[int, Search] = {}  # number of the category -> search that stops at other leaks of it
+    anywhere: Followed = whole, {}
+    free: dict[int, Followed] = {}  # number of the category -> search that stops at other leaks of it
     for leak, bits in reached.items():
         for i in bits_of(spread.bits.merged(bits)):
             if only is not None and not {(concern.kind, leak, i, False), (concern.kind, leak, i, True)} & only:
                 continue
             if concern.kind != DISCLOSURE:
-                free[i] = whole
+                free[i] = anywhere
             elif i not in free:
                 _search_free(net, source, i, accepted, free, stops)
-                work.searches.add(len(free[i].seen), NOWHERE)
-            for beside, (chosen, bit) in enumerate(_shown_forms(free[i], whole, leak, spread.bits.forms(i))):
+                work.searches.add(len(free[i][0].seen), NOWHERE)
+            for beside, ((chosen, stop), bit) in enumerate(_shown_forms(free[i], anywhere, leak, spread.bits.forms(i))):
                 if only is not None and (concern.kind, leak, i, bool(beside)) not in only:
                     continue
-                anyway = chosen is whole
-                dismissed = anyway and concern.kind == DISCLOSURE
+                dismissed = chosen is whole and concern.kind == DISCLOSURE
                 finding = _finding(net, chosen, source, leak, bit, concern, accepted, dismissed=dismissed)
                 finding = _beside(finding, options) if beside else finding
                 if len(finding.witness) > 1 and work.paths.met:
                     work.left_out += 1
                     finding = replace(finding, bounded=options.paths != Paths.witness)
                 elif len(finding.witness) > 1:
-                    if (i, anyway) not in between:
-                        stop = {} if anyway else stops.of(spread.bits.both(i), accepted)
-                        between[i, anyway] = Between(net, chosen, source, i, _relevant(spread, i), stop)
-                    more = further(between[i, anyway], leak, memory, options.paths, options.max_paths, work.paths)
+                    more = paths.to(leak, i, chosen, stop)
                     finding = replace(finding, disjoint_paths=more.disjoint, paths=more.paths, bounded=more.bounded)
                 yield leak, i, finding
 
@@ -261,25 +260,21 @@ def _accepted(spread: Spread, source: int, kind: str, reached: Mapping[int, int]
 
 
 def _search_free(
-    net: Net, source: int, i: int, accepted: Mapping[int, int], free: dict[int, Search], stops: _Stops
+    net: Net, source: int, i: int, accepted: Mapping[int, int], free: dict[int, Followed], stops: _Stops
 ) -> None:
     """Search with the leaks of category i as ends; one search serves all categories that nothing is made into."""
     spread = net.spread
     together = [i] if i in spread.made else [j for j, _ in enumerate(spread.categories) if j not in spread.made]
     ends = sum(map(spread.bits.both, together))
-    result = search(net, [source], spread.all_bits if i in spread.made else ends, stops.of(ends, accepted))
-    free.update(dict.fromkeys(together, result))
+    stop = stops.of(ends, accepted)
+    result = search(net, [source], spread.all_bits if i in spread.made else ends, stop)
+    free.update(dict.fromkeys(together, (result, stop)))
 
 
-def _relevant(spread: Spread, i: int) -> int:
-    """Bits of what a category can be made of: its own, or for simplicity all."""
-    return spread.all_bits if i in spread.made else spread.bits.both(i)
-
-
-def _shown_forms(free: Search, whole: Search, leak: int, forms: tuple[int, int]) -> list[tuple[Search, int]]:
+def _shown_forms(free: Followed, anywhere: Followed, leak: int, forms: tuple[int, int]) -> list[tuple[Followed, int]]:
     """The search and the form to show, the best first (rule S10)."""
-    each = [(reach, bit) for reach in (free, whole) for bit in forms]
-    plain, hidden, plain_through, hidden_through = (present(reach, leak) >> bit & 1 for reach, bit in each)
+    each = [(followed, bit) for followed in (free, anywhere) for bit in forms]
+    plain, hidden, plain_through, hidden_through = (present(reach, leak) >> bit & 1 for (reach, _), bit in each)
     flags = shown_arrivals(plain, hidden, plain_through, hidden_through)
     return [one for one, shown in zip(each, flags, strict=True) if shown]
 

@@ -260,10 +260,10 @@ def number_disjoint(edges: Sequence[tuple[State, State]], source: State, leak: S
     >>> number_disjoint(edges, camera, cloud, Tally(BOUNDS, "path_steps"))
     2
     """
-    ahead: dict[State, list[State]] = defaultdict(list)
+    ahead: dict[State, list[State]] = defaultdict(list)  # steps that no path takes, from their start
     for before, after in edges:
         ahead[before].append(after)
-    taken: dict[State, set[State]] = defaultdict(set)  # step of a path, from its end
+    taken: dict[State, set[State]] = defaultdict(set)  # those that one does, from their end
     most = min(len(ahead[source]), sum(after == leak for _, after in edges))
     for number in range(most):
         came = _one_more(ahead, taken, source, leak, work)
@@ -274,7 +274,9 @@ def number_disjoint(edges: Sequence[tuple[State, State]], source: State, leak: S
             before = came[after]
             if after in taken[before]:  # against the direction: taken back
                 taken[before].remove(after)
+                ahead[after].append(before)
             else:
+                ahead[before].remove(after)
                 taken[after].add(before)
             after = before
     return most
@@ -285,15 +287,14 @@ def _one_more(
     work: Tally,
 ) -> dict[State, State]:  # fmt: skip
     """Where a search came from at each state: along steps that no path takes, and back along those that one does."""
-    came: dict[State, State] = {}
+    came = {source: source}
     waiting = deque([source])
     while waiting and leak not in came:
         here = waiting.popleft()
-        nexts = [after for after in ahead.get(here, ()) if here not in taken.get(after, ())]
-        nexts += sorted(taken.get(here, ()))
+        nexts = [*ahead.get(here, ()), *taken.get(here, ())]
         work.count += len(nexts) + 1
         for after in nexts:
-            if after not in came and after != source:
+            if after not in came:
                 came[after] = here
                 waiting.append(after)
     return came

@@ -137,10 +137,9 @@ def _decided(analysis: Analysis, bound: Bound, beside: Collection[str]) -> dict[
 
 def _stated(said: Iterable[Statement], facts: Mapping[str, Facts], spread: Spread) -> Iterator[tuple[Statement, bool]]:
     """What globs of a user say of an element or a flow, and whether it holds there."""
-    accepted = {statement for fact in facts.values() for statement in fact.accepted}
-    for statement in said:
-        if _of_a_user(statement):
-            yield statement, statement in accepted or not spread.categories
+    for statement in filter(_of_a_user, said):
+        holds = any(statement in fact.accepted for fact in facts.values())
+        yield statement, holds or not spread.categories
 
 
 def _ends(graph: FlowGraph, index: int) -> tuple[Element, Element]:

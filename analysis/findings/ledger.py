@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.hierarchy import Hierarchy
+    from rosprivacy.analysis.kernel.roles import Facts
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.model import Bound, Diagnostic, Element
 
@@ -171,7 +172,11 @@ def _outdone(spread: Spread) -> Iterator[TakenAway]:
     """Sources, and leaks where data is, that a statement of higher rank took away (rule S7)."""
     elements = spread.graph.elements
     rows: dict[tuple[int, Place, Place], tuple[set[str], str, bool]] = {}
-    for vertex, decided in sorted(spread.facts.items()):
+    alike = {id(decided): decided for decided in spread.facts.values()}  # the same is said of many elements
+    some = {one for one, decided in alike.items() if any(fact.outdone for fact in decided.values())}
+    for vertex, decided in sorted(spread.facts.items()) if some else ():
+        if id(decided) not in some:
+            continue
         here = spread.names(spread.present(vertex))
         for category, fact in sorted(decided.items()):
             for statement, by in fact.outdone:
@@ -190,20 +195,29 @@ def _outdone(spread: Spread) -> Iterator[TakenAway]:
 
 def _reviewed(spread: Spread, asked: int) -> Iterator[TakenAway]:
     """Elements that are not asked about because labels answer for them (rule S11)."""
+    alike: dict[tuple[int, tuple[str, ...]], list[tuple[tuple[str, ...], tuple[Place, ...], bool]]] = {}
     for vertex, decided in sorted(spread.facts.items()):
-        by_lines: dict[tuple[Statement, ...], list[str]] = defaultdict(list)
-        makers = {line for fact in decided.values() for line in fact.reviewers if line.role == "derivation"}
-        for category in spread.names(spread.present(vertex) & asked):
-            fact = decided.get(category, NOTHING_SAID)
-            reviewers = {*fact.reviewers, *(line for line in makers if line.to == category)}  # who makes it knows of it
-            if reviewers and not fact.leaks and not fact.emits:
-                by_lines[tuple(sorted(reviewers, key=line_key))].append(category)
-        for lines, categories in by_lines.items():
-            places = tuple(sorted({line.place for line in lines}, key=_line))
-            glob = all(line.glob for line in lines)
-            yield TakenAway(
-                REVIEW, spread.graph.elements[vertex], None, tuple(categories), places, glob=glob, itself=True
-            )
+        here = spread.names(spread.present(vertex) & asked)
+        if (id(decided), here) not in alike:  # the same is said of many elements
+            alike[id(decided), here] = list(_reviewed_by(decided, here))
+        for categories, places, glob in alike[id(decided), here]:
+            yield TakenAway(REVIEW, spread.graph.elements[vertex], None, categories, places, glob=glob, itself=True)
+
+
+def _reviewed_by(
+    decided: Mapping[str, Facts], here: Iterable[str]
+) -> Iterator[tuple[tuple[str, ...], tuple[Place, ...], bool]]:
+    """Some of the categories that are there, the lines that answer for them, and whether all of these are globs."""
+    by_lines: dict[tuple[Statement, ...], list[str]] = defaultdict(list)
+    makers = {line for fact in decided.values() for line in fact.reviewers if line.role == "derivation"}
+    for category in here:
+        fact = decided.get(category, NOTHING_SAID)
+        reviewers = {*fact.reviewers, *(line for line in makers if line.to == category)}  # who makes it knows of it
+        if reviewers and not fact.leaks and not fact.emits:
+            by_lines[tuple(sorted(reviewers, key=line_key))].append(category)
+    for lines, categories in by_lines.items():
+        places = tuple(sorted({line.place for line in lines}, key=_line))
+        yield tuple(categories), places, all(line.glob for line in lines)
 
 
 def _decided(analysis: Analysis) -> Iterator[TakenAway]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass, replace
+from itertools import chain
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.decisions import Case
@@ -108,7 +109,16 @@ class Reach:
     def touched(self) -> set[int]:
         """Where something is new, of one that was taken further."""
         floods = (self.whole, *(flood for _, flood in self.past))
-        return {vertex for flood in floods for vertex in (*flood.arrives, *flood.leaves)}
+        return {*chain.from_iterable((*flood.arrives, *flood.leaves) for flood in floods)}
+
+    def new(self) -> dict[int, int]:
+        """Return what there is at elements to which more gets, or from which it leaves, of one taken further."""
+        elements, merged = self.places.spread.graph.elements, self.whole.doing.lanes.merged
+        there = {v: merged(bits) for v, bits in self.whole.leaves.items()}
+        for vertex, bits in self.whole.arrives.items():
+            if not elements[vertex].is_channel:
+                there[vertex] = there.get(vertex, 0) | merged(bits)
+        return there
 
     def states(self, vertex: int) -> dict[Key, State]:
         """Return the findings that end at an element."""

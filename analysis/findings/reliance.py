@@ -229,15 +229,14 @@ class _Work:
             _distinct(graph.elements[v] for v in (*there, *(flow.source for flow in flows))),
             _distinct(graph.elements[flow.target] for flow in flows),
         )
-        less = _without(self.bound, statement, spots)
         try:
-            change = self._change(less, statement, spots)
+            change = self._change(statement, spots)
             if change is not None:
                 return self._told(self._compared(row, *self._further(change, spots)))
             if not self.left:
                 return replace(row, perhaps=True)
             self.left -= 1
-            return self._told(self._compared(row, *self._anew(less)))
+            return self._told(self._compared(row, *self._anew(_without(self.bound, statement, spots))))
         except InputErrors as error:
             return replace(row, refused=str(error.errors[0]))
 
@@ -245,11 +244,11 @@ class _Work:
         """A type reviews nothing: what lies behind it is open as it is (rule S15)."""
         return replace(row, questions=()) if row.statement.role == CANNOT else row
 
-    def _change(self, less: Bound, statement: Statement, spots: _Spots) -> Spread | None:
+    def _change(self, statement: Statement, spots: _Spots) -> Spread | None:
         """What the elements and flows do without it, if that is more and nothing less; else None."""
         spread, graph = self.places.spread, self.places.spread.graph
-        flows = {index: less.flows[index] for index in spots.flows}
-        elements = {vertex: less.elements[vertex] for vertex in spots.vertices}
+        flows = {index: _less(self.bound.flows[index], statement) for index in spots.flows}
+        elements = {vertex: _less(self.bound.elements[vertex], statement) for vertex in spots.vertices}
         named = {*spots.vertices, *(graph.flows[index].target for index in spots.flows)} & spread.named.keys()
         if named or any(one.through for said in elements.values() for one in said):
             return None
@@ -283,21 +282,16 @@ class _Work:
             if now.flow_keeps[index] & ~spread.flow_keeps[index]
         ]
         pairs: list[Pair] = []
-        new: dict[int, int] = dict.fromkeys(spots.vertices, 0)
+        new = {v: spread.present(v) for v in spots.vertices}  # of others only what is more
         for reach in self.reaches if opened or along else ():
             more = reach.further(now, [v for v in opened if reach.whole.arrived(v)], along)
             pairs += [(reach.states(v), more.states(v)) for v in more.touched & self.ends]
-            merged = more.whole.doing.lanes.merged
-            for vertex in more.touched:
-                channel = spread.graph.elements[vertex].is_channel
-                arrived = 0 if channel else merged(more.whole.arrived(vertex))
-                new[vertex] = new.get(vertex, 0) | arrived | merged(more.whole.left(vertex))
+            for vertex, bits in more.new().items():
+                new[vertex] = new.get(vertex, 0) | bits
         covered = {v: now.covered.get(v, 0) if v in now.facts else spread.covered.get(v, 0) for v in new}
-        bits = {
-            v: (spread.present(v) | some & ~spread.gone.get(v, 0)) & ~(0 if v in self.unknown else covered[v])
-            for v, some in new.items()
+        return pairs, {
+            v: bits & ~spread.gone.get(v, 0) & ~(0 if v in self.unknown else covered[v]) for v, bits in new.items()
         }
-        return pairs, bits
 
     def _anew(self, less: Bound) -> tuple[list[Pair], dict[int, int]]:
         """The same by an analysis of the whole."""

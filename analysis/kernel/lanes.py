@@ -8,18 +8,15 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
+from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.many_flows import parted
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.kernel.spread import Spread
     from rosprivacy.analysis.many_flows import Meeting
-
-
-T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,37 +71,20 @@ class Lanes:
                 yield source, bits
 
 
-class Known(Protocol[T]):
-    """What is known of a vertex or flow, or else what is taken: a dict, or one over another."""
-
-    def get(self, key: int, otherwise: T, /) -> T:
-        """Return it."""
-        ...
-
-
-@dataclass(frozen=True, slots=True)
-class Over(Generic[T]):
-    """A few values in place of those of another one, which stays as it is."""
-
-    few: Mapping[int, T]
-    below: Known[T]
-
-    def get(self, key: int, otherwise: T, /) -> T:
-        """Return the value of a key."""
-        value = self.few.get(key)
-        return self.below.get(key, otherwise) if value is None else value
-
-
 @dataclass(frozen=True, slots=True)
 class Doing:
     """What elements and flows do with what comes, in lanes; made for elements without a word of their own too.
 
     Attributes
     ----------
+    ahead
+        Vertex -> the targets of its flows, but for those below.
     moves
-        Vertex -> (flow, its target).
+        Vertex -> (flow, its target), of flows that emit or keep something of their own.
     meetings
         Written wildcard -> its meetings, which are flows too.
+    labelled
+        Vertices of which anything is said: all others pass on what comes.
     keeps, flow_keeps
         Vertex or flow -> what passes as it is; all where absent.
     derives
@@ -115,28 +95,38 @@ class Doing:
         Vertex -> what is not followed on from there.
     allowed
         What is followed at all.
+    now, flows_now
+        Vertex or flow -> what is done there in place of all that: (what it keeps, what it derives), what it keeps.
     """
 
     lanes: Lanes
+    ahead: Mapping[int, list[int]]
     moves: Mapping[int, list[tuple[int, int]]]
     meetings: Mapping[int, list[Meeting]]
-    keeps: Known[int]
-    derives: Known[tuple[tuple[int, int], ...]]
-    flow_keeps: Known[int]
+    labelled: Container[int]
+    keeps: Mapping[int, int]
+    derives: Mapping[int, tuple[tuple[int, int], ...]]
+    flow_keeps: Mapping[int, int]
     emits: Mapping[int, int]
     flow_emits: Mapping[int, int]
     allowed: int
     stop: Mapping[int, int] = field(default_factory=dict)
+    now: Mapping[int, tuple[int, tuple[tuple[int, int], ...]]] = field(default_factory=dict)
+    flows_now: Mapping[int, int] = field(default_factory=dict)
 
     @classmethod
     def of(cls, spread: Spread, sources: Sequence[int]) -> Doing:
         """Return what a spread says, with a lane for each of some sources."""
         lanes = Lanes.of(sources, spread.all_bits.bit_length())
+        ahead: dict[int, list[int]] = defaultdict(list)
         moves: dict[int, list[tuple[int, int]]] = defaultdict(list)
-        flows = spread.graph.flows
-        own, meetings = parted(flows, spread.told_apart)
+        flows, told_apart = spread.graph.flows, spread.told_apart
+        own, meetings = parted(flows, told_apart)
         for index, flow in own:
-            moves[flow.source].append((index, flow.target))
+            if index in told_apart:
+                moves[flow.source].append((index, flow.target))
+            else:
+                ahead[flow.source].append(flow.target)
         met: dict[int, list[Meeting]] = defaultdict(list)
         for meeting in meetings:
             for source in meeting.written:
@@ -144,8 +134,10 @@ class Doing:
         begun = {index: lanes.own(flows[index].source, bits) for index, bits in spread.flow_emits.items()}
         return cls(
             lanes,
+            ahead,
             moves,
             met,
+            spread.keeps,
             {v: lanes.every(bits) for v, bits in spread.keeps.items() if bits != spread.all_bits},
             {v: pairs for v, pairs in spread.derives.items() if pairs},
             {index: lanes.every(bits) for index, bits in spread.flow_keeps.items()},
@@ -161,17 +153,17 @@ class Doing:
     def changed(self, spread: Spread) -> Doing:
         """Return the same with what another spread says of the elements and flows that it is about."""
         every = self.lanes.every
-        return replace(
-            self,
-            keeps=Over({v: every(bits) for v, bits in spread.keeps.items()}, self.keeps),
-            derives=Over(spread.derives, self.derives),
-            flow_keeps=Over({i: every(bits) for i, bits in spread.flow_keeps.items()}, self.flow_keeps),
-        )
+        now = {v: (every(bits), spread.derives[v]) for v, bits in spread.keeps.items()}
+        return replace(self, now=now, flows_now={i: every(bits) for i, bits in spread.flow_keeps.items()})
 
     def made(self, vertex: int, bits: int) -> int:
         """Return what an element makes of what arrives, in the same lanes."""
+        derives = self.now[vertex][1] if vertex in self.now else self.derives.get(vertex)
+        return self._made(derives, bits) if derives else 0
+
+    def _made(self, derives: Iterable[tuple[int, int]], bits: int) -> int:
         result, unit = 0, self.lanes.unit
-        for before, after in self.derives.get(vertex, ()):
+        for before, after in derives:
             result |= (bits >> before & unit) << after
         return result & self.allowed
 
@@ -179,7 +171,14 @@ class Doing:
         """Return what leaves an element when something arrives."""
         stop = self.stop.get(vertex, 0)
         bits &= ~stop
-        return (bits & self.keeps.get(vertex, self.allowed) | self.made(vertex, bits)) & self.allowed & ~stop
+        kept, derives = self.now.get(vertex) or (self.keeps.get(vertex, self.allowed), self.derives.get(vertex))
+        made = self._made(derives, bits) if derives else 0
+        return (bits & kept | made) & self.allowed & ~stop
+
+    def along(self, flow: int, bits: int) -> int:
+        """Return what of some bits goes along a flow."""
+        keeps = self.flows_now.get(flow)
+        return bits & (self.flow_keeps.get(flow, bits) if keeps is None else keeps) & self.allowed
 
 
 @dataclass(slots=True)
@@ -191,7 +190,7 @@ class Flood:
     arrives, leaves
         Vertex -> bits. What a source sends along single flows only is not in ``leaves``.
     before
-        What it was taken further from.
+        What it was taken further from, which was not itself.
     """
 
     doing: Doing
@@ -215,22 +214,22 @@ class Flood:
         flood.leaves.update(pending)
         for moves in doing.moves.values() if doing.flow_emits else ():
             for index, target in moves:
-                if bits := doing.flow_emits.get(index, 0) & doing.flow_keeps.get(index, doing.allowed) & doing.allowed:
-                    flood._arrive(target, bits, pending)
+                if bits := doing.along(index, doing.flow_emits.get(index, 0)):
+                    flood._arrive((target,), bits, pending)
         flood._follow(pending)
         return flood
 
     def arrived(self, vertex: int) -> int:
         """Return what arrives at an element."""
-        if self.before is None:
+        if vertex in self.arrives or self.before is None:
             return self.arrives.get(vertex, 0)
-        return self.arrives[vertex] if vertex in self.arrives else self.before.arrived(vertex)
+        return self.before.arrives.get(vertex, 0)
 
     def left(self, vertex: int) -> int:
         """Return what leaves an element along all of its flows."""
-        if self.before is None:
+        if vertex in self.leaves or self.before is None:
             return self.leaves.get(vertex, 0)
-        return self.leaves[vertex] if vertex in self.leaves else self.before.left(vertex)
+        return self.before.leaves.get(vertex, 0)
 
     def present(self, vertex: int, begun: int) -> int:
         """Return what arrives at an element, begins there or is made there; ``begun`` is what begins, in lanes."""
@@ -239,7 +238,7 @@ class Flood:
         return (arrived | begun | self.doing.made(vertex, arrived & ~stop)) & self.doing.allowed
 
     def further(self, doing: Doing, vertices: Iterable[int], flows: Iterable[tuple[int, int, int]]) -> Flood:
-        """Take it further where some elements and flows do more than before, and none does less.
+        """Take a whole one further where some elements and flows do more than before, and none does less.
 
         Parameters
         ----------
@@ -267,31 +266,34 @@ class Flood:
             more._leave(vertex, doing.onward(vertex, self.arrived(vertex)), pending)
         for index, source, target in flows:
             bits = self.left(source) | doing.flow_emits.get(index, 0)
-            more._arrive(target, bits & doing.flow_keeps.get(index, doing.allowed) & doing.allowed, pending)
+            more._arrive((target,), doing.along(index, bits), pending)
         more._follow(pending)
         return more
 
     def _follow(self, pending: dict[int, int]) -> None:
         """First in, first out: what comes to one element along several flows goes on together."""
-        moves, flow_keeps, allowed = self.doing.moves, self.doing.flow_keeps, self.doing.allowed
-        meetings = self.doing.meetings
+        ahead, moves, meetings = self.doing.ahead, self.doing.moves, self.doing.meetings
         met: dict[int, int] = defaultdict(int)  # what has come to all that a meeting reads
         while pending:
             vertex = next(iter(pending))
             bits = pending.pop(vertex)
+            self._arrive(ahead.get(vertex, ()), bits, pending)
             for index, target in moves.get(vertex, ()):
-                self._arrive(target, bits & flow_keeps.get(index, allowed), pending)
+                self._arrive((target,), self.doing.along(index, bits), pending)
             for meeting in meetings.get(vertex, ()):
                 new = bits & ~met[id(meeting)]
                 met[id(meeting)] |= new
-                for target in meeting.read if new else ():
-                    self._arrive(target, new, pending)
+                self._arrive(meeting.read if new else (), new, pending)
 
-    def _arrive(self, target: int, bits: int, pending: dict[int, int]) -> None:
-        known = self.arrived(target)
-        if new := bits & ~known:
-            self.arrives[target] = known | new
-            self._leave(target, self.doing.onward(target, new), pending)
+    def _arrive(self, targets: Iterable[int], bits: int, pending: dict[int, int]) -> None:
+        doing, arrives = self.doing, self.arrives
+        before = self.before.arrives if self.before else {}
+        for target in targets:
+            known = arrives[target] if target in arrives else before.get(target, 0)
+            if new := bits & ~known:
+                arrives[target] = known | new
+                if onward := doing.onward(target, new) if target in doing.labelled else new:
+                    self._leave(target, onward, pending)
 
     def _leave(self, vertex: int, bits: int, pending: dict[int, int]) -> None:
         known = self.left(vertex)

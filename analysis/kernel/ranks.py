@@ -103,7 +103,12 @@ def applies(statement: Statement, category: str, hierarchy: Hierarchy) -> bool:
     >>> applies(source, "Video", hierarchy), applies(source, "FaceTemplate", hierarchy)
     (True, False)
     """
-    return _distance(statement, category, hierarchy) is not None
+    if statement.role in ("source", CANNOT):
+        return not statement.categories or category in statement.categories
+    if statement.role == "only" or not statement.categories:
+        return True
+    near = hierarchy.overlaps if statement.role in MAY else hierarchy.ancestors
+    return not near[category].keys().isdisjoint(statement.categories)
 
 
 def closes(statement: Statement, category: str, hierarchy: Hierarchy) -> bool:

@@ -15,7 +15,7 @@ from rosprivacy.analysis.kernel.least_solution import least_solution
 from rosprivacy.analysis.kernel.named_channels import keep_named, named, stated_flows
 from rosprivacy.analysis.kernel.overruled import overruled
 from rosprivacy.analysis.kernel.ranks import applies
-from rosprivacy.analysis.kernel.roles import NOTHING_SAID, Facts, facts
+from rosprivacy.analysis.kernel.roles import Facts, facts
 from rosprivacy.analysis.kernel.spread import Spread
 from rosprivacy.analysis.model import Method
 
@@ -181,39 +181,34 @@ class _Does:
 
     @classmethod
     def of(cls, spread: Spread, decided: Mapping[str, Facts]) -> _Does:
-        keeps = _bits(spread, decided, lambda fact: fact.passes)
-        covered = _bits(spread, decided, lambda fact: fact.covered)
-        for to in {to for fact in decided.values() for to in fact.derives}:  # who makes it knows of it
-            covered |= spread.both(to)
-        number = {category: i for i, category in enumerate(spread.categories)}
-        closed = _closed({c: decided[c].derives for c in spread.categories if c in decided})
+        keeps = covered = leaks = limited = gone = emits = 0
         pairs: set[tuple[int, int]] = set()
         made: set[int] = set()
-        emits = 0
-        for category, i in number.items():
-            fact = decided.get(category, NOTHING_SAID)
-            plain, pseudonymised = spread.bits.forms(i)
-            after = {number[to] for to in closed.get(category, ())}
-            for j in after:
-                pairs.update(zip((plain, pseudonymised), spread.bits.forms(j), strict=True))
-            made.update(after)
-            if fact.pseudonymises:
-                pairs.add((plain, pseudonymised))
-                keeps |= 1 << pseudonymised  # what is pseudonymised already goes on so (rule S8)
-            if fact.emits:  # what a node makes of its own data leaves it like what it makes of others'
-                emits |= sum(1 << spread.bits.plain(j) for j in after)
-                emits |= 0 if fact.through else 1 << plain
-        return cls(
-            standard=any(fact.standard for fact in decided.values()),
-            limited=_bits(spread, decided, lambda fact: fact.limited),
-            gone=_bits(spread, decided, lambda fact: fact.method == Method.ABSENT),
-            keeps=keeps,
-            leaks=_bits(spread, decided, lambda fact: fact.leaks),
-            covered=covered,
-            derives=tuple(sorted(pairs)),
-            emits=emits,
-            made=frozenset(made),
-        )
+        derives = {category: fact.derives for category, fact in decided.items() if fact.derives}
+        closed = _closed(spread, derives) if derives else {}
+        for category, fact in decided.items():
+            both = spread.both(category)
+            keeps |= both if fact.passes else 0
+            covered |= both if fact.covered else 0
+            leaks |= both if fact.leaks else 0
+            limited |= both if fact.limited else 0
+            gone |= both if fact.method == Method.ABSENT else 0
+            covered |= sum(map(spread.both, fact.derives))  # who makes it knows of it
+            if both and (fact.emits or fact.pseudonymises or category in closed):
+                i = spread.categories.index(category)
+                plain, pseudonymised = spread.bits.forms(i)
+                after = closed.get(category, set())
+                for j in after:
+                    pairs.update(zip((plain, pseudonymised), spread.bits.forms(j), strict=True))
+                made.update(after)
+                if fact.pseudonymises:
+                    pairs.add((plain, pseudonymised))
+                    keeps |= 1 << pseudonymised  # what is pseudonymised already goes on so (rule S8)
+                if fact.emits:  # what a node makes of its own data leaves it like what it makes of others'
+                    emits |= sum(1 << spread.bits.plain(j) for j in after)
+                    emits |= 0 if fact.through else 1 << plain
+        standard = any(fact.standard for fact in decided.values())
+        return cls(standard, limited, gone, keeps, leaks, covered, tuple(sorted(pairs)), emits, frozenset(made))
 
 
 def _set_vertex(spread: Spread, vertex: int, does: _Does) -> None:
@@ -243,9 +238,9 @@ def _begin_through(spread: Spread, vertex: int, bound: Bound, stated: Mapping[in
                 spread.flow_begins[vertex] = spread.flow_begins.get(vertex, 0) | plain
 
 
-def _closed(derives: Mapping[str, tuple[str, ...]]) -> dict[str, set[str]]:
-    """What is made of each category, and of that in turn."""
-    made = {category: set(to) for category, to in derives.items()}
+def _closed(spread: Spread, derives: Mapping[str, tuple[str, ...]]) -> dict[str, set[int]]:
+    """Numbers of what is made of each category, and of that in turn; of those that are emitted."""
+    made = {category: set(to) for category, to in derives.items() if spread.both(category)}
     changed = True
     while changed:
         changed = False
@@ -253,7 +248,7 @@ def _closed(derives: Mapping[str, tuple[str, ...]]) -> dict[str, set[str]]:
             more = {further for to in after for further in made.get(to, ())} - after
             after.update(more)
             changed = changed or bool(more)
-    return {category: after - {category} for category, after in made.items()}
+    return {category: {*map(spread.categories.index, after - {category})} for category, after in made.items()}
 
 
 def fill(spread: Spread, arrives: dict[int, int], leaves: dict[int, int]) -> None:

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
 
 NO_RETENTION, NO_RETENTION_FOR, ENDLESS_BACKUPS = "no-retention", "no-retention-for", "endless-backups"
 KEPT_LONGER, KEPT_LONGER_IN_BACKUPS = "kept-longer", "kept-longer-in-backups"
+KEPT_PAST = "kept-past"
 NOT_ADEQUATE, NO_LONGER_ADEQUATE, PARTLY_ADEQUATE = "not-adequate", "no-longer-adequate", "partly-adequate"
 STATED_NOT_ADEQUATE, STATED_NO_LONGER_ADEQUATE = "stated-not-adequate", "stated-no-longer-adequate"
 _UNBASED = "; no basis for the transfer is stated"
@@ -20,6 +21,7 @@ REASONS: Mapping[str, str] = {  # key -> the sentence in English, with places fo
     KEPT_LONGER: "kept for {kept}, which can be longer than the {limit} that {category} may be kept",
     KEPT_LONGER_IN_BACKUPS: "kept for {kept} and in backups {backups} more, which can be longer than the {limit} that "
     "{category} may be kept",
+    KEPT_PAST: "it holds recordings from {since}, and the {kept} for which they are kept ended on {ended}",
     NOT_ADEQUATE: "in {country}, for which no adequacy decision is known" + _UNBASED,
     NO_LONGER_ADEQUATE: "in {country}, for which the adequacy decision ended on {until}" + _UNBASED,
     PARTLY_ADEQUATE: "in {country}, whose adequacy decision covers {recipients}" + _UNBASED,

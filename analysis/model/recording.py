@@ -7,7 +7,7 @@ from datetime import UTC, datetime
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.model.suggestion import by_confidence
+from rosprivacy.analysis.model.suggestion import surest
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -116,6 +116,8 @@ class Recording:
         How many; None where a bag does not say.
     start, end
         Nanoseconds since 1970; None where a bag does not say.
+    oldest
+        The earliest time that any of the bags says, whatever the others do.
     """
 
     bag: str
@@ -124,13 +126,14 @@ class Recording:
     messages: int | None = None
     start: int | None = None
     end: int | None = None
+    oldest: int | None = None
 
 
 def recording_of(path: str, bags: Sequence[Bag]) -> Recording:
     """Return the numbers of some bags together; what one of them does not say is not known.
 
     >>> recording_of("runs", (Bag("a", size=5, start=1, end=2), Bag("b", size=7, start=4, end=9)))
-    Recording(bag='runs', size=12, topics=0, messages=0, start=1, end=9)
+    Recording(bag='runs', size=12, topics=0, messages=0, start=1, end=9, oldest=1)
     """
     counts = [bag.messages for bag in bags if bag.messages is not None]
     starts = [bag.start for bag in bags if bag.start is not None]
@@ -142,6 +145,7 @@ def recording_of(path: str, bags: Sequence[Bag]) -> Recording:
         sum(counts) if len(counts) == len(bags) else None,
         min(starts) if len(starts) == len(bags) and starts else None,
         max(ends) if len(ends) == len(bags) and ends else None,
+        min(starts + ends, default=None),
     )
 
 
@@ -175,6 +179,11 @@ class TopicKinds:
     why: str = ""
     suggested: tuple[Suggestion, ...] = ()
 
+    @property
+    def surest(self) -> dict[str, Confidence]:
+        """The kinds that its types suggest, sorted, each with the surest confidence."""
+        return surest(self.suggested)
+
 
 @dataclass(frozen=True, slots=True)
 class JudgedBag:
@@ -191,11 +200,7 @@ class JudgedBag:
     @property
     def suggested(self) -> dict[str, Confidence]:
         """The kinds that its types suggest, sorted, each with the surest confidence."""
-        surest: dict[str, Confidence] = {}
-        for rule in sorted((one for topic in self.topics for one in topic.suggested), key=by_confidence):
-            for kind in rule.kinds:
-                surest.setdefault(kind, rule.confidence)
-        return dict(sorted(surest.items()))
+        return surest(rule for topic in self.topics for rule in topic.suggested)
 
     @property
     def open_topics(self) -> tuple[str, ...]:

@@ -142,6 +142,8 @@ class NonRosFacts:
         Where it is stated.
     recording
         Of a storage that is a bag: its size, its time, how much is in it.
+    day
+        The day that the age of a recording is held against, ``YYYY-MM-DD``; empty for none.
     """
 
     retention: tuple[tuple[str, Duration], ...] = ()
@@ -158,6 +160,7 @@ class NonRosFacts:
     contract: str = ""
     place: Place = NOWHERE
     recording: Recording | None = None
+    day: str = ""
 
     @property
     def basis(self) -> str:

@@ -7,6 +7,8 @@ from enum import StrEnum
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from rosprivacy.analysis.model.diagnostic import Place
 
 
@@ -58,6 +60,15 @@ def by_confidence(rule: Suggestion) -> int:
     ['certain', 'may']
     """
     return tuple(Confidence).index(rule.confidence)
+
+
+def surest(rules: Iterable[Suggestion]) -> dict[str, Confidence]:
+    """Return the kinds that some rules suggest, sorted, each with the surest confidence."""
+    found: dict[str, Confidence] = {}
+    for rule in sorted(rules, key=by_confidence):
+        for kind in rule.kinds:
+            found.setdefault(kind, rule.confidence)
+    return dict(sorted(found.items()))
 
 
 def interface_of(name: str) -> str:

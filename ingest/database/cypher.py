@@ -10,16 +10,20 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.ingest.database.schema import (
     ACROSS,
+    BAG,
     CARRIES,
     CATEGORY,
     ELEMENT,
     ENCLAVE,
     FALLS_UNDER,
     FINDING,
+    HAS_TOPIC,
     INTAKE,
     LOOK_AT,
     NODES,
     PROVISION,
+    RECORDED_TOPIC,
+    RECORDS,
     ROBOT,
     quoted,
 )
@@ -148,3 +152,23 @@ DELETE_EMPTY_ENCLAVES = (
     "MATCH (e:`Enclave`) WHERE e.`robot` IN $names AND NOT EXISTS { (e)<-[:`IN_ENCLAVE`]-() } DETACH DELETE e"
 )
 DELETE_ROBOTS = "MATCH (r:`Robot`) WHERE r.`name` IN $names DETACH DELETE r"
+
+MERGE_BAGS, MERGE_TOPICS = merge_nodes(BAG), merge_nodes(RECORDED_TOPIC)
+MERGE_HAS_TOPIC, MERGE_RECORDS = merge_relationships(HAS_TOPIC), merge_relationships(RECORDS)
+_TOPIC = f"-[:{quoted(HAS_TOPIC.type)}]->(t:{quoted(RECORDED_TOPIC.label)})"
+DELETE_OLD_TOPICS = (
+    f"UNWIND $rows AS row MATCH {_node('b', BAG, 'row.id')}{_TOPIC} WHERE NOT t.`id` IN row.topics DETACH DELETE t"
+)
+DELETE_OLD_RECORDS = (
+    f"UNWIND $rows AS row MATCH {_node('t', RECORDED_TOPIC, 'row.id')}-[r:{quoted(RECORDS.type)}]->(e) "
+    "WHERE NOT e.`id` IN row.channels DELETE r"
+)
+COUNT_RECORDS = (
+    f"UNWIND $ids AS id MATCH {_node('b', BAG, 'id')}{_TOPIC} WHERE EXISTS {{ (t)-[:{quoted(RECORDS.type)}]->() }} "
+    "RETURN count(t) AS linked"
+)
+_THERE = f"MATCH (b:{quoted(BAG.label)}) WHERE b.`id` = $path OR b.`id` STARTS WITH $path + '/'"
+DELETE_BAGS = (
+    f"{_THERE} OPTIONAL MATCH (b){_TOPIC} WITH b, b.`id` AS id, collect(t) AS topics "
+    "FOREACH (t IN topics | DETACH DELETE t) DETACH DELETE b RETURN id ORDER BY id"
+)

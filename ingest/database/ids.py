@@ -44,6 +44,11 @@ def enclave_id(robot: str, path: str) -> str:
     return _joined([robot, path])
 
 
+def topic_id(bag: str, topic: str) -> str:
+    """Return what identifies a topic of a bag, by where the bag is."""
+    return _joined([bag, topic])
+
+
 def intake_id(element: str) -> str:
     """Return what identifies the intake of an element, by the element's id."""
     return f"{element}|intake"

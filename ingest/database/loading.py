@@ -93,7 +93,7 @@ def load(
     with refusals(), driver.session() as session:
         for statement in schema_statements():
             session.run(statement).consume()
-        session.execute_write(_write_vocabulary, vocabulary)
+        session.execute_write(write_vocabulary, vocabulary)
         for batch in _batches(robots):
             there = session.execute_read(_read_there, [rows.robot for rows in batch])
             changed = _changed(there, batch)
@@ -209,7 +209,8 @@ def _of_other_policies(there: Mapping[str, _There], robots: Iterable[RobotRows])
     return replaced
 
 
-def _write_vocabulary(transaction: ManagedTransaction, vocabulary: Vocabulary) -> None:
+def write_vocabulary(transaction: ManagedTransaction, vocabulary: Vocabulary) -> None:
+    """Write the categories, with what is broader and under which provisions they fall."""
     categories = vocabulary.categories
     rows = [
         {

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.durations import Duration
 
-NUMBERS = ("bag_bytes", "bag_topics", "bag_messages", "bag_start", "bag_end")
+NUMBERS = ("bag_bytes", "bag_topics", "bag_messages", "bag_start", "bag_end", "bag_oldest")
 
 
 def properties_of(facts: NonRosFacts) -> dict[str, Any]:
@@ -76,7 +76,8 @@ def _recorded(recording: Recording | None) -> dict[str, Any]:
     """The properties of a storage that is a bag; absent of others."""
     if recording is None:
         return dict.fromkeys(("bag", *NUMBERS))
-    values = (recording.size, recording.topics, recording.messages, recording.start, recording.end)
+    times = (recording.start, recording.end, recording.oldest)
+    values = (recording.size, recording.topics, recording.messages, *times)
     return {"bag": recording.bag, **dict(zip(NUMBERS, values, strict=True))}
 
 
@@ -88,8 +89,9 @@ def _recording(said: Mapping[str, Any]) -> Recording | None:
     for key, number in zip(NUMBERS, numbers, strict=True):
         if not (number is None or (isinstance(number, int) and not isinstance(number, bool))):
             raise ValueError(f"{key} is not a whole number")
-    size, topics, messages, start, end = numbers
-    return Recording(bag, size or 0, topics or 0, messages, start, end)
+    size, topics, messages, start, end, oldest = numbers
+    earliest = next((moment for moment in (oldest, start, end) if moment is not None), None)  # one of an earlier load
+    return Recording(bag, size or 0, topics or 0, messages, start, end, earliest)
 
 
 def _texts(stated: tuple[tuple[str, Duration], ...]) -> list[str] | None:

@@ -132,6 +132,7 @@ ELEMENT = NodeKind(
         Property("bag_messages", INTEGER, "how many messages, where it says so"),
         Property("bag_start", INTEGER, "from when, in nanoseconds since 1970"),
         Property("bag_end", INTEGER, "to when"),
+        Property("bag_oldest", INTEGER, "the earliest time that any of its bags says"),
         Property("country", STRING, "ISO 3166-1 code; of a node that of its system, where it is stated"),
         Property("operator", STRING, "outside ROS: who runs it"),
         Property("recipient", STRING, "outside ROS: controller, joint-controller, processor or third-party"),
@@ -235,7 +236,49 @@ FINDING = NodeKind(
         Property("special_from", STRING, "element that makes a special category of other data; absent if none does"),
     ),
 )
-NODES = (ELEMENT, ROBOT, ENCLAVE, CATEGORY, PROVISION, FINDING)
+_KINDS = Property("kinds", STRINGS, "kinds of data that can be in it, as labels and policies say")
+_SUGGESTED = Property("suggested", STRINGS, "kinds that types suggest, `Video (likely)`: questions, no facts")
+BAG = NodeKind(
+    "Bag",
+    "id",
+    "A recording, with what can be in it: `rosprivacy bag --load` writes it. It takes part in no path.",
+    (
+        Property("id", STRING, "unique: where it is, from the root of the file system"),
+        Property("path", STRING, "as it was named when it was loaded"),
+        Property("robot", STRING, "name of the robot that was recorded, as it was named"),
+        Property("verdict", STRING, "personal-data, undetermined or nothing-found"),
+        _KINDS,
+        _SUGGESTED,
+        Property("open_topics", STRINGS, "topics of which nobody can say what is in them"),
+        Property("gaps", STRINGS, "why topics may be missing"),
+        Property("beside", STRINGS, "what is in it beside messages, and can hold anything"),
+        Property("storage", STRING, "mcap, sqlite3, or what it names"),
+        Property("distro", STRING, "release of ROS, where it says so"),
+        Property("compression", STRING, "as it names it"),
+        Property("bytes", INTEGER, "size of its files"),
+        Property("topics", INTEGER, "how many are in it"),
+        Property("messages", INTEGER, "how many, where it says so"),
+        Property("start", INTEGER, "from when, in nanoseconds since 1970"),
+        Property("end", INTEGER, "to when"),
+        Property("assumptions", STRING, "JSON: what the answer rests on"),
+    ),
+)
+RECORDED_TOPIC = NodeKind(
+    "RecordedTopic",
+    "id",
+    "A topic of a bag.",
+    (
+        Property("id", STRING, "unique: that of the bag, and the name"),
+        Property("name", STRING, "as the bag has it"),
+        Property("types", STRINGS, "of its messages"),
+        Property("messages", INTEGER, "how many, where the bag says so"),
+        _KINDS,
+        _SUGGESTED,
+        Property("unknown", STRING, "why nobody can say what is in it; absent where that is known"),
+        Property("why", STRING, "what its kinds rest on"),
+    ),
+)
+NODES = (ELEMENT, ROBOT, ENCLAVE, CATEGORY, PROVISION, FINDING, BAG, RECORDED_TOPIC)
 
 FLOWS_TO = RelationshipKind(
     "FLOWS_TO",
@@ -372,6 +415,10 @@ ACROSS = RelationshipKind(
         Property("line", INTEGER, "of the policy line behind the step to here"),
     ),
 )
+HAS_TOPIC = RelationshipKind("HAS_TOPIC", "Bag", "RecordedTopic", "The topic is in the bag.")
+RECORDS = RelationshipKind(
+    "RECORDS", "RecordedTopic", "Element", "Of which channel of its robot it tells, or of which leg of one."
+)
 RELATIONSHIPS = (
     FLOWS_TO,
     CARRIED,
@@ -386,6 +433,8 @@ RELATIONSHIPS = (
     RelationshipKind("FROM", "Finding", "Element", "The source."),
     RelationshipKind("TO", "Finding", "Element", "The leak."),
     ACROSS,
+    HAS_TOPIC,
+    RECORDS,
 )
 SUFFIXES = ("", "Source", "Leak", "Sanitizer")
 RESERVED = frozenset({kind.label for kind in NODES} | set(KIND_LABELS.values()) | {LEG, WILDCARD, INTAKE})

@@ -29,7 +29,7 @@ def deployed(arguments: Iterable[str]) -> tuple[list[str], list[str]]:
 
 def _is_deployed(argument: str) -> bool:
     try:
-        head = beginning(Path(argument), HEAD)
+        head = beginning(argument, HEAD)
     except (OSError, ValueError):
         return False  # who reads it says why not
     return is_signed(head) or b"<dds" in head or is_keystore(argument)

@@ -84,6 +84,9 @@ def told_of_bags(graph: FlowGraph, elements: Iterable[Stated]) -> Iterator[Diagn
             for what in (*bag.gaps, *(f"{what} can hold anything" for what in bag.beside)):
                 said = f"not all of the bag {shown(bag.path)} is known: {what}"
                 yield Diagnostic(stated.place, Severity.WARNING, said, BAG_GAP)
+            if stated.outside.retention and bag.start is None and bag.messages != 0 and bag.complete:
+                said = f"nothing says when the bag {shown(bag.path)} was recorded, so its age is not judged"
+                yield Diagnostic(stated.place, Severity.WARNING, said, BAG_GAP)
             unknown = [topic.name for topic in _with_messages(bag) if not _channels(graph, topic.name)]
             if unknown:
                 yield Diagnostic(stated.place, Severity.WARNING, _unknown(bag, unknown), BAG_GAP)

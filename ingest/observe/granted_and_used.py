@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.modes import View
 from rosprivacy.ingest.observe.made_up_names import plain_name
+from rosprivacy.ingest.observe.node_info import DOOR
 from rosprivacy.ingest.policies.names import covers, endpoints, is_pattern, overlaps
 
 if TYPE_CHECKING:
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Grant, Policy
     from rosprivacy.ingest.policies.names import Endpoint
 
+ACTION_PARTS = "_action"
 NOT_GRANTED, DENIED, NO_PROFILE = "not-granted", "denied", "no-profile"
 Part = tuple[str, bool, str]  # node, whether it writes, DDS name
 Place = tuple[str, str, bool, str]  # policy, enclave, whether it writes, DDS name or expression
@@ -55,9 +57,12 @@ class Usage:
     not_granted
         What runs and is not granted.
     unused
-        ALLOW lines of nodes that were seen running, of which nothing was ever seen.
+        ALLOW lines of nodes that were seen running, of which nothing was ever seen; those that are denied are none.
     to_deny
-        Those of them that can be denied without taking anything from others of their enclave.
+        Those of them that can be denied without taking anything from others of their enclave, but for ``hidden``.
+    hidden
+        Those of them of which nothing can be known: a text of ``ros2 node info`` has hidden names only if that was
+        asked to, and no name of this observation is hidden.
     never_seen
         Nodes that have a profile and were never seen running -> how many lines allow them something.
     """
@@ -66,6 +71,7 @@ class Usage:
     unused: tuple[Grant, ...]
     to_deny: tuple[Grant, ...]
     never_seen: Mapping[str, int]
+    hidden: frozenset[Grant] = frozenset()
 
 
 def usage(granted: Iterable[Policy], observed: Iterable[Policy], view: str = View.declared) -> Usage:
@@ -85,7 +91,7 @@ def usage(granted: Iterable[Policy], observed: Iterable[Policy], view: str = Vie
         used[node] = set()
     for grant in seen:
         used[plain_name(grant.node)[0]].update((end.writes, end.dds) for end in _ends(grant))
-    lines = [grant for policy in granted for grant in policy.grants if grant.allow]
+    lines = [grant for policy in granted for grant in policy.grants if grant.allow and rights.left(grant)]
     unused, never = [], defaultdict(int)
     for node in sorted({profile.node for policy in granted for profile in policy.profiles}):
         if plain_name(node)[0] not in used:
@@ -96,9 +102,27 @@ def usage(granted: Iterable[Policy], observed: Iterable[Policy], view: str = Vie
             never[grant.node] += 1
         elif not _is_used(grant, own):
             unused.append(grant)
+    hidden = frozenset(filter(_is_hidden, unused if _lacks_hidden(seen) else ()))
+    known = [grant for grant in unused if grant not in hidden]
     return Usage(
-        not_granted, tuple(sorted(unused, key=_key)), _deniable(granted, unused, seen), dict(sorted(never.items()))
+        not_granted,
+        tuple(sorted(unused, key=_key)),
+        _deniable(granted, known, seen),
+        dict(sorted(never.items())),
+        hidden,
     )
+
+
+def _lacks_hidden(seen: Iterable[Grant]) -> bool:
+    """Whether an observation may have left out hidden names: only texts tell of it, and they have none."""
+    doors = {door for grant in seen if grant.seen for door in grant.seen.by}
+    return doors <= {DOOR} and not any(map(_is_hidden, seen))
+
+
+def _is_hidden(grant: Grant) -> bool:
+    """Whether ROS hides a name: a part of it begins with ``_``; what actions are made of, texts tell as actions."""
+    parts = grant.name.split("/")
+    return any(part.startswith("_") and part != ACTION_PARTS for part in parts)
 
 
 def _ends(grant: Grant) -> Sequence[Endpoint]:
@@ -164,6 +188,10 @@ class _Rights:
             for line in self._denials(policy, enclave, end)
         }
         return Use(seen, DENIED if lines else NOT_GRANTED, tuple(sorted(lines, key=_key)))
+
+    def left(self, line: Grant) -> bool:
+        """Whether DENYs leave anything of an ALLOW line."""
+        return any(not any(self._denials(line.policy, line.enclave, end)) for end in _ends(line))
 
     def _granted(self, node: str, end: Endpoint) -> bool:
         lines = self.allowed.get((node, end.writes, end.dds), [])

@@ -146,8 +146,8 @@ class _Drafts:
         self.elements: set[Element] = set()
         self.plain: dict[tuple[str, str, str], Element] = {}
         self.flows: dict[tuple[Element, Element, str], _Draft] = {}
-        self.dds: dict[Element, set[str]] = defaultdict(set)
-        self.ordered: dict[Element, list[str]] = {}  # those of patterns, for the same steps in every run
+        self.dds: dict[Element, set[str]] = defaultdict(set)  # of patterns
+        self.ordered: dict[Element, list[str]] = {}  # the same, for the same steps in every run
         self.rules: dict[Element, set[Rule]] = defaultdict(set)  # of a pattern: what denies a part of it
         self.refused: dict[tuple[Element, Element], set[Grant]] = {}  # matches that DENYs take out
         self.meetings: list[tuple[list[Element], list[Element]]] = []
@@ -186,8 +186,6 @@ class _Drafts:
             self.dds[element].add(endpoint.dds)
         else:
             element = self._plain(endpoint.kind, endpoint.name, endpoint.leg)
-            if element not in self.elements:
-                self.dds[element].update(dds_names(endpoint.kind, endpoint.name, endpoint.leg))
         self.elements.add(element)
         return element
 
@@ -204,8 +202,9 @@ class _Drafts:
         if not patterns:
             return
         self.ordered = {e: sorted(self.dds[e]) for e in patterns}
+        channels = (e for e in self.elements if e.is_channel and not e.pattern)
         plain = PlainNames(
-            ((dds, e) for e in self.elements if not e.is_node and not e.pattern for dds in self.dds[e]),
+            ((dds, e) for e in channels for dds in dds_names(e.kind, e.name, e.leg)),
             [dds for e in patterns for dds in self.ordered[e]],
         )
         gone = self._denied_whole()
@@ -269,12 +268,12 @@ class _Drafts:
 
     def _covered(self, pattern: Element, plain: PlainNames) -> Iterator[tuple[Element, set[Grant]]]:
         """The channels that a pattern covers; with each the lines that take it out, none if it is covered."""
-        free: set[Element] = set()
-        taken: dict[Element, set[Grant]] = defaultdict(set)
+        taken: dict[Element, set[Grant]] = {}
+        free, rules = set[Element](), self.rules.get(pattern, ())
         for expression in self.ordered[pattern]:
             for dds, channel in self.work.covered(expression, plain):
-                lines = {line for denied, line in self.rules.get(pattern, ()) if self.work.hold(denied, dds)}
-                taken[channel] |= lines
+                lines = {line for denied, line in rules if self.work.hold(denied, dds)} if rules else set()
+                taken.setdefault(channel, set()).update(lines)
                 if not lines:
                     free.add(channel)
         for channel, lines in taken.items():

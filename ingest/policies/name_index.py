@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Element
 
 FEW = 16  # so many names are looked at without asking for better
+SEARCHED = 64  # literal parts that are looked for in each name; of more the parts of each name are looked up
 LONGEST_RUN = 16  # characters of a literal part that are looked for
 
 
@@ -75,6 +76,8 @@ class PlainNames:
     def _holding(self) -> Mapping[str, Sequence[int]]:
         """By a literal part of an expression: where the names stand that hold it."""
         holding: dict[str, list[int]] = {run: [] for expression in self._expressions for run in _runs(expression)}
+        if len(holding) <= SEARCHED:
+            return {run: [at for at, (name, _) in enumerate(self._forward) if run in name] for run in holding}
         for length in sorted({len(run) for run in holding}):
             for at, (name, _) in enumerate(self._forward):
                 for run in {name[i : i + length] for i in range(len(name) - length + 1)} & holding.keys():

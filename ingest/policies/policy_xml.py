@@ -16,7 +16,19 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import InputError, InputErrors, PolicyError, shown
-from rosprivacy.analysis.model import DEAD_DENY, EMPTY_GROUP, Diagnostic, Grant, Place, Policy, Profile, Severity
+from rosprivacy.analysis.model import (
+    DEAD_DENY,
+    DUPLICATE_ENCLAVE,
+    EMPTY_GROUP,
+    MISTAKEN_TILDE,
+    SEVERAL_PROFILES,
+    Diagnostic,
+    Grant,
+    Place,
+    Policy,
+    Profile,
+    Severity,
+)
 from rosprivacy.ingest.policies.names import resolve
 from rosprivacy.ingest.policies.observed_metadata import (
     diagnostics_of,
@@ -174,7 +186,9 @@ class _Reader:
         path = self._required(enclave, "path")
         if path in seen:
             message = f"enclave {path} again (first at {seen[path]}): sros2 uses the first only"
-            self._warning(enclave.place, f"{message}; what this one allows is read too, what it denies is not")
+            self._warning(
+                enclave.place, f"{message}; what this one allows is read too, what it denies is not", DUPLICATE_ENCLAVE
+            )
         self.first = seen.get(path)
         seen.setdefault(path, enclave.place)
         groups = list(self._elements(enclave, {"profiles"}))
@@ -182,7 +196,9 @@ class _Reader:
             self._problem(enclave.place, f"<{enclave.tag}> without <profiles>", "add <profiles> with a <profile>")
         for extra in groups[1:]:
             message = f"several <profiles> in enclave {path}: DDS uses the first grant only"
-            self._warning(extra.place, f"{message}; what these allow is read too, what they deny is not")
+            self._warning(
+                extra.place, f"{message}; what these allow is read too, what they deny is not", SEVERAL_PROFILES
+            )
         for group in groups:
             self._attributes(group, {"type"})
             self._profiles(group, path)
@@ -271,6 +287,9 @@ class _Reader:
             self._problem(item.place, f"character class in {shown(repr(written))}", "write a range such as [a-z]")
         if self.old and written.startswith("~") and not written.startswith("~/"):
             written = f"~/{written[1:]}"  # 0.1.0 writes ~name for what 0.2.0 calls ~/name
+        if written.startswith("~") and not written.startswith("~/"):
+            message = f"{written}: sros2 puts what follows ~ behind the node's name at once; write ~/ before it"
+            self._warning(item.place, message, MISTAKEN_TILDE)
         name = resolve(written, namespace, node)
         if not written or written.isspace():
             self._warning(item.place, f"<{item.tag}> without a name: read as sros2 does, as {name}")

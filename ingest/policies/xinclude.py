@@ -21,7 +21,7 @@ from urllib.parse import unquote
 from lxml import etree
 
 from rosprivacy.analysis.errors import InputError, InputErrors, PolicyError, reason, shown
-from rosprivacy.analysis.model import FALLBACK_TAKEN, Diagnostic, Place, Severity
+from rosprivacy.analysis.model import EMPTY_INCLUDE, FALLBACK_TAKEN, Diagnostic, Place, Severity
 from rosprivacy.ingest.reading.bounded_file import contents, nearest_file
 from rosprivacy.ingest.reading.confined import WIDEN, leaves, what_leaves
 
@@ -153,7 +153,7 @@ class Documents:
         chosen = self._select(top, xpointer, place) if xpointer else [top]
         if not chosen:
             message = f"the include brings nothing: {xpointer} selects no element of {file}"
-            self.diagnostics.append(Diagnostic(place, Severity.WARNING, shown(message)))
+            self.diagnostics.append(Diagnostic(place, Severity.WARNING, shown(message), EMPTY_INCLUDE))
         yield from chosen
 
     def _target(self, href: str, include: Item) -> tuple[Path, str]:

@@ -34,18 +34,19 @@ def contents(path: Path, name: str = "") -> bytes:
         return noted(file, name or str(path)).read()
 
 
-def beginning(path: Path, size: int) -> bytes:
-    """Read the first bytes of a regular file; none of anything else.
+def beginning(name: str, size: int) -> bytes:
+    """Read the first bytes of a regular file by the name that the user knows it by; none of anything else.
 
     Raises
     ------
     OSError, ValueError
         If it cannot be read.
     """
+    path = Path(name)
     if not path.is_file():
         return b""
     with path.open("rb") as file:
-        return noted(file, str(path)).read(size)
+        return noted(file, name).read(size)
 
 
 def nearest_file(path: Path) -> str:

@@ -44,8 +44,7 @@ def _lines(
         yield f"{mark}{show(_what(row))}: {WHY[row['why']]}{denied}; last seen {row['seen']['last']}"
     yield head(f"what is granted to nodes that ran, and was never seen: {len(unused):,}")
     for row in unused:
-        kept = "" if row["in_patch"] else "; not in the patch: a DENY of it would meet other lines of its enclave"
-        yield f"{mark}{show(_what(row))}: {show(_place(row))}{kept}"
+        yield f"{mark}{show(_what(row))}: {show(_place(row))}{_kept(row, document)}"
     never = document["never_seen"]
     yield head(f"nodes with a profile that were never seen, of which nothing is proposed: {len(never):,}")
     for row in never:
@@ -57,6 +56,15 @@ def _lines(
         yield f"{mark}a patch sets what was never seen to DENY: --patch FILE; a robot may need it another day"
     elif document["why_no_patch"]:
         yield f"{mark}no patch: {document['why_no_patch']}"
+
+
+def _kept(row: Mapping[str, Any], document: Mapping[str, Any]) -> str:
+    """Why a line is not in the patch."""
+    if row.get("hidden"):
+        return "; a text without `ros2 node info --include-hidden` has no hidden names: it is not in the patch"
+    if row["in_patch"] or not document["patch"]:
+        return ""
+    return "; not in the patch: a DENY of it would meet other lines of its enclave"
 
 
 def _what(row: Mapping[str, Any]) -> str:

@@ -182,6 +182,7 @@ class RecordingEntry(TypedDict):
     messages: NotRequired[int]
     start: NotRequired[str]
     end: NotRequired[str]
+    oldest: NotRequired[str]
 
 
 class NonRosStated(TypedDict, total=False):

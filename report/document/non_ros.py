@@ -79,6 +79,8 @@ def _recording(recording: Recording) -> RecordingEntry:
         said["start"] = iso(recording.start)
     if recording.end is not None:
         said["end"] = iso(recording.end)
+    if recording.oldest is not None:
+        said["oldest"] = iso(recording.oldest)
     return said
 
 

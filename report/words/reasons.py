@@ -39,6 +39,8 @@ def _told(key: str, values: Mapping[str, str], words: Words, title: Callable[[st
         "backups": words.duration,
         "limit": words.duration,
         "until": words.date,
+        "since": words.date,
+        "ended": words.date,
         "category": title,
     }
     said = {place: told.get(place, str)(printable(value)) for place, value in values.items()}

@@ -450,6 +450,7 @@ WORDS = {
     "reason.endless-backups": "es gibt Sicherungskopien, und keine Angabe sagt, wie lange",
     "reason.kept-longer": "aufbewahrt für {kept}; das kann länger sein als die Frist von {limit} für: {category}",
     "reason.kept-longer-in-backups": "aufbewahrt für {kept} und in Sicherungskopien {backups} länger; das kann länger sein als die Frist von {limit} für: {category}",
+    "reason.kept-past": "enthält Aufzeichnungen vom {since}; deren Speicherdauer von {kept} endete am {ended}",
     "reason.not-adequate": "Land: {country}; ein Angemessenheitsbeschluss ist nicht bekannt, und keine Grundlage der Übermittlung ist angegeben",
     "reason.no-longer-adequate": "Land: {country}; der Angemessenheitsbeschluss endete am {until}, und keine Grundlage der Übermittlung ist angegeben",
     "reason.partly-adequate": "Land: {country}; der Angemessenheitsbeschluss gilt für {recipients}, und keine Grundlage der Übermittlung ist angegeben",

@@ -455,6 +455,7 @@ _TYPED = {
     "reason.endless-backups": "il y a des sauvegardes, et rien n'en indique la durée",
     "reason.kept-longer": "conservées {kept}, ce qui peut dépasser la limite de {limit} pour : {category}",
     "reason.kept-longer-in-backups": "conservées {kept}, et {backups} de plus dans les sauvegardes, ce qui peut dépasser la limite de {limit} pour : {category}",
+    "reason.kept-past": "contient des enregistrements du {since}, dont la durée de conservation ({kept}) a pris fin le {ended}",
     "reason.not-adequate": "pays : {country} ; aucune décision d'adéquation n'est connue, et aucune base du transfert n'est indiquée",
     "reason.no-longer-adequate": "pays : {country} ; la décision d'adéquation a pris fin le {until}, et aucune base du transfert n'est indiquée",
     "reason.partly-adequate": "pays : {country} ; la décision d'adéquation ne couvre que {recipients}, et aucune base du transfert n'est indiquée",

@@ -1,12 +1,13 @@
-"""Bags, and what is known of the system that was recorded -> the document ``rosprivacy.bags/1``.
+"""Bags, and what is known of the system that was recorded -> what can be in them, for every output.
 
-In: paths of bags, policies, label files. Out: the document. Without policies the label files alone tell what is in a
+In: paths of bags, policies, label files. Out: ``BagsAnswer``. Without policies the label files alone tell what is in a
 channel. What types suggest stands beside that, by the table in force.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 from rosprivacy.assumptions import files_read
 from rosprivacy.bag_kinds import by_labels, by_system, judged
@@ -18,10 +19,38 @@ from rosprivacy.robot_system import answer_robot, read_label_files
 from rosprivacy.version import __version__
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
+    from rosprivacy.analysis.model import JudgedBag
+    from rosprivacy.ingest.database.bag_rows import BagRows
+    from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.report.contract.bags import BagsDocument
     from rosprivacy.settings import Settings
+
+
+@dataclass(frozen=True, slots=True)
+class BagsAnswer:
+    """Bags with what can be in them.
+
+    Attributes
+    ----------
+    assumptions
+        What the answer rests on (S12).
+    """
+
+    bags: tuple[JudgedBag, ...]
+    assumptions: Mapping[str, Any]
+    vocabulary: Vocabulary
+
+    def document(self) -> BagsDocument:
+        """Return the document ``rosprivacy.bags/1``."""
+        return bags_document(self.bags, self.assumptions)
+
+    def rows(self, robot: str) -> list[BagRows]:
+        """Return what is written into a database; ``robot`` is the one that was recorded, empty for none."""
+        from rosprivacy.ingest.database.bag_rows import bag_rows  # noqa: PLC0415 - light start
+
+        return [bag_rows(bag, robot, self.assumptions) for bag in self.bags]
 
 
 def answer_bags(
@@ -30,7 +59,7 @@ def answer_bags(
     labels: tuple[str, ...],
     settings: Settings,
     progress: Callable[[Sequence[str]], Iterable[str]] = lambda files: files,
-) -> BagsDocument:
+) -> BagsAnswer:
     """Read bags, and say what kinds of data can be in them.
 
     Raises
@@ -44,7 +73,9 @@ def answer_bags(
     suggested_by = {"suggested_by": {"file": table.limits.file, "sha256": table.limits.sha256}}
     if policies or settings.add:
         result = answer_robot(policies, labels, settings)
-        return bags_document(judged(read, by_system(result), table), {**result.assumptions, **suggested_by})
+        return BagsAnswer(
+            judged(read, by_system(result), table), {**result.assumptions, **suggested_by}, result.vocabulary
+        )
     files = read_label_files(labels, vocabulary, settings)
     rests_on = {
         "rosprivacy": __version__,
@@ -52,4 +83,4 @@ def answer_bags(
         **files_read((), files, settings),
         **suggested_by,
     }
-    return bags_document(judged(read, by_labels(files, vocabulary), table), rests_on)
+    return BagsAnswer(judged(read, by_labels(files, vocabulary), table), rests_on, vocabulary)

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from rosprivacy.settings import Settings
 
 FORMAT = "rosprivacy.usage/1"
+GAPS = "the observation has gaps, so what was not seen may be in use; look again"
 
 
 def usage_document(granted: str, observed: str, settings: Settings, *, saved: tuple[bool, bool]) -> dict[str, Any]:
@@ -42,14 +43,15 @@ def usage_document(granted: str, observed: str, settings: Settings, *, saved: tu
         hint = "name the policies first, then what `rosprivacy observe` wrote"
         raise InputErrors([ObservationError(observed, 0, "was not made of an observation", hint)])
     found = usage(before, after, settings.view)
-    made = _patched(before, after, found, settings.view)
+    gaps = sorted({one.message for one in said if one.code == OBSERVATION_GAP})
+    made = Patch(why_not=GAPS) if gaps else _patched(before, after, found, settings.view)
     return {
         "format": FORMAT,
         "view": settings.view,
         "observed": sorted({one.message for one in said if one.code == OBSERVED}),
-        "gaps": sorted({one.message for one in said if one.code == OBSERVATION_GAP}),
+        "gaps": gaps,
         "not_granted": [_use(use) for use in found.not_granted],
-        "unused": [{**_grant(grant), "in_patch": grant in found.to_deny} for grant in found.unused],
+        "unused": [_unused(grant, found, made) for grant in found.unused],
         "never_seen": [{"node": node, "grants": count} for node, count in found.never_seen.items()],
         "patch": made.diff,
         "why_no_patch": made.why_not,
@@ -74,6 +76,11 @@ def _patched(before: tuple[Policy, ...], after: tuple[Policy, ...], found: Usage
 def _grant(grant: Grant) -> dict[str, Any]:
     place = {"file": grant.place.file, "line": grant.place.line, "enclave": grant.enclave}
     return {"node": grant.node, "role": grant.role, "kind": grant.kind, "name": grant.name, **place}
+
+
+def _unused(grant: Grant, found: Usage, made: Patch) -> dict[str, Any]:
+    hidden = {"hidden": True} if grant in found.hidden else {}
+    return {**_grant(grant), "in_patch": bool(made.diff) and grant in found.to_deny, **hidden}
 
 
 def _use(use: Use) -> dict[str, Any]:

@@ -287,7 +287,7 @@ def test_a_storage_that_is_a_bag_comes_back_from_the_database(
         tmp_path,
         "nodes: {/cam: {source: {Video: [/camera]}, leak: [Voice]}, /nav: conduit, /log: conduit, /end: conduit}\n"
         "channels: {/camera: sensitive, /odom: sensitive}\nlimits: {Video: P30D}\n"
-        "elements: {run1: {kind: storage, bag: run, country: DE, retention: P1D, conduit: [Video]}}",
+        "elements: {run1: {kind: storage, bag: run, country: DE, retention: P20D, conduit: [Video]}}",
     )
     system = (tmp_path / "a.policy.xml", "-l", said)
     files = json.loads(cli("analyze", *system, "-f", "json").stdout)
@@ -298,12 +298,15 @@ def test_a_storage_that_is_a_bag_comes_back_from_the_database(
         stored = json.loads(done.stdout)
     finally:
         cli("unload", "--robot", "bagged")
-    assert (files["verdict"], stored["verdict"], done.returncode) == ("undetermined", "undetermined", 4)
+    assert (files["verdict"], stored["verdict"], done.returncode) == ("leak", "leak", 1)
+    assert [one["because"] for one in stored["findings"]] == [one["because"] for one in files["findings"]]
+    assert stored["findings"][0]["because"]["values"] == {"since": "2023-11-14", "kept": "P20D", "ended": "2023-12-04"}
     (row,) = [one for one in stored["outside"] if one["element"]["name"] == "run1"]
     assert row["holds"] == ["Video"]
     assert row["recording"] == {
         "bag": "run", "bytes": (tmp_path / "run" / "run.mcap").stat().st_size, "topics": 2, "messages": 3,
         "start": "2023-11-14T22:13:20Z", "end": "2023-11-14T22:13:22Z",
+        "oldest": "2023-11-14T22:13:20Z",
     }  # fmt: skip
     assert row == next(one for one in files["outside"] if one["element"]["name"] == "run1") | {
         "element": row["element"]

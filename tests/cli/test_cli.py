@@ -70,7 +70,7 @@ def test_help_lists_each_option(cli: Cli, command: str) -> None:
 @pytest.mark.parametrize(
     ("words", "wanted"),
     [
-        (["rosprivacy", "l"], {"labels", "law", "load"}),
+        (["rosprivacy", "l"], {"labels", "law", "lint", "load"}),
         (["rosprivacy", "analyze", "--category", "Vid"], {"Video"}),
         *(
             pytest.param(["rosprivacy", "analyze", *words], wanted, marks=pytest.mark.slow)

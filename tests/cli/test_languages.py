@@ -8,6 +8,7 @@ from rosprivacy.cli.app import program
 
 STILL_ENGLISH = {
     "bag": "what is in recordings",
+    "lint": "rules for those who write policies",
     "db": "a server",
     "decide": "what was recorded",
     "diff": "what changed; 'report --since' tells it in a language",

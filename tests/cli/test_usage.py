@@ -129,6 +129,59 @@ def test_the_patch_denies_what_was_never_seen_and_takes_nothing_else(cli: Cli, r
     assert names(again["unused"]) == ["/cam publish /shared"]
 
 
+def test_a_patch_that_adds_lines_leaves_nothing_to_deny_again(cli: Cli, robot: Path) -> None:
+    """S5: an ALLOW that a DENY overrides grants nothing, wherever both stand."""
+    two_roles = GRANTED.replace('<topics publish="ALLOW">', '<topics publish="ALLOW" subscribe="ALLOW">', 1)
+    (robot / "granted.xml").write_text(two_roles, "utf-8")
+    _, document = usage(cli, robot, RUNS + READS, "--patch", "least.diff")
+    assert "/cam publish /spare" in names(document["unused"])
+    subprocess.run(["git", "apply", "least.diff"], cwd=robot, check=True)
+    assert 'publish="DENY"' in (robot / "granted.xml").read_text("utf-8")
+    code, again = usage(cli, robot, RUNS + READS)
+    assert (code, again["patch"]) == (0, "")
+    assert "/cam publish /spare" not in names(again["unused"])
+
+
+def test_a_node_of_which_all_is_denied_is_granted_nothing(cli: Cli, robot: Path) -> None:
+    denied = GRANTED.replace('node="sleeper">', 'node="sleeper"><topics publish="DENY"><topic>/shared</topic></topics>')
+    (robot / "granted.xml").write_text(denied, "utf-8")
+    _, document = usage(cli, robot, RUNS + READS)
+    assert document["never_seen"] == [{"node": "/sleeper", "grants": 0}]
+    assert names(document["unused"]) == ["/cam publish /spare"]
+
+
+def test_of_an_observation_with_gaps_nothing_is_proposed(cli: Cli, robot: Path) -> None:
+    """S16: /up did not answer, so what it reads is not known; its lines in a patch would stop the robot."""
+    code, document = usage(cli, robot, RUNS + "/up\n", "--patch", "least.diff")
+    assert code == 4
+    assert "/up subscribe /image" in names(document["unused"])
+    assert (document["patch"], document["why_no_patch"]) == (
+        "",
+        "the observation has gaps, so what was not seen may be in use; look again",
+    )
+    rows = document["unused"]
+    assert isinstance(rows, list)
+    assert not any(row["in_patch"] for row in rows)
+    text = cli("diff", "granted.xml", "seen.policy.xml", "--as", "usage", cwd=robot).stdout
+    assert "no patch: the observation has gaps" in text
+    assert "would meet other lines" not in text
+
+
+def test_of_hidden_names_a_text_without_them_proves_nothing(cli: Cli, robot: Path) -> None:
+    """`ros2 node info` leaves hidden names out unless it is asked for them: they may be in use (rule S16)."""
+    hidden = GRANTED.replace("<topic>/spare</topic>", "<topic>/spare</topic>\n            <topic>/cam/_raw</topic>")
+    (robot / "granted.xml").write_text(hidden, "utf-8")
+    _, document = usage(cli, robot, RUNS + READS)
+    rows = {row["name"]: (row["in_patch"], row.get("hidden")) for row in document["unused"]}  # type: ignore[attr-defined]
+    assert rows == {"/shared": (False, None), "/spare": (True, None), "/cam/_raw": (False, True)}
+    assert "/cam/_raw" not in [line.strip() for line in str(document["patch"]).splitlines() if line.startswith("+")]
+    text = cli("diff", "granted.xml", "seen.policy.xml", "--as", "usage", cwd=robot).stdout
+    assert "; a text without `ros2 node info --include-hidden` has no hidden names: it is not in the patch" in text
+    _, document = usage(cli, robot, RUNS + READS + node_info("/more", publishers="/more/_seen: s/msg/I"))
+    rows = {row["name"]: (row["in_patch"], row.get("hidden")) for row in document["unused"]}  # type: ignore[attr-defined]
+    assert rows["/cam/_raw"] == (True, None)
+
+
 def test_a_text_and_a_comment_say_the_same(cli: Cli, robot: Path) -> None:
     usage(cli, robot, RUNS + READS)
     for form, start in (("text", "  "), ("markdown", "- ``")):

@@ -16,13 +16,13 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-SOURCE = ROOT / "tests" / "ingest" / "observe" / "peers" / "fastdds_peer.cpp"
+PEERS = ROOT / "tests" / "ingest" / "observe" / "peers"
 
 
-def built(folder: Path) -> Path:
+def built(folder: Path, source: Path = PEERS / "fastdds_peer.cpp") -> Path:
     """Build the program."""
-    program = folder / "fastdds_peer"
-    command = ["g++", "-O0", "-std=c++17", "-o", str(program), str(SOURCE), "-lfastrtps", "-lfastcdr"]
+    program = folder / source.stem
+    command = ["g++", "-O0", "-std=c++17", "-o", str(program), str(source), "-lfastrtps", "-lfastcdr"]
     subprocess.run(command, check=True, capture_output=True, text=True)
     return program
 

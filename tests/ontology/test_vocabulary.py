@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import json
 import re
 import subprocess
 import sys
@@ -247,14 +246,14 @@ class TestCache:
         assert first == second
         assert len(list(tmp_path.iterdir())) == 1
 
-    @pytest.mark.parametrize("damage", ["", "{", "[]", '{"key": 1}', "swap"])
+    @pytest.mark.parametrize("damage", ["", "{", "[]", '{"key": 1}', "0\n{}", "swap"])
     def test_a_damaged_one_is_not_trusted(self, tmp_path: Path, damage: str) -> None:
         whole = anew(tmp_path)
         (file,) = tmp_path.iterdir()
-        text = file.read_text().replace("FaceTemplate", "Facetemplate") if damage == "swap" else damage
-        file.write_text(text)
+        text = file.read_text()
+        file.write_text(text.replace("FaceTemplate", "Facetemplate") if damage == "swap" else damage)
         assert anew(tmp_path) == whole
-        assert json.loads(file.read_text())["digest"]  # and written anew
+        assert file.read_text() == text  # and written anew
 
     def test_a_folder_that_cannot_be_written_is_no_error(self, tmp_path: Path) -> None:
         (tmp_path / "file").write_text("")

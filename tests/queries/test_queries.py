@@ -14,7 +14,22 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from rosprivacy.analysis.findings.findings import analyse
-from rosprivacy.analysis.model import Category, Element, Flow, FlowGraph, Legal
+from rosprivacy.analysis.model import (
+    Bag,
+    BagTopic,
+    Category,
+    Confidence,
+    Element,
+    Flow,
+    FlowGraph,
+    JudgedBag,
+    Legal,
+    Place,
+    Suggestion,
+    TopicKinds,
+)
+from rosprivacy.ingest.database.bag_loading import load_bags
+from rosprivacy.ingest.database.bag_rows import bag_rows
 from rosprivacy.ingest.database.loading import load
 from rosprivacy.ingest.database.rows import robot_rows
 from rosprivacy.ingest.database.schema import CARRIES, FLOWS_TO, KIND_LABELS
@@ -125,9 +140,35 @@ def driver(neo4j_server: Connection) -> Iterator[Driver]:
 
 
 def fill(driver: Driver, robots: Mapping[str, str]) -> None:
-    """Wipe the database and load what a case asks for."""
+    """Wipe the database and load what a case asks for; bags under the paths where they are."""
     driver.execute_query("MATCH (n) DETACH DELETE n")
-    load(driver, [system(robot, name) for robot, name in robots.items()], VOCABULARY)
+    bags = {path: SYSTEMS[name]["bag"] for path, name in robots.items() if "bag" in SYSTEMS[name]}
+    load(driver, [system(robot, name) for robot, name in robots.items() if robot not in bags], VOCABULARY)
+    for path, given in bags.items():
+        load_bags(
+            driver,
+            [bag_rows(recorded(path, given["topics"], given.get("gaps", ())), given["robot"], {})],
+            given["robot"],
+            VOCABULARY,
+        )
+
+
+def recorded(path: str, topics: Mapping[str, Any], gaps: Sequence[str]) -> JudgedBag:
+    """A bag of ``systems.json``."""
+    at = Place("table", 1)
+    judged = [
+        TopicKinds(
+            BagTopic(name, messages=1),
+            tuple(said.get("kinds", ())),
+            said.get("unknown", ""),
+            suggested=tuple(
+                Suggestion("a/msg/A", (kind,), Confidence(sure), "", "", at)
+                for kind, sure in said.get("suggested", {}).items()
+            ),
+        )
+        for name, said in topics.items()
+    ]
+    return JudgedBag(Bag(path, topics=tuple(one.topic for one in judged), gaps=tuple(gaps)), tuple(judged))
 
 
 def ask(driver: Driver, name: str, parameters: Mapping[str, str]) -> tuple[tuple[str, ...], list[list[Any]]]:

@@ -30,6 +30,7 @@ COMMANDS = {  # name -> its group in help; each stands in the module of its name
     "why-not": ANALYSE,
     "diff": ANALYSE,
     "bag": ANALYSE,
+    "lint": ANALYSE,
     "report": SEE,
     "graph": SEE,
     "decide": DECIDE,

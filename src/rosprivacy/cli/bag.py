@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import sys
 from enum import StrEnum
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from rosprivacy.cli.exit_code import LEAK, UNDETERMINED
-from rosprivacy.cli.inputs import Inputs, reads_system
+from rosprivacy.cli.inputs import Inputs, reads_system, refuse
 from rosprivacy.cli.options import READ, Output
 from rosprivacy.cli.output import emit, progress_of
+
+if TYPE_CHECKING:
+    from rosprivacy.bags import BagsAnswer
 
 
 class BagFormat(StrEnum):
@@ -23,7 +27,7 @@ class BagFormat(StrEnum):
 
 @reads_system(
     "bags, and the policies of one robot",
-    without=("policies", "fleet", "from_database", "neo4j", "categories", "decisions"),
+    without=("policies", "fleet", "from_database", "categories", "decisions"),
 )
 def bag(
     bags: Annotated[
@@ -43,6 +47,17 @@ def bag(
     ] = None,
     format: Annotated[BagFormat, typer.Option("--format", "-f", help="Of the answer.")] = BagFormat.text,  # noqa: A002 - the option's name
     output: Output = None,
+    load: Annotated[
+        bool, typer.Option("--load", help="Write the bags into Neo4j, too, in place of what was there of them.")
+    ] = False,
+    robot: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            show_default=False,
+            help="With --load: the robot of the database that was recorded; topics are linked to its channels.",
+        ),
+    ] = None,
 ) -> None:
     """Say which topics are in bags, and which kinds of personal data can be among them. No message is read.
 
@@ -53,13 +68,33 @@ def bag(
     from rosprivacy.report.bags.bag_table import bag_table
     from rosprivacy.report.json_text import as_text
 
-    document = answer_bags(
+    if not load:
+        refuse("without --load bag", "no server", [*inputs.given("neo4j"), *(["--robot"] if robot is not None else [])])
+    answer = answer_bags(
         bags, tuple(policy or ()), tuple(inputs.labels or ()), inputs.settings, lambda paths: progress_of(paths, "bags")
     )
+    document = answer.document()
     if format is BagFormat.json:
         emit(as_text(document), output)
     elif format is BagFormat.csv:
         emit(bag_table(document), output)
     else:
         emit("".join(f"{line}\n" for line in bag_lines(document)), output)
+    if load:
+        _load(answer, robot or "", inputs.neo4j)
     raise typer.Exit({"personal-data": LEAK, "undetermined": UNDETERMINED}.get(document["verdict"], 0))
+
+
+def _load(answer: BagsAnswer, robot: str, server: str | None) -> None:
+    """Write the bags, and say so beside the answer."""
+    from rosprivacy.analysis.errors import shown
+    from rosprivacy.analysis.text import counted
+    from rosprivacy.cli.driver import driver_of
+    from rosprivacy.ingest.database.bag_loading import load_bags
+
+    rows = answer.rows(robot)
+    with driver_of(server) as driver:
+        linked = load_bags(driver, rows, robot, answer.vocabulary)
+    topics = counted(sum(len(one.topics) for one in rows), "topic")
+    whose = f"{linked:,} of them linked to channels of {shown(robot)}" if robot else "linked to no robot (--robot NAME)"
+    print(f"{counted(len(rows), 'bag')} with {topics} written into the database, {whose}", file=sys.stderr)

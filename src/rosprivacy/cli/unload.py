@@ -1,4 +1,4 @@
-"""``rosprivacy unload``: robots out of the database."""
+"""``rosprivacy unload``: robots and bags out of the database."""
 
 from __future__ import annotations
 
@@ -19,16 +19,23 @@ def unload(
         list[str] | None, typer.Option(metavar="NAME", help="Robot to remove; may be repeated.", show_default=False)
     ] = None,
     fleet: FleetFile = None,
+    bag: Annotated[
+        str | None,
+        typer.Option(metavar="PATH", help="Bag to remove, or the folder of bags that were loaded.", show_default=False),
+    ] = None,
     ontology: Ontologies = None,
     include_root: IncludeRoot = None,
     bound: BoundsRaised = None,
     neo4j: Server = None,
 ) -> None:
-    """Remove a robot from Neo4j, or a fleet; what people added by hand stays, but for what hangs on its elements."""
+    """Remove a robot, a fleet or bags from Neo4j; what people added stays, but for what hangs on their elements."""
     from rosprivacy.ingest.database.loading import unload
 
-    if bool(robot) == bool(fleet):
-        raise typer.BadParameter("name robots with --robot, or a fleet file with --fleet")
+    if [bool(robot), bool(fleet), bool(bag)].count(True) != 1:
+        raise typer.BadParameter("name robots with --robot, a fleet file with --fleet, or a bag with --bag")
+    if bag:
+        _unload_bags(bag, neo4j)
+        return
     robot = list(robot or ()) or _names_in(fleet or "", tuple(ontology or ()), include_root, Bounds.raised(bound or ()))
     with driver_of(neo4j) as driver:
         gone = unload(driver, robot)
@@ -36,6 +43,16 @@ def unload(
     emit("".join(f"robot {shown(name)} is removed\n" for name in gone), None)
     if missing:
         raise QueryError(f"no robot {', '.join(map(shown, missing))} in the database; see rosprivacy query robots")
+
+
+def _unload_bags(path: str, neo4j: str | None) -> None:
+    from rosprivacy.ingest.database.bag_loading import unload_bags
+
+    with driver_of(neo4j) as driver:
+        gone = unload_bags(driver, path)
+    if not gone:
+        raise QueryError(f"no bag {shown(path)} in the database; see rosprivacy query bags")
+    emit("".join(f"bag {shown(place)} is removed\n" for place in gone), None)
 
 
 def _names_in(fleet: str, ontologies: tuple[str, ...], include_root: Path | None, bounds: Bounds) -> list[str]:

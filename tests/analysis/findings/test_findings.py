@@ -3,6 +3,7 @@ planes."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -20,7 +21,7 @@ from rosprivacy.analysis.model import (
     NonRosFacts,
 )
 from rosprivacy.analysis.modes import Paths
-from tests.helpers.more_systems import wildcards
+from tests.helpers.more_systems import ranked, wildcards
 from tests.helpers.systems import HIERARCHY, PARENTS, WIDE, WIDE_HIERARCHY, System, analysed, index, statement, systems
 
 if TYPE_CHECKING:
@@ -199,6 +200,30 @@ def test_disjoint_paths_are_as_many_as_a_minimum_cut_has_flows(system: System) -
             if not dead and not any(name in HIERARCHY.ancestors[category] for name in names):
                 graph.add_edge(a, b)
         assert finding.disjoint_paths == nx.edge_connectivity(graph, source, leak)
+
+
+@given(st.one_of(systems(), ranked(), wildcards()), st.data())
+def test_paths_that_are_only_counted_are_as_many_as_those_that_are_listed(system: System, data: st.DataObject) -> None:
+    """Counting walks once for all categories, listing once for each; also where leaks are accepted (rule S10)."""
+    try:
+        case = st.sampled_from(sorted({finding.id for finding in system.analyse().findings}) or [""])
+        ids = data.draw(st.sets(case, max_size=2))
+        counted, listed = (system.analyse(Options(paths=paths, accepts=lambda c: c.id in ids)) for paths in COUNTED)
+    except InputErrors:
+        return
+    assert [f.disjoint_paths for f in counted.findings] == [f.disjoint_paths for f in listed.findings]
+
+
+COUNTED = (Paths.witness, Paths.disjoint)
+
+
+def test_what_comes_back_to_a_source_takes_no_flow_twice() -> None:
+    """It sends to /t0 and /t1 and reads /t1 itself; all that gets to the leak goes along its one flow to /t0."""
+    edges = [(0, 4), (0, 5), (5, 0), (4, 1), (4, 2), (1, 6), (2, 7), (6, 3), (7, 3)]
+    source = replace(statement("source", "Face"), through=("/t0", "/t1"))
+    system = System(4, 4, sorted(edges), {0: [source], 3: [statement("leak", "Face")]}, {})
+    for paths in COUNTED:
+        assert [f.disjoint_paths for f in system.analyse(Options(paths=paths)).findings] == [1]
 
 
 @given(systems(), st.data())

@@ -33,7 +33,8 @@ def robot(tmp_path: Path) -> Path:
 def analysed(folder: Path, stated: str, more: str = "", **settings: str) -> Result:
     said = "nodes: {/cam: {source: [Video]}, /nav: conduit}\nchannels: {/camera: sensitive, /odom: sensitive}"
     (folder / "l.yaml").write_text(f"labels: 1\n{said}\nelements:\n  run1: {{kind: storage, {stated}}}\n{more}\n")
-    return rosprivacy.analyze(folder / "a.policy.xml", folder / "l.yaml", **settings)  # type: ignore[arg-type] # one's own
+    on = {"today": "2023-11-15", **settings}
+    return rosprivacy.analyze(folder / "a.policy.xml", folder / "l.yaml", **on)  # type: ignore[arg-type] # one's own
 
 
 def holds(result: Result) -> list[str]:
@@ -73,6 +74,43 @@ def test_limits_hold_on_a_real_file(robot: Path, stated: str, why: str) -> None:
     assert [step.grants[0].place.line for step in finding.steps][-1] == 5
 
 
+@pytest.mark.parametrize(
+    ("retention", "today", "ended"),
+    [
+        ("P30D", "2023-12-14", ""),
+        ("P30D", "2023-12-15", "2023-12-14"),
+        ("P1M", "2023-12-15", "2023-12-14"),
+        ("P900Y", "2026-01-01", ""),
+        ("{Video: P30D, Voice: P1D}", "2023-12-14", ""),
+        ("{Video: P30D, Voice: P1D}", "2024-01-01", "2023-12-14"),
+    ],
+)
+def test_a_recording_that_is_older_than_it_is_kept_is_a_finding(
+    robot: Path, retention: str, today: str, ended: str
+) -> None:
+    """S10: the bag is still there, whatever the label file says of how long it is kept; on the day that is asked."""
+    rosbag2(robot / "run")
+    stated = f"bag: run, country: DE, retention: {retention}"
+    found = analysed(robot, stated, "limits: {Video: P900Y}", today=today).findings
+    kept = "P30D" if "P30D" in retention else retention
+    why = f"it holds recordings from 2023-11-14, and the {kept} for which they are kept ended on {ended}"
+    assert [(one.kind, one.reason) for one in found] == ([("storage-limitation", why)] if ended else [])
+
+
+def test_the_oldest_bag_of_a_folder_counts_whatever_the_others_say(robot: Path) -> None:
+    """S11: that one bag does not tell its time hides no other that does; and that one is told."""
+    rosbag2(robot / "runs" / "1")
+    rosbag2(robot / "runs" / "2")
+    metadata = robot / "runs" / "2" / "metadata.yaml"
+    text = metadata.read_text().replace("1700000000000000000", "0").replace("2.mcap", "2.mcap.zstd")
+    metadata.write_text(text)
+    (robot / "runs" / "2" / "2.mcap").rename(robot / "runs" / "2" / "2.mcap.zstd")
+    result = analysed(robot, "bag: runs, country: DE, retention: P1D", today="2024-01-01")
+    assert [one.kind for one in result.findings] == ["storage-limitation"]
+    (gap,) = [said.message for said in result.diagnostics if said.code == "bag-gap"]
+    assert gap == f"nothing says when the bag {robot / 'runs' / '2'} was recorded, so its age is not judged"
+
+
 def test_what_is_recorded_of_actions_and_through_wildcards(robot: Path) -> None:
     """S3, S4: a name that only a wildcard writes, and a part of an action."""
     for name in ("/log/b", "/spin/_action/status"):
@@ -100,8 +138,8 @@ def test_no_answer_rests_on_half_a_bag(robot: Path, cli: Cli, harm: str) -> None
     (robot / "bags").mkdir()
     bag = mcap(robot / "bags" / "a.mcap", attachment="x" if harm == "attachment" else "")
     (robot / "l.yaml").write_text(
-        f"labels: 1\n{labels}\nelements:\n  run1: {{kind: storage, bag: bags, retention: P1D, country: DE,"
-        " conduit: [Video]}\nlimits: {Video: P30D}\n"
+        f"labels: 1\n{labels}\nelements:\n  run1: {{kind: storage, bag: bags, retention: P900Y, country: DE,"
+        " conduit: [Video]}\nlimits: {Video: P900Y}\n"
     )
     if harm == "cut":
         bag.write_bytes(bag.read_bytes()[:-20])
@@ -174,7 +212,7 @@ def test_a_fleet_says_it_of_a_robot(robot: Path) -> None:
 
 def test_a_saved_graph_and_the_same_labels_give_the_same(robot: Path, cli: Cli) -> None:
     rosbag2(robot / "run", topics={"/camera": (IMAGE, 1), "/other": (IMAGE, 1)})
-    document = analysed(robot, "bag: run, country: DE, retention: P1D").document()
+    document = analysed(robot, "bag: run, country: DE, retention: P900Y").document()
     saved = robot / "graph.json"
     done = cli("analyze", robot / "a.policy.xml", "--save-graph", saved)
     assert done.returncode == 4, done.stderr

@@ -45,9 +45,10 @@ def test_every_expression_that_shares_a_name_is_near(asked: str, others: list[st
 
 @given(WRITTEN, st.lists(PLAIN, max_size=12, unique=True))
 def test_every_name_that_is_covered_is_near(asked: str, names: list[str]) -> None:
-    for few in (0, 16):  # by what it holds inside, and by its ends alone
+    for few, searched in ((0, 64), (0, 0), (16, 0)):  # by what it holds inside, in either way, and by its ends alone
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr("rosprivacy.ingest.policies.name_index.FEW", few)
+            patch.setattr("rosprivacy.ingest.policies.name_index.SEARCHED", searched)
             near = [name for name, _ in PlainNames(((name, topic(name)) for name in names), [asked]).near(asked)]
         assert len(near) == len(set(near))
         assert {name for name in names if is_pattern(asked) and covers(asked, name)} <= set(near) <= set(names)

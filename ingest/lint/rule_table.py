@@ -1,0 +1,39 @@
+"""The rules of ``rosprivacy lint``: one table, in the order in which they are documented.
+
+In: nothing. Out: ``RULES`` by name. What breaks them is found in ``read_rules``, ``grant_rules`` and ``enclave_rules``.
+"""
+
+from __future__ import annotations
+
+from rosprivacy.analysis.model import LintRule, Severity
+
+_E, _W, _N = Severity.ERROR, Severity.WARNING, Severity.NOTICE
+_RULES = (
+    LintRule("dead-deny", _E, "a DENY that sros2 does not read", "what it should take away is allowed"),
+    LintRule("duplicate-enclave", _E, "an enclave path that is there twice", "sros2 uses the first one only"),
+    LintRule("several-profiles", _E, "several <profiles> in an enclave", "DDS uses the first grant only"),
+    LintRule("overridden-allow", _W, "an ALLOW that a DENY of its enclave takes back", "it grants nothing"),
+    LintRule("wildcard-everything", _E, "a name that is * alone", "it grants every name there is, parameters too"),
+    LintRule("wildcard", _W, "a name with *, ? or […]", "it also grants names that nobody thought of"),
+    LintRule("mistaken-tilde", _W, "a name that begins with ~ and no /", "sros2 glues it to the node's name"),
+    LintRule(
+        "relative-standard-name", _W, "rosout, parameter_events or clock, relative in a namespace",
+        "nodes use the name without the namespace, and get no permission for it",
+    ),
+    LintRule("empty-group", _W, "a group without publish, subscribe, …", "it grants nothing"),
+    LintRule("empty-include", _W, "an include that brings nothing", "what somebody meant to grant is not granted"),
+    LintRule("missing-include", _W, "an include of a file that is not there", "its fallback is read in its place"),
+    LintRule("unused-file", _W, "a fragment in a named folder that nothing includes", "what it grants is not granted"),
+    LintRule("refused-name", _W, "a name that no ROS node can have", "the line meets no other, or the wrong ones"),
+    LintRule("shared-enclave", _W, "an enclave that several files state", "sros2 makes permissions of one file"),
+    LintRule(
+        "mixed-enclave", _W, "an enclave with a source and a leak, in different nodes",
+        "DDS lets each node of it do what any of them may, so nothing that stands between them protects",
+    ),
+    LintRule("crowded-enclave", _N, "an enclave of several nodes", "each of them may do what any of them may"),
+    LintRule(
+        "large-permissions", _E, "permissions of more than 64 KiB",
+        "they do not fit into the handshake of DDS, so the enclave cannot join",
+    ),
+)  # fmt: skip
+RULES = {rule.name: rule for rule in _RULES}

@@ -1,0 +1,1 @@
+"""Broken rules in, out come lines for the terminal, the JSON document and SARIF."""
