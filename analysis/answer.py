@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping
@@ -13,8 +13,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Diagnostic, Element, FlowGraph, Grant, NonRosFacts, Reason, UnknownEnd
 
 
-@dataclass(frozen=True, slots=True)
-class Step:
+class Step(NamedTuple):
     """One hop of a witness: what goes along it, and the policy lines that allow it."""
 
     source: Element
@@ -92,8 +91,7 @@ class Finding:
         return not self.dismissed and not self.accepted
 
 
-@dataclass(frozen=True, slots=True)
-class OpenQuestion:
+class OpenQuestion(NamedTuple):
     """An element that a category reaches and that no label covers for it, rule S11.
 
     Attributes
@@ -115,8 +113,7 @@ class OpenQuestion:
     missing: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class Carried:
+class Carried(NamedTuple):
     """What an element carries: emitted categories, sorted; ``pseudonymised`` is a plane of its own (rule S8)."""
 
     element: Element
@@ -143,8 +140,7 @@ class Verdict(StrEnum):
         return cls.NO_LEAK_FOUND if known and not is_open else cls.UNDETERMINED
 
 
-@dataclass(frozen=True, slots=True)
-class ClosedByTypes:
+class ClosedByTypes(NamedTuple):
     """What there would be if the types of channels limited nothing (rule S15).
 
     Attributes

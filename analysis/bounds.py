@@ -119,7 +119,7 @@ BOUNDS = Bounds()
 WHAT = {one.name: str(one.metadata["what"]) for one in fields(Bounds)}
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class Tally:
     """Counts one thing over a whole run, and ends the run at its bound.
 

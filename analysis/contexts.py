@@ -6,8 +6,7 @@ reveal there, with the provision that says so. A context never weakens what is s
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.model import ARTICLE_9_VERDICTS, MAY_REVEAL, SPECIAL
 
@@ -40,8 +39,7 @@ def surrounded(categories: Mapping[str, Category], hierarchy: Hierarchy) -> dict
             near[above][name] = None
     stated = {name: [*_stated(category)] for name, category in categories.items()}
     return {
-        name: replace(
-            category,
+        name: category._replace(
             in_context=_each_once(said for other in sorted(near[name]) for said in stated[other]),
             look_at=tuple(sorted({at for above in hierarchy.ancestors[name] for at in categories[above].look_at})),
         )
@@ -53,7 +51,7 @@ def _stated(category: Category) -> Iterator[Legal]:
     """What is stated of a category itself."""
     for legal in category.in_context:
         if legal.stated_of in ("", category.name):  # else it came from a kind near it
-            yield replace(legal, stated_of=category.name)
+            yield legal._replace(stated_of=category.name)
 
 
 def _each_once(statements: Iterable[Legal]) -> tuple[Legal, ...]:
@@ -89,8 +87,7 @@ def article9_in(category: Category, contexts: Collection[str]) -> str:
     return category.article9
 
 
-@dataclass(frozen=True, slots=True)
-class Contexts:
+class Contexts(NamedTuple):
     """The contexts of a system's sources.
 
     Attributes

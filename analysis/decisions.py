@@ -12,6 +12,7 @@ from enum import StrEnum
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.case import Case
 from rosprivacy.analysis.errors import DecisionError
 from rosprivacy.analysis.expressions import regex
 from rosprivacy.analysis.legal_bases import gaps
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Finding
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.legal_bases import Verdicts
-    from rosprivacy.analysis.model import Element
     from rosprivacy.analysis.remembered import About, Change
 
 FARTHEST = 1_000_000
@@ -46,45 +46,6 @@ class State(StrEnum):
     VALID = "valid"
     EXPIRED = "expired"
     ORPHANED = "orphaned"  # no finding is as it says
-
-
-@dataclass(frozen=True, slots=True)
-class Case:
-    """What a decision can be about: a finding, or one that may be made.
-
-    Attributes
-    ----------
-    id
-        Of the finding; empty where it stands for more than itself.
-    pattern
-        On a fleet, the id of the pattern that it belongs to.
-    beside
-        As of ``Finding``.
-    robots
-        On a fleet, the robots that data begins on and gets to; an end that is on no robot is empty.
-    """
-
-    id: str
-    kind: str
-    category: str
-    source: Element
-    leak: Element
-    pseudonymised: bool
-    pattern: str = ""
-    beside: bool = False
-    robots: tuple[str, str] = ("", "")
-
-    @property
-    def across(self) -> bool:
-        """Whether data gets from one robot to another."""
-        source, leak = self.robots
-        return bool(source and leak) and source != leak
-
-    @classmethod
-    def of(cls, finding: Finding) -> Case:
-        """Return the case that a finding is."""
-        ends = finding.source, finding.leak
-        return cls(finding.id, finding.kind, finding.category, *ends, finding.pseudonymised, beside=finding.beside)
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,8 +15,6 @@ Source: the paper, section III, without the robot's arm; recogniser, disk and DE
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from rosprivacy.analysis.hierarchy import Hierarchy
 from rosprivacy.analysis.model import (
     ARTICLE_9,
@@ -73,18 +71,18 @@ def factory(robot: str = "") -> tuple[FlowGraph, Bound, Hierarchy]:
     elements = tuple(Element(kinds.get(v, "node"), name, robot) for v, name in enumerate(NAMES))
     grants = [_granted(elements, *ends, line) for line, ends in enumerate(POLICY, 1)]
     lost = _granted(elements, VIDEO, ARCHIVE, len(POLICY) + 1)
-    deny = replace(lost.grants[0], allow=False, place=Place("policy.xml", len(POLICY) + 2))
+    deny = lost.grants[0]._replace(allow=False, place=Place("policy.xml", len(POLICY) + 2))
     graph = FlowGraph(
-        elements, (Flow(ARCHIVE, DISK, STATED), *grants), denied=(replace(lost, denials=(deny,)),), profiles=()
+        elements, (Flow(ARCHIVE, DISK, STATED), *grants), denied=(lost._replace(denials=(deny,)),), profiles=()
     )
     bound = Bound(
         {
             ARCHIVE: (_said("leak", 1, "FaceTemplate", "Video"),),
             CAMERA: (_said("source", 2, "Video"),),
-            FACE_ID: (replace(_said("derivation", 3, "Video"), to="FaceTemplate"),),
-            FILTER: (replace(_said("sanitizer", 4, "Video"), method=Method.PSEUDONYMISE),),
+            FACE_ID: (_said("derivation", 3, "Video")._replace(to="FaceTemplate"),),
+            FILTER: (_said("sanitizer", 4, "Video")._replace(method=Method.PSEUDONYMISE),),
             DISK: by_kind(elements[DISK]),
-            FACES: (replace(_said("only", 5, "FaceTemplate"), naming=SEGMENT, rank=(STANDARD + 1, 0)),),
+            FACES: (_said("only", 5, "FaceTemplate")._replace(naming=SEGMENT, rank=(STANDARD + 1, 0)),),
             ROSOUT: (Statement("mundane", (), (STANDARD, 0), Place("standard", 1), naming=GLOB, shipped=True),),
         },
         outside={DISK: NonRosFacts(country="DE", area="eea")},

@@ -6,7 +6,6 @@ gives no verdict on a system: a provision is one that a person has to look at.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import ARTICLE_9, ARTICLE_9_VERDICTS, MAY_REVEAL, SPECIAL
@@ -55,12 +54,12 @@ def _says_something(category: Category) -> bool:
 def _inherited(category: Category, categories: Mapping[str, Category], hierarchy: Hierarchy) -> Category:
     """The category with its own statements, or with those of the nearest broader ones that have some."""
     if _says_something(category):
-        own = tuple(replace(legal, stated_of=category.name) for legal in _own(category))
-        return replace(category, law=own, stated_of=(category.name,))
+        own = tuple(legal._replace(stated_of=category.name) for legal in _own(category))
+        return category._replace(law=own, stated_of=(category.name,))
     above = [categories[name] for name in hierarchy.broader(category.name) if _says_something(categories[name])]
     nearest = [up for up in above if not any(up.name in hierarchy.broader(other.name) for other in above)]
     law = {
-        (legal.iri, legal.verdict, up.name): replace(legal, stated_of=up.name) for up in nearest for legal in _own(up)
+        (legal.iri, legal.verdict, up.name): legal._replace(stated_of=up.name) for up in nearest for legal in _own(up)
     }
     reasons = sorted({up.reason for up in nearest if up.reason})
     translations = category.translations
@@ -74,8 +73,7 @@ def _inherited(category: Category, categories: Mapping[str, Category], hierarchy
         translations = {
             language: {**texts, "gdpr": defined.text("gdpr", language)} for language, texts in translations.items()
         }
-    return replace(
-        category,
+    return category._replace(
         law=tuple(law[key] for key in sorted(law)),
         reason="; ".join(reasons),
         stated_of=tuple(up.name for up in nearest),
@@ -94,7 +92,7 @@ def _with_narrower(category: Category, narrower: Iterable[Category]) -> Category
                 provisions.setdefault(legal.name, []).append((kind, legal))
     more = [_may_reveal(kinds) for _, kinds in sorted(provisions.items())]
     law = tuple(sorted((*category.law, *more), key=lambda legal: (legal.name, legal.stated_of)))
-    return category if law == category.law else replace(category, law=law)
+    return category if law == category.law else category._replace(law=law)
 
 
 def _may_reveal(kinds: list[tuple[Category, Legal]]) -> Legal:
@@ -108,8 +106,7 @@ def _may_reveal(kinds: list[tuple[Category, Legal]]) -> Legal:
         language: {**legal.translations.get(language, {}), "condition": f"⊇ {conditions[language]}", "sources": ""}
         for language in sorted(languages - {"en"})
     }
-    return replace(
-        legal,
+    return legal._replace(
         verdict=MAY_REVEAL,
         condition=f"if the data are of a narrower kind: {conditions['en']}",
         stated_of=", ".join(dict.fromkeys(kind.name for kind, _ in kinds)),

@@ -6,9 +6,8 @@ stated basis fits is for people to judge.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import StrEnum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.model import ARTICLE_10, MAY_REVEAL, SPECIAL, THIRD_COUNTRY, is_article_9
 
@@ -46,8 +45,7 @@ class Lack(StrEnum):
     )
 
 
-@dataclass(frozen=True, slots=True)
-class Gap:
+class Gap(NamedTuple):
     """One thing that an acceptance lacks."""
 
     lack: Lack

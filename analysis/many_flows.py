@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import accumulate, pairwise
-from typing import TYPE_CHECKING, overload
+from typing import TYPE_CHECKING, NamedTuple, overload
 
 from rosprivacy.analysis.bounds import BOUNDS, Bounds
 from rosprivacy.analysis.errors import InputErrors, PolicyError
@@ -25,8 +25,7 @@ if TYPE_CHECKING:
 MATCHES = "matches"
 
 
-@dataclass(frozen=True, slots=True)
-class Meeting:
+class Meeting(NamedTuple):
     """Written wildcards of which each meets each of some read ones, by index into the elements; both sorted."""
 
     written: tuple[int, ...]

@@ -6,7 +6,6 @@ nobody stated about an element is taken by its kind: data passes what only holds
 
 from __future__ import annotations
 
-from dataclasses import replace
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, TypeVar
 
@@ -195,7 +194,7 @@ def _on_day(facts: NonRosFacts, today: str) -> NonRosFacts:
     ended = facts.until and today > facts.until
     if not (ended or facts.recording):
         return facts
-    return replace(facts, area=THIRD if ended else facts.area, day=today if facts.recording else "")
+    return facts._replace(area=THIRD if ended else facts.area, day=today if facts.recording else "")
 
 
 def transferred(facts: NonRosFacts) -> Reason | None:

@@ -8,7 +8,7 @@ was not there is not decided about.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -42,8 +42,7 @@ class About:
         return not self.robots or {robot for robot in ends if robot} <= self.robots
 
 
-@dataclass(frozen=True, slots=True)
-class Change:
+class Change(NamedTuple):
     """What is not as it was when a decision was made: a field of ``About``, as text then and now."""
 
     what: str

@@ -9,7 +9,6 @@ in memory, and goes on into the command line as ``python -m rosprivacy`` does. E
 from __future__ import annotations
 
 import sys
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosprivacy import question
@@ -24,7 +23,7 @@ def extended(ontologies: Sequence[str] = ()) -> Vocabulary:
     """Return what the program reads, with the extra categories."""
     known = load(ontologies=ontologies).categories
     extra = [
-        replace(known[TOP], name=name, iri=f"urn:x-benchmark:{name}", label=name, title=name, broader=(TOP,))
+        known[TOP]._replace(name=name, iri=f"urn:x-benchmark:{name}", label=name, title=name, broader=(TOP,))
         for name in extra_names(count)
     ]
     return Vocabulary.of([*known.values(), *extra])

@@ -9,17 +9,17 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-import tempfile
 from contextlib import suppress
-from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.model import Category, Legal, Pointer, Situation
 from rosprivacy.ontology.pointed import Pointed
 
-FORMAT = 9  # one more when what is kept, or what is refused, changes
-_TUPLES = ("broader", "synonyms", "data_types", "identity_factors", "same_as", "within", "stated_of", "look_at")
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+FORMAT = 10  # one more when what is kept, or what is refused, changes
 
 
 def default_folder() -> Path:
@@ -39,7 +39,7 @@ def get(folder: Path, key: str) -> Kept | None:
         if digest != _digest(key, text):
             return None
         kept = json.loads(text)
-        categories = tuple(_category(facts) for facts in kept["categories"])
+        categories = tuple(_category(row) for row in kept["categories"])
         return categories, dict(kept["respelt"]), _pointed(kept["pointed"])
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return None
@@ -47,8 +47,9 @@ def get(folder: Path, key: str) -> Kept | None:
 
 def keep(folder: Path, key: str, categories: tuple[Category, ...], respelt: dict[str, str], pointed: Pointed) -> None:
     """Write them, whole or not at all; a folder that cannot be written is no error."""
-    facts = [asdict(category) for category in categories]
-    text = json.dumps({"categories": facts, "respelt": respelt, "pointed": asdict(pointed)}).encode()
+    import tempfile  # noqa: PLC0415 - light start
+
+    text = json.dumps({"categories": categories, "respelt": respelt, "pointed": pointed}).encode()
     with suppress(OSError):
         folder.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(dir=folder)
@@ -70,16 +71,24 @@ def _digest(key: str, text: bytes) -> bytes:
     return hashlib.sha256(key.encode() + text).hexdigest().encode()
 
 
-def _category(facts: dict[str, Any]) -> Category:
-    law = {part: tuple(map(_legal, facts[part])) for part in ("law", "in_context")}
-    return Category(**{**facts, **{name: tuple(facts[name]) for name in _TUPLES}, **law})
+def _frozen(row: list[Any]) -> Iterator[Any]:
+    """The fields of a fact; what JSON makes a list is a tuple."""
+    return (tuple(value) if isinstance(value, list) else value for value in row)
 
 
-def _legal(facts: dict[str, Any]) -> Legal:
-    return Legal(**{**facts, "sources": tuple(facts["sources"])})
+def _category(row: list[Any]) -> Category:
+    kept = Category(*_frozen(row))
+    return kept._replace(law=_legal(kept.law), in_context=_legal(kept.in_context))
 
 
-def _pointed(facts: dict[str, Any]) -> Pointed:
-    situations = (Situation(**{**said, "look_at": tuple(said["look_at"])}) for said in facts["situations"])
-    at_stake = tuple((kind, tuple(names)) for kind, names in facts["at_stake"])
-    return Pointed(tuple(Pointer(**said) for said in facts["provisions"]), tuple(situations), at_stake)
+def _legal(rows: Iterable[Any]) -> tuple[Legal, ...]:
+    return tuple(Legal(*_frozen(row)) for row in rows)
+
+
+def _pointed(row: list[Any]) -> Pointed:
+    provisions, situations, at_stake = row
+    return Pointed(
+        tuple(Pointer(*each) for each in provisions),
+        tuple(Situation(*_frozen(each)) for each in situations),
+        tuple((kind, tuple(names)) for kind, names in at_stake),
+    )

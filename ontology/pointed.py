@@ -5,8 +5,7 @@ In: facts read from the Turtle files. Out: which provisions are to be looked at 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -16,8 +15,7 @@ if TYPE_CHECKING:
 EVERY_SYSTEM = ""  # the name of the situation that each system is in
 
 
-@dataclass(frozen=True, slots=True)
-class Pointed:
+class Pointed(NamedTuple):
     """What is pointed at.
 
     Attributes

@@ -7,7 +7,6 @@ ones is for ``analysis/legal.py``.
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rdflib import DCTERMS, RDF, RDFS, SKOS, Graph, Namespace, URIRef
@@ -163,7 +162,7 @@ def _in_context(graph: Graph, subject: Node) -> Iterator[Legal]:
         context = graph.value(link, RP.context)
         legal = _legal(graph, link, "")
         if legal and context is not None:
-            yield replace(legal, context=str(graph.value(context, SKOS.notation) or ""))
+            yield legal._replace(context=str(graph.value(context, SKOS.notation) or ""))
 
 
 def _legal(graph: Graph, link: Node, own: str) -> Legal | None:

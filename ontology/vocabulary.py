@@ -7,12 +7,10 @@ under the hash of all files (``cache.py``), so that rdflib is imported only afte
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass, field
 from difflib import get_close_matches
 from functools import lru_cache
-from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.contexts import surrounded
 from rosprivacy.analysis.errors import InputErrors, OntologyError, reason
@@ -21,14 +19,15 @@ from rosprivacy.analysis.hierarchy import Hierarchy
 from rosprivacy.analysis.legal import close
 from rosprivacy.ontology import cache as kept
 from rosprivacy.ontology.iris import STORED, as_stored
-from rosprivacy.ontology.known import Known
 from rosprivacy.ontology.pointed import Pointed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from rosprivacy.analysis.model import Category
+    from rosprivacy.ontology.known import Known
 
+FOLDER = Path(__file__).parent  # what is shipped; importlib.resources would be imported for nothing else
 LARGEST = 4 * 2**20  # bytes of a user's file
 TOP = "PersonalData"
 SHIPPED = ("categories.ttl", "law.ttl", "other_law.ttl", "contexts.ttl", "elements.ttl", "dpv.ttl")
@@ -40,8 +39,7 @@ PREFIXES = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class Vocabulary:
+class Vocabulary(NamedTuple):
     """The categories of an ontology.
 
     Attributes
@@ -60,9 +58,9 @@ class Vocabulary:
 
     categories: Mapping[str, Category]
     hierarchy: Hierarchy
-    respelt: Mapping[str, str] = field(default_factory=dict)
+    respelt: Mapping[str, str] = {}
     sources: tuple[tuple[str, str], ...] = ()
-    pointed: Pointed = field(default_factory=Pointed)
+    pointed: Pointed = Pointed()
 
     @classmethod
     def of(
@@ -160,7 +158,7 @@ def load(cache: Path | None = None, ontologies: Sequence[str] = ()) -> Vocabular
     InputErrors
         If an ontology breaks a rule.
     """
-    shipped = tuple(files("rosprivacy.ontology").joinpath(name).read_bytes() for name in SHIPPED)
+    shipped = tuple((FOLDER / name).read_bytes() for name in SHIPPED)
     own = tuple((file, _read(file)) for file in dict.fromkeys(ontologies))
     return _vocabulary(cache or kept.default_folder(), shipped, own)
 
@@ -199,6 +197,7 @@ def _read(file: str) -> bytes:
 
 @lru_cache(maxsize=1)
 def _shipped(texts: tuple[bytes, ...]) -> tuple[Known, dict[str, str]]:
+    from rosprivacy.ontology.known import Known  # noqa: PLC0415 - light start
     from rosprivacy.ontology.turtle import categories_of, read, respelt_of  # noqa: PLC0415 - heavy
 
     graph = read("\n".join(text.decode() for text in texts), "the shipped ontology")

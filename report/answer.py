@@ -5,7 +5,7 @@ In: what was found, and what it rests on. Out: ``Answer``. A format is a functio
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.answer import Analysis
-    from rosprivacy.analysis.decisions import Case, Decided, Decision
+    from rosprivacy.analysis.case import Case
+    from rosprivacy.analysis.decisions import Decided, Decision
     from rosprivacy.analysis.durations import Duration
     from rosprivacy.analysis.findings.ledger import TakenAway
     from rosprivacy.analysis.findings.processed import Processed
@@ -93,8 +94,7 @@ class Answer:
         if self.fleet is None:
             return row
         beside, between = self._beside, self.fleet.likeness.between
-        return replace(
-            row,
+        return row._replace(
             elements=tuple(e for e in row.elements if e.robot not in beside),
             to=tuple(e for e in row.to if e.robot not in beside),
             findings=tuple(f for f in row.findings if between(f.source.robot, f.leak.robot)),

@@ -12,9 +12,8 @@ import stat
 import tempfile
 import unicodedata
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from rosprivacy.analysis.errors import InputError, InputErrors, reason, shown
 from rosprivacy.analysis.files_read import changed_since, read_as
@@ -26,8 +25,7 @@ Text: TypeAlias = "str | bytes | Iterable[str]"  # in one piece or in several
 STANDARD_OUTPUT = Path("/dev/stdout")
 
 
-@dataclass(frozen=True, slots=True)
-class _Output:
+class _Output(NamedTuple):
     """Where a text is to go.
 
     Attributes

@@ -5,8 +5,7 @@ In: rows of a JSON document, or elements. Out: ``ElementCount``. One place count
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.text import counted
 from rosprivacy.report.naming import whole
@@ -17,8 +16,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Element
 
 
-@dataclass(frozen=True, slots=True)
-class ElementCount:
+class ElementCount(NamedTuple):
     """How many elements, and how many where the legs of services and actions are counted by themselves."""
 
     elements: int

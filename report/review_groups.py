@@ -7,8 +7,7 @@ proposes to take as mundane.
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.model import CHANNELS
 from rosprivacy.report.naming import key
@@ -22,8 +21,7 @@ SHOWN = 12  # open elements of a group that a person looks at next
 FIRST, AT_CHANNELS, BEHIND = "first", "channels", "behind"
 
 
-@dataclass(frozen=True, slots=True)
-class ReviewGroup:
+class ReviewGroup(NamedTuple):
     """Open elements of one urgency.
 
     Attributes

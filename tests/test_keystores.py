@@ -9,7 +9,7 @@ import pytest
 
 import rosprivacy
 from tests.helpers.command import cli
-from tests.helpers.keystores import Keystore, grant, permissions, rule
+from tests.helpers.keystores import Keystore, governance, grant, permissions, rule, topic_rule
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -83,3 +83,20 @@ def test_permissions_by_themselves_are_read_only_where_nobody_has_to_have_signed
 def test_what_is_signed_is_changed_in_the_policy_not_by_a_patch(cli: Cli, keystore: Path) -> None:
     done = cli("mitigate", keystore / "keystore", "-l", keystore / "labels.yaml", "--by", "deny")
     assert "no change can be proposed" in done.stdout
+
+
+def test_where_permissions_are_not_asked_the_answer_is_undetermined_at_best(cli: Cli, tmp_path: Path) -> None:
+    made = Keystore(tmp_path / "keystore")
+    made.enclave("/camera", PUBLISHED)
+    made.enclave("/uplink", permissions(grant("/uplink", rule("allow", subscribe=("rt/other",)))))
+    made.governance(governance(topic_rule("rt/video", reading="false"), topic_rule()))
+    (tmp_path / "labels.yaml").write_text(f"{LABELS}channels: {{/video: sensitive}}\n")
+    arguments = ("analyze", made.folder, "-l", tmp_path / "labels.yaml")
+    declared = cli(*arguments)
+    assert declared.returncode == 4
+    assert declared.stdout.startswith("undetermined: no leak reached, but permissions are not asked everywhere")
+    enforced = cli(*arguments, "--view", "enforced", "--format", "json")
+    [finding] = json.loads(enforced.stdout)["findings"]
+    assert [step["name"] for step in finding["witness"]][::2] == ["/camera", "/uplink"]
+    for language, words in (("de", "Berechtigungen"), ("fr", "autorisations")):
+        assert words in cli(*arguments, "--lang", language).stdout.splitlines()[0]

@@ -8,25 +8,58 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
+import pytest
 from hypothesis import Phase, assume, given, settings
 from hypothesis import strategies as st
 
 import rosprivacy
 from rosprivacy.ingest.policies.saved_graph import as_dict
+from rosprivacy.ontology.iris import STORED
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.report.json_text import as_text
 from tests.helpers.fleet_files import policy
 
 if TYPE_CHECKING:
+    from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.result import Result
 
-VOCABULARY = load()
-KINDS = ("FaceImage", "FaceTemplate", "PersonImage", "Video", "Voice")
+# A user's own kinds: their broader ones, and whether the file sets them apart by another form of data.
+OWN = {"Silhouette": (("Video",), False), "Walking": (("Video",), True), "Clip": (("Video", "Voice"), False)}
+HEAD = f"""@prefix rp: <{STORED}> .
+@prefix skos: <http://www.w3.org/2004/02/skos/core#> .
+@prefix e: <urn:example:> .
+"""
+OWN_KIND = """e:{name} a skos:Concept ; rp:label "{name}" ; skos:prefLabel "{name}"@en ;
+    skos:definition "Made up for a test."@en ; skos:broader {broader}{apart} .
+"""
+
+
+def ontology() -> str:
+    text = HEAD
+    for name, (broader, apart) in OWN.items():
+        names = " , ".join(f"rp:{one}" for one in broader)
+        text += OWN_KIND.format(name=name, broader=names, apart=' ; rp:dataType "number"' if apart else "")
+    return text
+
+
+def vocabulary() -> Vocabulary:
+    with TemporaryDirectory() as folder:
+        file = Path(folder, "own.ttl")
+        file.write_text(ontology(), "utf-8")
+        return load(ontologies=(str(file),))
+
+
+VOCABULARY = vocabulary()
+KINDS = ("FaceImage", "FaceTemplate", "PersonImage", "Video", "Voice", *OWN)
 UP = {kind: set(VOCABULARY.hierarchy.ancestors[kind]) for kind in KINDS}
-TABLES = {"a/msg/A": {"PersonImage", "Voice"}, "a/msg/B": {"Video", "FaceTemplate"}}  # a/msg/C is in no table
+TABLES = {
+    "a/msg/A": {"PersonImage", "Voice"},
+    "a/msg/B": {"Video", "FaceTemplate", "Walking"},
+}  # a/msg/C is in no table
 TYPES = (*TABLES, "a/msg/C")
 CHANNELS, NODES = ("/t0", "/t1", "/t2", "/u3"), ("/n0", "/n1", "/n2", "/n3")
 WILD = "/t*"
+MORE: dict[str, Any] = {"ontologies": "own.ttl"}
 
 
 def table() -> str:
@@ -76,6 +109,7 @@ class System:
         topics = {c: [{"type": name, "writers": by} for name, by in seen] for c, seen in self.seen.items()}
         Path("t.yaml").write_text(as_text({"types": 1, "topics": topics}), "utf-8")
         Path("table.yaml").write_text(table(), "utf-8")
+        Path("own.ttl").write_text(ontology(), "utf-8")
 
     def there(self) -> set[str]:
         return {c for some in (*self.writes.values(), *self.reads.values()) for c in some} & set(CHANNELS)
@@ -88,7 +122,7 @@ class System:
     def limited(self, channel: str, kind: str) -> bool:
         """S15, word for word."""
         types = [*self.stated.get(channel, []), *(name for name, _ in self.seen.get(channel, []))]
-        if not types or not all(TABLES.get(name, set()) & UP[kind] for name in types):
+        if not types or not all(cannot(name, kind) for name in types):
             return False
         for writer, by_name in self.writers(channel).items():
             known = bool(self.stated.get(channel)) or (
@@ -164,6 +198,15 @@ class System:
         return WILD in self.reads[reader] and channel.startswith("/t")
 
 
+def cannot(name: str, kind: str) -> bool:
+    """S15: a user's own kind only if the table names it, or a broader kind that the file does not set apart."""
+    named = TABLES.get(name, set())
+    if kind not in OWN:
+        return bool(named & UP[kind])
+    broader, apart = OWN[kind]
+    return kind in named or (not apart and all(cannot(name, up) for up in broader))
+
+
 def overlap(one: str, other: str) -> bool:
     """Whether a kind of data can be of both (S7's *may*)."""
     return any({one, other} <= set(up) for up in VOCABULARY.hierarchy.ancestors.values())
@@ -210,8 +253,8 @@ def found(result: Result) -> set[tuple[str, str, str]]:
 def answers(system: System) -> tuple[Result, Result]:
     system.write()
     try:
-        under = rosprivacy.analyze("p.xml", "l.yaml", types="t.yaml", type_limits="table.yaml")
-        return under, rosprivacy.analyze("p.xml", "l.yaml", types="t.yaml", type_limits=None)
+        under = rosprivacy.analyze("p.xml", "l.yaml", types="t.yaml", type_limits="table.yaml", **MORE)
+        return under, rosprivacy.analyze("p.xml", "l.yaml", types="t.yaml", type_limits=None, **MORE)
     except rosprivacy.InputErrors:  # labels that contradict each other
         assume(False)
         raise
@@ -231,9 +274,11 @@ def test_random_systems_follow_the_rule_word_for_word(system: System) -> None:
         assert under.analysis.open == without.analysis.open  # it reviews nothing
         result = rosprivacy.analyze("p.xml", types="t.yaml")
         Path("g.json").write_text(as_text(as_dict(result.policies, result.diagnostics, result.types)), "utf-8")
-        saved = rosprivacy.analyze(labels="l.yaml", add="g.json", type_limits="table.yaml")
+        saved = rosprivacy.analyze(labels="l.yaml", add="g.json", type_limits="table.yaml", **MORE)
         assert saved.document() == under.document()
-        enforced = rosprivacy.analyze("p.xml", "l.yaml", types="t.yaml", type_limits="table.yaml", view="enforced")
+        enforced = rosprivacy.analyze(
+            "p.xml", "l.yaml", types="t.yaml", type_limits="table.yaml", **MORE, view="enforced"
+        )
         assert not enforced.analysis.closed
 
 
@@ -251,3 +296,21 @@ def test_many_of_them_are_limited_and_some_findings_only_so_closed() -> None:
     take()
     assert counts["limited"] > counts["all"] / 4
     assert counts["closed"] >= counts["all"] / 50
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("name", TYPES)
+def test_each_kind_ends_at_each_type_that_cannot_carry_it(
+    name: str, kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The smallest system, with an open node in between, for every kind, a user's own too: random ones meet few."""
+    monkeypatch.chdir(tmp_path)
+    silent = {node: set[str]() for node in NODES}
+    system = System(
+        {**silent, "/n0": {"/t0"}, "/n1": {"/u3"}}, {**silent, "/n1": {"/t0"}, "/n2": {"/u3"}},
+        {"/n0": {kind: []}}, {"/n2": [kind]}, {node: [] for node in NODES}, {}, {"/u3": [name]},
+    )  # fmt: skip
+    under, without = answers(system)
+    assert found(without) == {(kind, "/n0", "/n2")}
+    assert bool(found(under)) != cannot(name, kind)
+    assert under.analysis.open == without.analysis.open

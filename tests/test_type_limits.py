@@ -10,7 +10,8 @@ import pytest
 import rosprivacy
 from rosprivacy.formats import FORMATS
 from rosprivacy.ingest.database.loading import load as load_rows
-from rosprivacy.ingest.types.type_table import TABLE, excluded, read_table
+from rosprivacy.ingest.types import TABLE
+from rosprivacy.ingest.types.type_table import excluded, read_table
 from rosprivacy.ontology.iris import STORED
 from rosprivacy.ontology.vocabulary import load
 from rosprivacy.private_neo4j import connection

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 import rosprivacy
-from rosprivacy.ingest.types.type_table import TABLE, read_table
+from rosprivacy.ingest.types import TABLE
+from rosprivacy.ingest.types.type_table import read_table
 from rosprivacy.ontology.vocabulary import load
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 import rosprivacy
-from rosprivacy.ingest.types.type_table import TABLE
+from rosprivacy.ingest.types import TABLE
 from rosprivacy.report.element_counts import count_rows
 from tests.helpers import live_robot
 from tests.helpers.fleet_files import policy

@@ -7,8 +7,7 @@ it were not there. Used by the ledger.
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.kernel.backward import NOTHING_OPENED, Opened, backward
 from rosprivacy.analysis.kernel.nearest import Nearest
@@ -27,8 +26,7 @@ ROUNDS = 64  # lines about several elements that are opened one by one; of other
 PERHAPS = -2  # in place of a vertex, where it was not worked out
 
 
-@dataclass(frozen=True, slots=True)
-class Closure:
+class Closure(NamedTuple):
     """Bits that get to an element or a flow and do not go on.
 
     Attributes

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.model import DISCLOSURE, STORAGE_LIMITATION, THIRD_COUNTRY
 from rosprivacy.analysis.non_ros import kept_too_long, transferred
@@ -16,8 +15,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Bound, Reason
 
 
-@dataclass(frozen=True, slots=True)
-class Concern:
+class Concern(NamedTuple):
     """A kind of finding: vertex -> bits that must not get there, and why."""
 
     kind: str

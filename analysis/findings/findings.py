@@ -10,13 +10,13 @@ from __future__ import annotations
 
 import hashlib
 from collections import defaultdict
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.answer import Analysis, Carried, Finding, Step, Verdict
 from rosprivacy.analysis.bounds import BOUNDS, Tally
-from rosprivacy.analysis.decisions import Case
+from rosprivacy.analysis.case import Case
 from rosprivacy.analysis.findings.arrival import shown_arrivals
 from rosprivacy.analysis.findings.concerns import concerns
 from rosprivacy.analysis.findings.grounds import grounds, lacking
@@ -49,8 +49,7 @@ NOWHERE = Place("the analysis", 0)
 Chosen = tuple[str, int, int, bool]  # kind, leak, number of the category, whether beside a pseudonymised one
 
 
-@dataclass(frozen=True, slots=True)
-class Options:
+class Options(NamedTuple):
     """What is asked for.
 
     Attributes

@@ -9,9 +9,8 @@ from __future__ import annotations
 import hashlib
 from array import array
 from collections import defaultdict, deque
-from dataclasses import dataclass
 from itertools import chain, product
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.findings.disjoint_in_groups import number_in_groups
 from rosprivacy.analysis.kernel.bits import bits_of
@@ -36,8 +35,7 @@ LEAK, SOURCE, FIRST = 0, 1, 2  # forms: the leak and the source are one state ea
 SEARCHED = 10  # times the bound: so many paths of data are looked at, of which many may be one to the reader
 
 
-@dataclass(frozen=True, slots=True)
-class FurtherPaths:
+class FurtherPaths(NamedTuple):
     """Paths between a source and a leak.
 
     Attributes

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.answer import Verdict
 from rosprivacy.analysis.findings.closures import ABSENT
@@ -34,8 +34,7 @@ Identity = tuple[str, str, str]
 Ends = tuple[Identity, Identity]
 
 
-@dataclass(frozen=True, slots=True)
-class GlobUse:
+class GlobUse(NamedTuple):
     """What one line of labels does that names elements, or the ends of flows, by a glob.
 
     Attributes

@@ -8,8 +8,7 @@ like an answer: nothing leaks where nothing was followed, and nothing is a leak 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.model import GOES_NOWHERE, NO_LEAK_NAMED, NO_SOURCE, Diagnostic, Place, Severity
 
@@ -29,8 +28,7 @@ WHAT = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class Grounds:
+class Grounds(NamedTuple):
     """Whether a source begins what is asked for, whether its data goes on, and whether anybody speaks of leaks."""
 
     source: bool = False

@@ -13,20 +13,16 @@ from rosprivacy.analysis.answer import ClosedByTypes, Verdict
 from rosprivacy.analysis.kernel.type_limits import closed
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from rosprivacy.analysis.answer import Analysis, Finding
 
 
-def held_by_types(
-    under: Analysis, without: Analysis, identity: Callable[[Finding], str], *, all_read: bool = True
-) -> Analysis:
+def held_by_types(under: Analysis, without: Analysis, gone: tuple[Finding, ...], *, all_read: bool = True) -> Analysis:
     """Return an analysis under limits with what only these close.
 
     Parameters
     ----------
-    identity
-        What findings of both have in common: of a fleet their pattern.
+    gone
+        The findings that only the limits close; of a fleet one of each pattern.
     all_read
         Whether all grants were read (rule S11).
 
@@ -35,11 +31,9 @@ def held_by_types(
     >>> from rosprivacy.analysis.example import factory
     >>> from rosprivacy.analysis.findings.findings import analyse
     >>> analysis = analyse(*factory())
-    >>> held_by_types(analysis, analysis, lambda finding: finding.id).closed
+    >>> held_by_types(analysis, analysis, ()).closed
     ClosedByTypes(flows=0, channels=(), findings=())
     """
-    there = {identity(finding) for finding in under.findings}
-    gone = tuple(finding for finding in without.findings if identity(finding) not in there)
     mask = sum(under.spread.both(category) for category in under.emitted)
     leak = any(finding.stands for finding in under.findings)
     return replace(

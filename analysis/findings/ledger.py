@@ -11,8 +11,7 @@ Source: rules S5, S7, S8, S11 and S13: what stops data must be stated by somebod
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.findings.closures import ABSENT, PERHAPS, TYPE, Closure, behind, closures, line_key
 from rosprivacy.analysis.findings.concerns import concerns
@@ -35,8 +34,7 @@ BY = ("deny", "standard-channel", TYPE, "mundane", "only", "never", "sanitizer",
       RESTRICTION, UNREAD, UNKNOWN_READER)  # fmt: skip
 
 
-@dataclass(frozen=True, slots=True)
-class TakenAway:
+class TakenAway(NamedTuple):
     """One place where data, or a question, ends on somebody's word.
 
     Attributes

@@ -6,7 +6,6 @@ open nodes and leaks of the category as ends.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -68,7 +67,7 @@ def open_questions(net: Net, mask: int, unknown: Mapping[int, tuple[str, ...]] =
         known = merged.get(element.shown_as)  # the other side of a wildcard
         if known:
             categories = tuple(sorted({*known.categories, *question.categories}))
-            question = replace(known, categories=categories, distance=min(known.distance, question.distance))
+            question = known._replace(categories=categories, distance=min(known.distance, question.distance))
         merged[element.shown_as] = question
     return tuple(sorted(merged.values(), key=lambda q: (not q.frontier, q.distance, q.element.sort_key())))
 

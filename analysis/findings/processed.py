@@ -11,8 +11,8 @@ None of it changes a finding: a stated basis is no acceptance.
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.kernel.search import Search, present, search
 from rosprivacy.analysis.kernel.states import Net
@@ -39,8 +39,7 @@ if TYPE_CHECKING:
 PURPOSE, BASIS = "purpose", "legal_basis"  # what can be missing
 
 
-@dataclass(frozen=True, slots=True)
-class Processed:
+class Processed(NamedTuple):
     """What is stated of data of a kind at the element where they begin or end.
 
     Attributes

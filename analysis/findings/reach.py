@@ -7,11 +7,10 @@ says of each finding whether it is there, whether it stands, and whether plain d
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, replace
 from itertools import chain
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
-from rosprivacy.analysis.decisions import Case
+from rosprivacy.analysis.case import Case
 from rosprivacy.analysis.findings.concerns import concerns
 from rosprivacy.analysis.findings.findings import finding_id
 from rosprivacy.analysis.kernel.bits import bits_of
@@ -30,8 +29,7 @@ Key = tuple[str, int, int, int]  # kind, number of the category, source, leak
 State = tuple[bool, bool]  # of a finding that is not accepted: whether it stands, whether plain data is in it
 
 
-@dataclass(frozen=True, slots=True)
-class Places:
+class Places(NamedTuple):
     """Where each kind of finding can be, and what people accepted there.
 
     Attributes
@@ -73,8 +71,7 @@ class Places:
         )
 
 
-@dataclass(frozen=True, slots=True)
-class Reach:
+class Reach(NamedTuple):
     """What some sources' data gets to.
 
     Attributes
@@ -103,7 +100,7 @@ class Reach:
         def more(flood: Flood) -> Flood:
             return flood.further(flood.doing.changed(now), opened, flows)
 
-        return replace(self, whole=more(self.whole), past=tuple((own, more(flood)) for own, flood in self.past))
+        return self._replace(whole=more(self.whole), past=tuple((own, more(flood)) for own, flood in self.past))
 
     @property
     def touched(self) -> set[int]:

@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections import defaultdict
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.findings.closures import line_key
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
     from rosprivacy.analysis.answer import Analysis
-    from rosprivacy.analysis.decisions import Case
+    from rosprivacy.analysis.case import Case
     from rosprivacy.analysis.findings.reach import Key, State
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.kernel.spread import Spread
@@ -43,8 +43,7 @@ TOGETHER = 64  # sources that are followed at once
 ROUNDS = 64  # statements for which the whole system is analysed again; of more it is said that it was not worked out
 
 
-@dataclass(frozen=True, slots=True)
-class Opening:
+class Opening(NamedTuple):
     """A finding that there would be, or that would be worse.
 
     Attributes
@@ -64,8 +63,7 @@ class Opening:
     new: bool
 
 
-@dataclass(frozen=True, slots=True)
-class Reliance:
+class Reliance(NamedTuple):
     """What hangs on one statement.
 
     Attributes
@@ -143,7 +141,7 @@ def _outside(analysis: Analysis) -> dict[int, NonRosFacts]:
     return {v: analysis.outside[e] for v, e in enumerate(analysis.graph.elements) if e in analysis.outside}
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class _Spots:
     """Where one statement is said, and whether any data is there."""
 
@@ -186,7 +184,7 @@ def _takes(statement: Statement) -> bool:
     return statement.role not in BRINGS_IN and statement.place != NOWHERE
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class _Work:
     """The answer as it is, for comparison, and how many analyses of the whole are left."""
 
@@ -234,15 +232,15 @@ class _Work:
             if change is not None:
                 return self._told(self._compared(row, *self._further(change, spots)))
             if not self.left:
-                return replace(row, perhaps=True)
+                return row._replace(perhaps=True)
             self.left -= 1
             return self._told(self._compared(row, *self._anew(_without(self.bound, statement, spots))))
         except InputErrors as error:
-            return replace(row, refused=str(error.errors[0]))
+            return row._replace(refused=str(error.errors[0]))
 
     def _told(self, row: Reliance) -> Reliance:
         """A type reviews nothing: what lies behind it is open as it is (rule S15)."""
-        return replace(row, questions=()) if row.statement.role == CANNOT else row
+        return row._replace(questions=()) if row.statement.role == CANNOT else row
 
     def _change(self, statement: Statement, spots: _Spots) -> Spread | None:
         """What the elements and flows do without it, if that is more and nothing less; else None."""
@@ -328,8 +326,7 @@ class _Work:
             shown = elements[vertex].shown_as
             if new := open_now & ~self.open.get(shown, 0):
                 asked.setdefault(shown, (elements[vertex], set()))[1].update(spread.names(new))
-        return replace(
-            row,
+        return row._replace(
             findings=tuple(opening for _, opening in sorted(found, key=lambda pair: pair[0])),
             questions=tuple((element, tuple(sorted(names))) for element, names in asked.values()),
         )
@@ -349,7 +346,7 @@ def _without(bound: Bound, statement: Statement, spots: _Spots) -> Bound:
 
 
 def _less(said: tuple[Statement, ...], statement: Statement) -> tuple[Statement, ...]:
-    return tuple(one for one in said if one != statement)
+    return tuple(one for one in said if one.categories != statement.categories or one != statement)
 
 
 def _distinct(elements: Iterable[Element]) -> tuple[Element, ...]:

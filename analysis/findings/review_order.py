@@ -8,8 +8,7 @@ wait.
 from __future__ import annotations
 
 from collections import Counter, defaultdict, deque
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.kernel.dominators import immediate_dominators
 from rosprivacy.analysis.many_flows import parted
@@ -27,8 +26,7 @@ MOST = 200_000  # flows with data; of more it is not worked out what stands behi
 Shown = tuple[str, str, str, str]
 
 
-@dataclass(frozen=True, slots=True)
-class Behind:
+class Behind(NamedTuple):
     """What a person wants to know of an open element before looking at it.
 
     Attributes
@@ -94,8 +92,7 @@ def _both(one: Behind, other: Behind) -> Behind:
     return Behind(one.through or other.through, first.closes, first.leaks, waits=one.waits and other.waits)
 
 
-@dataclass(frozen=True, slots=True)
-class _Following:
+class _Following(NamedTuple):
     """Where data goes on, beginning at ``START``.
 
     Attributes

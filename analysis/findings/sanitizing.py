@@ -6,8 +6,7 @@ In: a spread. Out: ``Cleaning`` and ``Making``, in the order of the graph, for t
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.many_flows import one_by_one
 from rosprivacy.analysis.model import Method
@@ -19,8 +18,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Bound, Element, FlowGraph, Place
 
 
-@dataclass(frozen=True, slots=True)
-class Cleaning:
+class Cleaning(NamedTuple):
     """That an element cleans a category.
 
     Attributes
@@ -51,8 +49,7 @@ class Cleaning:
     places: tuple[Place, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class Making:
+class Making(NamedTuple):
     """That an element makes one category of another; ``reached`` says whether the other gets there."""
 
     element: Element

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.findings.findings import finding_id
 from rosprivacy.analysis.model import Element
@@ -14,8 +13,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Finding
 
 
-@dataclass(frozen=True, slots=True)
-class Likeness:
+class Likeness(NamedTuple):
     """Which robots of a graph stand for which robots of a fleet.
 
     Attributes
@@ -30,8 +28,8 @@ class Likeness:
     """
 
     members: Mapping[str, tuple[str, ...]]
-    second: Mapping[str, str] = field(default_factory=dict)
-    models: Mapping[str, str] = field(default_factory=dict)
+    second: Mapping[str, str] = {}
+    models: Mapping[str, str] = {}
 
     def is_robot(self, name: str) -> bool:
         """Return whether a name is that of a robot of the graph."""

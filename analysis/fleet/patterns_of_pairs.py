@@ -17,11 +17,11 @@ from rosprivacy.analysis.fleet.source_leak_pairs import pairs
 from rosprivacy.analysis.fleet.tallies import Count, Form, Pair, Share, Tallies
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
     from numpy.typing import NDArray
 
-    from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.analysis.answer import Analysis, Finding
     from rosprivacy.analysis.findings.concerns import Concern
     from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.analysis.fleet.source_leak_pairs import Pairs
@@ -50,6 +50,13 @@ class _Table:
         self.alike = np.array([kinds.setdefault(likeness.alike(e), len(kinds)) for e in elements], np.int64)
         self.kinds = len(kinds)
 
+    def patterns(self, sources: Indices, leaks: Indices) -> Indices:
+        """What pairs have in common that differ only in the robot."""
+        a, b = self.robot[sources], self.robot[leaks]
+        across = self.is_robot[a] & self.is_robot[b] & (a != b)
+        keys: Indices = (self.alike[sources] * self.kinds + self.alike[leaks]) * 2 + across
+        return keys
+
     def counts(self, a: Indices, b: Indices) -> Indices:
         """For how many findings of the fleet a pair of robots stands, as ``Likeness.count``."""
         to_second = self.is_second[b]
@@ -74,7 +81,7 @@ class Groups:
         table = _Table(spread.graph.elements, self._likeness)
         wanted: Wanted = defaultdict(set)
         for part in pairs(spread, kinds, mask):
-            for some, beside in ((part, False), (_plain_beside(part), True)):
+            for some, beside in _each(part):
                 for source, leak in self._take(spread, some, table, beside=beside):
                     wanted[source].add((part.kind, leak, part.category, beside))
         return dict(wanted)
@@ -89,7 +96,7 @@ class Groups:
         hidden, dismissed = part.pseudonymised[chosen], part.dismissed[chosen]
         a, b = table.robot[sources], table.robot[leaks]
         across = table.is_robot[a] & table.is_robot[b] & (a != b)
-        keys = (table.alike[sources] * table.kinds + table.alike[leaks]) * 2 + across
+        keys = table.patterns(sources, leaks)
         order = np.lexsort((np.arange(len(keys)), hidden, dismissed, keys))
         ids: dict[int, str] = {}
         starts = np.flatnonzero(np.diff(keys[order], prepend=-1))
@@ -114,6 +121,62 @@ class Groups:
     def view(self, analysis: Analysis) -> FleetView:
         """Return patterns and deviants, when the findings are made."""
         return FleetView.counted(self._tallies, analysis, self._likeness)
+
+
+class Closed:
+    """Chooses, beside what ``Groups`` chooses, one pair of each pattern that is closed on some robot (rule S15).
+
+    Call it in place of ``Groups`` with the spread without limits of types; then ``of`` says which findings are closed.
+
+    Parameters
+    ----------
+    under
+        The spread under limits of types, of the same graph.
+    """
+
+    def __init__(self, likeness: Likeness, under: Spread) -> None:
+        self._likeness, self._under = likeness, under
+        self._gone: set[tuple[str, str, Element, Element, bool]] = set()
+
+    def __call__(self, spread: Spread, kinds: Sequence[Concern], mask: int) -> Wanted:
+        """Return the findings to make."""
+        elements, size = spread.graph.elements, len(spread.graph.elements)
+        table = _Table(elements, self._likeness)
+        wanted = defaultdict(set, Groups(self._likeness)(spread, kinds, mask))
+        left = {
+            (part.kind, part.category, beside): some.sources * size + some.leaks
+            for part in pairs(self._under, kinds, mask)
+            for some, beside in _each(part)
+        }
+        for part in pairs(spread, kinds, mask):
+            for some, beside in _each(part):
+                there = left.get((part.kind, part.category, beside), np.zeros(0, np.int64))
+                gone = np.flatnonzero(~np.isin(some.sources * size + some.leaks, there))
+                for source, leak in _first_of_each(some, gone, table):
+                    wanted[source].add((part.kind, leak, part.category, beside))
+                    category = spread.categories[part.category]
+                    self._gone.add((part.kind, category, elements[source], elements[leak], beside))
+        return dict(wanted)
+
+    def of(self, findings: Iterable[Finding]) -> tuple[Finding, ...]:
+        """Return those of the findings that are closed, one of each pattern."""
+        return tuple(f for f in findings if (f.kind, f.category, f.source, f.leak, f.beside) in self._gone)
+
+
+def _first_of_each(part: Pairs, chosen: Indices, table: _Table) -> Iterator[tuple[int, int]]:
+    """Of some pairs one of each pattern: as ``Groups`` chooses the one that is shown."""
+    sources, leaks = part.sources[chosen], part.leaks[chosen]
+    counted = np.flatnonzero(table.counts(table.robot[sources], table.robot[leaks]))
+    chosen, sources, leaks = chosen[counted], sources[counted], leaks[counted]
+    keys = table.patterns(sources, leaks)
+    order = np.lexsort((np.arange(len(keys)), part.pseudonymised[chosen], part.dismissed[chosen], keys))
+    first = order[np.flatnonzero(np.diff(keys[order], prepend=-1))]
+    return zip(sources[first].tolist(), leaks[first].tolist(), strict=True)
+
+
+def _each(part: Pairs) -> tuple[tuple[Pairs, bool], ...]:
+    """The pairs of a kind and category, and those that stand beside them."""
+    return (part, False), (_plain_beside(part), True)
 
 
 def _plain_beside(part: Pairs) -> Pairs:

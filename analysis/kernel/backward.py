@@ -10,8 +10,7 @@ A part of what labels close can be opened for one run: then it says what that pa
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.kernel.labelled_graph import LabelledGraph, ends, nodes_of
 from rosprivacy.analysis.kernel.least_solution import least_solution
@@ -23,8 +22,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.kernel.spread import Spread
 
 
-@dataclass(frozen=True, slots=True)
-class Opened:
+class Opened(NamedTuple):
     """What is opened for one run.
 
     Attributes
@@ -35,8 +33,8 @@ class Opened:
         (source, target) of flows that are not in the graph, such as denied ones.
     """
 
-    elements: Mapping[int, int] = field(default_factory=dict)
-    flows: Mapping[int, int] = field(default_factory=dict)
+    elements: Mapping[int, int] = {}
+    flows: Mapping[int, int] = {}
     more: Collection[tuple[int, int]] = ()
 
     @classmethod
@@ -62,8 +60,7 @@ class Opened:
 NOTHING_OPENED = Opened()
 
 
-@dataclass(frozen=True, slots=True)
-class Backward:
+class Backward(NamedTuple):
     """What leads to the places that count.
 
     Attributes

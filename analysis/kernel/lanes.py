@@ -7,8 +7,9 @@ flows let more pass: only what is new is followed, so a small change costs what 
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.many_flows import parted
 
@@ -19,8 +20,10 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.many_flows import Meeting
 
 
-@dataclass(frozen=True, slots=True)
-class Lanes:
+NOTHING: Mapping[int, int] = MappingProxyType({})
+
+
+class Lanes(NamedTuple):
     """How the bits of several sources stand side by side in one number.
 
     Attributes
@@ -71,8 +74,7 @@ class Lanes:
                 yield source, bits
 
 
-@dataclass(frozen=True, slots=True)
-class Doing:
+class Doing(NamedTuple):
     """What elements and flows do with what comes, in lanes; made for elements without a word of their own too.
 
     Attributes
@@ -110,9 +112,9 @@ class Doing:
     emits: Mapping[int, int]
     flow_emits: Mapping[int, int]
     allowed: int
-    stop: Mapping[int, int] = field(default_factory=dict)
-    now: Mapping[int, tuple[int, tuple[tuple[int, int], ...]]] = field(default_factory=dict)
-    flows_now: Mapping[int, int] = field(default_factory=dict)
+    stop: Mapping[int, int] = {}
+    now: Mapping[int, tuple[int, tuple[tuple[int, int], ...]]] = {}
+    flows_now: Mapping[int, int] = {}
 
     @classmethod
     def of(cls, spread: Spread, sources: Sequence[int]) -> Doing:
@@ -148,13 +150,13 @@ class Doing:
 
     def stopped(self, stop: Mapping[int, int], allowed: int) -> Doing:
         """Return the same for some bits, some of which are not followed on from some elements; both in lanes."""
-        return replace(self, stop={v: bits & allowed for v, bits in stop.items() if bits & allowed}, allowed=allowed)
+        return self._replace(stop={v: bits & allowed for v, bits in stop.items() if bits & allowed}, allowed=allowed)
 
     def changed(self, spread: Spread) -> Doing:
         """Return the same with what another spread says of the elements and flows that it is about."""
         every = self.lanes.every
         now = {v: (every(bits), spread.derives[v]) for v, bits in spread.keeps.items()}
-        return replace(self, now=now, flows_now={i: every(bits) for i, bits in spread.flow_keeps.items()})
+        return self._replace(now=now, flows_now={i: every(bits) for i, bits in spread.flow_keeps.items()})
 
     def made(self, vertex: int, bits: int) -> int:
         """Return what an element makes of what arrives, in the same lanes."""
@@ -181,7 +183,7 @@ class Doing:
         return bits & (self.flow_keeps.get(flow, bits) if keeps is None else keeps) & self.allowed
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class Flood:
     """What arrives and what leaves, in lanes; of one that was taken further only what is more.
 
@@ -263,7 +265,9 @@ class Flood:
         more = Flood(doing, self)
         pending: dict[int, int] = {}
         for vertex in vertices:
-            more._leave(vertex, doing.onward(vertex, self.arrived(vertex)), pending)
+            if new := doing.onward(vertex, self.arrived(vertex)) & ~self.left(vertex):
+                more.leaves[vertex] = self.left(vertex) | new
+                pending[vertex] = new
         for index, source, target in flows:
             bits = self.left(source) | doing.flow_emits.get(index, 0)
             more._arrive((target,), doing.along(index, bits), pending)
@@ -286,17 +290,15 @@ class Flood:
                 self._arrive(meeting.read if new else (), new, pending)
 
     def _arrive(self, targets: Iterable[int], bits: int, pending: dict[int, int]) -> None:
-        doing, arrives = self.doing, self.arrives
-        before = self.before.arrives if self.before else {}
+        doing, arrives, leaves = self.doing, self.arrives, self.leaves
+        arrived, left = (self.before.arrives, self.before.leaves) if self.before else (NOTHING, NOTHING)
         for target in targets:
-            known = arrives[target] if target in arrives else before.get(target, 0)
-            if new := bits & ~known:
-                arrives[target] = known | new
-                if onward := doing.onward(target, new) if target in doing.labelled else new:
-                    self._leave(target, onward, pending)
-
-    def _leave(self, vertex: int, bits: int, pending: dict[int, int]) -> None:
-        known = self.left(vertex)
-        if new := bits & ~known:
-            self.leaves[vertex] = known | new
-            pending[vertex] = pending.get(vertex, 0) | new
+            known = arrives[target] if target in arrives else arrived.get(target, 0)
+            if not (new := bits & ~known):
+                continue
+            arrives[target] = known | new
+            onward = doing.onward(target, new) if target in doing.labelled else new
+            known = leaves[target] if target in leaves else left.get(target, 0)
+            if new := onward & ~known:
+                leaves[target] = known | new
+                pending[target] = pending.get(target, 0) | new

@@ -7,8 +7,7 @@ one of a user's files takes away what another says, and does not say so by name.
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import LabelError, shown
 from rosprivacy.analysis.kernel.ranks import NONE_OF, in_words
@@ -24,8 +23,7 @@ LISTED = 3  # names in a message
 USERS = STANDARD + 1  # the tier of a user's files; what people write into the database is above
 
 
-@dataclass(frozen=True, slots=True)
-class Overruled:
+class Overruled(NamedTuple):
     """A source or a leak that does not hold at some elements, since another statement outdoes it.
 
     Attributes

@@ -10,8 +10,7 @@ outdone by a glob of the user's whose last segment is not written out. Equals th
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import LabelError, shown
 from rosprivacy.analysis.model import CANNOT, GLOB, STANDARD, Method
@@ -44,8 +43,7 @@ NONE_OF = {"source": "no-source", "leak": "no-leak"}  # role -> what takes it ba
 Rank = tuple[int, int, int]
 
 
-@dataclass(frozen=True, slots=True)
-class Decided:
+class Decided(NamedTuple):
     """The statements that hold, the highest rank first; and those of sources and leaks that do not, with what won."""
 
     accepted: tuple[Statement, ...]
@@ -171,12 +169,11 @@ def _distance(statement: Statement, category: str, hierarchy: Hierarchy) -> int 
 
 
 def _named_distance(statement: Statement, category: str, hierarchy: Hierarchy) -> int | None:
-    up = [hierarchy.distance(category, named) for named in statement.categories]
-    broader = [d for d in up if d is not None]
-    if broader:
-        return min(broader)
-    down = [hierarchy.overlap(category, named) for named in statement.categories if statement.role in MAY]
-    common = [d for d in down if d is not None]
+    above, near = hierarchy.ancestors[category], hierarchy.overlaps[category]
+    broader = [above[named] for named in statement.categories if named in above]
+    if broader or statement.role not in MAY:
+        return min(broader, default=None)
+    common = [near[named] for named in statement.categories if named in near]
     return -min(common) if common else None
 
 

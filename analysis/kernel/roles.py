@@ -10,8 +10,7 @@ category with what is emitted (*may*: what is emitted may be any narrower kind);
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.kernel.ranks import by_line, closes, decided
 from rosprivacy.analysis.model import CANNOT, Method
@@ -27,8 +26,7 @@ TAKE_BACK = ("no-source", "no-leak")  # they hold, but review nothing
 ADDS = frozenset({"source", "leak", *TAKE_BACK})  # what they say stops no data
 
 
-@dataclass(frozen=True, slots=True)
-class Facts:
+class Facts(NamedTuple):
     """What an element or a flow does with one category.
 
     Attributes

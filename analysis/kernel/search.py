@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 START = -1
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class Search:
     """How far one search gets.
 

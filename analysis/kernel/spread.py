@@ -3,17 +3,26 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.kernel.bits import CategoryBits, bits_of
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from rosprivacy.analysis.kernel.overruled import Overruled
     from rosprivacy.analysis.kernel.roles import Facts
     from rosprivacy.analysis.model import FlowGraph
 
 
-@dataclass(slots=True)
+@lru_cache(maxsize=1)  # what is said of single elements is asked for again and again
+def _both(categories: tuple[str, ...]) -> Mapping[str, int]:
+    bits = CategoryBits(len(categories))
+    return {category: bits.both(number) for number, category in enumerate(categories)}
+
+
+@dataclass(slots=True, eq=False, repr=False)
 class Spread:
     """What labels mean for a graph, and the fixpoint of it. Made by ``spread``, then only read.
 
@@ -84,14 +93,14 @@ class Spread:
     leaves: dict[int, int] = field(default_factory=dict)
     sent: dict[int, int] = field(default_factory=dict)
 
-    _both: dict[str, int] = field(init=False, repr=False, compare=False)
+    _both: Mapping[str, int] = field(init=False, repr=False, compare=False)
     _names: dict[int, tuple[str, ...]] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         """Number the bits."""
         self.bits = CategoryBits(len(self.categories))
         self.all_bits = self.bits.all
-        self._both = {category: self.bits.both(number) for number, category in enumerate(self.categories)}
+        self._both = _both(self.categories)
 
     @property
     def told_apart(self) -> set[int]:

@@ -6,8 +6,7 @@ integers, which have as many bits as are needed (``bits.py``).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.analysis.kernel.labelled_graph import LabelledGraph
@@ -46,8 +45,7 @@ def spread(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy) -> Spread:
     return result
 
 
-@dataclass(frozen=True, slots=True)
-class LeftOut:
+class LeftOut(NamedTuple):
     """A statement that is left out of what a spread says: of what it does not apply to, all stays as it was."""
 
     spread: Spread
@@ -165,8 +163,7 @@ def _bits(spread: Spread, decided: Mapping[str, Facts], test: Callable[[Facts], 
     return bits
 
 
-@dataclass(frozen=True, slots=True)
-class _Does:
+class _Does(NamedTuple):
     """What elements do of which the same is said; as of ``Spread``."""
 
     standard: bool

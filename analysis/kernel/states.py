@@ -8,8 +8,7 @@ A state is (vertex, bit): data of a category, in one of its forms, has arrived a
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.many_flows import number, one_by_one, parted
 
@@ -22,8 +21,7 @@ if TYPE_CHECKING:
 Move = tuple[int, int, int]  # flow, its target, bits that go along it and are taken up there
 
 
-@dataclass(frozen=True, slots=True)
-class Net:
+class Net(NamedTuple):
     """The flows of a spread, by the vertex that they leave: (index, target, bits that pass it).
 
     Attributes
@@ -80,8 +78,7 @@ def _move(spread: Spread, source: int, target: int) -> Move:
     return number(spread.graph.flows, source, target), target, spread.keeps.get(target, spread.all_bits)
 
 
-@dataclass(frozen=True, slots=True)
-class States:
+class States(NamedTuple):
     """The states of a net, and how they follow each other.
 
     Attributes

@@ -7,8 +7,8 @@ of which the types of all writers are known and exclude a kind; and what such st
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.kernel.ranks import closes
 from rosprivacy.analysis.kernel.spreading import emitted
@@ -23,16 +23,14 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Bound, Element, FlowGraph, MessageType, Place
 
 
-@dataclass(frozen=True, slots=True)
-class TypeLimit:
+class TypeLimit(NamedTuple):
     """What one type, or a leg of one, cannot carry: names of kinds, narrower ones too; and the line that says so."""
 
     kinds: frozenset[str]
     place: Place
 
 
-@dataclass(frozen=True, slots=True)
-class TypeLimits:
+class TypeLimits(NamedTuple):
     """A table of limits, by (name of a type, leg)."""
 
     file: str

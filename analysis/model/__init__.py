@@ -1,6 +1,7 @@
-"""The facts that the rooms hand to each other, as frozen dataclasses. Names are those of the glossary.
+"""The facts that the rooms hand to each other, as named tuples and frozen dataclasses. Names are those of the glossary.
 
-Nothing here reads or writes anything; validation is done where a fact is made.
+Nothing here reads or writes anything; validation is done where a fact is made. What is known of bags is imported from
+``recording.py``, where there are some.
 """
 
 from rosprivacy.analysis.model.category import (
@@ -19,6 +20,7 @@ from rosprivacy.analysis.model.category import (
     is_article_9,
 )
 from rosprivacy.analysis.model.diagnostic import (
+    ACCESS_GAP,
     ASSUMED,
     BAG_GAP,
     CAREFUL_DENY,
@@ -29,6 +31,7 @@ from rosprivacy.analysis.model.diagnostic import (
     ENCLAVES_MADE_UP,
     FALLBACK_TAKEN,
     FOLDED_NAMES,
+    GAPS,
     GOES_NOWHERE,
     LEGAL_BASIS,
     MERGED,
@@ -57,6 +60,7 @@ from rosprivacy.analysis.model.element import (
     CHANNELS,
     KINDS,
     NON_ROS,
+    PARTICIPANT,
     Element,
 )
 from rosprivacy.analysis.model.flow import Flow, FlowGraph
@@ -64,16 +68,6 @@ from rosprivacy.analysis.model.lint_rule import Breach, LintRule
 from rosprivacy.analysis.model.message_type import OF_KIND, MessageType, kind_of_type
 from rosprivacy.analysis.model.policy import Grant, Policy, Profile, Seen
 from rosprivacy.analysis.model.reason import REASONS, Reason
-from rosprivacy.analysis.model.recording import (
-    Bag,
-    BagTopic,
-    BagVerdict,
-    JudgedBag,
-    Recording,
-    TopicKinds,
-    iso,
-    recording_of,
-)
 from rosprivacy.analysis.model.statement import (
     CANNOT,
     CHANGED,
@@ -100,6 +94,7 @@ from rosprivacy.analysis.model.statement import (
 from rosprivacy.analysis.model.suggestion import Confidence, Suggestion, by_confidence, interface_of
 
 __all__ = [
+    "ACCESS_GAP",
     "ARTICLE_9",
     "ARTICLE_9_VERDICTS",
     "ARTICLE_10",
@@ -119,6 +114,7 @@ __all__ = [
     "ENCLAVES_MADE_UP",
     "FALLBACK_TAKEN",
     "FOLDED_NAMES",
+    "GAPS",
     "GLOB",
     "GOES_NOWHERE",
     "KINDS",
@@ -138,6 +134,7 @@ __all__ = [
     "OBSERVED",
     "OF_KIND",
     "OF_TYPES",
+    "PARTICIPANT",
     "PATHS_NOT_COUNTED",
     "REASONS",
     "RECORDING",
@@ -153,9 +150,6 @@ __all__ = [
     "THIRD_COUNTRY",
     "UNREAD_FILE",
     "UNSTATED",
-    "Bag",
-    "BagTopic",
-    "BagVerdict",
     "Bound",
     "Breach",
     "ByCategory",
@@ -166,7 +160,6 @@ __all__ = [
     "Flow",
     "FlowGraph",
     "Grant",
-    "JudgedBag",
     "Legal",
     "LintRule",
     "MessageType",
@@ -178,22 +171,18 @@ __all__ = [
     "Processing",
     "Profile",
     "Reason",
-    "Recording",
     "Seen",
     "Severity",
     "Situation",
     "Statement",
     "Suggestion",
     "Surroundings",
-    "TopicKinds",
     "UnknownEnd",
     "by_confidence",
     "interface_of",
     "is_article_9",
-    "iso",
     "kind_of_type",
     "observed_when",
-    "recording_of",
     "unread",
     "when_observed",
 ]

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -23,8 +22,7 @@ def is_article_9(provision: str) -> bool:
     return provision == ARTICLE_9 or provision.startswith(f"{ARTICLE_9} ")
 
 
-@dataclass(frozen=True, slots=True)
-class Legal:
+class Legal(NamedTuple):
     """That data of a category can be what a provision speaks of.
 
     Attributes
@@ -55,7 +53,7 @@ class Legal:
     condition: str = ""
     sources: tuple[str, ...] = ()
     stated_of: str = ""
-    translations: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    translations: Mapping[str, Mapping[str, str]] = {}
     context: str = ""
 
     @property
@@ -68,8 +66,7 @@ class Legal:
         return self.translations.get(language, {}).get(what) or str(getattr(self, what))
 
 
-@dataclass(frozen=True, slots=True)
-class Pointer:
+class Pointer(NamedTuple):
     """A provision that is to be looked at beside what is followed into paths: no verdict.
 
     Attributes
@@ -96,11 +93,10 @@ class Pointer:
     applies: str = ""
     country: str = ""
     address: str = ""
-    translations: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    translations: Mapping[str, Mapping[str, str]] = {}
 
 
-@dataclass(frozen=True, slots=True)
-class Situation:
+class Situation(NamedTuple):
     """A context with the names of the provisions to look at there; the one without a name is every system.
 
     Attributes
@@ -113,11 +109,10 @@ class Situation:
     title: str = ""
     definition: str = ""
     look_at: tuple[str, ...] = ()
-    translations: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    translations: Mapping[str, Mapping[str, str]] = {}
 
 
-@dataclass(frozen=True, slots=True)
-class Category:
+class Category(NamedTuple):
     """A kind of personal data.
 
     Attributes
@@ -179,7 +174,7 @@ class Category:
     note: str = ""
     in_context: tuple[Legal, ...] = ()
     look_at: tuple[str, ...] = ()
-    translations: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    translations: Mapping[str, Mapping[str, str]] = {}
 
     @property
     def names(self) -> tuple[str, ...]:

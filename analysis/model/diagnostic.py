@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from enum import StrEnum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -30,6 +29,8 @@ ENCLAVES_MADE_UP = "enclaves-made-up"
 FOLDED_NAMES = "folded-names"
 OBSERVATION_GAP = "observation-gap"  # what an observation is known to miss: the verdict is undetermined at best (S16)
 BAG_GAP = "bag-gap"  # what is not known of a bag that is a storage: the verdict is undetermined at best (S11)
+ACCESS_GAP = "access-gap"  # permissions are not asked: what a participant does is not known (rules S6, S11)
+GAPS = (UNREAD_FILE, OBSERVATION_GAP, BAG_GAP, ACCESS_GAP)  # each makes the verdict undetermined at best
 RECORDING = "recording"  # a bag that is a storage: its size, its time, its topics
 SEEN_ALTHOUGH_DENIED = "seen-although-denied"
 ASSUMED = (OBSERVED, ENCLAVES_MADE_UP, FOLDED_NAMES, RECORDING)  # notices that stand under Assumed
@@ -39,7 +40,7 @@ NO_LEAK_NAMED = "no-leak-named"
 NOTHING_FOLLOWED = (NO_SOURCE, GOES_NOWHERE)
 
 
-_WHEN = re.compile(r"observed from (\S+) to (\S+) by (.+); what was not seen proves nothing")
+_WHEN = r"observed from (\S+) to (\S+) by (.+); what was not seen proves nothing"
 
 
 def when_observed(first: str, last: str, doors: Iterable[str]) -> str:
@@ -57,12 +58,11 @@ def observed_when(message: str) -> tuple[str, str, tuple[str, ...]] | None:
     >>> observed_when(when_observed("a", "b", ["dds", "text"])), observed_when("something else")
     (('a', 'b', ('dds', 'text')), None)
     """
-    match = _WHEN.fullmatch(message)
+    match = re.fullmatch(_WHEN, message)
     return (match[1], match[2], tuple(match[3].split(", "))) if match else None
 
 
-@dataclass(frozen=True, slots=True)
-class Place:
+class Place(NamedTuple):
     """A line of a file; line 0 where there is none."""
 
     file: str
@@ -80,8 +80,7 @@ class Severity(StrEnum):
     NOTICE = "notice"
 
 
-@dataclass(frozen=True, slots=True)
-class Diagnostic:
+class Diagnostic(NamedTuple):
     """Something that the reader of a report has to know about an input.
 
     Attributes
@@ -97,11 +96,11 @@ class Diagnostic:
 
 
 def unread(diagnostics: Iterable[Diagnostic]) -> tuple[Place, ...]:
-    """Return where grants stand that were not read, or where an observation has a gap (rules S11, S16), sorted.
+    """Return where something stands that is known to be missing: ``GAPS`` (rules S11, S16), sorted.
 
     >>> said = [Diagnostic(Place(file, 1), Severity.WARNING, "", UNREAD_FILE) for file in ("b.xml", "a.xml")]
     >>> list(map(str, unread([*said, Diagnostic(Place("c.xml", 1), Severity.NOTICE, "")])))
     ['a.xml:1', 'b.xml:1']
     """
-    places = {said.place for said in diagnostics if said.code in (UNREAD_FILE, OBSERVATION_GAP, BAG_GAP)}
+    places = {said.place for said in diagnostics if said.code in GAPS}
     return tuple(sorted(places, key=lambda place: (place.file, place.line)))

@@ -5,7 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 CHANNELS = ("action", "service", "topic")
-NON_ROS = ("device", "display", "external-system", "person", "shared-memory", "side-channel", "storage")  # rule S9
+PARTICIPANT = "participant"  # what was seen in a domain and is no node (rule S16)
+NON_ROS = (  # rule S9
+    "device", "display", "external-system", PARTICIPANT, "person", "shared-memory", "side-channel", "storage",
+)  # fmt: skip
 KINDS = ("node", *NON_ROS, *CHANNELS)  # channels last: kernel/fixpoint.py sweeps them and the others in turn
 
 

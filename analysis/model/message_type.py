@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.model.diagnostic import Place
@@ -14,8 +13,7 @@ OF_KIND = {"topic": "msg", "service": "srv", "action": "action"}  # the middle o
 _NAME = re.compile(rf"[A-Za-z][A-Za-z0-9_]*/({'|'.join(OF_KIND.values())})/[A-Za-z][A-Za-z0-9_]*")
 
 
-@dataclass(frozen=True, slots=True)
-class MessageType:
+class MessageType(NamedTuple):
     """One type of what goes through a channel, or through a leg of one.
 
     Attributes

@@ -3,23 +3,28 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.model.diagnostic import Diagnostic, Place
 
 
-@dataclass(frozen=True, slots=True)
-class Profile:
-    """A node's entry in an enclave, ``<profile ns node>``."""
+class Profile(NamedTuple):
+    """A node's entry in an enclave, ``<profile ns node>``.
+
+    Attributes
+    ----------
+    participant
+        Name of the element outside ROS that it is of: whose endpoints were seen and are of no node (rules S9, S16).
+    """
 
     enclave: str
     node: str
     place: Place
+    participant: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class Seen:
+class Seen(NamedTuple):
     """When a grant was seen in use, and by which doors to the running system (rule S16).
 
     Attributes
@@ -33,8 +38,7 @@ class Seen:
     last: str
 
 
-@dataclass(frozen=True, slots=True)
-class Grant:
+class Grant(NamedTuple):
     """What one policy line allows or denies to one profile.
 
     Attributes

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.model.diagnostic import Place
 
@@ -40,8 +40,7 @@ CANNOT, OF_TYPES = "cannot", (-2, 0)  # role and rank of what a type cannot carr
 STATED = "flow"  # the role of a flow that a person states (rule S9)
 
 
-@dataclass(frozen=True, slots=True)
-class Statement:
+class Statement(NamedTuple):
     """One thing that a label says of an element or a flow.
 
     Attributes
@@ -105,8 +104,7 @@ NOWHERE = Place("", 0)
 NO_BASIS = "none"  # in place of the basis of a transfer
 
 
-@dataclass(frozen=True, slots=True)
-class NonRosFacts:
+class NonRosFacts(NamedTuple):
     """What is stated about a non-ROS element (rule S9).
 
     Attributes
@@ -171,8 +169,7 @@ class NonRosFacts:
 CONTEXTS = ("care", "public-space", "school", "union", "workplace", "worship")  # those of ontology/contexts.ttl
 
 
-@dataclass(frozen=True, slots=True)
-class Surroundings:
+class Surroundings(NamedTuple):
     """Where an element of a robot works, as labels state it: what data reveals there, and whose law is to be looked at.
 
     Attributes
@@ -194,8 +191,7 @@ class Surroundings:
 ByCategory = tuple[tuple[str, tuple[str, ...]], ...]  # (category, or ``EVERY``; what is stated of it), sorted
 
 
-@dataclass(frozen=True, slots=True)
-class Processing:
+class Processing(NamedTuple):
     """Who is responsible for processing, what it is for and on which legal basis, as people state it.
 
     It changes no flow, no finding and no verdict. Source: GDPR, Articles 5(1)(b), 6, 9(2), 30(1)(a) and (b).
@@ -266,8 +262,7 @@ class Bound:
     types: Mapping[int, tuple[MessageType, ...]] = field(default_factory=dict)
 
 
-@dataclass(frozen=True, slots=True)
-class UnknownEnd:
+class UnknownEnd(NamedTuple):
     """An element at which data's way ends without anybody known, rule S11.
 
     Attributes

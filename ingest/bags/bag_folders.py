@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import BagError, InputError, InputErrors, reason
-from rosprivacy.analysis.model import Bag
+from rosprivacy.analysis.model.recording import Bag
 from rosprivacy.ingest.bags.bag_metadata import NAME
 from rosprivacy.ingest.bags.bag_reader import is_recording, read_bag
 

@@ -11,7 +11,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import BagError, shown
-from rosprivacy.analysis.model import BagTopic
+from rosprivacy.analysis.model.recording import BagTopic
 from rosprivacy.ingest.bags.recorded_file import Recorded, moment, united
 from rosprivacy.ingest.reading import yaml_values
 

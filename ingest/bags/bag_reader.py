@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import BagError, InputError, reason, shown
-from rosprivacy.analysis.model import Bag
+from rosprivacy.analysis.model.recording import Bag
 from rosprivacy.ingest.bags.bag_metadata import NAME, read_metadata
 from rosprivacy.ingest.bags.mcap_file import MissingLibraryError, read_mcap
 from rosprivacy.ingest.bags.recorded_file import Recorded, united
@@ -22,7 +22,7 @@ from rosprivacy.ingest.reading.confined import leaves
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
-    from rosprivacy.analysis.model import BagTopic
+    from rosprivacy.analysis.model.recording import BagTopic
 
 READERS: dict[str, Callable[[str], Recorded]] = {".mcap": read_mcap, ".db3": read_sqlite}
 PACKED = (".zstd", ".zst", ".lz4")  # of whole files

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import IO, TYPE_CHECKING, Any, cast
 
 from rosprivacy.analysis.errors import BagError, shown
-from rosprivacy.analysis.model import BagTopic
+from rosprivacy.analysis.model.recording import BagTopic
 from rosprivacy.ingest.bags.bounded_stream import EndedError, TooMuchError, bounded_stream
 from rosprivacy.ingest.bags.recorded_file import Recorded, moment, united
 

@@ -9,7 +9,7 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.model import BagTopic
+from rosprivacy.analysis.model.recording import BagTopic
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
 from rosprivacy.analysis.errors import BagError, shown
-from rosprivacy.analysis.model import BagTopic
+from rosprivacy.analysis.model.recording import BagTopic
 from rosprivacy.ingest.bags.bounded_stream import bounded_stream
 from rosprivacy.ingest.bags.recorded_file import Recorded, moment, united
 

@@ -18,7 +18,8 @@ from rosprivacy.ingest.policies.names import recorded_channels
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from rosprivacy.analysis.model import Confidence, JudgedBag, TopicKinds
+    from rosprivacy.analysis.model import Confidence
+    from rosprivacy.analysis.model.recording import JudgedBag, TopicKinds
 
 Row = dict[str, Any]
 

@@ -8,7 +8,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.durations import ordered, parse
-from rosprivacy.analysis.model import NO_BASIS, NonRosFacts, Place, Recording
+from rosprivacy.analysis.model import NO_BASIS, NonRosFacts, Place
+from rosprivacy.analysis.model.recording import Recording
 from rosprivacy.analysis.non_ros import EVERY, RECIPIENTS, TRANSFERS
 from rosprivacy.ingest.labels.countries import countries
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 from collections import defaultdict
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.model import NAME, SEGMENT, Element, Flow, FlowGraph, Grant, Method, Place, Seen, Statement
@@ -35,7 +34,7 @@ def denied_flow_of(row: tuple[int, int, str, str, Mapping[str, Any]], elements: 
     """Return a flow that DENY lines take back."""
     flow, channel = flow_of(row, elements), elements[row[1] if elements[row[1]].is_channel else row[0]]
     lines = [json.loads(line) for line in row[4].get("denials") or ()]
-    return replace(flow, denials=_lines(lines, row[2], channel, allow=False))
+    return flow._replace(denials=_lines(lines, row[2], channel, allow=False))
 
 
 def grants_of(said: Mapping[str, Any], role: str, channel: Element) -> tuple[Grant, ...]:

@@ -87,11 +87,11 @@ def stripped(graph: FlowGraph, namespace: str) -> tuple[FlowGraph, dict[Element,
     moved = [number[shown[element]] for element in graph.elements]
 
     def renumbered(flows: Sequence[Flow]) -> tuple[Flow, ...]:
-        new = [replace(flow, source=moved[flow.source], target=moved[flow.target]) for flow in flows]
+        new = [flow._replace(source=moved[flow.source], target=moved[flow.target]) for flow in flows]
         return tuple(sorted(new, key=lambda flow: (flow.source, flow.target, flow.role)))
 
     nodes = {element.name: new.name for element, new in shown.items() if element.is_node}
-    profiles = tuple(replace(profile, node=nodes[profile.node]) for profile in graph.profiles)
+    profiles = tuple(profile._replace(node=nodes[profile.node]) for profile in graph.profiles)
     changed = FlowGraph(
         elements, renumbered(graph.flows), renumbered(graph.denied), profiles, graph.view,
         renumbered(graph.denied_matches), graph.careful,
@@ -133,7 +133,7 @@ def shared(domain: str, members: Sequence[Member], view: str, bounds: Bounds = B
 
     def unmarked(grant: Grant) -> Grant:
         robot, node = grant.node.split(MARK)
-        return as_written(replace(grant, enclave=grant.enclave.split(MARK)[1], node=node), added[robot])
+        return as_written(grant._replace(enclave=grant.enclave.split(MARK)[1], node=node), added[robot])
 
     whole = _with_grants(Part.of(graph, Bound({}), names.of_marked), unmarked)
     return together([whole, *(_part(member, names.of_member(member)) for member in members)])
@@ -145,7 +145,7 @@ def _part(member: Member, name: Callable[[Element], Element]) -> Part:
     Message types are told of the writers of this robot: of others in its domain they say nothing.
     """
     part, robot = Part.of(member.graph, member.bound, name), member.robot.id
-    part.types = {e: tuple(replace(one, robot=robot) for one in some) for e, some in part.types.items()}
+    part.types = {e: tuple(one._replace(robot=robot) for one in some) for e, some in part.types.items()}
     return _with_grants(part, lambda grant: as_written(grant, member.pushed)) if member.pushed else part
 
 
@@ -160,10 +160,12 @@ class _Names:
         self._owners = sorted(own, key=lambda pair: len(pair[0]), reverse=True)
         full = ((m.robot.id, shown, full) for m in members for shown, full in m.full.items())
         self._nodes = {(robot, full.name): shown for robot, shown, full in full if shown.is_node}
+        stated = ((member.robot.id, element) for member in members for element in member.graph.elements)
+        self._nodes |= {(robot, e.name): e for robot, e in stated if not (e.is_node or e.is_channel)}
 
     def of_marked(self, element: Element) -> Element:
         """The name of an element of the graph of all policies."""
-        if not element.is_node:
+        if element.is_channel:
             return self._channel(element)
         robot, name = element.name.split(MARK)
         return replace(self._nodes[robot, name], robot=robot)
@@ -191,6 +193,9 @@ def _marked(policy: Policy, robot: Robot) -> Policy:
     mark, run = f"{robot.id}{MARK}", pushed(policy, robot.add)
     return replace(
         run,
-        profiles=tuple(replace(p, enclave=mark + p.enclave, node=mark + p.node) for p in run.profiles),
-        grants=tuple(replace(g, enclave=mark + g.enclave, node=mark + g.node) for g in run.grants),
+        profiles=tuple(
+            p._replace(enclave=mark + p.enclave, node=mark + p.node, participant=p.participant and mark + p.participant)
+            for p in run.profiles
+        ),
+        grants=tuple(g._replace(enclave=mark + g.enclave, node=mark + g.node) for g in run.grants),
     )

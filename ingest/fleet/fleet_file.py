@@ -310,7 +310,7 @@ class _Fleet:
             yield from self._matched(part, spec, pattern[0])
         elif count.kind != "number" or not re.fullmatch(r"[0-9]{1,18}", count.text) or not int(count.text):
             part.problem(count.line, f"robots: {shown(count.text or count.kind)!r}", "write a whole number above 0")
-        elif self._bounded(int(count.text), replace(spec.place, line=count.line)):
+        elif self._bounded(int(count.text), spec.place._replace(line=count.line)):
             yield from self._counted(part, spec, item, int(count.text))
 
     def _bounded(self, more: int, place: Place) -> bool:
@@ -373,7 +373,7 @@ class _Fleet:
         return robot.place
 
     def _line(self, spec: Spec, key: str) -> Place:
-        return replace(spec.place, line=spec.lines.get(key, spec.place.line))
+        return spec.place._replace(line=spec.lines.get(key, spec.place.line))
 
     def _problem(self, place: Place, problem: str, hint: str) -> None:
         self.problems.append(FleetError(place.file, place.line, problem, hint))

@@ -256,7 +256,7 @@ class _Placing:
         limits: set[Limit] = {*facts.limits, *self._fleet.limits}
         if element.robot == self._fleet.name:
             limits |= {limit for member in self._members for file in member.files for limit in file.limits}
-        return replace(facts, limits=ordered(limits))
+        return facts._replace(limits=ordered(limits))
 
     def ends(self) -> Iterator[tuple[tuple[Element, ...], tuple[Element, ...]]]:
         """Return, per flow of the fleet file, the elements that its ends mean."""

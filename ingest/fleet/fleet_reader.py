@@ -21,7 +21,7 @@ from rosprivacy.ingest.reading.confined import unusable
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from rosprivacy.analysis.model import Bag
+    from rosprivacy.analysis.model.recording import Bag
     from rosprivacy.ingest.reading.yaml_values import Value
 
 ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,199}")

@@ -9,9 +9,11 @@ import hashlib
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputErrors, PolicyError
-from rosprivacy.ingest.keystore.governance_remarks import governance_remarks
+from rosprivacy.analysis.modes import View
+from rosprivacy.ingest.keystore.governance_remarks import governance_remarks, rules_of
 from rosprivacy.ingest.keystore.grants import expired, policy_of
 from rosprivacy.ingest.keystore.keystore_folder import read_keystore
+from rosprivacy.ingest.keystore.open_topics import open_topics
 from rosprivacy.ingest.keystore.permissions_file import read_permissions
 from rosprivacy.ingest.keystore.signed_file import read_signed
 from rosprivacy.ingest.keystore.told_apart import is_keystore
@@ -25,7 +27,14 @@ if TYPE_CHECKING:
 Read = tuple[tuple["Policy", ...], tuple["Diagnostic", ...]]
 
 
-def read_deployed(arguments: Iterable[str], domain: int | None, today: str, *, allow_unsigned: bool = False) -> Read:
+def read_deployed(
+    arguments: Iterable[str],
+    domain: int | None,
+    today: str,
+    *,
+    allow_unsigned: bool = False,
+    view: str = View.declared,
+) -> Read:
     """Read permissions files and keystores.
 
     Parameters
@@ -37,6 +46,8 @@ def read_deployed(arguments: Iterable[str], domain: int | None, today: str, *, a
     allow_unsigned
         Whether what is not signed, or badly, is read too. A file that is named by itself has no keystore that says who
         may sign it, so it is read in this way only.
+    view
+        The enforced view has also what the governance leaves to everybody (rule S6).
 
     Raises
     ------
@@ -48,7 +59,7 @@ def read_deployed(arguments: Iterable[str], domain: int | None, today: str, *, a
     problems: list[InputError] = []
     for argument in arguments:
         try:
-            read, more = _read(argument, domain, today, allow_unsigned=allow_unsigned)
+            read, more = _read(argument, domain, today, allow_unsigned=allow_unsigned, view=view)
         except PolicyError as error:
             problems.append(error)
         except InputErrors as error:
@@ -62,14 +73,18 @@ def read_deployed(arguments: Iterable[str], domain: int | None, today: str, *, a
 
 
 def _read(
-    argument: str, domain: int | None, today: str, *, allow_unsigned: bool
+    argument: str, domain: int | None, today: str, *, allow_unsigned: bool, view: str
 ) -> tuple[list[Policy], list[Diagnostic]]:
     if is_keystore(argument):
         enclaves, told = read_keystore(argument, today, allow_unsigned=allow_unsigned)
         said = list(told)
         policies = []
         for enclave in enclaves:
-            policies.append(policy_of(enclave.permissions, domain, enclave.sources))
+            granted = policy_of(enclave.permissions, domain, enclave.sources)
+            policies.append(granted)
+            if View(view) is View.enforced:
+                rules = rules_of(enclave.governance, enclave.permissions, domain)
+                policies += (open_topics(enclave.governance.file, rule, granted.profiles) for rule in rules)
             said += governance_remarks(enclave.governance, enclave.permissions, domain)
         said += expired((enclave.permissions for enclave in enclaves), today)
         return policies, said

@@ -81,6 +81,14 @@ class DomainRule:
         """Return the rule of a DDS topic; a middleware refuses a topic that has none."""
         return next((rule for rule in self.topics if covers(rule.expression, dds)), None)
 
+    def in_force(self) -> tuple[TopicRule, ...]:
+        """Return the topic rules that an earlier one does not hide whole."""
+        return tuple(
+            rule
+            for at, rule in enumerate(self.topics)
+            if not any(covers(first.expression, rule.expression) for first in self.topics[:at])
+        )
+
     def encrypted(self, rule: TopicRule) -> bool:
         """Return whether what is sent under a rule is encrypted: as a whole, with its message, or by itself."""
         return any(kind in ENCRYPTING for kind in (self.rtps, rule.metadata, rule.data))

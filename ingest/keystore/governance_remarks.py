@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.model import Diagnostic, Severity
+from rosprivacy.analysis.model import ACCESS_GAP, Diagnostic, Severity
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -18,24 +18,23 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.keystore.permissions_file import Permissions
 
 
+def rules_of(governance: Governance, permissions: Permissions, domain: int | None) -> list[DomainRule]:
+    """Return the rules of a domain, or of the domains that permissions are about."""
+    if domain is None:
+        firsts = {first for grant in permissions.grants for rule in grant.rules for first, _ in rule.domains.ranges}
+    else:
+        firsts = {domain}
+    return [rule for rule in governance.rules if any(governance.of(first) is rule for first in firsts)]
+
+
 def governance_remarks(governance: Governance, permissions: Permissions, domain: int | None) -> Iterator[Diagnostic]:
     """Yield what is to be said of the domains that permissions are about."""
-    if domain is None:
-        named = {rule.domains for grant in permissions.grants for rule in grant.rules}
-        rules = {id(rule): rule for domains in named for rule in map(governance.of, _first(domains.ranges)) if rule}
-        of_domain = list(rules.values())
-    else:
-        rule = governance.of(domain)
-        of_domain = [rule] if rule else []
-    if not of_domain and governance.rules:
+    rules = rules_of(governance, permissions, domain)
+    if not rules and governance.rules:
         where = "the domains of the permissions" if domain is None else f"domain {domain}"
         yield _warning(governance.rules[0].place, f"no rule for {where}: no participant starts there")
-    for rule in of_domain:
+    for rule in rules:
         yield from _of_domain(rule)
-
-
-def _first(ranges: tuple[tuple[int, int], ...]) -> list[int]:
-    return [first for first, _ in ranges]
 
 
 def _of_domain(rule: DomainRule) -> Iterator[Diagnostic]:
@@ -43,12 +42,13 @@ def _of_domain(rule: DomainRule) -> Iterator[Diagnostic]:
         yield _warning(rule.place, "a participant without a certificate may join")
     if not rule.joining:
         yield _warning(rule.place, "who has a certificate may join, whatever its permissions say of the domain")
-    for topic in rule.topics:
+    for topic in rule.in_force():
         free = [word for word, checked in (("read", topic.reading), ("write", topic.writing)) if not checked]
         named = f"DDS topics {topic.expression}"
         if free:
             message = f"{named}: permissions are not asked, so every participant may {' and '.join(free)} there"
-            yield _warning(topic.place, f"{message}; the declared view takes each to keep to its permissions (rule S6)")
+            message += "; the declared view takes each to keep to its permissions (rule S6)"
+            yield Diagnostic(topic.place, Severity.WARNING, shown(message), ACCESS_GAP)
         if not rule.encrypted(topic):
             yield _warning(topic.place, f"{named} are sent without encryption: who is on the network can read them")
 

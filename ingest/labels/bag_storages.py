@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputErrors, LabelError, shown
-from rosprivacy.analysis.model import BAG_GAP, RECORDING, Diagnostic, Element, MessageType, Severity, iso
+from rosprivacy.analysis.model import BAG_GAP, RECORDING, Diagnostic, Element, MessageType, Severity
 from rosprivacy.analysis.text import counted
 from rosprivacy.ingest.policies.names import covers, is_pattern, recorded_channels
 from rosprivacy.ingest.reading.confined import WIDEN, leaves, unusable, what_leaves
@@ -20,7 +20,8 @@ from rosprivacy.ingest.reading.confined import WIDEN, leaves, unusable, what_lea
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from rosprivacy.analysis.model import Bag, BagTopic, FlowGraph, Place
+    from rosprivacy.analysis.model import FlowGraph, Place
+    from rosprivacy.analysis.model.recording import Bag, BagTopic
     from rosprivacy.ingest.labels.non_ros_reader import Stated
     from rosprivacy.ingest.reading.yaml_values import Value
 
@@ -98,6 +99,8 @@ def _about(name: str, bag: Bag) -> str:
     if bag.messages is not None:
         said.append(counted(bag.messages, "message"))
     if bag.start and bag.end:
+        from rosprivacy.analysis.model.recording import iso  # noqa: PLC0415 - light start
+
         said.append(f"{iso(bag.start)} to {iso(bag.end)}")
     return f"{shown(name)} is the bag {shown(bag.path)}: {', '.join(map(shown, said))}; no message was read"
 

@@ -6,10 +6,9 @@ it lies inside the EEA, outside with an adequacy decision, with one for some rec
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.non_ros import ADEQUATE, INSIDE, PARTLY, THIRD
 from rosprivacy.ingest.reading import yaml_values
@@ -22,8 +21,7 @@ if TYPE_CHECKING:
 MISTAKEN = {"UK": "GB", "EL": "GR", "EU": "the member state", "EEA": "the state"}
 
 
-@dataclass(frozen=True, slots=True)
-class Countries:
+class Countries(NamedTuple):
     """The list that comes with the program.
 
     Attributes
@@ -63,7 +61,7 @@ class Countries:
 @cache
 def countries() -> Countries:
     """Read the list."""
-    file = str(files("rosprivacy.ingest.labels").joinpath("countries.yaml"))
+    file = str(Path(__file__).with_name("countries.yaml"))
     top, _ = yaml_values.read(file, _broken)
     parts = {key: value for key, _, value in top.entries}
     areas: dict[str, str] = {}

@@ -5,8 +5,7 @@ Made by ``label_reader.py``; ``binding.py`` joins it to the graph.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.model import GLOB, NAME, SEGMENT, STANDARD, UNSTATED
 from rosprivacy.analysis.written_names import is_glob
@@ -21,8 +20,7 @@ ROBOT = EXACT // 2  # added for a robot of a fleet, which outranks its model bet
 FORMER_ROBOT = 2 * EXACT  # what databases of earlier versions have added: there a robot's glob outranked a model's name
 
 
-@dataclass(frozen=True, slots=True)
-class Entry:
+class Entry(NamedTuple):
     """What is said of the elements of some kinds that a name or glob covers.
 
     Attributes
@@ -50,16 +48,14 @@ class Entry:
     types: tuple[MessageType, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class End:
+class End(NamedTuple):
     """An end of a flow: a name or a glob, and which kind of element it means, where that is said (rule S9)."""
 
     name: str
     kind: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class FlowEntry:
+class FlowEntry(NamedTuple):
     """What is said of the flows from one element to another, by names or globs.
 
     One with an end outside ROS is stated by it; others are in the policies.

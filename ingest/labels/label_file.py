@@ -13,7 +13,6 @@ import hashlib
 import json
 from dataclasses import dataclass
 from functools import partial
-from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -184,4 +183,4 @@ def shipped_text(name: str) -> str:
 
 
 def _shipped_path(name: str) -> str:
-    return str(files("rosprivacy.ingest.labels").joinpath(f"{name}.yaml"))
+    return str(Path(__file__).with_name(f"{name}.yaml"))

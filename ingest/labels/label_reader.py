@@ -8,7 +8,7 @@ Source: the paper, section II-A, for the roles and the six lists.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, shown
@@ -43,7 +43,7 @@ from rosprivacy.ingest.labels.surroundings import read_contexts, read_country
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from rosprivacy.analysis.model import Bag
+    from rosprivacy.analysis.model.recording import Bag
     from rosprivacy.ingest.labels.non_ros_reader import Limit, Stated
     from rosprivacy.ingest.reading.yaml_values import Value
 
@@ -78,7 +78,7 @@ NONE = "none"  # in place of categories: takes back what labels of lower rank sa
 LONGEST_GROUP = 100  # characters of a group of persons, or of the name of an author
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class LabelReader(NameReader):
     """Walks the file once, from the outside in."""
 
@@ -130,8 +130,8 @@ class LabelReader(NameReader):
     def surrounded(self, known: Surroundings, key: str, value: Value) -> Surroundings:
         """Return where a system works with what one more key says of it."""
         if key == "context":
-            return replace(known, contexts=read_contexts(self, value))
-        return replace(known, country=read_country(self, value))
+            return known._replace(contexts=read_contexts(self, value))
+        return known._replace(country=read_country(self, value))
 
     def system(self, top: Value) -> None:
         """Read what the top says of the whole system; fleet files say it too."""
@@ -155,13 +155,13 @@ class LabelReader(NameReader):
         stated = read_element(self, name, line, value, NODE_KEYS)
         if stated is None:
             return
-        labels = replace(value, entries=tuple(entry for entry in value.entries if entry[0] in NODE_KEYS))
+        labels = value._replace(entries=tuple(entry for entry in value.entries if entry[0] in NODE_KEYS))
         statements = self._said(labels, self._node(labels, stated.place, self.rank(EXACT)))
         if stated.kind == "device" and all(key in SAYS_NOTHING for key, *_ in labels.entries):
             self.problem(line, f"device {shown(name)!r} does nothing", "say what comes from it: source: [Voice]")
         processing = self._processing(labels, stated.place)
         facts = with_transfer(self, value, stated.outside, processing.bases)
-        self.elements.append(replace(stated, outside=facts))
+        self.elements.append(stated._replace(outside=facts))
         about = self._subjects(labels), processing, self.rank(EXACT), self._contexts(labels)
         self.entries.append(Entry((stated.kind,), name, stated.place, statements, *about))
 
@@ -193,7 +193,7 @@ class LabelReader(NameReader):
         note = label.get("note")
         why = note.text.strip() if note and note.kind == "text" else ""
         author = self._author(label) or self.author
-        return tuple(replace(s, naming=how, why=s.why or why, author=author) for s in statements)
+        return tuple(s._replace(naming=how, why=s.why or why, author=author) for s in statements)
 
     def _author(self, label: Value) -> str:
         value = label.get("author")

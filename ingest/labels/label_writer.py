@@ -90,7 +90,8 @@ def _nowhere(fact: Any) -> Any:
     if isinstance(fact, Place):
         return _NOWHERE
     if isinstance(fact, tuple):
-        return tuple(map(_nowhere, fact))
+        parts = map(_nowhere, fact)
+        return fact._make(parts) if hasattr(fact, "_make") else tuple(parts)
     if is_dataclass(fact) and not isinstance(fact, type):
         return replace(fact, **{part.name: _nowhere(getattr(fact, part.name)) for part in fields(fact)})
     return fact

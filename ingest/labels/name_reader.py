@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 END_KINDS = ("node", "topic", "service", "action")
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class NameReader(FileReader):
     """Reads what label files name."""
 

@@ -6,13 +6,12 @@ may be kept. What is not understood is handed to the reader as a problem.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from rosprivacy.analysis.durations import Duration, ordered
 from rosprivacy.analysis.durations import parse as parse_duration
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.model import NO_BASIS, NON_ROS, NonRosFacts, Place, recording_of
+from rosprivacy.analysis.model import NO_BASIS, NON_ROS, NonRosFacts, Place
 from rosprivacy.analysis.non_ros import EVERY, RECIPIENTS, TRANSFERS
 from rosprivacy.analysis.written_names import GLOB_SIGNS, LITERAL
 from rosprivacy.ingest.labels.countries import countries
@@ -21,7 +20,7 @@ from rosprivacy.ingest.labels.surroundings import read_country
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from rosprivacy.analysis.model import Bag
+    from rosprivacy.analysis.model.recording import Bag
     from rosprivacy.ingest.labels.entries import End
     from rosprivacy.ingest.reading.yaml_values import Value
 
@@ -55,8 +54,7 @@ class Reader(Protocol):
         """Return the bags that are named; none, and a problem, if they cannot be read."""
 
 
-@dataclass(frozen=True, slots=True)
-class Stated:
+class Stated(NamedTuple):
     """A non-ROS element as a file states it.
 
     Attributes
@@ -132,10 +130,14 @@ class _Facts:
 
     def outside(self, place: Place) -> NonRosFacts:
         retention = ordered(self._retention)
-        made = recording_of(self._bag, self.bags) if self.bags else None
-        return NonRosFacts(
-            retention, (), self._backups, encrypted=self._encrypted, place=place, recording=made, **self._texts
+        facts = NonRosFacts(
+            retention, (), self._backups, encrypted=self._encrypted, place=place, recording=None, **self._texts
         )
+        if not self.bags:
+            return facts
+        from rosprivacy.analysis.model.recording import recording_of  # noqa: PLC0415 - light start
+
+        return facts._replace(recording=recording_of(self._bag, self.bags))
 
     def take(self, key: str, line: int, value: Value) -> None:
         if key == "retention":

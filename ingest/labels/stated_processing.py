@@ -6,14 +6,12 @@ and a robot's file its model's (rule S7). Nothing of it changes a flow.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, shown
 from rosprivacy.analysis.legal_bases import transfer_of
 from rosprivacy.analysis.model import NOWHERE, Place, Processing
 from rosprivacy.analysis.non_ros import DEROGATION, EVERY, OCCASIONAL
-from rosprivacy.ingest.reading.legal_basis import read_bases
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -37,14 +35,16 @@ def read_processing(
         if key not in keys:
             continue
         if key == "purpose":
-            said = replace(said, purposes=_by_category(reader, key, line, value, _purposes))
+            said = said._replace(purposes=_by_category(reader, key, line, value, _purposes))
         elif key == "legal_basis":
+            from rosprivacy.ingest.reading.legal_basis import read_bases  # noqa: PLC0415 - light start
+
             stated = _by_category(reader, key, line, value, read_bases)
-            said = replace(said, bases=stated, place=Place(reader.file, line))
+            said = said._replace(bases=stated, place=Place(reader.file, line))
         elif key == "controller":
-            said = replace(said, controller=text_of(reader, key, value))
+            said = said._replace(controller=text_of(reader, key, value))
         else:
-            said = replace(said, dpo=text_of(reader, key, value))
+            said = said._replace(dpo=text_of(reader, key, value))
     return said
 
 
@@ -73,7 +73,7 @@ def with_transfer(reader: NameReader, value: Value, facts: NonRosFacts, bases: B
         also = f", and transfer says {shown(written.text)}" if written is not None else ""
         what = f"legal_basis names {' and '.join(named)}{also}"
         reader.problem(line, what, "state one basis of a transfer")
-    return replace(facts, transfer=named[0])
+    return facts._replace(transfer=named[0])
 
 
 def transfers(bases: ByCategory) -> Iterator[str]:

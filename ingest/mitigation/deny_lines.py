@@ -29,7 +29,7 @@ def with_denied(policies: Iterable[Policy], grants: Collection[Grant]) -> tuple[
     """Return policies with some grants set to DENY."""
     chosen = set(grants)
     return tuple(
-        replace(policy, grants=tuple(replace(g, allow=False) if g in chosen else g for g in policy.grants))
+        replace(policy, grants=tuple(g._replace(allow=False) if g in chosen else g for g in policy.grants))
         for policy in policies
     )
 

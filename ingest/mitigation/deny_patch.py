@@ -10,7 +10,7 @@ import os
 import re
 import tempfile
 from collections import Counter
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from difflib import unified_diff
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -99,8 +99,8 @@ def patch(policies: Iterable[Policy], grants: Collection[Grant]) -> Patch:
 def _changed(policy: Policy, grants: list[Grant]) -> dict[str, tuple[bytes, bytes]] | None:
     """File -> (before, after); None if no way of changing gives what it should."""
     before = {name: contents(Path(name)) for name, _ in policy.sources}
-    moved = Counter(_key(replace(grant, allow=False) if grant in set(grants) else grant) for grant in policy.grants)
-    added = Counter(map(_key, policy.grants)) + Counter(_key(replace(grant, allow=False)) for grant in grants)
+    moved = Counter(_key(grant._replace(allow=False) if grant in set(grants) else grant) for grant in policy.grants)
+    added = Counter(map(_key, policy.grants)) + Counter(_key(grant._replace(allow=False)) for grant in grants)
     ways = ((_move, moved), (_add, added))
     for change, expected in ways[:1] if any(grant.dead for grant in grants) else ways:
         after = dict(before)

@@ -6,9 +6,8 @@ positions in it; they read a name together, character by character, and every se
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.expressions import LAST_CHARACTER, tokens
 
@@ -22,8 +21,7 @@ MOST_STEPS = 10_000_000  # of one search, for the same reason
 Letter = tuple[int, ...]  # by automaton: the positions whose characters have this letter
 
 
-@dataclass(frozen=True, slots=True)
-class NameLeft:
+class NameLeft(NamedTuple):
     """Whether a name is left.
 
     Attributes

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.bounds import Tally
 from rosprivacy.analysis.errors import PolicyError
 from rosprivacy.analysis.model import CAREFUL_DENY, Diagnostic, Place, Severity
-from rosprivacy.ingest.policies.common_names import name_left
 from rosprivacy.ingest.policies.names import covers, is_pattern, matcher, overlaps
 
 if TYPE_CHECKING:
@@ -66,6 +65,8 @@ class Comparisons:
 
     def name_left(self, wanted: tuple[str, ...], rules: Iterable[tuple[str, Grant]]) -> bool:
         """Whether a name is left that all of some expressions match and no rule takes out."""
+        from rosprivacy.ingest.policies.common_names import name_left  # noqa: PLC0415 - light start
+
         rules = list(rules)
         found = name_left(wanted, tuple(sorted({dds for dds, _ in rules})))
         self._steps.add(found.steps, self.at)

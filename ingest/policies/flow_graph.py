@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.bounds import BOUNDS, Tally
 from rosprivacy.analysis.errors import PolicyError
 from rosprivacy.analysis.many_flows import Flows, Meeting
-from rosprivacy.analysis.model import Element, Flow, FlowGraph, Grant, Profile
+from rosprivacy.analysis.model import PARTICIPANT, Element, Flow, FlowGraph, Grant, Profile
 from rosprivacy.analysis.modes import View
 from rosprivacy.ingest.policies.comparisons import Comparisons, apart
 from rosprivacy.ingest.policies.meetings import literal_ends, meetings
@@ -59,9 +59,10 @@ def build(policies: Iterable[Policy], view: str = View.declared, bounds: Bounds 
     rights = list(_rights([grant for grant in grants if grant.allow], profiles, View(view)))
     work = Comparisons(bounds)
     denials = _Denials([grant for grant in grants if not grant.allow and not grant.dead], work)
-    drafts = _Drafts(work, bounds)
+    participants = {profile.node: profile.participant for profile in profiles if profile.participant}
+    drafts = _Drafts(work, bounds, participants)
     for profile in profiles:
-        drafts.elements.add(Element("node", profile.node))
+        drafts.elements.add(drafts.owner(profile.node))
     for grant in grants:
         if not grant.allow:  # a channel that is only denied is still there to be seen
             drafts.add_channel(grant)
@@ -69,7 +70,7 @@ def build(policies: Iterable[Policy], view: str = View.declared, bounds: Bounds 
         for endpoint in endpoints(grant.role, grant.kind, grant.name):
             drafts.add(node, grant, endpoint, denials)
     drafts.join()
-    return drafts.graph(profiles, str(view))
+    return drafts.graph(tuple(p for p in profiles if p.node not in participants), str(view))
 
 
 def _rights(grants: list[Grant], profiles: tuple[Profile, ...], view: View) -> Iterator[tuple[str, Grant]]:
@@ -123,7 +124,7 @@ def _before(rank: int, rules: Iterable[Rule]) -> tuple[list[Rule], dict[str, lis
     return (first, *apart(first))
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class _Draft:
     """A flow in the making: one role of one node on one channel may span several DDS topics.
 
@@ -140,8 +141,9 @@ _MATCH = _Draft()  # of all flows of role ``matches``: no line states them
 class _Drafts:
     """Elements and flows as they are found, not yet numbered."""
 
-    def __init__(self, work: Comparisons, bounds: Bounds) -> None:
+    def __init__(self, work: Comparisons, bounds: Bounds, participants: Mapping[str, str]) -> None:
         self.work, self.bounds, self.count = work, bounds, Tally(bounds, "flows", PolicyError)
+        self.participants = participants  # whose profiles are of no node -> names outside ROS (rule S16)
         self.said: dict[Element, Place] = {}  # of a pattern: the first line of it
         self.elements: set[Element] = set()
         self.plain: dict[tuple[str, str, str], Element] = {}
@@ -166,7 +168,7 @@ class _Drafts:
             self.said.setdefault(channel, grant.place)
         if part:
             self.rules[channel].update(part)
-        ends = self._plain("node", node, ""), channel
+        ends = self.owner(node), channel
         key = (*(ends if endpoint.writes else ends[::-1]), grant.role)
         draft = self.flows.get(key)
         if draft is None:
@@ -188,6 +190,11 @@ class _Drafts:
             element = self._plain(endpoint.kind, endpoint.name, endpoint.leg)
         self.elements.add(element)
         return element
+
+    def owner(self, node: str) -> Element:
+        """The element that a profile is of."""
+        outside = self.participants.get(node)
+        return self._plain(PARTICIPANT, outside, "") if outside else self._plain("node", node, "")
 
     def _plain(self, kind: str, name: str, leg: str) -> Element:
         """An element that is no pattern; made once."""

@@ -17,7 +17,7 @@ from rosprivacy.analysis.model import NOT_READ, Diagnostic, Place, Severity
 NAMED = 3  # of the files that are passed over
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class Contents:
     """What a folder or a glob holds.
 

@@ -12,9 +12,8 @@ without escape, as Fast DDS and Cyclone DDS read them: ``*`` crosses ``/``.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.expressions import have_common_name, holds, regex, tokens
 from rosprivacy.analysis.written_names import GLOB_SIGNS, is_glob, meant
@@ -56,8 +55,7 @@ def resolve(name: str, namespace: str, node: str) -> str:
     return f"{prefix}{node}{name[1:]}" if name.startswith("~") else prefix + name
 
 
-@dataclass(frozen=True, slots=True)
-class Endpoint:
+class Endpoint(NamedTuple):
     """What a role does on one DDS topic.
 
     Attributes

@@ -28,9 +28,9 @@ def pushed(policy: Policy, namespace: str) -> Policy:
         return policy
     return replace(
         policy,
-        profiles=tuple(replace(p, node=_under(namespace, p.node)) for p in policy.profiles),
+        profiles=tuple(p._replace(node=_under(namespace, p.node)) for p in policy.profiles),
         grants=tuple(
-            replace(g, node=_under(namespace, g.node), name=g.name if g.absolute else _under(namespace, g.name))
+            g._replace(node=_under(namespace, g.node), name=g.name if g.absolute else _under(namespace, g.name))
             for g in policy.grants
         ),
     )
@@ -43,7 +43,7 @@ def _under(namespace: str, name: str) -> str:
 def as_written(grant: Grant, namespace: str) -> Grant:
     """Return a grant of ``pushed`` without the namespace."""
     name = grant.name if grant.absolute else grant.name.removeprefix(namespace)
-    return replace(grant, name=name, node=grant.node.removeprefix(namespace))
+    return grant._replace(name=name, node=grant.node.removeprefix(namespace))
 
 
 def depends(policies: Iterable[Policy], namespace: str) -> bool:

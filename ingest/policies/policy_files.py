@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.bounds import Bounds
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class _Expanded:
     """The files behind the arguments; ``found`` by folder or glob."""
 
@@ -96,7 +96,7 @@ def read_policies(
         problems.append(PolicyError("nothing", 0, "no SROS 2 policy found", "name a file or folder that has one"))
     if problems:
         raise InputErrors(problems)
-    included = _included(policies)
+    included = _included(policies) if skipped else {}
     return tuple(policies), (*(_not_read(error, included) for error in skipped), *expanded.notices)
 
 

@@ -30,22 +30,18 @@ from rosprivacy.analysis.model import (
     Severity,
 )
 from rosprivacy.ingest.policies.names import resolve
-from rosprivacy.ingest.policies.observed_metadata import (
-    diagnostics_of,
-    observed_in,
-    observed_of,
-    seen_of,
-    together,
-    unreadable,
-)
 from rosprivacy.ingest.policies.xinclude import MAX_BYTES, Documents, Item, has_text
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping
 
+    from lxml import etree
+
     from rosprivacy.analysis.bounds import Bounds
     from rosprivacy.analysis.model import Seen
     from rosprivacy.ingest.policies.observed_metadata import Key, Observed
+
+    Read = tuple[Mapping[Key, Seen], Mapping[str, str]]  # when grants were seen; which profiles are of no node
 
 VERSIONS = ("0.1.0", "0.2.0")
 ROLES = {
@@ -117,7 +113,7 @@ def read_policy(
     )
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class _Reader:
     """Walks the document once, from the outside in."""
 
@@ -132,6 +128,7 @@ class _Reader:
     namespace: str = ""
     observations: list[tuple[Place, Observed]] = field(default_factory=list)
     seen: Mapping[Key, Seen] = field(default_factory=dict)  # of the profiles that are being read (rule S16)
+    participants: Mapping[str, str] = field(default_factory=dict)  # those of them that are of no node
     first: Place | None = None  # where sros2 has read its fill of this enclave: what follows is dead (rule S5)
 
     def policy(self, root: Item) -> None:
@@ -207,31 +204,43 @@ class _Reader:
     def observed(self) -> None:
         """What the observations say that the policy was made of, as one."""
         if self.observations:
+            from rosprivacy.ingest.policies.observed_metadata import diagnostics_of, together  # noqa: PLC0415 - light start
+
             whole = together([observed for _, observed in self.observations])
             self.diagnostics.extend(diagnostics_of(whole, self.observations[0][0]))
 
     def _profiles(self, group: Item, enclave: str | None) -> None:
-        self.seen = self._seen(group)
+        self.seen, self.participants = self._seen(group)
         profiles = list(self._elements(group, {"profile"}))
         if not profiles:
             self._problem(group.place, "<profiles> is empty", "add a <profile>")
         for profile in profiles:
             self._profile(profile, enclave)
 
-    def _seen(self, group: Item) -> Mapping[Key, Seen]:
-        """When the grants of some profiles were seen, if an observation says so in their metadata."""
+    def _seen(self, group: Item) -> Read:
+        """When the grants of some profiles were seen, if an observation says so, and which profiles are of no node."""
         for child in group.element:
-            observed = observed_in(child) if child.tag == "metadata" else None
-            if observed is not None:
-                place = Place(group.file, observed.sourceline or 0)
-                try:
-                    seen, said = seen_of(observed), observed_of(observed)
-                except ValueError as error:
-                    self.diagnostics.append(unreadable(str(error), place))
-                else:
-                    self.observations.append((place, said))
-                    return seen
-        return {}
+            read = self._seen_in(child, group.file) if child.tag == "metadata" else None
+            if read is not None:
+                return read
+        return {}, {}
+
+    def _seen_in(self, metadata: etree._Element, file: str) -> Read | None:
+        """What some metadata says of an observation, if it can be read."""
+        from rosprivacy.ingest.policies import observed_metadata  # noqa: PLC0415 - light start
+
+        observed = observed_metadata.observed_in(metadata)
+        if observed is None:
+            return None
+        place = Place(file, observed.sourceline or 0)
+        try:
+            read = observed_metadata.seen_of(observed), observed_metadata.participants_of(observed)
+            said = observed_metadata.observed_of(observed)
+        except ValueError as error:
+            self.diagnostics.append(observed_metadata.unreadable(str(error), place))
+            return None
+        self.observations.append((place, said))
+        return read
 
     def _profile(self, profile: Item, enclave: str | None) -> None:
         self._attributes(profile, {"ns", "node"})
@@ -240,7 +249,7 @@ class _Reader:
             message = f"namespace {namespace!r} does not begin with /: its names are taken as sros2 writes them"
             self._warning(profile.place, message)
         name = namespace + node if namespace.endswith("/") else f"{namespace}/{node}"
-        owner = Profile(name if enclave is None else enclave, name, profile.place)
+        owner = Profile(name if enclave is None else enclave, name, profile.place, self.participants.get(name, ""))
         self.profiles.append(owner)
         for group in self._elements(profile, ROLES):
             self._group(group, owner, namespace, node)

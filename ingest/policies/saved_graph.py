@@ -143,7 +143,14 @@ def _policy(policy: Policy) -> dict[str, Any]:
         "file": policy.file,
         "sources": dict(policy.sources),
         "profiles": [
-            {"enclave": p.enclave, "node": p.node, "file": p.place.file, "line": p.place.line} for p in policy.profiles
+            {
+                "enclave": p.enclave,
+                "node": p.node,
+                "file": p.place.file,
+                "line": p.place.line,
+                **({"participant": p.participant} if p.participant else {}),
+            }
+            for p in policy.profiles
         ],
         "grants": [
             {
@@ -188,7 +195,7 @@ def _read_diagnostic(saved: dict[str, Any]) -> Diagnostic:
 
 
 def _read_policy(saved: dict[str, Any]) -> Policy:
-    profiles = tuple(Profile(p["enclave"], p["node"], _place(p)) for p in saved["profiles"])
+    profiles = tuple(Profile(p["enclave"], p["node"], _place(p), p.get("participant", "")) for p in saved["profiles"])
     grants = [
         Grant(
             allow=g["rule"] == "ALLOW",
@@ -226,7 +233,7 @@ def _of_earlier_version(grants: list[Grant], said: Iterable[Diagnostic]) -> tupl
     for grant in grants:
         file, line = grant.place.file, grant.place.line
         starts = [p for p, path in again if path == grant.enclave and (p.file != file or p.line <= line)]
-        read.append(replace(grant, dead=bool(starts)))
+        read.append(grant._replace(dead=bool(starts)))
         if starts and not grant.allow:
             message = f"DENY of {shown(grant.name)} is taken as dead: the graph was saved by an earlier version, which"
             told[Diagnostic(grant.place, Severity.WARNING, f"{message} does not say; {AGAIN}", DEAD_DENY)] = None

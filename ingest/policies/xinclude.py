@@ -37,7 +37,7 @@ _XPOINTER = re.compile(r"\s*xpointer\(\s*((?:/(?:\*|[\w.-]+))+)\s*\)\s*")
 _POSITION = re.compile(r", line \d+, column \d+$")
 
 
-@dataclass(slots=True)  # there is one for every element, and a frozen one takes three times as long to make
+@dataclass(slots=True, eq=False, repr=False)  # one for every element: a frozen one takes three times as long to make
 class Item:
     """An element, the file that it stands in (as shown to the user), and the includes that led to it.
 

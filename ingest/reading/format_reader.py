@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.reading.yaml_values import Value
 
 
-@dataclass(kw_only=True)
+@dataclass(kw_only=True, eq=False, repr=False)
 class FileReader:
     """Walks one file once, from the outside in.
 

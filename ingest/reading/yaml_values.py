@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 import re
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import yaml
 
@@ -32,8 +32,7 @@ _XML = re.compile(r"\s*<[?!A-Za-z]")
 _EMPTY = ("the file is empty", "write at least 'labels: 1'")
 
 
-@dataclass(frozen=True, slots=True)
-class Value:
+class Value(NamedTuple):
     """One value of the file.
 
     Attributes
@@ -104,7 +103,7 @@ def parse(text: str, fail: Callable[[int, str, str], InputError], bounds: Bounds
     return builder.top
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class _Open:
     """A list or map that is not closed yet."""
 

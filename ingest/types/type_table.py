@@ -11,7 +11,6 @@ from __future__ import annotations
 import hashlib
 from dataclasses import dataclass
 from functools import partial
-from importlib.resources import files
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.bounds import BOUNDS
@@ -19,9 +18,11 @@ from rosprivacy.analysis.errors import InputError, InputErrors, TypesError
 from rosprivacy.analysis.kernel.type_limits import TypeLimit, TypeLimits
 from rosprivacy.analysis.model import Place, Suggestion, by_confidence, interface_of, kind_of_type
 from rosprivacy.ingest.reading import yaml_values
+from rosprivacy.ingest.types import TABLE
 from rosprivacy.ingest.types.type_entries import LEGS, EntryReader
 from rosprivacy.ingest.types.type_suggestions import read_suggestions
 from rosprivacy.ontology.iris import STORED
+from rosprivacy.ontology.vocabulary import FOLDER
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.reading.yaml_values import Value
     from rosprivacy.ontology.vocabulary import Vocabulary
 
-TABLE = "rosprivacy:types"  # the shipped one, as a report names it
 PARTS = ("type_table", "version", "assumes", "cannot", "suggests")
 KEYS = ("types", "leg", "kinds", "why", "source")
 Key = tuple[str, str]  # name of a type, leg
@@ -96,7 +96,7 @@ def read_table(file: str, vocabulary: Vocabulary, bounds: Bounds = BOUNDS) -> Ty
     >>> [(str(one.confidence), *one.kinds) for one in table.suggested("sensor_msgs/msg/Joy")]
     [('likely', 'OperatorInput')]
     """
-    path = str(files("rosprivacy.ontology").joinpath("types.yaml")) if file == TABLE else file
+    path = str(FOLDER / "types.yaml") if file == TABLE else file
     try:
         top, data = yaml_values.read(path, partial(TypesError, file), bounds)
     except InputError as error:

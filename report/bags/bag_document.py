@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.model import BagVerdict, iso
+from rosprivacy.analysis.model.recording import BagVerdict, iso
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from rosprivacy.analysis.model import JudgedBag, Suggestion, TopicKinds
+    from rosprivacy.analysis.model import Suggestion
+    from rosprivacy.analysis.model.recording import JudgedBag, TopicKinds
     from rosprivacy.report.contract.bags import BagEntry, BagsDocument, BagTopicEntry, SuggestionEntry
 
 FORMAT = "rosprivacy.bags/1"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.model import BagVerdict
+from rosprivacy.analysis.model.recording import BagVerdict
 from rosprivacy.analysis.text import counted
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ def _bag(bag: BagEntry) -> Iterator[str]:
             yield f"    {rule['type']} suggests {', '.join(rule['kinds'])} ({rule['confidence']}): {shown(rule['why'])}"
     if bag["suggested"]:
         kinds = ", ".join(f"{one['kind']} ({one['confidence']})" for one in bag["suggested"])
-        yield f"  suggested by its types, confirmed by nobody: {kinds}"
+        yield f"  suggested by its types, as questions: {kinds}"
     for what in bag["gaps"]:
         yield f"  not complete: {what}"
     for what in bag["beside"]:

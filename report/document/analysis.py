@@ -13,7 +13,7 @@ from rosprivacy.analysis.findings.review_order import Behind
 from rosprivacy.analysis.findings.sanitizing import absent, cleanings, makings
 from rosprivacy.analysis.kernel.ranks import in_words
 from rosprivacy.analysis.legal import turned_special
-from rosprivacy.analysis.model import BAG_GAP, GOES_NOWHERE, NO_LEAK_NAMED, OBSERVATION_GAP, UNREAD_FILE
+from rosprivacy.analysis.model import GAPS, GOES_NOWHERE, NO_LEAK_NAMED
 from rosprivacy.analysis.written_names import literal
 from rosprivacy.report.document import ledger, reliance
 from rosprivacy.report.document.non_ros import inventory, taken_by_kind, without_backups
@@ -136,19 +136,10 @@ def analysis_document(answer: Answer) -> AnalysisDocument:
     }
 
 
-def files_not_read(document: Mapping[str, Any]) -> int:
-    """Return how many files with grants were not read: why a verdict can be undetermined with nothing open (S11)."""
-    return len({said["file"] for said in document["diagnostics"] if said.get("code") == UNREAD_FILE})
-
-
-def observation_gaps(document: Mapping[str, Any]) -> list[str]:
-    """Return what observations are known to miss: the other such reason (S16)."""
-    return [str(said["message"]) for said in document["diagnostics"] if said.get("code") == OBSERVATION_GAP]
-
-
-def bag_gaps(document: Mapping[str, Any]) -> list[str]:
-    """Return what is not known of bags that are storages: one more such reason (S11)."""
-    return [str(said["message"]) for said in document["diagnostics"] if said.get("code") == BAG_GAP]
+def known_gap(document: Mapping[str, Any]) -> str:
+    """Return why a verdict can be undetermined with nothing open: the code of the first of ``GAPS``, else empty."""
+    codes = {said.get("code") for said in document["diagnostics"]}
+    return next((code for code in GAPS if code in codes), "")
 
 
 def lacking(document: Mapping[str, Any]) -> str:

@@ -7,13 +7,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.model import iso
 from rosprivacy.analysis.non_ros import TAKEN, limited, not_stated
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.hierarchy import Hierarchy
-    from rosprivacy.analysis.model import Element, NonRosFacts, Recording
+    from rosprivacy.analysis.model import Element, NonRosFacts
+    from rosprivacy.analysis.model.recording import Recording
     from rosprivacy.report.contract.stated import NonRosEntry, NonRosNotKnown, NonRosStated, RecordingEntry
 
 
@@ -72,6 +72,8 @@ def _facts(facts: NonRosFacts) -> NonRosStated:
 
 
 def _recording(recording: Recording) -> RecordingEntry:
+    from rosprivacy.analysis.model.recording import iso  # noqa: PLC0415 - light start
+
     said: RecordingEntry = {"bag": recording.bag, "bytes": recording.size, "topics": recording.topics}
     if recording.messages is not None:
         said["messages"] = recording.messages

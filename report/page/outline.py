@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.model import SPECIAL
 from rosprivacy.analysis.text import fit
 from rosprivacy.report.compare.changes import ASKED, Changes, changes
-from rosprivacy.report.document.analysis import bag_gaps, files_not_read, lacking, observation_gaps
+from rosprivacy.report.document.analysis import known_gap, lacking
 from rosprivacy.report.document.ledger import by_globs
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.finding_order import REVEALS, strength
@@ -273,8 +273,7 @@ def _law(assumptions: Mapping[str, Any], words: Words) -> str:
 def _verdict(index: Index) -> str:
     """The verdict; ``nothing``, ``goes-nowhere`` or ``no-leak-named`` where it lacks grounds (rules S11, S12)."""
     verdict = str(index.document["verdict"])
-    unread = files_not_read(index.document) or observation_gaps(index.document) or bag_gaps(index.document)
-    asked = verdict != "undetermined" or index.document["open"] or unread
+    asked = verdict != "undetermined" or index.document["open"] or known_gap(index.document)
     followed = index.document["categories"] and asked
     return verdict if followed else lacking(index.document) or "nothing"
 

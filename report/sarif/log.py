@@ -13,7 +13,7 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.legal import strongest_first
-from rosprivacy.analysis.model import BAG_GAP, NO_LEAK_NAMED, OBSERVATION_GAP, UNREAD_FILE, Place, Severity
+from rosprivacy.analysis.model import NO_LEAK_NAMED, Place, Severity
 from rosprivacy.analysis.text import counted, utf8
 from rosprivacy.report.element_counts import ElementCount, count_elements
 from rosprivacy.report.places import Places, in_a_file, to_review
@@ -21,12 +21,10 @@ from rosprivacy.report.sarif.flows import flows_between, further_paths, prose, t
 from rosprivacy.report.sarif.results import LAW, ROOT, Files, Results
 from rosprivacy.report.sarif.robots import with_robots
 from rosprivacy.report.sarif.rules import (
-    BAG_GAPS,
-    FILES_NOT_READ,
+    GAP_RULES,
     NO_LEAK,
     NO_VERDICT,
     NOTHING_FOLLOWED,
-    OBSERVATION_GAPS,
     RULES,
     UNREVIEWED,
     descriptors,
@@ -71,8 +69,7 @@ def _log(answer: Answer, root: Path) -> dict[str, Any]:
     taxa = sorted({legal.iri: legal for legal in said}.values(), key=lambda legal: legal.name)
     found = (rule_of(finding.kind) for finding in analysis.findings)
     codes = {said.code for said in diagnostics}
-    gaps = {UNREAD_FILE: FILES_NOT_READ, OBSERVATION_GAP: OBSERVATION_GAPS, BAG_GAP: BAG_GAPS}
-    not_read = [rule for code, rule in gaps.items() if code in codes][:1]
+    not_read = [rule for code, rule in GAP_RULES.items() if code in codes][:1]
     not_named = [NO_LEAK] if analysis.lacking == NO_LEAK_NAMED else []
     rules = {rule.id: rule for rule in (*RULES, *found, UNREVIEWED, NOTHING_FOLLOWED, *not_named, *not_read)}
     made = Results(

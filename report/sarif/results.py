@@ -18,11 +18,9 @@ from rosprivacy.report.places import NOWHERE, of_step, to_review
 from rosprivacy.report.sarif.artifacts import uri_of
 from rosprivacy.report.sarif.flows import flows_of, logical, named, prose, text
 from rosprivacy.report.sarif.rules import (
-    BAG_GAPS,
-    FILES_NOT_READ,
+    GAP_RULES,
     NO_LEAK,
     NOTHING_FOLLOWED,
-    OBSERVATION_GAPS,
     UNREVIEWED,
     Rule,
     rule_of,
@@ -115,7 +113,7 @@ class Results:
         for question in to_review(self.analysis):
             yield self._question(question)
         if self.analysis.verdict is Verdict.UNDETERMINED and not self.analysis.open:
-            not_seen = [rule for rule in (FILES_NOT_READ, OBSERVATION_GAPS, BAG_GAPS) if rule.id in self.rules]
+            not_seen = [rule for rule in GAP_RULES.values() if rule.id in self.rules]
             lacks_leak = self.analysis.lacking == NO_LEAK_NAMED
             known = not_seen if self.analysis.carried else []
             yield self._rule_alone(known[0] if known else NO_LEAK if lacks_leak else NOTHING_FOLLOWED)

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.model import ACCESS_GAP, BAG_GAP, OBSERVATION_GAP, UNREAD_FILE
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -109,6 +110,13 @@ BAG_GAPS = Rule(
     "It is not complete, holds more than messages, or has topics that no policy names. What is in these is not known.",
     ("Name the policies of the system that was recorded, or repair or replace the bag.",),
 )
+ACCESS_GAPS = Rule(
+    "access-gaps",
+    "PermissionsAreNotAsked",
+    "Permissions do not hold everywhere: that nothing is found does not say that there is nothing.",
+    "The governance switches access control off for some topics, so nothing keeps a program to its permissions there.",
+    ("Let the governance ask permissions, or analyse the enforced view: rosprivacy analyze --view enforced.",),
+)
 FILES_NOT_READ = Rule(
     "files-not-read",
     "PoliciesNotRead",
@@ -131,6 +139,13 @@ NO_LEAK = Rule(
     "Everything that data gets to is reviewed. But no label says of any element that it is a leak, or that it is none.",
     ("Name what lets data out (leak: [Video]) in a label file; if nothing does, say so at a node that might (none).",),
 )
+
+GAP_RULES = {  # what is known to be missing, by the code of the notice, in the order in which it counts
+    UNREAD_FILE: FILES_NOT_READ,
+    OBSERVATION_GAP: OBSERVATION_GAPS,
+    BAG_GAP: BAG_GAPS,
+    ACCESS_GAP: ACCESS_GAPS,
+}
 
 
 def rule_of(kind: str) -> Rule:

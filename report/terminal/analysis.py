@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import ASSUMED, MERGED
-from rosprivacy.report.document.analysis import bag_gaps, files_not_read, lacking, observation_gaps
+from rosprivacy.report.document.analysis import known_gap, lacking
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import shown_name
 from rosprivacy.report.observed_lines import observed_lines
@@ -80,12 +80,8 @@ def verdict_line(report: Mapping[str, Any], words: Words = IN_ENGLISH) -> Line:
     verdict = report["verdict"]
     style, meaning = STYLES[verdict], words(f"tty.verdict.{verdict}")
     if not any(report["categories"]) or (verdict == "undetermined" and not report["open"]):
-        unread = files_not_read(report) and any(report["categories"])
-        gap = observation_gaps(report) and any(report["categories"])
-        bag = bag_gaps(report) and any(report["categories"])
-        known = "tty.unread" if unread else "tty.gap" if gap else "tty.gap.bag" if bag else ""
-        why = known or f"tty.lacking.{lacking(report) or 'nothing'}"
-        meaning = words(why)
+        gap = known_gap(report) if any(report["categories"]) else ""
+        meaning = words(f"tty.gap.{gap}" if gap else f"tty.lacking.{lacking(report) or 'nothing'}")
     accepted = sum(finding["accepted"] for finding in report["findings"])
     if accepted and verdict != "leak":
         style, meaning = "bold yellow", words(f"tty.accepted.{verdict}")

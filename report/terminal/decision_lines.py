@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rosprivacy.analysis.decisions import Choice, State
 from rosprivacy.analysis.errors import shown
 
 if TYPE_CHECKING:
@@ -21,6 +20,8 @@ def decision_lines(finding: Mapping[str, Any], words: Words) -> Iterator[tuple[s
     decision = finding.get("decision")
     if not decision:
         return
+    from rosprivacy.analysis.decisions import Choice, State  # noqa: PLC0415 - light start
+
     choice, place = words(f"tty.done.{decision['choice']}"), f"{shown(decision['file'])}:{decision['line']}"
     expires = words.date(decision["expires"]) if decision["expires"] else ""
     if decision["state"] == State.EXPIRED:

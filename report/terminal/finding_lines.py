@@ -6,8 +6,7 @@ In: a JSON document of the contract. Out: lines. What a person decides first sta
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import CHANNELS
@@ -175,8 +174,7 @@ def _unreviewed(report: Mapping[str, Any]) -> set[Any]:
     return {(key(question["element"]), name) for question in report["open"] for name in question["categories"]}
 
 
-@dataclass(frozen=True, slots=True)
-class _Way:
+class _Way(NamedTuple):
     """How a witness is told, hop by hop.
 
     Attributes

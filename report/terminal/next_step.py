@@ -9,8 +9,8 @@ import re
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.analysis.model import GOES_NOWHERE, NO_LEAK_NAMED, UNREAD_FILE
-from rosprivacy.report.document.analysis import bag_gaps, lacking, observation_gaps
+from rosprivacy.analysis.model import GOES_NOWHERE, NO_LEAK_NAMED
+from rosprivacy.report.document.analysis import known_gap, lacking
 from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import shown_name
 from rosprivacy.report.review_groups import next_round
@@ -68,10 +68,14 @@ def _step(report: Mapping[str, Any], words: Words) -> str:
         others = count_rows(report["open"]).elements - 1
         more = words("tty.more", n=others) if others else ""
         return words("tty.next.review", element=shown_name(first), more=more)
-    unread = sorted({shown(said["file"]) for said in report["diagnostics"] if said.get("code") == UNREAD_FILE})
-    gap = "tty.next.gap" if observation_gaps(report) else "tty.next.bag" if bag_gaps(report) else ""
-    known = words("tty.next.unread", file=unread[0]) if unread else words(gap) if gap else ""
-    return known or lacking_step(lacking(report), words)
+    return _gap_step(report, words) or lacking_step(lacking(report), words)
+
+
+def _gap_step(report: Mapping[str, Any], words: Words) -> str:
+    """What to do about something that is known to be missing; empty if nothing is."""
+    gap = known_gap(report)
+    files = sorted({shown(said["file"]) for said in report["diagnostics"] if said.get("code") == gap})
+    return words(f"tty.next.{gap}", file=files[0]) if gap else ""
 
 
 def candidates(report: Mapping[str, Any]) -> list[str]:

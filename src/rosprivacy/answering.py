@@ -12,10 +12,8 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.answer import ClosedByTypes
 from rosprivacy.analysis.contexts import Contexts
 from rosprivacy.analysis.findings.findings import Options, analyse
-from rosprivacy.analysis.findings.held_by_types import held_by_types
 from rosprivacy.analysis.findings.processed import lacks, processed
 from rosprivacy.analysis.fleet.likeness import pattern_id
-from rosprivacy.analysis.kernel.type_limits import under_limits
 from rosprivacy.analysis.model import unread
 from rosprivacy.analysis.modes import Paths, View
 from rosprivacy.assumptions import assumptions_of
@@ -27,10 +25,10 @@ from rosprivacy.result import Result
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.analysis.answer import Analysis, Finding
     from rosprivacy.analysis.fleet.counts import Counts
     from rosprivacy.analysis.fleet.patterns import FleetView
-    from rosprivacy.analysis.fleet.patterns_of_pairs import Groups
+    from rosprivacy.analysis.fleet.patterns_of_pairs import Closed, Groups
     from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.question import Question
     from rosprivacy.system import System
@@ -58,7 +56,11 @@ def answer(system: System, question: Question) -> Result:
         bounds=question.settings.bounds,
     )
     limits = question.type_limits() if question.type_limits and system.bound.types else None
-    bound = under_limits(system.graph, system.bound, system.vocabulary.hierarchy, limits)
+    bound = system.bound
+    if limits is not None:
+        from rosprivacy.analysis.kernel.type_limits import under_limits  # noqa: PLC0415 - light start
+
+        bound = under_limits(system.graph, bound, system.vocabulary.hierarchy, limits)
     analysis = analyse(system.graph, bound, system.vocabulary.hierarchy, options)
     if bound is not system.bound:
         analysis = _beside(system, options, analysis)
@@ -70,11 +72,29 @@ def answer(system: System, question: Question) -> Result:
 
 def _beside(system: System, options: Options, analysis: Analysis) -> Analysis:
     """An analysis under what types cannot carry, with what only this closes: the whole is analysed without it, too."""
-    choose = _groups(system) if options.choose else None
+    from rosprivacy.analysis.findings.held_by_types import held_by_types  # noqa: PLC0415 - light start
+
+    closed = _closed(system, analysis) if options.choose else None
     hierarchy = system.vocabulary.hierarchy
-    without = analyse(system.graph, system.bound, hierarchy, replace(options, choose=choose, paths=Paths.witness))
-    identity = partial(pattern_id, likeness=system.likeness)
-    return held_by_types(analysis, without, identity, all_read=not options.unread)
+    without = analyse(system.graph, system.bound, hierarchy, options._replace(choose=closed, paths=Paths.witness))
+    gone = closed.of(without.findings) if closed else _gone(system, analysis, without)
+    return held_by_types(analysis, without, gone, all_read=not options.unread)
+
+
+def _gone(system: System, under: Analysis, without: Analysis) -> tuple[Finding, ...]:
+    """What only limits close, where every finding is made; of robots one of each pattern."""
+    left = {finding.id for finding in under.findings}
+    gone = (one for one in without.findings if one.id not in left and system.likeness.count(one))
+    first: dict[str, Finding] = {}
+    for finding in gone:
+        first.setdefault(pattern_id(finding, system.likeness), finding)
+    return tuple(first.values())
+
+
+def _closed(system: System, under: Analysis) -> Closed:
+    from rosprivacy.analysis.fleet.patterns_of_pairs import Closed  # noqa: PLC0415 - numpy, for fleets only
+
+    return Closed(system.likeness, under.spread)
 
 
 def _groups(system: System) -> Groups:

@@ -15,7 +15,7 @@ from rosprivacy.fleet_system import answer_fleet
 from rosprivacy.ingest.labels import label_file
 from rosprivacy.ingest.labels.label_file import STANDARD, Labels
 from rosprivacy.ingest.policies.xinclude import MAX_BYTES
-from rosprivacy.ingest.types.type_table import TABLE
+from rosprivacy.ingest.types import TABLE
 from rosprivacy.ontology.vocabulary import TOP, load
 from rosprivacy.robot_system import answer_robot
 from rosprivacy.settings import Settings

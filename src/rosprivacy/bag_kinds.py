@@ -14,14 +14,16 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.kernel.roles import facts
-from rosprivacy.analysis.model import NOTHING_FOLLOWED, JudgedBag, Place, TopicKinds, by_confidence, unread
+from rosprivacy.analysis.model import NOTHING_FOLLOWED, Place, by_confidence, unread
+from rosprivacy.analysis.model.recording import JudgedBag, TopicKinds
 from rosprivacy.ingest.policies.names import covered, covers, is_pattern, recorded_channels
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
     from rosprivacy.analysis.answer import Analysis
-    from rosprivacy.analysis.model import Bag, BagTopic, Statement, Suggestion
+    from rosprivacy.analysis.model import Statement, Suggestion
+    from rosprivacy.analysis.model.recording import Bag, BagTopic
     from rosprivacy.ingest.labels.label_file import Labels
     from rosprivacy.ingest.types.type_table import TypeTable
     from rosprivacy.ontology.vocabulary import Vocabulary

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.assumptions import files_read
 from rosprivacy.bag_kinds import by_labels, by_system, judged
 from rosprivacy.ingest.bags.bag_folders import read_bags
-from rosprivacy.ingest.types.type_table import TABLE, read_table
+from rosprivacy.ingest.types import TABLE
+from rosprivacy.ingest.types.type_table import read_table
 from rosprivacy.question import question_of
 from rosprivacy.report.bags.bag_document import bags_document
 from rosprivacy.robot_system import answer_robot, read_label_files
@@ -21,7 +22,7 @@ from rosprivacy.version import __version__
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
-    from rosprivacy.analysis.model import JudgedBag
+    from rosprivacy.analysis.model.recording import JudgedBag
     from rosprivacy.ingest.database.bag_rows import BagRows
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.report.contract.bags import BagsDocument

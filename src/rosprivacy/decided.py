@@ -9,10 +9,9 @@ import os
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.case import Case
 from rosprivacy.analysis.contexts import revealed
-from rosprivacy.analysis.decisions import Case, decided
 from rosprivacy.analysis.fleet.likeness import NO_ROBOTS, pattern_of
-from rosprivacy.analysis.remembered import About
 from rosprivacy.clock import judged_on, today
 
 if TYPE_CHECKING:
@@ -23,6 +22,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.analysis.fleet.patterns import FleetView
     from rosprivacy.analysis.legal_bases import Verdicts
+    from rosprivacy.analysis.remembered import About
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.settings import Settings
 
@@ -63,6 +63,7 @@ def joined_to(
     """
     if decisions is None:
         return None
+    from rosprivacy.analysis.decisions import decided  # noqa: PLC0415 - light start
 
     def case_of(finding: Finding) -> Case:
         return in_fleet(Case.of(finding), likeness)
@@ -73,6 +74,7 @@ def joined_to(
 
 def about_today(analysis: Analysis, view: FleetView | None) -> dict[str, About]:
     """Return what a decision would be made about today: of each finding by its id, of a fleet of each pattern."""
+    from rosprivacy.analysis.remembered import About  # noqa: PLC0415 - light start
 
     def about(finding: Finding, robots: Iterable[str] = ()) -> About:
         path = tuple(element.name for element in finding.witness)
@@ -107,4 +109,4 @@ def in_fleet(case: Case, likeness: Likeness) -> Case:
     pattern = pattern_of(case.kind, case.category, *ends, likeness, beside=case.beside)
     source, leak = (end.robot if likeness.is_robot(end.robot) else "" for end in ends)
     own = case.id if likeness.alone(*ends) else ""
-    return replace(case, id=own, pattern=pattern, robots=(source, leak))
+    return case._replace(id=own, pattern=pattern, robots=(source, leak))

@@ -7,10 +7,10 @@ themselves is found here: the root of the repository, the date. A new format is 
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, overload
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, overload
 
 from rosprivacy.analysis.errors import InputError, shown
 from rosprivacy.clock import source_date, today
@@ -33,8 +33,7 @@ TextFormat = Literal[
 ]  # fmt: skip
 
 
-@dataclass(frozen=True, slots=True)
-class Style:
+class Style(NamedTuple):
     """How an answer is shown to a person.
 
     Attributes
@@ -66,8 +65,7 @@ class Style:
     assessment: str | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Format:
+class Format(NamedTuple):
     """A format: its name on the command line, what its files end in, and what writes it."""
 
     name: str

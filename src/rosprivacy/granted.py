@@ -59,7 +59,9 @@ def _deployed(names: list[str], settings: Settings, within: str | None) -> Read:
 
     _confined(names, within)
     on = settings.today or today(os.environ)
-    policies, said = read_deployed(names, settings.domain, on, allow_unsigned=settings.allow_unsigned)
+    policies, said = read_deployed(
+        names, settings.domain, on, allow_unsigned=settings.allow_unsigned, view=settings.view
+    )
     _confined([file for policy in policies for file, _ in policy.sources], within)
     return policies, said
 

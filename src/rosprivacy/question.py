@@ -6,16 +6,15 @@ In: what a user names. Out: ``Question``, for ``answering``.
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, replace
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.contexts import article9_in
 from rosprivacy.analysis.errors import InputErrors, OntologyError, shown
 from rosprivacy.analysis.model import ARTICLE_9_VERDICTS, MAY_REVEAL
 from rosprivacy.clock import judged_on
 from rosprivacy.decided import decisions_of
-from rosprivacy.ingest.types.type_table import TABLE, read_table
+from rosprivacy.ingest.types import TABLE
 from rosprivacy.ontology.vocabulary import load
 
 if TYPE_CHECKING:
@@ -28,8 +27,7 @@ if TYPE_CHECKING:
     from rosprivacy.settings import Settings
 
 
-@dataclass(frozen=True, slots=True)
-class Question:
+class Question(NamedTuple):
     """What is asked.
 
     Attributes
@@ -89,6 +87,8 @@ def _limits(settings: Settings, vocabulary: Vocabulary) -> Callable[[], TypeLimi
 
     @cache
     def read() -> TypeLimits:
+        from rosprivacy.ingest.types.type_table import read_table  # noqa: PLC0415 - light start
+
         return read_table(settings.type_limits or TABLE, vocabulary, settings.bounds).limits
 
     if settings.type_limits != TABLE:
@@ -104,7 +104,7 @@ def in_contexts(question: Question, contexts: Collection[str]) -> Question:
     if question.asked is None or not question.settings.article9 or not contexts:
         return question
     asked = asked_for(question.vocabulary, question.settings, contexts)
-    return replace(question, asked=asked, contexts=frozenset(contexts))
+    return question._replace(asked=asked, contexts=frozenset(contexts))
 
 
 def asked_for(vocabulary: Vocabulary, settings: Settings, contexts: Collection[str] = ()) -> frozenset[str] | None:

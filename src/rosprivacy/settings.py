@@ -10,7 +10,7 @@ from rosprivacy.analysis.findings.findings import MAX_PATHS
 from rosprivacy.analysis.modes import Article9Level, Paths, View
 from rosprivacy.ingest.labels.label_file import STANDARD
 from rosprivacy.ingest.policies.xinclude import MAX_BYTES
-from rosprivacy.ingest.types.type_table import TABLE
+from rosprivacy.ingest.types import TABLE
 from rosprivacy.ontology.vocabulary import TOP
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ In: a driver. Out: a ``Result``; the answer about all categories is written back
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosprivacy.answering import answer
@@ -56,9 +56,9 @@ def answer_stored(driver: Driver, settings: Settings) -> Result:
     DatabaseError
         If the server refuses, or a robot was loaded meanwhile.
     """
-    question = replace(question_of(settings), every=True)
+    question = question_of(settings)._replace(every=True)
     system = stored_system(driver, question.vocabulary)
-    everything = replace(question, asked=None, decisions=None)
+    everything = question._replace(asked=None, decisions=None)
     result = answer(system, everything)
     write_back(driver, system.stored, result.analysis, question.vocabulary)
     return result if question == everything else answer(system, question)

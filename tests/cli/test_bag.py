@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from jsonschema import Draft202012Validator
 
+from rosprivacy.private_neo4j import connection
 from tests.helpers.bags import IMAGE, ODOMETRY, mcap, rosbag2
 from tests.helpers.command import Cli, refused
 from tests.helpers.paths import ROOT
@@ -197,7 +198,7 @@ def test_what_types_suggest_stands_beside_what_labels_say(cli: Cli, tmp_path: Pa
     assert whole["assumptions"]["suggested_by"]["file"] == "rosprivacy:types"
     text = cli("bag", run, "-l", said).stdout
     assert f"{IMAGE} suggests Video (likely): a picture of what is in front of the camera" in text
-    assert "  suggested by its types, confirmed by nobody: DepthImage (may), RobotPosition (may)," in text
+    assert "  suggested by its types, as questions: DepthImage (may), RobotPosition (may)," in text
     (row,) = csv.DictReader(io.StringIO(cli("bag", run, "-l", said, "-f", "csv").stdout))
     assert row["suggested"] == "DepthImage (may); RobotPosition (may); ThermalImage (may); Video (likely)"
 
@@ -280,7 +281,8 @@ def test_a_storage_that_is_a_bag_comes_back_from_the_database(
     cli: Cli, tmp_path: Path, neo4j_server: Connection, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """What was recorded, what is known of the bag, and that not all of it is: the verdict stays undetermined (S11)."""
-    del neo4j_server  # it runs, and is the one that commands use
+    with connection.open_driver(neo4j_server) as driver:  # the one that commands use
+        driver.execute_query("MATCH (n) DETACH DELETE n")
     rosbag2(tmp_path / "run", topics={"/camera": (IMAGE, 2), "/other": (ODOMETRY, 1)})
     (tmp_path / "a.policy.xml").write_text(POLICY)
     said = labels(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.answering import answer
@@ -18,6 +17,6 @@ VOCABULARY = load_vocabulary()
 
 
 def rows(file: str) -> FleetRows:
-    question = replace(question_of(Settings()), every=True)
+    question = question_of(Settings())._replace(every=True)
     system = fleet_system(file, question)
     return rows_of_fleet(system, question, answer(system, question))

@@ -22,7 +22,7 @@ ROOMS: dict[str, set[str]] = {
 }
 # Which wings a wing may import from; '' is what stands in the room itself. A name of one module is that module alone.
 MODEL = {"", "model"}
-FACTS = MODEL | {"kernel", "answer", "decisions", "legal"}
+FACTS = MODEL | {"kernel", "answer", "case", "decisions", "legal"}
 READING = {"reading", "policies"}
 WINGS: dict[str, dict[str, set[str]]] = {
     "analysis": {
@@ -31,7 +31,8 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "": {"model", "durations"},
         "kernel": MODEL,
         "answer": MODEL | {"kernel"},
-        "decisions": MODEL | {"answer"},
+        "case": MODEL | {"answer"},
+        "decisions": MODEL | {"answer", "case"},
         "legal": MODEL | {"answer"},
         "contexts": MODEL | {"answer"},
         "findings": FACTS,
@@ -50,7 +51,7 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "mitigation": READING,
         "keystore": READING,
         "lint": READING,
-        "observe": READING | {"labels", "bags"},
+        "observe": READING | {"labels", "bags", "types"},
         "fleet": READING | {"labels", "types"},
         "database": READING | {"labels", "fleet"},
     },

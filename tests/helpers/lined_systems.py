@@ -51,7 +51,7 @@ class Stated:
         numbers = {edge: number for number, edge in enumerate(self.edges)}
         never = {i: self.system.edges[i] for i in whole.flows}
         lines = {
-            i: tuple(replace(s, place=Place("labels.yaml", NEVER + i)) for s in said) for i, said in whole.flows.items()
+            i: tuple(s._replace(place=Place("labels.yaml", NEVER + i)) for s in said) for i, said in whole.flows.items()
         }
         flows = {numbers[edge]: lines[i] for i, edge in never.items() if edge in numbers}
         return replace(whole, flows=flows)
@@ -90,13 +90,13 @@ def stated(draw: st.DrawFn) -> Stated:
         said[vertex] = []
         for one in statements:
             line += 1
-            said[vertex].append(replace(one, place=Place("labels.yaml", line)))
+            said[vertex].append(one._replace(place=Place("labels.yaml", line)))
     for _ in range(draw(st.integers(0, 2))):
         line += 1
         glob = draw(st.sampled_from(GLOBS))
         among = range(system.nodes) if glob.role == "sanitizer" else range(system.nodes, system.nodes + system.channels)
         for vertex in draw(st.sets(st.sampled_from(among), min_size=2)) if len(among) > 1 else ():
-            said[vertex] = [replace(glob, place=Place("labels.yaml", line), naming=GLOB)]
+            said[vertex] = [glob._replace(place=Place("labels.yaml", line), naming=GLOB)]
     denied = {}
     for edge in draw(st.sets(st.sampled_from(system.edges), max_size=3)):
         if system.edges.index(edge) not in system.never:

@@ -25,7 +25,7 @@ def ranked(draw: st.DrawFn) -> System:
 
     def placed(one: Statement, vertex: int) -> Statement:
         rank, naming = draw(st.sampled_from(NAMINGS)) if vertex not in system.facts else NAMINGS[0]
-        return replace(one, rank=(1, rank), naming=naming, place=Place(draw(where), vertex + 1))
+        return one._replace(rank=(1, rank), naming=naming, place=Place(draw(where), vertex + 1))
 
     category = st.sampled_from(tuple(PARENTS))
     more = st.builds(
@@ -43,7 +43,7 @@ def ranked(draw: st.DrawFn) -> System:
         if draw(st.booleans()) and written:
             through = tuple(sorted(draw(st.sets(st.sampled_from(written), min_size=1))))
             system.said[vertex] = [
-                replace(s, through=through) if s.role == "source" else s for s in system.said[vertex]
+                s._replace(through=through) if s.role == "source" else s for s in system.said[vertex]
             ]
     return system
 

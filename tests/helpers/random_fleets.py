@@ -55,7 +55,7 @@ class Case:
 
     def fleet(self) -> Fleet:
         robots = [Robot(name, HERE, self.model(name), (self.model(name),)) for name in sorted(self.robots)]
-        elements = [Stated(kind, name, replace(facts, place=HERE)) for name, (kind, facts, _) in self.shared.items()]
+        elements = [Stated(kind, name, facts._replace(place=HERE)) for name, (kind, facts, _) in self.shared.items()]
         entries = [Entry((kind,), name, HERE, tuple(said)) for name, (kind, _, said) in self.shared.items()]
         flows = [
             FlowEntry(source, target, HERE, (statement("never", *sorted(never)),) if never else ())

@@ -14,20 +14,8 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from rosprivacy.analysis.findings.findings import analyse
-from rosprivacy.analysis.model import (
-    Bag,
-    BagTopic,
-    Category,
-    Confidence,
-    Element,
-    Flow,
-    FlowGraph,
-    JudgedBag,
-    Legal,
-    Place,
-    Suggestion,
-    TopicKinds,
-)
+from rosprivacy.analysis.model import Category, Confidence, Element, Flow, FlowGraph, Legal, Place, Suggestion
+from rosprivacy.analysis.model.recording import Bag, BagTopic, JudgedBag, TopicKinds
 from rosprivacy.ingest.database.bag_loading import load_bags
 from rosprivacy.ingest.database.bag_rows import bag_rows
 from rosprivacy.ingest.database.loading import load
@@ -119,7 +107,7 @@ def with_storages(graph: FlowGraph, storages: Mapping[str, Any]) -> FlowGraph:
 
     def moved(flows: Sequence[Flow]) -> list[Flow]:
         ends = graph.elements
-        return [replace(f, source=number[ends[f.source]], target=number[ends[f.target]]) for f in flows]
+        return [f._replace(source=number[ends[f.source]], target=number[ends[f.target]]) for f in flows]
 
     new = [
         Flow(number[source], number[target], "flow")

@@ -11,7 +11,6 @@ import typer
 from typer.core import TyperGroup
 
 from rosprivacy.cli.exit_code import SIGPIPE
-from rosprivacy.cli.wrong_values import with_nearest
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -47,6 +46,8 @@ class Group(TyperGroup):
         try:
             return super().invoke(ctx)
         except typer.BadParameter as error:
+            from rosprivacy.cli.wrong_values import with_nearest
+
             raise with_nearest(error) from None
         except BrokenPipeError:
             raise typer.Exit(128 + SIGPIPE) from None

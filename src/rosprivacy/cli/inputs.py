@@ -7,9 +7,8 @@ from __future__ import annotations
 
 import inspect
 from copy import copy
-from dataclasses import dataclass, fields
 from functools import wraps
-from typing import TYPE_CHECKING, Annotated, Any, get_args, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, get_args, get_type_hints
 
 import typer
 
@@ -48,8 +47,7 @@ if TYPE_CHECKING:
     from rosprivacy.settings import Settings
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Inputs:
+class Inputs(NamedTuple):
     """What a user names of the system that is read, and how it is read."""
 
     policies: Policies = None
@@ -136,7 +134,7 @@ OF_FILES = (
     "allow_unsigned", "include_root", "max_bytes", "category", "view",
 )  # fmt: skip
 OPTIONS = get_type_hints(Inputs, include_extras=True)
-DEFAULTS = {field.name: field.default for field in fields(Inputs)}
+DEFAULTS = Inputs._field_defaults
 WRITTEN = {name: f"--{name.replace('_', '-')}" for name in DEFAULTS} | {"policies": "POLICY"}
 
 

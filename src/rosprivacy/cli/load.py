@@ -111,7 +111,6 @@ def _tell_replaced(done: Loaded) -> None:
 
 
 def _load_fleet(file: str, settings: Settings, neo4j: str | None) -> None:
-    from dataclasses import replace
 
     from rosprivacy.answering import answer
     from rosprivacy.fleet_system import fleet_system, rows_of_fleet
@@ -119,7 +118,7 @@ def _load_fleet(file: str, settings: Settings, neo4j: str | None) -> None:
     from rosprivacy.ingest.database.fleet_rows import MOST_ACROSS
     from rosprivacy.question import question_of
 
-    question = replace(question_of(settings), every=True)
+    question = question_of(settings)._replace(every=True)
     system = fleet_system(file, question)
     result = answer(system, question)
     rows = rows_of_fleet(system, question, result)

@@ -170,7 +170,7 @@ def with_limits(piece: Piece, fleet: Fleet, limits: Iterable[Limit]) -> Piece:
     for vertex, facts in outside.items():
         if piece.graph.elements[vertex].robot == fleet.name:
             known = {*facts.limits, *limits}
-            outside[vertex] = replace(facts, limits=ordered(known))
+            outside[vertex] = facts._replace(limits=ordered(known))
     return replace(piece, bound=replace(piece.bound, outside=outside))
 
 

@@ -3,7 +3,6 @@ planes."""
 
 from __future__ import annotations
 
-from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -12,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rosprivacy.analysis.answer import Analysis, Verdict
-from rosprivacy.analysis.decisions import Case
+from rosprivacy.analysis.case import Case
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.findings.findings import Options
 from rosprivacy.analysis.model import (
@@ -220,7 +219,7 @@ COUNTED = (Paths.witness, Paths.disjoint)
 def test_what_comes_back_to_a_source_takes_no_flow_twice() -> None:
     """It sends to /t0 and /t1 and reads /t1 itself; all that gets to the leak goes along its one flow to /t0."""
     edges = [(0, 4), (0, 5), (5, 0), (4, 1), (4, 2), (1, 6), (2, 7), (6, 3), (7, 3)]
-    source = replace(statement("source", "Face"), through=("/t0", "/t1"))
+    source = statement("source", "Face")._replace(through=("/t0", "/t1"))
     system = System(4, 4, sorted(edges), {0: [source], 3: [statement("leak", "Face")]}, {})
     for paths in COUNTED:
         assert [f.disjoint_paths for f in system.analyse(Options(paths=paths)).findings] == [1]

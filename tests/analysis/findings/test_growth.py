@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import rosprivacy
-from rosprivacy.analysis.decisions import Case, Choice, Decision, Decisions
+from rosprivacy.analysis.decisions import Choice, Decision, Decisions
 from rosprivacy.analysis.decisions import decided as join
 from rosprivacy.analysis.example import factory
 from rosprivacy.analysis.findings.findings import analyse
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
     import pytest
 
+    from rosprivacy.analysis.case import Case
     from rosprivacy.analysis.hierarchy import Hierarchy
 
 SIDE = 3

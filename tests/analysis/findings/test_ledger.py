@@ -79,13 +79,13 @@ def stated_fleets(draw: st.DrawFn) -> Case:
     for number, system in enumerate(case.systems):
         lines = count(1)
         said = {
-            vertex: [replace(one, place=Place(f"model{number}.yaml", next(lines))) for one in statements]
+            vertex: [one._replace(place=Place(f"model{number}.yaml", next(lines))) for one in statements]
             for vertex, statements in system.said.items()
         }
         new[id(system)] = replace(system, said=said)
     lines = count(1)
     shared = {
-        name: (kind, stated, [replace(one, place=Place("fleet.yaml", next(lines))) for one in said])
+        name: (kind, stated, [one._replace(place=Place("fleet.yaml", next(lines))) for one in said])
         for name, (kind, stated, said) in case.shared.items()
     }
     return replace(case, robots={robot: new[id(system)] for robot, system in case.robots.items()}, shared=shared)

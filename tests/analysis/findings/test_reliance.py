@@ -21,7 +21,7 @@ from tests.helpers.systems import systems
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Analysis
-    from rosprivacy.analysis.decisions import Case
+    from rosprivacy.analysis.case import Case
     from rosprivacy.analysis.model import Bound, FlowGraph
 
 Found = dict[tuple[str, ...], tuple[bool, bool]]

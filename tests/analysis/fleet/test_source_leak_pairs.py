@@ -53,7 +53,7 @@ def test_sources_that_are_such_through_some_channels_only(system: System) -> Non
     through: dict[tuple[int, tuple[str, ...]], tuple[int, ...]] = {}
     for vertex, said in bound.elements.items():
         leaving = [i for i, (a, _) in enumerate(system.edges) if a == vertex]
-        elements[vertex] = tuple(replace(s, through=("x",)) if s.role == "source" else s for s in said)
+        elements[vertex] = tuple(s._replace(through=("x",)) if s.role == "source" else s for s in said)
         through[vertex, ("x",)] = tuple(leaving[::2])
     same(system, replace(bound, elements=elements, through=through))
 
@@ -82,7 +82,7 @@ def through(system: System, flow: int) -> Bound:
     """Sources emit along one flow only."""
     bound = system.bound()
     elements = {
-        vertex: tuple(replace(s, through=("x",)) if s.role == "source" else s for s in said)
+        vertex: tuple(s._replace(through=("x",)) if s.role == "source" else s for s in said)
         for vertex, said in bound.elements.items()
     }
     ways: dict[tuple[int, tuple[str, ...]], tuple[int, ...]] = {

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from rosprivacy.analysis.answer import Analysis, Finding
-    from rosprivacy.analysis.decisions import Case
+    from rosprivacy.analysis.case import Case
     from rosprivacy.analysis.mitigation.proposals import Proposal, ProposedStep
     from rosprivacy.analysis.model import Bound, Element, FlowGraph
 

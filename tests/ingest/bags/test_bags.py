@@ -25,7 +25,7 @@ from rosprivacy.ingest.bags.bag_reader import read_bag
 from tests.helpers.bags import IMAGE, ODOMETRY, SECRET, START, mcap, rosbag2
 
 if TYPE_CHECKING:
-    from rosprivacy.analysis.model import Bag
+    from rosprivacy.analysis.model.recording import Bag
 
 ALL = {"/camera": ((IMAGE,), 5), "/odom": ((ODOMETRY,), 1)}
 STORAGES = ["mcap", "sqlite3"]

@@ -7,7 +7,6 @@ type, to each with the label ``…Leak``. ``tests/queries/test_naive_cypher.py``
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import pytest
@@ -104,7 +103,7 @@ def test_labels_that_contradict_each_other_make_no_leak_of_another_kind() -> Non
 
 
 SOURCE, LEAK = statement("source", "Face"), statement("leak", "Face")
-ONE_CHANNEL = replace(SOURCE, through=("/t1",))
+ONE_CHANNEL = SOURCE._replace(through=("/t1",))
 DROPS, MAKES = statement("sanitizer", "Face", method=Method.DROP), statement("derivation", "Loc", to="Face")
 PLACE, LEAK_OF_BIO = statement("source", "Loc"), statement("leak", "Bio")
 

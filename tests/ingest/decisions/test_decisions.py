@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import jsonschema
 import pytest
 
-from rosprivacy.analysis.decisions import Case, Choice, Decisions, State
+from rosprivacy.analysis.case import Case
+from rosprivacy.analysis.decisions import Choice, Decisions, State
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.model import Element
 from rosprivacy.clock import today

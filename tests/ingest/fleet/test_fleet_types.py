@@ -54,6 +54,22 @@ def test_a_models_file_holds_for_its_robots_and_is_named_with_its_hash() -> None
     assert told(f"{MODEL}robots: {{r1: {{model: m}}}}\n", type_limits=None)["findings"]
 
 
+@pytest.mark.parametrize("closed_on", [{"r1"}, {"r2"}, {"r3"}, {"r1", "r3"}, set()])
+def test_what_types_close_on_some_robots_only_is_told_too(closed_on: set[str]) -> None:
+    """S10, S15: the finding of the others is of the same pattern, and is no reason to be silent about these."""
+    seen("r.types.yaml", IMAGE)
+    robots = ", ".join(
+        f"{name}: {{policies: m.xml, labels: m.yaml, types: {'m' if name in closed_on else 'r'}.types.yaml}}"
+        for name in ("r1", "r2", "r3")
+    )
+    document = told(f"robots: {{{robots}}}\n")
+    (pattern,) = document["fleet"]["patterns"]
+    assert set(pattern["robots"]) == {"r1", "r2", "r3"} - closed_on
+    closed = document["assumptions"].get("closed_by_types", [])
+    assert [row["source"]["robot"] for row in closed] == sorted(closed_on)[:1]
+    assert {row["element"]["robot"] for row in document["assumptions"].get("type_limits_reached", [])} <= closed_on
+
+
 def test_what_a_robot_and_its_model_say_are_both_types_of_the_channel() -> None:
     """S15: several types exclude only what all of them exclude."""
     seen("r.types.yaml", IMAGE)

@@ -155,7 +155,7 @@ def test_a_filter_that_is_really_built_removes_what_its_proposal_says(policy: Po
 def install(policy: Policy, step: ProposedStep, number: int) -> Policy:
     """Build a filter into a policy as an engineer would: a new node in a new enclave, and a new topic."""
     filter_, other, place = f"/filter_{number}", f"/unfiltered_data/{number}", Place("p", 1000 + number)
-    moved = [replace(g, name=other, place=place) if g in step.grants else g for g in policy.grants]
+    moved = [g._replace(name=other, place=place) if g in step.grants else g for g in policy.grants]
     mine = [(g.role, g.name) for g in step.grants]
     mine += [("subscribe" if role == "publish" else "publish", other) for role, _ in mine]
     enclave = f"/of{filter_}"

@@ -35,7 +35,7 @@ def policy(lines: Lines, file: str) -> Policy:
 def observed(lines: Lines) -> Policy:
     seen = policy([line for line in lines if not is_pattern(line[2])], "seen.xml")
     return replace(
-        seen, grants=tuple(replace(grant, allow=True, enclave=grant.node, seen=SEEN) for grant in seen.grants)
+        seen, grants=tuple(grant._replace(allow=True, enclave=grant.node, seen=SEEN) for grant in seen.grants)
     )
 
 
@@ -49,7 +49,7 @@ def flows(granted: Policy) -> set[tuple[str, str, str]]:
         for grant in granted.grants:
             if not grant.allow or grant.node != node or grant.role != role:
                 continue
-            as_plain = replace(grant, name=name)
+            as_plain = grant._replace(name=name)
             one = replace(granted, grants=(as_plain, *(line for line in granted.grants if not line.allow)))
             covers = grant.name == name or (is_pattern(grant.name) and _glob(grant.name, name))
             if covers and build([one]).flows:

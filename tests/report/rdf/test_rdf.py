@@ -417,7 +417,7 @@ def test_law_is_that_of_the_nearest_broader_category() -> None:
 def without_policy(analysis: Analysis) -> Analysis:
     """Random systems have no policies: their flows are a person's."""
     stated = [
-        replace(finding, steps=tuple(replace(step, role="flow") for step in finding.steps))
+        replace(finding, steps=tuple(step._replace(role="flow") for step in finding.steps))
         for finding in analysis.findings
     ]
     return replace(analysis, findings=tuple(stated))
@@ -602,7 +602,7 @@ class TestOutsideRos:
 
 
 def test_a_sanitizer_that_states_no_method_is_a_measure_that_nobody_stated() -> None:
-    unstated = replace(statement("sanitizer", "Face", method=Method.PSEUDONYMISE), stated=False)
+    unstated = statement("sanitizer", "Face", method=Method.PSEUDONYMISE)._replace(stated=False)
     said = {0: (statement("source", "Face"),), 1: (unstated,), 2: (statement("leak", "Face"),)}
     elements = tuple(Element("node", f"/n{i}") for i in range(3))
     flows = (Flow(0, 1, "flow"), Flow(1, 2, "flow"))

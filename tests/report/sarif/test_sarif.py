@@ -238,10 +238,10 @@ def test_a_finding_that_no_file_speaks_of_is_at_the_first_line_of_what_it_rests_
     """As when people added flows and roles in the database by hand."""
     result = small_system(tmp_path, {"/a": "{source: [Video]}"})
     graph = replace(
-        result.analysis.graph, profiles=(), flows=tuple(replace(f, grants=()) for f in result.analysis.graph.flows)
+        result.analysis.graph, profiles=(), flows=tuple(f._replace(grants=()) for f in result.analysis.graph.flows)
     )
     elements = {
-        vertex: tuple(replace(s, place=Place("the database", 0)) for s in said)
+        vertex: tuple(s._replace(place=Place("the database", 0)) for s in said)
         for vertex, said in result.bound.elements.items()
     }
     bound = replace(result.bound, elements=elements)
