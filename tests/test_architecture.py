@@ -63,6 +63,7 @@ OF_ITS_OWN = {  # modules that touch files in another way, and why none of these
     "report/atomic.py": "the one writer",
     "ingest/observe/zenoh_door.py": "opens a session, no file",
     "ingest/policies/policy_xml.py": "asks xinclude.py to open",
+    "ingest/observe/earlier_files.py": "asks xinclude.py to open",
     "ingest/mitigation/deny_patch.py": "copies in a folder of its own, gone at once",
     "ingest/labels/label_file.py": "what is shipped",
     "ontology/own.py": "what is shipped",
@@ -149,7 +150,7 @@ def test_a_start_imports_few_modules_and_makes_few_dataclasses() -> None:
     for _ in range(2):  # the first run writes the cache of the ontology
         done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
     modules, dataclasses = map(int, done.stdout.splitlines()[-1].split())
-    assert modules <= 180  # 174 when this was written
+    assert modules <= 190  # 179 when this was written
     assert dataclasses <= 40  # 121 before, 36 then
 
 

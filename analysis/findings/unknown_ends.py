@@ -10,7 +10,7 @@ from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.many_flows import parted
-from rosprivacy.analysis.model import NON_ROS, UnknownEnd
+from rosprivacy.analysis.model import NON_ROS, PARTICIPANT, UnknownEnd
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
@@ -93,13 +93,14 @@ def _readable(graph: FlowGraph) -> Collection[int]:
 
 
 def _unreached(spread: Spread) -> Iterator[int]:
-    """Elements outside ROS that nothing flows into; data may begin at one, then a flow out of it is enough."""
+    """Elements outside ROS that nothing flows into; where data may begin, a flow out is enough."""
     graph = spread.graph
     own = [flow for _, flow in parted(graph.flows)[0]]  # a meeting is one of channels
     entered = {flow.target for flow in own}
     left = {flow.source for flow in own}
     for vertex, element in enumerate(graph.elements):
         if element.kind in NON_ROS and vertex not in entered:
-            begins = any("source" in fact.roles for fact in spread.facts.get(vertex, {}).values())
+            begins = element.kind == PARTICIPANT  # it was seen to write, and nobody says what
+            begins |= any("source" in fact.roles for fact in spread.facts.get(vertex, {}).values())
             if not (begins and vertex in left):
                 yield vertex

@@ -100,7 +100,7 @@ def named(
     met: dict[int, list[int]] = defaultdict(list)
     own, meetings = parted(graph.flows)
     for index, flow in own:
-        if flow.role == MATCHES:
+        if flow.role == MATCHES and graph.elements[flow.target].is_channel:  # past a proposed filter one ends at a node
             matches[flow.source].append(index)
     for meeting in meetings:
         for written in meeting.written:

@@ -60,6 +60,7 @@ from rosprivacy.analysis.model.element import (
     CHANNELS,
     KINDS,
     NON_ROS,
+    PARTICIPANT,
     Element,
 )
 from rosprivacy.analysis.model.flow import Flow, FlowGraph
@@ -133,6 +134,7 @@ __all__ = [
     "OBSERVED",
     "OF_KIND",
     "OF_TYPES",
+    "PARTICIPANT",
     "PATHS_NOT_COUNTED",
     "REASONS",
     "RECORDING",

@@ -10,11 +10,18 @@ if TYPE_CHECKING:
 
 
 class Profile(NamedTuple):
-    """A node's entry in an enclave, ``<profile ns node>``."""
+    """A node's entry in an enclave, ``<profile ns node>``.
+
+    Attributes
+    ----------
+    participant
+        Name of the element outside ROS that it is of: whose endpoints were seen and are of no node (rules S9, S16).
+    """
 
     enclave: str
     node: str
     place: Place
+    participant: str = ""
 
 
 class Seen(NamedTuple):

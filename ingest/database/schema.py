@@ -69,6 +69,7 @@ KIND_LABELS = {
     "side-channel": "SideChannel",
     "device": "Device",
     "display": "Display",
+    "participant": "Participant",
     "person": "Person",
 }
 LEG, WILDCARD, INTAKE = "Leg", "Wildcard", "Intake"

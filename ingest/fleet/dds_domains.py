@@ -160,10 +160,12 @@ class _Names:
         self._owners = sorted(own, key=lambda pair: len(pair[0]), reverse=True)
         full = ((m.robot.id, shown, full) for m in members for shown, full in m.full.items())
         self._nodes = {(robot, full.name): shown for robot, shown, full in full if shown.is_node}
+        stated = ((member.robot.id, element) for member in members for element in member.graph.elements)
+        self._nodes |= {(robot, e.name): e for robot, e in stated if not (e.is_node or e.is_channel)}
 
     def of_marked(self, element: Element) -> Element:
         """The name of an element of the graph of all policies."""
-        if not element.is_node:
+        if element.is_channel:
             return self._channel(element)
         robot, name = element.name.split(MARK)
         return replace(self._nodes[robot, name], robot=robot)
@@ -191,6 +193,9 @@ def _marked(policy: Policy, robot: Robot) -> Policy:
     mark, run = f"{robot.id}{MARK}", pushed(policy, robot.add)
     return replace(
         run,
-        profiles=tuple(p._replace(enclave=mark + p.enclave, node=mark + p.node) for p in run.profiles),
+        profiles=tuple(
+            p._replace(enclave=mark + p.enclave, node=mark + p.node, participant=p.participant and mark + p.participant)
+            for p in run.profiles
+        ),
         grants=tuple(g._replace(enclave=mark + g.enclave, node=mark + g.node) for g in run.grants),
     )

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, shown
 from rosprivacy.analysis.many_flows import Flows, Meeting, parted
-from rosprivacy.analysis.model import STATED, Element, Flow, FlowGraph, Grant
+from rosprivacy.analysis.model import PARTICIPANT, STATED, Element, Flow, FlowGraph, Grant
 from rosprivacy.analysis.written_names import literal, meant
 from rosprivacy.ingest.labels.bag_storages import recorded
 from rosprivacy.ingest.labels.entries import End
@@ -21,7 +21,7 @@ from rosprivacy.ingest.labels.non_ros_reader import is_non_ros
 from rosprivacy.ingest.policies.names import covered
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.model import Place
     from rosprivacy.ingest.labels.label_file import Labels
@@ -53,6 +53,7 @@ def extended(graph: FlowGraph, files: Sequence[Labels]) -> tuple[FlowGraph, list
     for own in (False, True):  # what one robot's file states takes the place of its model's
         stated |= merged((entry for file in files if file.own == own for entry in file.elements), problems)
     added = [Element(entry.kind, entry.name) for entry in stated.values()]
+    graph = _known(graph, stated)
     ends = Ends([*graph.elements, *added])
     flows: list[tuple[Element, Element, Place]] = []
     for file in files:
@@ -65,6 +66,15 @@ def extended(graph: FlowGraph, files: Sequence[Labels]) -> tuple[FlowGraph, list
             flows += [*both, *((b, a, place) for a, b, place in both)]
         flows += recorded(graph, entry)
     return with_flows(graph, added, flows), problems
+
+
+def _known(graph: FlowGraph, stated: Mapping[str, Stated]) -> FlowGraph:
+    """A graph in which a participant that was seen is of the kind that a person states of it (rule S16)."""
+    kinds = {name: entry.kind for name, entry in stated.items()}
+    elements = tuple(
+        replace(e, kind=kinds[e.name]) if e.kind == PARTICIPANT and e.name in kinds else e for e in graph.elements
+    )
+    return graph if elements == graph.elements else replace(graph, elements=elements)
 
 
 def merged(

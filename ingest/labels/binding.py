@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.bounds import BOUNDS, Tally
 from rosprivacy.analysis.durations import ordered
 from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, shown
-from rosprivacy.analysis.many_flows import at_most, leaving
-from rosprivacy.analysis.model import Bound, Diagnostic, Severity, Surroundings
+from rosprivacy.analysis.many_flows import at_most, leaving, parted
+from rosprivacy.analysis.model import NOWHERE, PARTICIPANT, Bound, Diagnostic, NonRosFacts, Severity, Surroundings
 from rosprivacy.analysis.non_ros import by_kind
 from rosprivacy.analysis.text import counted
 from rosprivacy.analysis.written_names import is_glob, literal, meant
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.bounds import Bounds
-    from rosprivacy.analysis.model import FlowGraph, NonRosFacts, Place, Processing, Statement
+    from rosprivacy.analysis.model import FlowGraph, Place, Processing, Statement
     from rosprivacy.ingest.labels.entries import Entry, FlowEntry
     from rosprivacy.ingest.labels.label_file import Labels
 
@@ -100,7 +100,7 @@ def join(
             for index in indices if flow.statements else ():
                 flows[index] += flow.statements
     outside = _outside(graph, labels)
-    for vertex in outside:
+    for vertex in (v for v in outside if by_kind(graph.elements[v])):
         elements[vertex] += by_kind(graph.elements[vertex])
     bound = Bound(
         {vertex: tuple(said) for vertex, said in sorted(elements.items())},
@@ -181,11 +181,22 @@ def _outside(graph: FlowGraph, labels: Iterable[Labels]) -> dict[int, NonRosFact
     ranked = sorted(files, key=lambda file: file.own)
     stated = {(entry.kind, entry.name): entry.outside for file in ranked for entry in file.elements}
     limits = ordered({limit for file in files for limit in file.limits})
-    return {
-        vertex: stated[element.kind, element.name]._replace(limits=limits)
-        for vertex, element in enumerate(graph.elements)
-        if (element.kind, element.name) in stated
-    }
+    found = _seen(graph)
+    for vertex, element in enumerate(graph.elements):
+        if facts := stated.get((element.kind, element.name)):
+            found[vertex] = facts._replace(limits=limits)
+    return dict(sorted(found.items()))
+
+
+def _seen(graph: FlowGraph) -> dict[int, NonRosFacts]:
+    """Participants that were seen and are of no node: they are there without a label (rule S16)."""
+    seen = {vertex: NonRosFacts() for vertex, element in enumerate(graph.elements) if element.kind == PARTICIPANT}
+    for flow in (*(flow for _, flow in parted(graph.flows)[0]), *graph.denied) if seen else ():
+        for vertex in {flow.source, flow.target} & seen.keys():
+            places = [seen[vertex].place, *(grant.place for grant in flow.grants)]
+            first = min((at for at in places if at.file), key=lambda at: (at.file, at.line), default=NOWHERE)
+            seen[vertex] = NonRosFacts(place=first)
+    return seen
 
 
 class _Names:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import yaml
 
 from rosprivacy.analysis.many_flows import parted
+from rosprivacy.analysis.model import PARTICIPANT
 from rosprivacy.analysis.text import blanked, counted
 from rosprivacy.analysis.written_names import literal
 from rosprivacy.ingest.labels.label_reader import SECTIONS
@@ -71,7 +72,7 @@ def template(
         HEADER,
         *(f"# {line}\n" for line in _remarks(graph, standard, left_out, own)),
     ]
-    lines = [*_nodes(graph, listed), *_channels(graph, listed), ""]
+    lines = [*_nodes(graph, listed), *_channels(graph, listed), *_participants(graph, listed), ""]
     return "".join(head) + "labels: 1\n" + "\n".join(lines)
 
 
@@ -135,17 +136,27 @@ def _nodes(graph: FlowGraph, listed: Collection[Channel]) -> Iterator[str]:
         yield from (f"  {key(literal(name))}{told(writes.get(name, ()), reads.get(name, ()))}" for name in names)
 
 
+def _participants(graph: FlowGraph, listed: Collection[Channel]) -> Iterator[str]:
+    """What was seen and is no node (rule S16); a person may know what kind of element it is."""
+    names = [element.name for element in graph.elements if element.kind == PARTICIPANT]
+    writes, reads = neighbours(graph, listed) if names else ({}, {})
+    if names:
+        yield "\nelements:  # seen, and of no node; takes what nodes take, or another kind, such as external-system"
+    for name in names:
+        yield f"  {name}: {{kind: {PARTICIPANT}}}{told(writes.get(name, ()), reads.get(name, ()))}"
+
+
 def neighbours(
     graph: FlowGraph, listed: Collection[Channel]
 ) -> tuple[Mapping[str, set[Channel]], Mapping[str, set[Channel]]]:
-    """Return the channels that each node writes and reads, of those that are listed."""
+    """Return the channels that each node, or element outside ROS, writes and reads, of those that are listed."""
     writes: dict[str, set[Channel]] = defaultdict(set)
     reads: dict[str, set[Channel]] = defaultdict(set)
     for _, flow in parted(graph.flows)[0]:  # a meeting is one of channels
         source, target = graph.elements[flow.source], graph.elements[flow.target]
-        if source.is_node and target.is_channel and _channel(target) in listed:
+        if not source.is_channel and target.is_channel and _channel(target) in listed:
             writes[source.name].add(_channel(target))
-        elif target.is_node and source.is_channel and _channel(source) in listed:
+        elif not target.is_channel and source.is_channel and _channel(source) in listed:
             reads[target.name].add(_channel(source))
     return writes, reads
 

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from rosprivacy.ingest.observe.observation import added_up
+from rosprivacy.ingest.observe.observation import Folded, added_up, folded_together
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -34,25 +34,6 @@ GENERATORS = (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Folded:
-    """Names that became one.
-
-    Attributes
-    ----------
-    name
-        What they are called now.
-    names
-        As they were seen, sorted.
-    rule
-        Of the generator, for people.
-    """
-
-    name: str
-    names: tuple[str, ...]
-    rule: str
-
-
 def plain_name(name: str) -> tuple[str, str]:
     """Return a name without what a listed generator made up, and the rule; the name itself and '' if there is none.
 
@@ -72,8 +53,9 @@ def with_folded_names(observation: Observation) -> tuple[Observation, tuple[Fold
     """Return an observation with made-up names folded where no two of them may have lived at one time."""
     folded = tuple(_foldable(observation))
     new = {name: one.name for one in folded for name in one.names}
+    known = folded_together((*observation.folded, *folded))
     if not new:
-        return observation, ()
+        return observation, known
     nodes = tuple(
         replace(node, name=new.get(node.name, node.name), enclave=_moved(node.enclave, new))
         for node in observation.nodes
@@ -81,7 +63,7 @@ def with_folded_names(observation: Observation) -> tuple[Observation, tuple[Fold
     endpoints = tuple(
         replace(one, node=new.get(one.node, one.node), name=_moved(one.name, new)) for one in observation.endpoints
     )
-    return added_up((replace(observation, nodes=nodes, endpoints=endpoints),)), folded
+    return added_up((replace(observation, nodes=nodes, endpoints=endpoints),)), known
 
 
 def _foldable(observation: Observation) -> Iterator[Folded]:
@@ -95,10 +77,11 @@ def _foldable(observation: Observation) -> Iterator[Folded]:
         groups[plain].add(name)
         if rule:
             rules[plain] = rule
+    before = {one.name for one in observation.folded}  # that such a name was folded is told already
     for plain, rule in sorted(rules.items()):
         names = sorted(groups[plain], key=lambda name: (lives[name].first, lives[name].last, name))
         if not any(lives[a].meets(lives[b]) for a, b in pairwise(names)):
-            yield Folded(plain, tuple(sorted(names)), rule)
+            yield Folded(plain, tuple(sorted(set(names) - (before & {plain}))), rule)
 
 
 def _moved(name: str, new: Mapping[str, str]) -> str:

@@ -115,6 +115,25 @@ class ObservedEndpoint:
 
 
 @dataclass(frozen=True, slots=True)
+class Folded:
+    """Names that became one.
+
+    Attributes
+    ----------
+    name
+        What they are called now.
+    names
+        As they were seen, sorted.
+    rule
+        Of the generator, for people.
+    """
+
+    name: str
+    names: tuple[str, ...]
+    rule: str
+
+
+@dataclass(frozen=True, slots=True)
 class Observation:
     """What one door has seen, or several together.
 
@@ -134,6 +153,8 @@ class Observation:
         One line each, for people: what was left out, and why. Fit to be shown.
     declared
         What nodes said of themselves.
+    folded
+        Names that were one already when it was written before.
     """
 
     doors: tuple[str, ...]
@@ -144,6 +165,7 @@ class Observation:
     gaps: Mapping[str, int] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
     declared: tuple[Declared, ...] = ()
+    folded: tuple[Folded, ...] = ()
 
     def __bool__(self) -> bool:
         """Whether there is anything in it that a policy can say."""
@@ -152,8 +174,8 @@ class Observation:
     @property
     def all_gaps(self) -> dict[str, int]:
         """Every gap that is one, with the endpoints of no node, sorted."""
-        strangers = sum(not endpoint.node for endpoint in self.endpoints)
-        gaps = {**self.gaps, **({NO_NODE: strangers} if strangers else {})}
+        strangers = len({(one.participant, one.role, one.name) for one in self.endpoints if not one.node})
+        gaps = {**self.gaps, NO_NODE: max(strangers, self.gaps.get(NO_NODE, 0))}
         return {gap: gaps[gap] for gap in sorted(gaps) if gaps[gap]}
 
 
@@ -192,7 +214,16 @@ def added_up(observations: Iterable[Observation]) -> Observation:
         gaps,
         tuple(dict.fromkeys(remark for one in several for remark in one.remarks)),
         tuple(sorted({declared for one in several for declared in one.declared})),
+        folded_together(folded for one in several for folded in one.folded),
     )
+
+
+def folded_together(several: Iterable[Folded]) -> tuple[Folded, ...]:
+    """Return what was folded, each name once with all that it was."""
+    names: dict[tuple[str, str], set[str]] = {}
+    for one in several:
+        names.setdefault((one.name, one.rule), set()).update(one.names)
+    return tuple(Folded(name, tuple(sorted(some)), rule) for (name, rule), some in sorted(names.items()))
 
 
 def _nodes(nodes: Iterable[ObservedNode]) -> Iterator[ObservedNode]:

@@ -1,7 +1,8 @@
 """An observation -> an ordinary SROS 2 policy, with what sros2 passes over in its ``<metadata>`` (rules S3, S16).
 
 In: an observation. Out: XML, sorted, the same bytes for the same observation. A node without an enclave gets one of its
-own, and that is said. Endpoints of no node stand under a namespace of their own, one profile for each participant.
+own, and that is said. Endpoints of no node stand under a namespace of their own, one profile for each participant, and
+the metadata say so: who reads it has elements outside ROS (rule S9).
 """
 
 from __future__ import annotations
@@ -17,16 +18,14 @@ from rosprivacy.ingest.observe.action_parts import whole_actions
 from rosprivacy.ingest.observe.made_up_names import with_folded_names
 from rosprivacy.ingest.observe.observation import added_up
 from rosprivacy.ingest.observe.observed_names import with_good_names
-from rosprivacy.ingest.policies.observed_metadata import FOLDED, GRANT, MADE_UP, TAG, VERSION
+from rosprivacy.ingest.policies.observed_metadata import FOLDED, GRANT, MADE_UP, NOBODY, OF_NO_NODE, TAG, VERSION, WAS
 from rosprivacy.ingest.policies.policy_xml import ROLES
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from rosprivacy.ingest.observe.made_up_names import Folded
-    from rosprivacy.ingest.observe.observation import Observation, ObservedEndpoint, Span
+    from rosprivacy.ingest.observe.observation import Folded, Observation, ObservedEndpoint, Span
 
-NOBODY = "/_no_node"  # namespace of what endpoints of no node stand under; no node is called so
 LONGEST_PARTICIPANT = 40
 Grants = dict[tuple[str, str, str], tuple["Span", tuple[str, ...]]]  # kind, role, name -> when, by which doors
 
@@ -128,8 +127,10 @@ def _metadata(profiles: etree._Element, ready: Prepared, path: str, grants: Mapp
         if one.name in nodes:
             folded = etree.SubElement(observed, FOLDED, name=one.name, rule=one.rule)
             for name in one.names:
-                etree.SubElement(folded, "was").text = name
+                etree.SubElement(folded, WAS).text = name
     for node in nodes:
+        if node.startswith(f"{NOBODY}/"):
+            etree.SubElement(observed, OF_NO_NODE, node=node)
         for (kind, role, name), (seen, doors) in sorted(grants[node].items()):
             facts = {"node": node, "kind": kind, "role": role, "name": name, "by": " ".join(doors)}
             etree.SubElement(observed, GRANT, facts | {"first": seen.first, "last": seen.last})

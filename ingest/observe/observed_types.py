@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, TypeVar
 from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
+from rosprivacy.ingest.policies.observed_metadata import NOBODY
+
 if TYPE_CHECKING:
     from rosprivacy.ingest.observe.observation import Observation, ObservedEndpoint
 
@@ -62,7 +64,7 @@ def _entry(name: str, digest: str, users: list[ObservedEndpoint]) -> CommentedMa
         entry["hash"] = digest
     by_part: dict[str, set[str]] = defaultdict(set)
     for user in users:
-        by_part[USERS[user.role][1]].add(user.node)
+        by_part[USERS[user.role][1]].add(user.node.removeprefix(f"{NOBODY}/"))
     for part in dict.fromkeys(part for _, part in USERS.values()):
         if part in by_part:
             entry[part] = _flow(CommentedSeq(sorted(by_part[part])))

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 ROUTER = "tcp/localhost:7447"
 """Where the sessions of rmw_zenoh look for theirs."""
+SECURED = ("tls/", "quic/")
+"""How endpoints begin that need certificates."""
 PACE = Pace(told_after=(0.25,), settled=1)
 LONGEST = 2**20
 """Bytes of a session file."""
@@ -75,7 +77,7 @@ class ZenohDoor:
             ) from error
         changes: deque[tuple[bool, str]] = deque()
         messages: deque[tuple[str, bytes]] = deque()
-        with _opened(zenoh, self._configured(zenoh), self.endpoint) as session:
+        with self._opened(zenoh) as session:
             since, tokens, said = self.clock(), dict[str, str](), set[Declared]()
             watched = session.liveliness().declare_subscriber(
                 tokens_of(self.domain),
@@ -103,9 +105,30 @@ class ZenohDoor:
         settings.insert_json5("mode", json.dumps("client"))
         settings.insert_json5("listen/endpoints", "[]")
         if self.endpoint or self.session_file is None:
-            settings.insert_json5("connect/endpoints", json.dumps([self.endpoint or ROUTER]))
+            self._connect(zenoh, settings)
             settings.insert_json5("scouting/multicast/enabled", "false")
         return settings
+
+    def _connect(self, zenoh: Any, settings: Any) -> None:
+        try:
+            settings.insert_json5("connect/endpoints", json.dumps([self.endpoint or ROUTER]))
+        except zenoh.ZError as error:
+            what = f"{shown(repr(self.endpoint))} is no endpoint of Zenoh"
+            raise ObservationError(f"--{DOOR}", 0, what, f"write {ROUTER}, or tls/HOST:7447") from error
+
+    def _opened(self, zenoh: Any) -> Any:
+        settings = self._configured(zenoh)
+        try:
+            return zenoh.open(settings)
+        except zenoh.ZError as error:
+            where = f"as {shown(str(self.session_file))} says"
+            if self.endpoint or self.session_file is None:
+                where = f"at {shown(self.endpoint or ROUTER)}"
+            why = _why(error)
+            hint = "start it (ros2 run rmw_zenoh_cpp rmw_zenohd), or say where it is (--zenoh tcp/HOST:7447)"
+            if any(secured in why for secured in SECURED):  # Zenoh does not say which of these it is
+                hint += "; or the certificates do not fit: see transport/link/tls in your session file"
+            raise MiddlewareError(f"no Zenoh router answers {where}: {why}; {hint}") from error
 
 
 def _take(changes: deque[tuple[bool, str]], tokens: dict[str, str], now: str) -> None:
@@ -152,12 +175,3 @@ def _of_file(zenoh: Any, file: str) -> Any:
 def _why(error: Exception) -> str:
     """In one line, without the place in Zenoh's own source."""
     return shown(str(error).partition(" at /")[0].strip())
-
-
-def _opened(zenoh: Any, settings: Any, endpoint: str) -> Any:
-    try:
-        return zenoh.open(settings)
-    except zenoh.ZError as error:
-        where = f"at {shown(endpoint or ROUTER)}"
-        hint = "start it (ros2 run rmw_zenoh_cpp rmw_zenohd), or say where it is (--router tcp/HOST:7447)"
-        raise MiddlewareError(f"no Zenoh router answers {where}: {_why(error)}; {hint}") from error

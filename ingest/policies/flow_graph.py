@@ -10,12 +10,13 @@ from __future__ import annotations
 from collections import defaultdict
 from dataclasses import dataclass, field
 from itertools import product
+from operator import attrgetter
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.bounds import BOUNDS, Tally
 from rosprivacy.analysis.errors import PolicyError
 from rosprivacy.analysis.many_flows import Flows, Meeting
-from rosprivacy.analysis.model import Element, Flow, FlowGraph, Grant, Profile
+from rosprivacy.analysis.model import PARTICIPANT, Element, Flow, FlowGraph, Grant, Profile
 from rosprivacy.analysis.modes import View
 from rosprivacy.ingest.policies.comparisons import Comparisons, apart
 from rosprivacy.ingest.policies.meetings import literal_ends, meetings
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.policies.meetings import Ends
     from rosprivacy.ingest.policies.names import Endpoint
 
+_ends = attrgetter("source", "target", "role")  # of a flow
 STORED = 64  # times its members a group of wildcards that meet may have flows that are stored
 
 
@@ -59,9 +61,10 @@ def build(policies: Iterable[Policy], view: str = View.declared, bounds: Bounds 
     rights = list(_rights([grant for grant in grants if grant.allow], profiles, View(view)))
     work = Comparisons(bounds)
     denials = _Denials([grant for grant in grants if not grant.allow and not grant.dead], work)
-    drafts = _Drafts(work, bounds)
+    participants = {profile.node: profile.participant for profile in profiles if profile.participant}
+    drafts = _Drafts(work, bounds, participants)
     for profile in profiles:
-        drafts.elements.add(Element("node", profile.node))
+        drafts.elements.add(drafts.owner(profile.node))
     for grant in grants:
         if not grant.allow:  # a channel that is only denied is still there to be seen
             drafts.add_channel(grant)
@@ -69,7 +72,7 @@ def build(policies: Iterable[Policy], view: str = View.declared, bounds: Bounds 
         for endpoint in endpoints(grant.role, grant.kind, grant.name):
             drafts.add(node, grant, endpoint, denials)
     drafts.join()
-    return drafts.graph(profiles, str(view))
+    return drafts.graph(tuple(p for p in profiles if p.node not in participants), str(view))
 
 
 def _rights(grants: list[Grant], profiles: tuple[Profile, ...], view: View) -> Iterator[tuple[str, Grant]]:
@@ -140,8 +143,9 @@ _MATCH = _Draft()  # of all flows of role ``matches``: no line states them
 class _Drafts:
     """Elements and flows as they are found, not yet numbered."""
 
-    def __init__(self, work: Comparisons, bounds: Bounds) -> None:
+    def __init__(self, work: Comparisons, bounds: Bounds, participants: Mapping[str, str]) -> None:
         self.work, self.bounds, self.count = work, bounds, Tally(bounds, "flows", PolicyError)
+        self.participants = participants  # whose profiles are of no node -> names outside ROS (rule S16)
         self.said: dict[Element, Place] = {}  # of a pattern: the first line of it
         self.elements: set[Element] = set()
         self.plain: dict[tuple[str, str, str], Element] = {}
@@ -166,12 +170,11 @@ class _Drafts:
             self.said.setdefault(channel, grant.place)
         if part:
             self.rules[channel].update(part)
-        ends = self._plain("node", node, ""), channel
-        key = (*(ends if endpoint.writes else ends[::-1]), grant.role)
-        draft = self.flows.get(key)
-        if draft is None:
+        ends = self.owner(node), channel
+        new = _Draft()
+        draft = self.flows.setdefault((*(ends if endpoint.writes else ends[::-1]), grant.role), new)
+        if draft is new:
             self.count.add(1, grant.place)
-            draft = self.flows[key] = _Draft()
         if against:
             draft.taken = draft.taken or (set(), set())
             draft.taken[0].add(grant)
@@ -180,6 +183,9 @@ class _Drafts:
             draft.allowed.append(grant)
 
     def _channel(self, endpoint: Endpoint, without: tuple[str, ...]) -> Element:
+        known = self.plain.get((endpoint.kind, endpoint.name, endpoint.leg))
+        if known is not None:
+            return known
         if is_pattern(endpoint.name):
             side = "write" if endpoint.writes else "read"
             element = Element(endpoint.kind, endpoint.name, "", endpoint.leg, side, without)
@@ -188,6 +194,11 @@ class _Drafts:
             element = self._plain(endpoint.kind, endpoint.name, endpoint.leg)
         self.elements.add(element)
         return element
+
+    def owner(self, node: str) -> Element:
+        """The element that a profile is of."""
+        outside = self.participants.get(node)
+        return self._plain(PARTICIPANT, outside, "") if outside else self._plain("node", node, "")
 
     def _plain(self, kind: str, name: str, leg: str) -> Element:
         """An element that is no pattern; made once."""
@@ -319,10 +330,6 @@ class _Drafts:
         )  # fmt: skip
 
 
-def _ends(flow: Flow) -> tuple[int, int, str]:
-    return (flow.source, flow.target, flow.role)
-
-
 def _profile_key(profile: Profile) -> tuple[str, str, str, int]:
     return (profile.enclave, profile.node, profile.place.file, profile.place.line)
 
@@ -333,5 +340,7 @@ def _in_order(lines: set[Grant]) -> tuple[Grant, ...]:
 
 def _grant_key(grant: Grant) -> tuple[object, ...]:
     place = grant.place
-    line = (place.file, place.line, grant.enclave, grant.node, grant.kind, grant.name, grant.role, grant.allow)
-    return (*line, grant.policy, grant.dead, grant.rank)
+    return (
+        place.file, place.line, grant.enclave, grant.node, grant.kind, grant.name, grant.role, grant.allow,
+        grant.policy, grant.dead, grant.rank,
+    )  # fmt: skip

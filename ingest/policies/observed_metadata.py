@@ -29,11 +29,14 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.model import Place
 
-TAG, GRANT, FOLDED = "observed", "grant", "folded"
+TAG, GRANT, FOLDED, OF_NO_NODE = "observed", "grant", "folded", "participant"
+WAS = "was"  # in a folded name: one as it was seen
+NOBODY = "/_no_node"  # namespace of profiles of endpoints of no node
 VERSION = "1"
 MADE_UP = "made-up"  # said of an enclave that no door told
 _TIME = re.compile(r"[0-9]{4}-[0-9]{2}-[0-9]{2}T[0-9]{2}:[0-9]{2}:[0-9]{2}Z", re.ASCII)
 _GAP = re.compile(r"([a-z][a-z-]{0,40}):([1-9][0-9]{0,8})", re.ASCII)
+_PARTICIPANT = re.compile(rf"{NOBODY}/(participant_[A-Za-z0-9_]{{1,64}})", re.ASCII)
 _DOOR = re.compile(r"[a-z0-9][a-z0-9-]{0,20}", re.ASCII)
 
 STILL_CHANGING = "still-changing"  # nodes or endpoints had come shortly before the end
@@ -44,7 +47,7 @@ REFUSED = "refused"  # names that no ROS node can have: left out
 UNANSWERED = "unanswered"  # nodes of which not all is known
 GAPS = {  # what each means, for people
     HIDDEN: "participants of which no endpoint is seen; the domain may be secured: look from inside an enclave",
-    NO_NODE: "endpoints of no node, which stand under /_no_node in the policy",
+    NO_NODE: "endpoints of no node: elements outside ROS, one for each participant",
     REFUSED: "names left out, which no ROS node can have",
     SAME_NAME: "nodes of the same name as another, of which nothing is known",
     STILL_CHANGING: "the system was still changing at the end: look longer",
@@ -141,6 +144,24 @@ def seen_of(element: etree._Element) -> Mapping[Key, Seen]:
         for grant in element
         if grant.tag == GRANT
     }
+
+
+def participants_of(element: etree._Element) -> Mapping[str, str]:
+    """Return the profiles that are of no node: as what node they stand in the policy -> name of the element.
+
+    Raises
+    ------
+    ValueError
+        If it cannot be read.
+    """
+    found = {}
+    for child in element:
+        if child.tag == OF_NO_NODE:
+            match = _PARTICIPANT.fullmatch(_text(child, "node"))
+            if match is None:
+                raise ValueError(f"{shown(repr(child.get('node')))} names no participant")
+            found[match[0]] = match[1]
+    return found
 
 
 def together(several: list[Observed]) -> Observed:

@@ -41,6 +41,8 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Seen
     from rosprivacy.ingest.policies.observed_metadata import Key, Observed
 
+    Read = tuple[Mapping[Key, Seen], Mapping[str, str]]  # when grants were seen; which profiles are of no node
+
 VERSIONS = ("0.1.0", "0.2.0")
 ROLES = {
     "topics": ("topic", ("publish", "subscribe")),
@@ -126,6 +128,7 @@ class _Reader:
     namespace: str = ""
     observations: list[tuple[Place, Observed]] = field(default_factory=list)
     seen: Mapping[Key, Seen] = field(default_factory=dict)  # of the profiles that are being read (rule S16)
+    participants: Mapping[str, str] = field(default_factory=dict)  # those of them that are of no node
     first: Place | None = None  # where sros2 has read its fill of this enclave: what follows is dead (rule S5)
 
     def policy(self, root: Item) -> None:
@@ -207,22 +210,22 @@ class _Reader:
             self.diagnostics.extend(diagnostics_of(whole, self.observations[0][0]))
 
     def _profiles(self, group: Item, enclave: str | None) -> None:
-        self.seen = self._seen(group)
+        self.seen, self.participants = self._seen(group)
         profiles = list(self._elements(group, {"profile"}))
         if not profiles:
             self._problem(group.place, "<profiles> is empty", "add a <profile>")
         for profile in profiles:
             self._profile(profile, enclave)
 
-    def _seen(self, group: Item) -> Mapping[Key, Seen]:
-        """When the grants of some profiles were seen, if an observation says so in their metadata."""
+    def _seen(self, group: Item) -> Read:
+        """When the grants of some profiles were seen, if an observation says so, and which profiles are of no node."""
         for child in group.element:
-            seen = self._seen_in(child, group.file) if child.tag == "metadata" else None
-            if seen is not None:
-                return seen
-        return {}
+            read = self._seen_in(child, group.file) if child.tag == "metadata" else None
+            if read is not None:
+                return read
+        return {}, {}
 
-    def _seen_in(self, metadata: etree._Element, file: str) -> Mapping[Key, Seen] | None:
+    def _seen_in(self, metadata: etree._Element, file: str) -> Read | None:
         """What some metadata says of an observation, if it can be read."""
         from rosprivacy.ingest.policies import observed_metadata  # noqa: PLC0415 - light start
 
@@ -231,12 +234,13 @@ class _Reader:
             return None
         place = Place(file, observed.sourceline or 0)
         try:
-            seen, said = observed_metadata.seen_of(observed), observed_metadata.observed_of(observed)
+            read = observed_metadata.seen_of(observed), observed_metadata.participants_of(observed)
+            said = observed_metadata.observed_of(observed)
         except ValueError as error:
             self.diagnostics.append(observed_metadata.unreadable(str(error), place))
             return None
         self.observations.append((place, said))
-        return seen
+        return read
 
     def _profile(self, profile: Item, enclave: str | None) -> None:
         self._attributes(profile, {"ns", "node"})
@@ -245,7 +249,7 @@ class _Reader:
             message = f"namespace {namespace!r} does not begin with /: its names are taken as sros2 writes them"
             self._warning(profile.place, message)
         name = namespace + node if namespace.endswith("/") else f"{namespace}/{node}"
-        owner = Profile(name if enclave is None else enclave, name, profile.place)
+        owner = Profile(name if enclave is None else enclave, name, profile.place, self.participants.get(name, ""))
         self.profiles.append(owner)
         for group in self._elements(profile, ROLES):
             self._group(group, owner, namespace, node)
@@ -309,9 +313,10 @@ class _Reader:
 
     def _elements(self, parent: Item, allowed: Collection[str]) -> Iterator[Item]:
         """Children that belong here; what does not is a problem, and so is text between them."""
+        children = self.documents.children(parent)
         if has_text(parent):
             self._problem(parent.place, f"text between the elements of <{parent.tag}>", "remove it")
-        for child in self.documents.children(parent):
+        for child in children:
             tag = child.tag
             if child.namespace and child.namespace != self.namespace:
                 self._notice(child.place, f"<{tag}> in a namespace of its own: read as if it had none")

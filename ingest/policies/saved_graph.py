@@ -143,7 +143,14 @@ def _policy(policy: Policy) -> dict[str, Any]:
         "file": policy.file,
         "sources": dict(policy.sources),
         "profiles": [
-            {"enclave": p.enclave, "node": p.node, "file": p.place.file, "line": p.place.line} for p in policy.profiles
+            {
+                "enclave": p.enclave,
+                "node": p.node,
+                "file": p.place.file,
+                "line": p.place.line,
+                **({"participant": p.participant} if p.participant else {}),
+            }
+            for p in policy.profiles
         ],
         "grants": [
             {
@@ -188,7 +195,7 @@ def _read_diagnostic(saved: dict[str, Any]) -> Diagnostic:
 
 
 def _read_policy(saved: dict[str, Any]) -> Policy:
-    profiles = tuple(Profile(p["enclave"], p["node"], _place(p)) for p in saved["profiles"])
+    profiles = tuple(Profile(p["enclave"], p["node"], _place(p), p.get("participant", "")) for p in saved["profiles"])
     grants = [
         Grant(
             allow=g["rule"] == "ALLOW",

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from rosprivacy.report.page.index import Index
 
 COLUMNS = 6  # of one part, so that it fits a page upright
-OUTSIDE = ("storage", "external-system", "display", "person", "device")
+OUTSIDE = ("storage", "external-system", "display", "participant", "person", "device")
 
 
 @dataclass(frozen=True, slots=True)

@@ -74,6 +74,7 @@ SHAPES = {
     "side-channel": Shape(("hexagon", ""), ("[\\", "\\]")),
     "device": Shape(("box3d", ""), ("[/", "\\]")),
     "display": Shape(("tab", ""), ("[\\", "/]")),
+    "participant": Shape(("septagon", ""), ("{{", "}}")),
     "person": Shape(("octagon", ""), ("((", "))")),
     RECORD: Shape(("note", ""), ("[", "]")),
 }
@@ -89,6 +90,7 @@ KIND_LOOKS = {
     "side-channel": Look("side channel", YELLOW),
     "device": Look("device", YELLOW),
     "display": Look("display", YELLOW),
+    "participant": Look("participant", YELLOW),
     "person": Look("person", YELLOW),
     RECORD: Look("other node, with its labels", PALE),
 }

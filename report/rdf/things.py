@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 CLASSES = {
     "node": RP.RosNode, "topic": RP.Topic, "service": RP.Service, "action": RP.Action, "storage": RP.Storage,
     "external-system": RP.ExternalSystem, "shared-memory": RP.SharedMemory, "side-channel": RP.SideChannel,
-    "device": RP.Device, "display": RP.Display, "person": RP.Person,
+    "device": RP.Device, "display": RP.Display, "participant": RP.Participant, "person": RP.Person,
 }  # fmt: skip
 
 

@@ -90,6 +90,8 @@ WORDS = {
     "cnil.kind.side-channel.many": "{n} Nebenkanäle",
     "cnil.kind.device.one": "{n} Gerät",
     "cnil.kind.device.many": "{n} Geräte",
+    "cnil.kind.participant.one": "{n} Programm ohne ROS-Knoten",
+    "cnil.kind.participant.many": "{n} Programme ohne ROS-Knoten",
     "cnil.kind.display.one": "{n} Anzeige",
     "cnil.kind.display.many": "{n} Anzeigen",
     "cnil.kind.person.one": "{n} Person",

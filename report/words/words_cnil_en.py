@@ -90,6 +90,8 @@ WORDS = {
     "cnil.kind.side-channel.many": "{n} side channels",
     "cnil.kind.device.one": "{n} device",
     "cnil.kind.device.many": "{n} devices",
+    "cnil.kind.participant.one": "{n} program without a ROS node",
+    "cnil.kind.participant.many": "{n} programs without a ROS node",
     "cnil.kind.display.one": "{n} display",
     "cnil.kind.display.many": "{n} displays",
     "cnil.kind.person.one": "{n} person",

@@ -92,6 +92,8 @@ _TYPED = {
     "cnil.kind.side-channel.many": "{n} canaux auxiliaires",
     "cnil.kind.device.one": "{n} appareil",
     "cnil.kind.device.many": "{n} appareils",
+    "cnil.kind.participant.one": "{n} programme sans nœud ROS",
+    "cnil.kind.participant.many": "{n} programmes sans nœud ROS",
     "cnil.kind.display.one": "{n} affichage",
     "cnil.kind.display.many": "{n} affichages",
     "cnil.kind.person.one": "{n} personne",

@@ -65,6 +65,7 @@ WORDS = {
     "kind.shared-memory": "gemeinsamer Speicher",
     "kind.side-channel": "Nebenkanal",
     "kind.device": "Gerät",
+    "kind.participant": "Programm ohne ROS-Knoten",
     "kind.display": "Anzeige",
     "kind.person": "Person",
     "leg.request": "Anfrage",

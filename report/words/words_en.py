@@ -67,6 +67,7 @@ WORDS = {
     "kind.shared-memory": "shared memory",
     "kind.side-channel": "side channel",
     "kind.device": "device",
+    "kind.participant": "program without a ROS node",
     "kind.display": "display",
     "kind.person": "person",
     "leg.request": "request",

@@ -70,6 +70,7 @@ _TYPED = {
     "kind.shared-memory": "mémoire partagée",
     "kind.side-channel": "canal auxiliaire",
     "kind.device": "appareil",
+    "kind.participant": "programme sans nœud ROS",
     "kind.display": "affichage",
     "kind.person": "personne",
     "leg.request": "requête",

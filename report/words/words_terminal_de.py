@@ -263,6 +263,7 @@ WORDS = {
     "tty.kind.of.shared-memory": "gemeinsamer Speicher",
     "tty.kind.of.side-channel": "Nebenkanal",
     "tty.kind.of.device": "Gerät",
+    "tty.kind.of.participant": "Programm ohne ROS-Knoten",
     "tty.kind.of.display": "Anzeige",
     "tty.kind.of.person": "Person",
     "tty.leg.goal": "Ziel",

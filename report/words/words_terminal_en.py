@@ -263,6 +263,7 @@ WORDS = {
     "tty.kind.of.shared-memory": "shared-memory",
     "tty.kind.of.side-channel": "side-channel",
     "tty.kind.of.device": "device",
+    "tty.kind.of.participant": "participant",
     "tty.kind.of.display": "display",
     "tty.kind.of.person": "person",
     "tty.leg.goal": "goal",

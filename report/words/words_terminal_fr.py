@@ -265,6 +265,7 @@ _TYPED = {
     "tty.kind.of.shared-memory": "mémoire partagée",
     "tty.kind.of.side-channel": "canal auxiliaire",
     "tty.kind.of.device": "appareil",
+    "tty.kind.of.participant": "programme sans nœud ROS",
     "tty.kind.of.display": "affichage",
     "tty.kind.of.person": "personne",
     "tty.leg.goal": "but",

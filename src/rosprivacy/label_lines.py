@@ -98,6 +98,9 @@ def next_lines(policies: tuple[str, ...], labels: tuple[str, ...], settings: Set
             remarks.append(f"{place}: {shown(at['name'])} is not reviewed: {why}")
         elif at["section"] in SECTIONS:
             lines.setdefault((at["section"], at["name"]), NewLine(at["section"], at["name"], why))
+        else:  # seen, and of no node (rule S16)
+            hint = f"say what it is, such as elements: {{{shown(at['name'])}: {{kind: external-system}}}}"
+            remarks.append(f"{own.file}: {shown(at['name'])} is not reviewed: {why}; {hint}")
     likely = candidates(report) if not report["carries"] else []
     for name in likely:
         if ("node", name) not in written:

@@ -9,9 +9,10 @@ import os
 import re
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from itertools import chain, count
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.errors import InputError, shown
+from rosprivacy.analysis.errors import InputError, InputErrors, shown
 from rosprivacy.analysis.text import counted
 from rosprivacy.clock import source_date
 from rosprivacy.ingest.observe.declared import TYPE
@@ -105,13 +106,28 @@ def types_file(policy: Path) -> Path:
 
 
 def declared_file(policy: Path) -> Path:
-    """Return the label file with what nodes declare of themselves, beside a policy.
+    """Return the label file with what nodes declare of themselves, beside a policy; one that is there stays.
 
     >>> from pathlib import Path
     >>> str(declared_file(Path("robot.policy.xml")))
     'robot.declared.labels.yaml'
     """
-    return _beside(policy, "declared.labels")
+    numbered = (_beside(policy, f"declared-{number}.labels") for number in count(2))
+    return next(file for file in chain([_beside(policy, "declared.labels")], numbered) if not file.exists())
+
+
+def keeps_what_is_there(policy: Path) -> None:
+    """Refuse to write over what an earlier run wrote, before anybody looks (rule S16).
+
+    Raises
+    ------
+    InputErrors
+        If there is a policy, or a file of types, of that name.
+    """
+    hint = "remove it, or write to another file; --earlier POLICY adds what was seen then"
+    there = [file for file in (policy, types_file(policy)) if file.is_file()]
+    if there:
+        raise InputErrors([InputError(str(file), 0, "is there already and would be lost", hint) for file in there])
 
 
 def _beside(policy: Path, what: str) -> Path:

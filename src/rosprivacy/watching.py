@@ -1,7 +1,8 @@
 """Looks of a door, one after the other -> a line for each change, and for each finding that is new (rule S16).
 
 In: label files, and what was there before and is there now. Out: lines, with their time. A finding is told when what
-was seen so far makes it: observation only adds.
+was seen so far makes it: observation only adds. What types of messages cannot carry closes it as long as the types of
+all writers that were seen are known (rule S15).
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from rosprivacy.answering import answer
 from rosprivacy.ingest.observe.changed import changed
 from rosprivacy.ingest.observe.observation import continued
 from rosprivacy.ingest.policies.policy_xml import read_policy
+from rosprivacy.ingest.types.types_file import read_types
 from rosprivacy.observing import written
 from rosprivacy.question import question_of
 from rosprivacy.robot_system import lenient_system, read_label_files
@@ -61,9 +63,11 @@ class Watch:
         if made is None:
             return
         with tempfile.TemporaryDirectory(prefix="rosprivacy-observe-") as folder:
-            file = Path(folder, "observed.policy.xml")
+            file, types = Path(folder, "observed.policy.xml"), Path(folder, "observed.types.yaml")
             file.write_bytes(made.policy)
-            system, missing = lenient_system(((read_policy(str(file)),), ()), self._labels, self._question)
+            types.write_text(made.types, "utf-8")
+            seen = (read_types(str(types), self._question.settings.bounds),)
+            system, missing = lenient_system(((read_policy(str(file)),), ()), self._labels, self._question, seen)
         for one in sorted({str(problem) for problem in missing} - self._missing):
             self._missing.add(one)
             yield f"not seen yet: {one}"

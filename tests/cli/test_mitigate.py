@@ -18,6 +18,7 @@ from rosprivacy.analysis.mitigation.limits import Weights
 from rosprivacy.ingest.policies.policy_xml import read_policy
 from tests.helpers.command import XI, Cli, Done, refused, run
 from tests.helpers.factory import BEFORE, FACTORY, RUN3
+from tests.helpers.fleet_files import policy as short_policy
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
@@ -433,3 +434,17 @@ def test_a_flow_that_a_person_states_is_named_by_its_line(cli: Cli, tmp_path: Pa
     text = cli("mitigate", BEFORE, "-l", "l.yaml", "--by", "filter", cwd=tmp_path).stdout
     assert "l.yaml:8  stated flow\n" in text
     assert "(profile , enclave )" not in text
+
+
+def test_a_sanitizer_that_reads_a_wildcard_which_a_source_names(cli: Cli, tmp_path: Path) -> None:
+    """S7: a source names channels. That a wildcard gets past a filter to a node makes that node none of them."""
+    (tmp_path / "p.xml").write_text(short_policy("/cam>/*", "/clean>/out</*", "/up</*"))
+    (tmp_path / "l.yaml").write_text(
+        'labels: 1\nnodes:\n  /cam: {source: {Video: ["=/*"]}}\n  /up: {leak: [Video]}\n'
+        "  /clean: {sanitizer: {Video: drop}, leak: [Video]}\n"
+    )
+    done = cli("mitigate", "p.xml", "-l", "l.yaml", "--by", "filter", cwd=tmp_path)
+    assert done.stderr == ""
+    assert "3 changes remove 2 findings" in done.stdout
+    assert "Put a filter between /* (topic wildcard) and /clean (node)" in done.stdout
+    assert "Proven: analysed anew with this, no open finding of Video is left" in done.stdout

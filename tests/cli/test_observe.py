@@ -63,9 +63,9 @@ def test_the_same_input_gives_the_same_bytes_and_time_stamps_of_files_are_facts(
     """Rule S14; when a text was taken is a fact of the observation, by default when the file was written."""
     os.utime(robot / "graph.txt", (0, 1_764_000_000))
     texts = []
-    for _ in range(2):
-        assert cli("observe", "--text", "graph.txt", "-o", "robot.policy.xml", cwd=robot).returncode == 0
-        texts.append((robot / "robot.policy.xml").read_bytes() + (robot / "robot.types.yaml").read_bytes())
+    for name in ("one", "two"):
+        assert cli("observe", "--text", "graph.txt", "-o", f"{name}.policy.xml", cwd=robot).returncode == 0
+        texts.append((robot / f"{name}.policy.xml").read_bytes() + (robot / f"{name}.types.yaml").read_bytes())
     assert texts[0] == texts[1]
     assert b"2025-11-24T16:00:00Z" in texts[0]
 

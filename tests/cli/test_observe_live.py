@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING
 import pytest
 import yaml
 
+from tests.helpers.certificates import authority, signed
 from tests.helpers.command import refused, run
 from tests.helpers.zenoh_tokens import endpoint, free_endpoint, node, router, session
 
@@ -83,6 +84,8 @@ def test_from_a_dds_domain_to_the_planted_finding(peer: Peer, other: Peer, robot
         done = run("observe", *words, cwd=robot)
         if done.returncode == 0 and "known gap" not in done.stderr:
             break
+        for file in robot.glob("robot.*"):
+            file.unlink()
     assert done.returncode == 0, done.stderr
     assert "2 nodes, 1 channel: observed from " in done.stderr
     assert "known gap" not in done.stderr
@@ -91,7 +94,8 @@ def test_from_a_dds_domain_to_the_planted_finding(peer: Peer, other: Peer, robot
 
 @pytest.mark.slow
 @pytest.mark.xdist_group("zenoh")
-def test_from_a_zenoh_router_to_the_planted_finding(robot: Path) -> None:
+@pytest.mark.parametrize("option", [["--zenoh"], ["--zenoh", "--router"]], ids=" ".join)
+def test_from_a_zenoh_router_to_the_planted_finding(robot: Path, option: list[str]) -> None:
     with router() as where, session(where) as one:
         tokens = [
             node(7, "camera", "%robot%head", "%head"),
@@ -99,12 +103,75 @@ def test_from_a_zenoh_router_to_the_planted_finding(robot: Path) -> None:
             endpoint(7, "MS", "uplink", "/image", IMAGE),
         ]
         kept = [one.liveliness().declare_token(token) for token in tokens]
-        words = ["--zenoh", "--router", where, "--for", "3s", "-o", "robot.policy.xml"]
+        words = [*option, where, "--for", "3s", "-o", "robot.policy.xml"]
         done = run("observe", *words, cwd=robot, ROS_DOMAIN_ID="7")
         assert kept
     assert done.returncode == 0, done.stderr
     assert "by zenoh" in done.stderr
     holds_the_finding(robot, made_up=1)
+
+
+@pytest.fixture(scope="module")
+def certificates(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Those of a router and of a client by one CA, and another CA that has signed nothing."""
+    folder = tmp_path_factory.mktemp("certificates")
+    authority(folder, "ca")
+    authority(folder, "other")
+    signed(folder, "router", "ca")
+    signed(folder, "client", "ca")
+    return folder
+
+
+def tls(folder: Path, ca: str, client: str = "") -> dict[str, object]:
+    """What a session file says of TLS; with a client's certificate also of mutual TLS."""
+    own = {"connect_certificate": str(folder / f"{client}.pem"), "connect_private_key": str(folder / f"{client}.key")}
+    return {"root_ca_certificate": str(folder / f"{ca}.pem"), **(own if client else {})}
+
+
+@contextmanager
+def secured_router(folder: Path, *, mutual: bool) -> Iterator[str]:
+    """A router that shows a certificate, and asks for one where this is mutual; behind it one node."""
+    shows = {"listen_certificate": str(folder / "router.pem"), "listen_private_key": str(folder / "router.key")}
+    asks = {"root_ca_certificate": str(folder / "ca.pem"), "enable_mtls": mutual}
+    with (
+        router("tls", transport__link__tls={**shows, **asks}) as where,
+        session(where, transport__link__tls={**tls(folder, "ca", "client"), "enable_mtls": mutual}) as one,
+    ):
+        kept = one.liveliness().declare_token(node(7, "camera"))
+        yield where
+        kept.undeclare()
+
+
+def looked_by_file(robot: Path, where: str, **says: object) -> subprocess.CompletedProcess[str]:
+    session_file = {"mode": "peer", "connect": {"endpoints": [where]}, "transport": {"link": {"tls": says}}}
+    (robot / "session.json5").write_text("// mine\n" + json.dumps(session_file))
+    words = ["--zenoh", "--session-file", "session.json5", "--domain", "7", "--for", "2s", "-o", "robot.policy.xml"]
+    return run("observe", *words, cwd=robot)
+
+
+@pytest.mark.slow
+@pytest.mark.xdist_group("zenoh")
+@pytest.mark.parametrize("client", ["", "client"], ids=["TLS", "mutual TLS"])
+def test_a_session_file_with_tls_looks_behind_a_secured_router(robot: Path, certificates: Path, client: str) -> None:
+    with secured_router(certificates, mutual=bool(client)) as where:
+        done = looked_by_file(robot, where, **tls(certificates, "ca", client), enable_mtls=bool(client))
+    assert done.returncode == 0, done.stderr
+    assert "1 node, 0 channels: observed from " in done.stderr
+    assert 'node="camera"' in (robot / "robot.policy.xml").read_text()
+
+
+@pytest.mark.slow
+@pytest.mark.xdist_group("zenoh")
+@pytest.mark.parametrize("ca", ["other", "not there"])
+def test_a_ca_that_has_not_signed_the_router_is_one_line(robot: Path, certificates: Path, ca: str) -> None:
+    with secured_router(certificates, mutual=False) as where:
+        done = looked_by_file(robot, where, **tls(certificates, ca))
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (3, "", 1)
+    assert (
+        f"no Zenoh router answers as session.json5 says: Unable to connect to any of [Single({where})]" in done.stderr
+    )
+    assert "or the certificates do not fit: see transport/link/tls in your session file" in done.stderr
+    assert not (robot / "robot.policy.xml").exists()
 
 
 @contextmanager
@@ -195,7 +262,15 @@ def test_no_router_is_one_line_and_exit_code_3(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     "words",
-    [[], ["--zenoh", "--peer", "127.0.0.1"], ["--dds", "--router", "tcp/127.0.0.1:1"], ["--dds", "--domain", "233"]],
+    [
+        [],
+        ["--zenoh", "--peer", "127.0.0.1"],
+        ["--dds", "--router", "tcp/127.0.0.1:1"],
+        ["--dds", "tcp/127.0.0.1:1"],
+        ["--text", "a.txt", "b.txt"],
+        ["--zenoh", "tcp/127.0.0.1:1", "--router", "tcp/127.0.0.1:1"],
+        ["--dds", "--domain", "233"],
+    ],
     ids=" ".join,
 )
 def test_options_that_do_not_go_together_are_refused(words: list[str], tmp_path: Path) -> None:

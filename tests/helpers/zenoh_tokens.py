@@ -31,18 +31,27 @@ def _settings(**values: object) -> Any:
 
 
 @contextmanager
-def router(**values: object) -> Iterator[str]:
+def router(protocol: str = "tcp", **values: object) -> Iterator[str]:
     """A router; yields where it is."""
-    where = free_endpoint()
+    where = free_endpoint().replace("tcp/", f"{protocol}/")
     with zenoh.open(_settings(mode="router", listen__endpoints=[where], **values)):
         yield where
 
 
 @contextmanager
-def session(where: str) -> Iterator[Any]:
+def session(where: str, **values: object) -> Iterator[Any]:
     """A session of rmw_zenoh, as far as the graph goes."""
     latched = {"timestamping__enabled": True}  # what publishers that keep their messages need
-    with zenoh.open(_settings(mode="client", connect__endpoints=[where], listen__endpoints=[], **latched)) as one:
+    with zenoh.open(
+        _settings(mode="client", connect__endpoints=[where], listen__endpoints=[], **latched, **values)
+    ) as one:
+        yield one
+
+
+@contextmanager
+def opened_alone(**values: object) -> Iterator[Any]:
+    """A session that looks for nobody."""
+    with zenoh.open(_settings(mode="peer", connect__endpoints=[], listen__endpoints=[], **values)) as one:
         yield one
 
 

@@ -34,12 +34,29 @@ SHORTEST = "10s"  # what most middlewares need until all is found
 )  # fmt: skip
 def observe(
     inputs: Inputs,
+    endpoint: Annotated[
+        str,
+        typer.Argument(
+            metavar="[ENDPOINT]",
+            show_default=False,
+            help="With --zenoh: where the router is; by default tcp/localhost:7447.",
+        ),
+    ] = "",
     text: Annotated[
         list[str] | None,
         typer.Option(
             metavar="FILE",
             show_default=False,
             help="What `ros2 node info` printed, for all nodes; - is standard input; may be repeated.",
+            rich_help_panel=THROUGH,
+        ),
+    ] = None,
+    earlier: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="POLICY",
+            show_default=False,
+            help="What an earlier run wrote, with the types beside it: adds up; may be repeated.",
             rich_help_panel=THROUGH,
         ),
     ] = None,
@@ -60,7 +77,12 @@ def observe(
         bool, typer.Option("--dds", help="Join the DDS domain as a reader of discovery.", rich_help_panel=THROUGH)
     ] = False,
     zenoh: Annotated[
-        bool, typer.Option("--zenoh", help="Ask a Zenoh router for the tokens of ROS.", rich_help_panel=THROUGH)
+        bool,
+        typer.Option(
+            "--zenoh",
+            help="Ask a Zenoh router for the tokens of ROS: --zenoh, or --zenoh ENDPOINT.",
+            rich_help_panel=THROUGH,
+        ),
     ] = False,
     domain: Annotated[
         int,
@@ -91,7 +113,7 @@ def observe(
         typer.Option(
             metavar="ENDPOINT",
             show_default=False,
-            help="With --zenoh: where the router is; by default tcp/localhost:7447.",
+            help="The same as ENDPOINT.",
             rich_help_panel=THROUGH,
         ),
     ] = "",
@@ -128,22 +150,31 @@ def observe(
     What was not seen proves nothing: the policy says from when to when somebody looked, and which gaps are known.
     """
     from rosprivacy.ingest.observe.stopping import Stop
+    from rosprivacy.observing import keeps_what_is_there, seconds_of
     from rosprivacy.observing import observe as looked
-    from rosprivacy.observing import seconds_of
 
     stop = Stop()
     wait = stop.wait if watch else time.sleep
-    doors = _doors(text, at, wait, ros2=ros2)
+    doors = _doors(text, earlier, at, wait, ros2=ros2)
+    if endpoint and not zenoh:
+        raise typer.BadParameter(f"{shown(endpoint)}: an endpoint is for --zenoh, and each FILE follows a --text")
     if (router and not zenoh) or ((peer or interface) and not dds):
         raise typer.BadParameter("--router is for --zenoh; --peer and --interface are for --dds")
+    if endpoint and router:
+        raise typer.BadParameter("say once where the router is: --zenoh ENDPOINT, or --zenoh --router ENDPOINT")
     if zenoh:
-        doors.append(_zenoh_door(domain, router, session_file, wait))
+        doors.append(_zenoh_door(domain, endpoint or router, session_file, wait))
     if dds:
         doors.append(_dds_door(domain, tuple(peer or ()), interface, wait))
     if not doors:
-        raise typer.BadParameter("name a door: --text FILE, --ros2, --zenoh or --dds")
-    if watch and (text or len(doors) > 1):
-        raise typer.BadParameter("--watch looks through one door to a running system: no --text, and no second door")
+        raise typer.BadParameter(
+            "name a door: --text FILE, --ros2, --zenoh, --dds, or what was seen by --earlier POLICY"
+        )
+    if watch and (text or earlier or len(doors) > 1):
+        what = "--watch looks through one door to a running system: no --text, no --earlier, and no second door"
+        raise typer.BadParameter(what)
+    if output:
+        keeps_what_is_there(output)
     if not watch:
         seen = looked(doors, seconds_of(duration))
     else:
@@ -152,13 +183,16 @@ def observe(
     _write(seen, output)
 
 
-def _doors(text: list[str] | None, at: str | None, wait: Wait, *, ros2: bool) -> list[Door]:
+def _doors(text: list[str] | None, earlier: list[str] | None, at: str | None, wait: Wait, *, ros2: bool) -> list[Door]:
     """The doors that a user named, those that have looked already first."""
+    from rosprivacy.ingest.observe.earlier_files import EarlierFiles
     from rosprivacy.ingest.observe.ros2_program import Ros2Program
     from rosprivacy.ingest.observe.text_files import TextFiles
-    from rosprivacy.observing import now, time_of
+    from rosprivacy.observing import now, time_of, types_file
 
     doors: list[Door] = []
+    if earlier:
+        doors.append(EarlierFiles(tuple((file, str(types_file(Path(file)))) for file in earlier)))
     if text:
         doors.append(TextFiles(tuple(text), now, time_of(at) if at else ""))
     if ros2:

@@ -119,6 +119,7 @@ def test_endpoints_of_no_node_stand_under_a_name_of_their_own_and_are_a_gap() ->
     text = policy_xml(ready)
     assert b'gaps="no-node:1"' in text
     assert b'ns="/_no_node" node="participant_01_0f_x"' in text
+    assert b'<participant node="/_no_node/participant_01_0f_x"/>' in text
 
 
 def test_thousands_of_topics_take_time_in_proportion() -> None:

@@ -105,7 +105,16 @@ def test_without_a_router_one_line_says_what_to_do() -> None:
         looked(free_endpoint(), 1)
     assert str(error.value).startswith("no Zenoh router answers at tcp/127.0.0.1:")
     assert "\n" not in str(error.value)
-    assert "(--router tcp/HOST:7447)" in str(error.value)
+    assert "(--zenoh tcp/HOST:7447)" in str(error.value)
+    assert "certificates" not in str(error.value)
+
+
+@pytest.mark.parametrize("endpoint_", ["rubbish", "tcp/", "robot.policy.xml"])
+def test_what_is_no_endpoint_is_one_line(endpoint_: str) -> None:
+    with pytest.raises(ObservationError) as error:
+        looked(endpoint_, 1)
+    assert str(error.value).startswith(f"--zenoh: '{endpoint_}' is no endpoint of Zenoh; write tcp/localhost:7447")
+    assert "\n" not in str(error.value)
 
 
 def test_a_session_file_of_the_user_is_taken(where: str, tmp_path: Path) -> None:
