@@ -10,7 +10,6 @@ another if it is from one of these days on, so that doubt is shown and not passe
 
 from __future__ import annotations
 
-from calendar import monthrange
 from dataclasses import dataclass
 from datetime import date, datetime, timedelta
 from typing import TYPE_CHECKING
@@ -58,6 +57,8 @@ class Duration:
         >>> parse("P1M").ends(datetime(2026, 1, 31)), parse("P1000Y").ends(datetime(9999, 1, 1)) == datetime.max
         (datetime.datetime(2026, 2, 28, 0, 0), True)
         """
+        from calendar import monthrange  # noqa: PLC0415 - light start
+
         months = start.year * 12 + start.month - 1 + self.months
         year, month = months // 12, months % 12 + 1
         try:

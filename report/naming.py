@@ -71,7 +71,7 @@ def key(element: Mapping[str, Any]) -> Key:
 
 def whole(element: Mapping[str, Any]) -> Key:
     """Return the same without the leg: the service or action as a whole."""
-    return (*key(element)[:3], "")
+    return (element["robot"], element["kind"], element["name"], "")
 
 
 def line(grant: Mapping[str, Any]) -> str:

@@ -8,6 +8,7 @@ wait.
 from __future__ import annotations
 
 from collections import Counter, defaultdict, deque
+from functools import cache
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.kernel.dominators import immediate_dominators
@@ -69,21 +70,21 @@ def review_order(analysis: Analysis) -> dict[Shown, Behind]:
     asked = {q.element.shown_as: kinds[q.categories] for q in analysis.open}
     following = _Following.of(spread)
     reached = following.reached()
-    open_at = dict.fromkeys(vertex for vertex in reached if elements[vertex].shown_as in asked)
-    through = _through(following, {vertex: asked[elements[vertex].shown_as] for vertex in open_at}, reached)
+    shown = {vertex: elements[vertex].shown_as for vertex in reached}
+    open_at = {vertex: one for vertex, one in shown.items() if one in asked}
+    through = _through(following, {vertex: asked[one] for vertex, one in open_at.items()}, reached)
     leaks = {vertex for vertex, bits in spread.leaks.items() if bits & spread.present(vertex)}
     ends = {finding.leak for finding in analysis.findings}  # storages and third countries too (rule S10)
-    wanted = leaks.union(v for v in reached if elements[v] in ends or (v in open_at and not elements[v].is_channel))
+    wanted = leaks.union(v for v in reached if (v in open_at and not elements[v].is_channel) or elements[v] in ends)
     going_on = following.reaching(wanted)
-    below = _below(following, {elements[v].shown_as: v for v in reversed(open_at)}.values(), leaks)
+    below = _below(following, {open_at[v]: v for v in reversed(open_at)}.values(), leaks)
     result: dict[Shown, Behind] = {}
-    for vertex in open_at:
-        element = elements[vertex]
+    for vertex, as_shown in open_at.items():
         closes, leaking = below.get(vertex, (0, 0))
         comes_from = elements[through[vertex]] if vertex in through else None
-        one = Behind(comes_from, closes, leaking, waits=element.is_channel and vertex not in going_on)
-        other = result.get(element.shown_as)  # the other side of a wildcard
-        result[element.shown_as] = one if other is None else _both(one, other)
+        one = Behind(comes_from, closes, leaking, waits=elements[vertex].is_channel and vertex not in going_on)
+        other = result.get(as_shown)  # the other side of a wildcard
+        result[as_shown] = one if other is None else _both(one, other)
     return result
 
 
@@ -97,6 +98,8 @@ class _Following(NamedTuple):
 
     Attributes
     ----------
+    along
+        Flow -> what goes along it and is taken up, where there is any.
     single
         Vertex -> where flows with data lead.
     meetings
@@ -104,23 +107,26 @@ class _Following(NamedTuple):
     """
 
     spread: Spread
+    along: dict[int, int]
     single: dict[int, list[int]]
     meetings: tuple[Meeting, ...]
 
     @classmethod
     def of(cls, spread: Spread) -> _Following:
         own, meetings = parted(spread.graph.flows, spread.told_apart)
+        along: dict[int, int] = {}
         single: dict[int, list[int]] = defaultdict(list)
         for index, flow in own:
-            if spread.along(index):
+            if bits := spread.along(index):
+                along[index] = bits
                 single[flow.source].append(flow.target)
         single[START] = [vertex for vertex in range(len(spread.graph.elements)) if spread.begins(vertex)]
-        result = cls(spread, single, meetings)
+        result = cls(spread, along, single, meetings)
         if meetings and result.number() <= MOST:
             for source, target in (pair for meeting in meetings for pair in meeting.pairs()):
                 if result.sent(source) & result.taken(target):
                     single[source].append(target)
-            return cls(spread, {source: sorted(targets) for source, targets in single.items()}, ())
+            return cls(spread, along, {source: sorted(targets) for source, targets in single.items()}, ())
         return result
 
     def sent(self, source: int) -> int:
@@ -152,9 +158,10 @@ class _Following(NamedTuple):
                 new = self.sent(here) & ~met[id(meeting)]
                 met[id(meeting)] |= new
                 nexts += (there for there in meeting.read if new & self.taken(there)) if new else ()
-            found = sorted({there for there in nexts if there not in reached})
-            reached.update(dict.fromkeys(found))
-            waiting += found
+            found = {there for there in nexts if there not in reached}
+            for there in sorted(found):
+                reached[there] = None
+                waiting.append(there)
         return list(reached)
 
     def reaching(self, wanted: Iterable[int]) -> set[int]:
@@ -194,16 +201,19 @@ def _through(following: _Following, asked: Mapping[int, int], reached: Iterable[
     spread = following.spread
     order = {vertex: place for place, vertex in enumerate(reached)}
     best: dict[int, tuple[int, int, int]] = {}
+    merged = cache(spread.bits.merged)
 
     def comes(source: int, target: int, bits: int) -> None:
-        bits = spread.bits.merged(bits) & asked.get(target, 0)
+        bits = merged(bits) & asked.get(target, 0)
         if bits:
             one = (-bits.bit_count(), order[source], source)
-            best[target] = min(one, best.get(target, one))
+            if target not in best or one < best[target]:
+                best[target] = one
 
     own, meetings = parted(spread.graph.flows, spread.told_apart)
     for index, flow in own:
-        comes(flow.source, flow.target, spread.along(index))
+        if index in following.along:
+            comes(flow.source, flow.target, following.along[index])
     for meeting in meetings:
         first: dict[int, int] = {}  # what is sent -> the first that sends it
         for source in sorted(set(meeting.written) & order.keys(), key=lambda one: -order[one]):

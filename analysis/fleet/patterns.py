@@ -173,9 +173,12 @@ def _deviants_of(
     shares
         How each robot of the graph takes part in patterns.
     """
+    of_model = Counter(likeness.models.values())
+    compared = {robot for robot, model in likeness.models.items() if of_model[model] > 1}
     open_at: dict[str, set[Element]] = defaultdict(set)
     for question in questions:
-        open_at[question.element.robot].add(likeness.alike(question.element))
+        if question.element.robot in compared:
+            open_at[question.element.robot].add(likeness.alike(question.element))
     return different(shares, open_at, likeness)
 
 

@@ -46,8 +46,10 @@ class _Table:
         self.is_second = np.array([name in likeness.second for name in self.names], bool)
         self.first = np.array([number[likeness.second.get(name, name)] for name in self.names], np.int64)
         self.weight = np.array([likeness.weight(name) for name in self.names], np.int64)
-        kinds: dict[Element, int] = {}
-        self.alike = np.array([kinds.setdefault(likeness.alike(e), len(kinds)) for e in elements], np.int64)
+        shown = {name: "" if likeness.is_robot(name) else name for name in self.names}  # as ``Likeness.alike``
+        alike = [(e.kind, e.name, shown[e.robot], e.leg, e.side, e.without) for e in elements]
+        kinds = {kind: number for number, kind in enumerate(dict.fromkeys(alike))}
+        self.alike = np.array([kinds[kind] for kind in alike], np.int64)
         self.kinds = len(kinds)
 
     def patterns(self, sources: Indices, leaks: Indices) -> Indices:

@@ -7,11 +7,12 @@ every path to it passes. The algorithm is that of Cooper, Harvey and Kennedy, 'A
 
 from __future__ import annotations
 
-from collections import defaultdict
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Mapping, Sequence
+
+UNKNOWN = -1
 
 
 def immediate_dominators(following: Mapping[int, Iterable[int]], start: int) -> dict[int, int]:
@@ -28,24 +29,24 @@ def immediate_dominators(following: Mapping[int, Iterable[int]], start: int) -> 
     """
     order = _finished(following, start)
     rank = {vertex: at for at, vertex in enumerate(order)}
-    entering: dict[int, list[int]] = defaultdict(list)
-    for here in order:
+    entering: list[list[int]] = [[] for _ in order]
+    for at, here in enumerate(order):
         for there in following.get(here, ()):
-            entering[rank[there]].append(rank[here])
+            entering[rank[there]].append(at)
     root = len(order) - 1
-    above = {root: root}
+    above = [*[UNKNOWN] * root, root]
     changed = True
     while changed:
         changed = False
         for vertex in range(root - 1, -1, -1):
-            known = [one for one in entering[vertex] if one in above]
-            dominator = known[0]
-            for other in known[1:]:
-                dominator = _common(above, dominator, other)
-            if above.get(vertex) != dominator:
+            dominator = UNKNOWN
+            for other in entering[vertex]:
+                if above[other] != UNKNOWN and other != dominator:
+                    dominator = other if dominator == UNKNOWN else _common(above, dominator, other)
+            if above[vertex] != dominator:
                 above[vertex] = dominator
                 changed = True
-    return {order[vertex]: order[above[vertex]] for vertex in sorted(above, key=order.__getitem__) if vertex != root}
+    return {vertex: order[above[at]] for vertex, at in sorted(rank.items()) if at != root}
 
 
 def _finished(following: Mapping[int, Iterable[int]], start: int) -> list[int]:
@@ -66,7 +67,7 @@ def _finished(following: Mapping[int, Iterable[int]], start: int) -> list[int]:
     return finished
 
 
-def _common(above: Mapping[int, int], one: int, other: int) -> int:
+def _common(above: Sequence[int], one: int, other: int) -> int:
     """The nearest vertex that dominates both; a higher rank is nearer to the start."""
     while one != other:
         while one < other:

@@ -47,16 +47,18 @@ class Search:
 
     def level(self, vertex: int, bits: int) -> int | None:
         """Flows from a start to the nearest arrival of one of some bits; 0 if they start there."""
-        starting = [0] if self.begun.get(vertex, 0) & bits else []
-        levels = [level for level, new, _ in self.arrived.get(vertex, ()) if new & bits]
+        if self.begun.get(vertex, 0) & bits:
+            return 0
+        arrived = self.arrived.get(vertex, ())
+        levels = [level for level, new, _ in arrived if new & bits]
         made = [
             level
             for bits_out, origin in self.left.get(vertex, ())
             if bits_out & bits and origin is not None and origin != START
-            for level, new, _ in self.arrived.get(vertex, ())
+            for level, new, _ in arrived
             if new >> origin & 1
         ]
-        return min(starting + levels + made, default=None)
+        return min(levels + made, default=None)
 
     def arrives_first(self, vertex: int, bit: int) -> bool:
         """Whether a bit arrives at a vertex no later than it is made there."""
@@ -93,6 +95,7 @@ def search(net: Net, starts: Iterable[int], allowed: int, stop: Mapping[int, int
     """
     spread = net.spread
     reach = Search()
+    seen = reach.seen
     level = 0
     leaving: dict[int, int] = defaultdict(int)
     first = {vertex: spread.emits.get(vertex, 0) & allowed for vertex in sorted(starts)}
@@ -110,15 +113,15 @@ def search(net: Net, starts: Iterable[int], allowed: int, stop: Mapping[int, int
         for vertex in sorted(leaving):
             bits = leaving[vertex]
             for index, target, passing in net.flows.get(vertex, ()):
-                if bits & passing:
+                if bits & passing & ~seen.get(target, 0):
                     _arrive(reach, target, bits & passing, level, index, arriving)
             for meeting in net.meetings.get(vertex, ()):
                 new = bits & ~met[id(meeting)]
                 met[id(meeting)] |= new
                 _arrive_at_all(net, reach, vertex, meeting.read if new else (), new, level, arriving)
         leaving = defaultdict(int)
-        for vertex in sorted(arriving):
-            _pass_on(spread, reach, vertex, arriving[vertex], allowed, stop.get(vertex, 0), leaving)
+        for vertex, bits in sorted(arriving.items()):
+            _pass_on(spread, reach, vertex, bits, allowed, stop.get(vertex, 0), leaving)
         read = _across_sides(net, reach, level, leaving)
         for vertex in sorted(read):
             _pass_on(spread, reach, vertex, read[vertex], allowed, stop.get(vertex, 0), leaving)

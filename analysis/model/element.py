@@ -10,6 +10,7 @@ NON_ROS = (  # rule S9
     "device", "display", "external-system", PARTICIPANT, "person", "shared-memory", "side-channel", "storage",
 )  # fmt: skip
 KINDS = ("node", *NON_ROS, *CHANNELS)  # channels last: kernel/fixpoint.py sweeps them and the others in turn
+_RANKS = {kind: rank for rank, kind in enumerate(KINDS)}
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +32,8 @@ class Element:
         read from them. Two vertices, so that nothing flows from one name to another through a wildcard.
     without
         Only of a pattern: the DDS expressions that a DENY of its enclave takes out of it (rule S5), sorted.
+    is_channel
+        Whether this is a topic, service or action: it only passes on; all others take part like nodes (rule S9).
     """
 
     kind: str
@@ -39,10 +42,12 @@ class Element:
     leg: str = ""
     side: str = ""
     without: tuple[str, ...] = ()
+    is_channel: bool = field(init=False, repr=False, compare=False)
     _hash: int = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        """Reckon the hash once: nothing is asked for more often."""
+        """Reckon once what is asked for most often."""
+        object.__setattr__(self, "is_channel", self.kind in CHANNELS)
         object.__setattr__(self, "_hash", hash((self.name, self.robot, self.leg, self.kind)))
 
     def __hash__(self) -> int:
@@ -63,11 +68,6 @@ class Element:
         return self.kind == "node"
 
     @property
-    def is_channel(self) -> bool:
-        """Whether this is a topic, service or action: it only passes on; all others take part like nodes (rule S9)."""
-        return self.kind in CHANNELS
-
-    @property
     def full_name(self) -> str:
         """The name, with the robot's where there are several."""
         return f"{self.robot}:{self.name}" if self.robot else self.name
@@ -84,4 +84,4 @@ class Element:
 
     def sort_key(self) -> tuple[object, ...]:
         """Nodes first, then by robot, name and part: the order of all output (rule S14)."""
-        return (KINDS.index(self.kind), self.robot, self.name, self.leg, self.side, self.without)
+        return (_RANKS[self.kind], self.robot, self.name, self.leg, self.side, self.without)

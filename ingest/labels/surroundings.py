@@ -97,8 +97,8 @@ def joined(several: Iterable[Surroundings]) -> Surroundings:
 
 def everywhere(graph: FlowGraph, own: Mapping[int, Surroundings], system: Surroundings) -> dict[int, Surroundings]:
     """Return the surroundings of each element that can bring data in: its own, with those of its system."""
-    found = {}
-    for vertex, element in enumerate(graph.elements):
+    found: dict[int, Surroundings] = {}
+    for vertex, element in enumerate(graph.elements) if own or system else ():
         if element.is_channel:
             continue
         of_system = system if element.is_node else Surroundings(system.contexts)

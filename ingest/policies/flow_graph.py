@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections import defaultdict
 from dataclasses import dataclass, field
 from itertools import product
+from operator import attrgetter
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.bounds import BOUNDS, Tally
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.policies.meetings import Ends
     from rosprivacy.ingest.policies.names import Endpoint
 
+_ends = attrgetter("source", "target", "role")  # of a flow
 STORED = 64  # times its members a group of wildcards that meet may have flows that are stored
 
 
@@ -169,11 +171,10 @@ class _Drafts:
         if part:
             self.rules[channel].update(part)
         ends = self.owner(node), channel
-        key = (*(ends if endpoint.writes else ends[::-1]), grant.role)
-        draft = self.flows.get(key)
-        if draft is None:
+        new = _Draft()
+        draft = self.flows.setdefault((*(ends if endpoint.writes else ends[::-1]), grant.role), new)
+        if draft is new:
             self.count.add(1, grant.place)
-            draft = self.flows[key] = _Draft()
         if against:
             draft.taken = draft.taken or (set(), set())
             draft.taken[0].add(grant)
@@ -182,6 +183,9 @@ class _Drafts:
             draft.allowed.append(grant)
 
     def _channel(self, endpoint: Endpoint, without: tuple[str, ...]) -> Element:
+        known = self.plain.get((endpoint.kind, endpoint.name, endpoint.leg))
+        if known is not None:
+            return known
         if is_pattern(endpoint.name):
             side = "write" if endpoint.writes else "read"
             element = Element(endpoint.kind, endpoint.name, "", endpoint.leg, side, without)
@@ -326,10 +330,6 @@ class _Drafts:
         )  # fmt: skip
 
 
-def _ends(flow: Flow) -> tuple[int, int, str]:
-    return (flow.source, flow.target, flow.role)
-
-
 def _profile_key(profile: Profile) -> tuple[str, str, str, int]:
     return (profile.enclave, profile.node, profile.place.file, profile.place.line)
 
@@ -340,5 +340,7 @@ def _in_order(lines: set[Grant]) -> tuple[Grant, ...]:
 
 def _grant_key(grant: Grant) -> tuple[object, ...]:
     place = grant.place
-    line = (place.file, place.line, grant.enclave, grant.node, grant.kind, grant.name, grant.role, grant.allow)
-    return (*line, grant.policy, grant.dead, grant.rank)
+    return (
+        place.file, place.line, grant.enclave, grant.node, grant.kind, grant.name, grant.role, grant.allow,
+        grant.policy, grant.dead, grant.rank,
+    )  # fmt: skip

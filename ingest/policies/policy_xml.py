@@ -313,9 +313,10 @@ class _Reader:
 
     def _elements(self, parent: Item, allowed: Collection[str]) -> Iterator[Item]:
         """Children that belong here; what does not is a problem, and so is text between them."""
+        children = self.documents.children(parent)
         if has_text(parent):
             self._problem(parent.place, f"text between the elements of <{parent.tag}>", "remove it")
-        for child in self.documents.children(parent):
+        for child in children:
             tag = child.tag
             if child.namespace and child.namespace != self.namespace:
                 self._notice(child.place, f"<{tag}> in a namespace of its own: read as if it had none")

@@ -93,7 +93,7 @@ def parse(text: str, fail: Callable[[int, str, str], InputError], bounds: Bounds
         raise fail(1, *_EMPTY)
     if _XML.match(text):
         raise fail(1, "this is XML, such as a policy, and not YAML or JSON", "name policies without an option")
-    builder = _Builder(fail, bounds)
+    builder = Builder(fail, bounds)
     if text.lstrip().startswith("{") and _is_json(text, fail):
         _feed_json(text, builder)
     else:
@@ -114,7 +114,7 @@ class _Open:
     key: tuple[str, int] | None = None
 
 
-class _Builder:
+class Builder:
     """Puts values together from what a parser finds, one after the other, without recursion."""
 
     def __init__(self, fail: Callable[[int, str, str], InputError], bounds: Bounds) -> None:
@@ -160,7 +160,7 @@ class _Builder:
             here.items.append(value)
 
 
-def _feed_yaml(text: str, builder: _Builder, fail: Callable[[int, str, str], InputError]) -> None:
+def _feed_yaml(text: str, builder: Builder, fail: Callable[[int, str, str], InputError]) -> None:
     unprintable = yaml.reader.Reader.NON_PRINTABLE.search(text)
     if unprintable:
         line = text.count("\n", 0, unprintable.start()) + 1
@@ -178,7 +178,7 @@ def _feed_yaml(text: str, builder: _Builder, fail: Callable[[int, str, str], Inp
         raise fail(1, "nested more deeply than can be read", "write it flatter") from None
 
 
-def _feed_event(event: yaml.Event, builder: _Builder, fail: Callable[[int, str, str], InputError]) -> None:
+def _feed_event(event: yaml.Event, builder: Builder, fail: Callable[[int, str, str], InputError]) -> None:
     line = event.start_mark.line + 1 if event.start_mark else 1
     if getattr(event, "anchor", None):
         raise fail(line, "anchors and aliases are not read", "write the value out where it is used")
@@ -213,7 +213,7 @@ def _is_json(text: str, fail: Callable[[int, str, str], InputError]) -> bool:
     return True
 
 
-def _feed_json(text: str, builder: _Builder) -> None:
+def _feed_json(text: str, builder: Builder) -> None:
     """Walk over JSON that is known to be right."""
     line, at = 1, 0
     for token in _JSON_TOKEN.finditer(text):

@@ -52,7 +52,7 @@ def overview(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
     """Return one line for each finding where there are many."""
     if len(report["findings"]) <= MANY:
         return
-    unreviewed = {element for element, _ in _unreviewed(report)}
+    unreviewed = {element for element, _ in _unreviewed(report, report["findings"])}
     yield "", ""
     yield words("tty.findings", n=str(len(report["findings"]))), "bold"
     for number, finding in enumerate(in_order(report["findings"], report.get("fleet")), 1):
@@ -72,7 +72,7 @@ def details(
 ) -> Iterator[Line]:
     """Return the findings hop by hop."""
     roles = {(key(said["element"]), said["category"]): said["roles"] for said in report["roles"]}
-    unreviewed, folder = _unreviewed(report), policies_in(report)
+    unreviewed, folder = _unreviewed(report, findings), policies_in(report)
     if folder and any(finding["steps"] for finding in findings):
         yield words("tty.folder", folder=shown(folder)), "dim"
     for number, finding in enumerate(in_order(findings, report.get("fleet")), 1):
@@ -170,8 +170,11 @@ def _style(finding: Mapping[str, Any]) -> str:
     return "dim" if finding["dismissed"] or finding["accepted"] else "bold"
 
 
-def _unreviewed(report: Mapping[str, Any]) -> set[Any]:
-    return {(key(question["element"]), name) for question in report["open"] for name in question["categories"]}
+def _unreviewed(report: Mapping[str, Any], findings: Iterable[Mapping[str, Any]]) -> set[Any]:
+    """(element, category) on the witnesses of some findings that nobody has reviewed."""
+    told = {key(element) for finding in findings for element in finding["witness"]}
+    open_here = ((key(question["element"]), question) for question in report["open"])
+    return {(element, name) for element, question in open_here if element in told for name in question["categories"]}
 
 
 class _Way(NamedTuple):

@@ -169,7 +169,7 @@ def test_paths_that_are_not_counted_are_told(cli: Cli, tmp_path: Path) -> None:
     given = leaks(5)
     ran(tmp_path, given, by=cli)
     whole = document(cli, *given.arguments[1:], cwd=tmp_path)
-    some = document(cli, *given.arguments[1:], "--bound", "path_steps=12", cwd=tmp_path)
+    some = document(cli, *given.arguments[1:], "--bound", "path_steps=6", cwd=tmp_path)
     assert [one["id"] for one in some["findings"]] == [one["id"] for one in whole["findings"]]
     assert (some["verdict"], len(some["findings"])) == ("leak", 5)
     (told,) = [said for said in some["diagnostics"] if said.get("code") == "paths-not-counted"]

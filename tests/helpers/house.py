@@ -50,6 +50,7 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "labels": READING | {"bags"},
         "mitigation": READING,
         "keystore": READING,
+        "zenoh_access": READING,
         "lint": READING,
         "observe": READING | {"labels", "bags", "types"},
         "fleet": READING | {"labels", "types"},

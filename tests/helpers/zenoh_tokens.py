@@ -48,6 +48,13 @@ def session(where: str, **values: object) -> Iterator[Any]:
         yield one
 
 
+@contextmanager
+def opened_alone(**values: object) -> Iterator[Any]:
+    """A session that looks for nobody."""
+    with zenoh.open(_settings(mode="peer", connect__endpoints=[], listen__endpoints=[], **values)) as one:
+        yield one
+
+
 def node(domain: int, name: str, enclave: str = "%", space: str = "%") -> str:
     """The token of a node."""
     return f"@ros2_lv/{domain}/aa/0/0/NN/{enclave}/{space}/{name}"
