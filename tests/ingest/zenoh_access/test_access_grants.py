@@ -25,7 +25,7 @@ LINKS = (Link(), Link(link_protocols=frozenset({"tcp"})), Link(usernames=frozens
 
 
 def access_list(random: Random) -> dict[str, Any]:
-    rules = []
+    rules: list[dict[str, Any]] = []
     for number in range(random.randint(1, 5)):
         keys = []
         for _ in range(random.randint(1, 3)):
