@@ -36,8 +36,12 @@ def access_list(random: Random) -> dict[str, Any]:
         right = [key.replace("**/**", "**").replace("**/*/*", "*/*/**") for key in keys]
         rule = {"id": f"r{number}", "permission": random.choice(["allow", "deny"]), "key_exprs": right}
         rules.append({**rule, "messages": random.sample([*LEGS], 2), "flows": random.choice([["egress"], [*ROLES]])})
-    subjects = [{"id": "s"}, {"id": "t", "link_protocols": ["tcp"]}, {"id": "u", "usernames": ["ann"]}]
-    subjects = random.sample(subjects, random.randint(1, 3))
+    known: list[dict[str, Any]] = [
+        {"id": "s"},
+        {"id": "t", "link_protocols": ["tcp"]},
+        {"id": "u", "usernames": ["ann"]},
+    ]
+    subjects = random.sample(known, random.randint(1, 3))
     policies = [
         {"rules": [random.choice(rules)["id"]], "subjects": [random.choice(subjects)["id"]]}
         for _ in range(random.randint(1, 6))
