@@ -130,6 +130,20 @@ def test_a_deny_that_does_not_hold_for_everybody_takes_nothing_away(cli: Cli, tm
     assert [one for one in told if one.endswith("it does not hold for everybody")]
 
 
+def test_a_file_for_another_domain_grants_nothing_and_that_is_told(cli: Cli, tmp_path: Path) -> None:
+    sender = put(tmp_path / "camera.json5", SENDS)
+    _, ways, told = answered(cli, tmp_path, sender, put(tmp_path / "uplink.json5", SENDS), "--domain", "3")
+    assert not ways
+    assert "nothing is granted in domain 3: the process can send and receive no data" in told
+
+
+def test_keys_of_two_domains_ask_for_one(cli: Cli, tmp_path: Path) -> None:
+    file = put(tmp_path / "camera.json5", SENDS, rule("o", "allow", "put", "egress", "1/video/*/*"))
+    done = cli("analyze", file)
+    assert done.returncode == 2
+    assert "keys of domain 0 and of domain 1; say which with --domain N" in done.stderr
+
+
 def test_a_problem_is_told_at_its_line(cli: Cli, tmp_path: Path) -> None:
     file = put(tmp_path / "camera.json5", rule("out", "allow", "put", "egress", "0//video"))
     done = cli("analyze", file)

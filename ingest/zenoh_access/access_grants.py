@@ -75,6 +75,9 @@ def policy_of(access: AccessFile, domain: int | None) -> Policy:
         Grant(allow, ROLES[flow], DDS, dds, own, own, place, access.file, absolute=True)
         for allow, flow, dds, place in _granted(access, _domain(access, domain), said)
     ]
+    if not any(grant.allow for grant in grants):
+        where = f" in domain {domain}" if domain is not None else ""
+        said.append(_warning(access.place, f"nothing is granted{where}: the process can send and receive no data"))
     digest = hashlib.sha256(contents(Path(access.file), access.file)).hexdigest()
     sources = ((access.file, digest),)
     return Policy(access.file, sources, (profile,), tuple(dict.fromkeys(grants)), tuple(dict.fromkeys(said)))
