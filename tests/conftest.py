@@ -101,8 +101,9 @@ def pytest_runtest_makereport() -> Generator[None, pytest.TestReport, pytest.Tes
 def _own_folders(tmp_path_factory: pytest.TempPathFactory, pytestconfig: pytest.Config) -> Iterator[None]:
     """Tests do not touch the user's cache, nor the user's private Neo4j; for minutes Java need not compile its best."""
     with pytest.MonkeyPatch.context() as patch:
-        if not pytestconfig.getoption("--slow"):
-            patch.setenv("JDK_JAVA_OPTIONS", "-XX:TieredStopAtLevel=1 -XX:+UseSerialGC")
+        if not pytestconfig.getoption("--thorough"):
+            serial = "" if pytestconfig.getoption("--slow") else " -XX:+UseSerialGC"
+            patch.setenv("JDK_JAVA_OPTIONS", f"-XX:TieredStopAtLevel=1{serial}")
         patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
         patch.setenv("ROSPRIVACY_DATA", str(tmp_path_factory.mktemp("private data")))
         yield

@@ -55,8 +55,8 @@ class PathsOfSource:
         made = category in spread.made
         if self._asked == Paths.witness and not made and not self._net.meetings:
             if id(reach) not in self._counted:
-                self._counted[id(reach)] = NumberOfPaths(self._net, reach, self._source, stop)
-            return FurtherPaths(self._counted[id(reach)].to(leak, category, self._work))
+                self._counted[id(reach)] = NumberOfPaths(self._net, reach, self._source, stop, self._work)
+            return FurtherPaths(self._counted[id(reach)].to(leak, category))
         if (id(reach), category) not in self._between:
             relevant = spread.all_bits if made else spread.bits.both(category)  # all, for simplicity
             between = Between(self._net, reach, self._source, category, relevant, stop)
@@ -73,6 +73,8 @@ class NumberOfPaths:
         A search from the source.
     stop
         Vertex -> bits that it did not follow from there.
+    work
+        Counts the steps.
 
     Examples
     --------
@@ -82,12 +84,13 @@ class NumberOfPaths:
     >>> from rosprivacy.analysis.kernel.spreading import spread
     >>> from rosprivacy.analysis.kernel.states import Net
     >>> net = Net.of(spread(*factory()))
-    >>> number = NumberOfPaths(net, search(net, [CAMERA], net.spread.all_bits, {}), CAMERA, {})
-    >>> number.to(ARCHIVE, net.spread.categories.index("Video"), Tally(BOUNDS, "path_steps"))
+    >>> reach, work = search(net, [CAMERA], net.spread.all_bits, {}), Tally(BOUNDS, "path_steps")
+    >>> NumberOfPaths(net, reach, CAMERA, {}, work).to(ARCHIVE, net.spread.categories.index("Video"))
     1
     """
 
-    def __init__(self, net: Net, reach: Search, source: int, stop: Mapping[int, int]) -> None:
+    def __init__(self, net: Net, reach: Search, source: int, stop: Mapping[int, int], work: Tally) -> None:
+        self._work = work
         self._into: dict[int, dict[int, int]] = defaultdict(dict)  # vertex -> the one before -> categories
         self._led: tuple[int, dict[int, list[tuple[int, int]]]] = BEGIN, {}  # the last leak; categories -> their steps
         self._known: dict[tuple[int, ...], int] = {}
@@ -95,23 +98,24 @@ class NumberOfPaths:
         for before, after, bits in _steps(net, reach, source, stop):
             befores = self._into[after]
             befores[before] = befores.get(before, 0) | merged(bits)
+            work.count += 1
         self._first = [befores[BEGIN] for befores in self._into.values() if BEGIN in befores]
 
-    def to(self, leak: int, category: int, work: Tally) -> int:
-        """Return how many of a category get to a leak, by its number; at least one does. The work is counted."""
+    def to(self, leak: int, category: int) -> int:
+        """Return how many of a category get to a leak, by its number; at least one does."""
         ends = self._first, self._into[leak].values()
-        work.count += sum(map(len, ends))
+        self._work.count += sum(map(len, ends))
         if 1 in (sum(categories >> category & 1 for categories in end) for end in ends):
             return 1  # a step that all share
         if self._led[0] != leak:
             self._led = leak, self._leading_to(leak)
-            work.count += sum(map(len, self._led[1].values()))
+            self._work.count += sum(map(len, self._led[1].values()))
         some = self._led[1]
         alike = tuple(categories for categories in some if categories >> category & 1)
         if (leak, *alike) not in self._known:
             steps = [step for categories in alike for step in some[categories]]
-            work.count += len(steps)
-            self._known[leak, *alike] = number_disjoint(steps, BEGIN, leak, work)
+            self._work.count += len(steps)
+            self._known[leak, *alike] = number_disjoint(steps, BEGIN, leak, self._work)
         return self._known[leak, *alike]
 
     def _leading_to(self, leak: int) -> dict[int, list[tuple[int, int]]]:

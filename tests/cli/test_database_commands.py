@@ -19,7 +19,7 @@ from rosprivacy.ingest.database.schema_names import schema_names
 from rosprivacy.private_neo4j import connection
 from rosprivacy.queries.library import pack
 from rosprivacy.report.pictures import looks
-from tests.helpers.command import LINE, run
+from tests.helpers.command import LINE
 from tests.helpers.daily import one_in
 from tests.helpers.graphs import care_home, rows_of
 from tests.helpers.paths import ROOT
@@ -242,20 +242,20 @@ class TestQuery:
 
     @pytest.mark.parametrize("on_terminal", one_in(2, ["", "1"]))
     @pytest.mark.usefixtures("loaded")
-    def test_paths_nodes_and_relationships_are_told_in_words(self, on_terminal: str) -> None:
+    def test_paths_nodes_and_relationships_are_told_in_words(self, cli: Cli, on_terminal: str) -> None:
         """As `analyze` says paths: kinds, verbs, the policy line; an arrow points where the data goes."""
         ends = "({robot: 'h1', name: '/camera'})-[r:FLOWS_TO]->(n:Topic {name: '/camera/image'})"
         text = f"MATCH p = {ends} MATCH back = (n)<-[r]-() RETURN p, back, n, r LIMIT 1"
-        done = run("query", "--cypher", text, FORCE_COLOR=on_terminal, COLUMNS="80")
+        done = cli("query", "--cypher", text, FORCE_COLOR=on_terminal, COLUMNS="80")
         said = f"/camera (node) | publishes {POLICY.relative_to(ROOT)}:10 -> /camera/image (topic)"
         back = f"/camera/image (topic) <- publishes {POLICY.relative_to(ROOT)}:10 | /camera (node)"
         assert done.returncode == 0, done.stderr
         words = " ".join(done.stdout.split())
         assert all(cell in words for cell in (said, back, "/camera/image (topic)"))
-        row = next(csv.DictReader(io.StringIO(run("query", "--cypher", text, "-f", "csv").stdout)))
+        row = next(csv.DictReader(io.StringIO(cli("query", "--cypher", text, "-f", "csv").stdout)))
         assert row == {"p": said, "back": back, "n": "/camera/image (topic)", "r": said}
         ((path, node),) = [
-            (row["p"], row["n"]) for row in json.loads(run("query", "--cypher", text, "-f", "json").stdout)
+            (row["p"], row["n"]) for row in json.loads(cli("query", "--cypher", text, "-f", "json").stdout)
         ]
         assert [path[0]["name"], path[1]["type"], path[1]["role"], path[2]] == ["/camera", "FLOWS_TO", "publish", node]
         assert (node["name"], "Topic" in node["labels"]) == ("/camera/image", True)

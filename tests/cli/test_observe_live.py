@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Generator, Iterator
     from pathlib import Path
 
+    from tests.helpers.command import Cli
     from tests.helpers.fastdds import Peer
 
 LABELS = "labels: 1\nnodes:\n  /head/camera: {source: [Video]}\n  /uplink: {leak: [Video]}\n"
@@ -273,6 +274,6 @@ def test_no_router_is_one_line_and_exit_code_3(tmp_path: Path) -> None:
     ],
     ids=" ".join,
 )
-def test_options_that_do_not_go_together_are_refused(words: list[str], tmp_path: Path) -> None:
-    done = run("observe", *words, cwd=tmp_path)
+def test_options_that_do_not_go_together_are_refused(words: list[str], cli: Cli, tmp_path: Path) -> None:
+    done = cli("observe", *words, cwd=tmp_path)
     assert (done.returncode, done.stdout) == (2, "")

@@ -14,11 +14,12 @@ from hypothesis import strategies as st
 from rosprivacy.ingest.observe.declared import Declared, declared
 from rosprivacy.ingest.observe.declared_labels import declared_labels
 from rosprivacy.ingest.observe.observation import Span
-from tests.helpers.command import Cli, run
 from tests.helpers.observed import AT
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+    from tests.helpers.command import Cli
 
 SEEN = Span(AT, AT)
 ONE = Declared("/greeter/processing", "/head/camera", "the camera in the head", "to greet people", "/var/faces.db")
@@ -84,14 +85,14 @@ HOSTILE = ["</x>", "a: b\n- c", "\x1b[31m", "x" * 10_000, "{{", "'\"", "# no", "
 
 
 @pytest.mark.parametrize("text", HOSTILE, ids=range(len(HOSTILE)))
-def test_hostile_texts_stay_texts_and_the_file_can_be_read(text: str, tmp_path: Path) -> None:
+def test_hostile_texts_stay_texts_and_the_file_can_be_read(text: str, cli: Cli, tmp_path: Path) -> None:
     (tmp_path / "robot.policy.xml").write_text(POLICY)
     written = declared_labels(
         [Declared("/t", "/head/camera", text, text, text), Declared("/t", text, "", "", "")], SEEN
     )
     (tmp_path / "declared.labels.yaml").write_text(written)
     assert list(yaml.safe_load(written)["nodes"]) == ["/head/camera"]
-    done = run("analyze", "robot.policy.xml", "-l", "declared.labels.yaml", cwd=tmp_path)
+    done = cli("analyze", "robot.policy.xml", "-l", "declared.labels.yaml", cwd=tmp_path)
     assert done.returncode == 1, done.stderr
 
 
