@@ -95,7 +95,8 @@ def search(net: Net, starts: Iterable[int], allowed: int, stop: Mapping[int, int
     """
     spread = net.spread
     reach = Search()
-    seen = reach.seen
+    seen, gone = reach.seen, reach.gone
+    keeps, derives, everything = spread.keeps, spread.derives, spread.all_bits
     level = 0
     leaving: dict[int, int] = defaultdict(int)
     first = {vertex: spread.emits.get(vertex, 0) & allowed for vertex in sorted(starts)}
@@ -121,7 +122,10 @@ def search(net: Net, starts: Iterable[int], allowed: int, stop: Mapping[int, int
                 _arrive_at_all(net, reach, vertex, meeting.read if new else (), new, level, arriving)
         leaving = defaultdict(int)
         for vertex, bits in sorted(arriving.items()):
-            _pass_on(spread, reach, vertex, bits, allowed, stop.get(vertex, 0), leaving)
+            if vertex in stop or vertex in derives:
+                _pass_on(spread, reach, vertex, bits, allowed, stop.get(vertex, 0), leaving)
+            elif new := bits & keeps.get(vertex, everything) & ~gone.get(vertex, 0):
+                _leave(reach, vertex, new, None, leaving)
         read = _across_sides(net, reach, level, leaving)
         for vertex in sorted(read):
             _pass_on(spread, reach, vertex, read[vertex], allowed, stop.get(vertex, 0), leaving)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
+
+from rosprivacy.analysis.model.fact import fact
 
 CHANNELS = ("action", "service", "topic")
 PARTICIPANT = "participant"  # what was seen in a domain and is no node (rule S16)
@@ -13,7 +15,7 @@ KINDS = ("node", *NON_ROS, *CHANNELS)  # channels last: kernel/fixpoint.py sweep
 _RANKS = {kind: rank for rank, kind in enumerate(KINDS)}
 
 
-@dataclass(frozen=True, slots=True)
+@fact
 class Element:
     """Anything in the graph; identity is (robot, kind, name), rule S1.
 

@@ -166,7 +166,7 @@ class _Drafts:
         """One DDS topic that a grant opens to a node, unless denied."""
         against, part = denials.of(grant, endpoint)
         channel = self._channel(endpoint, tuple(sorted({dds for dds, _ in part})) if part else ())
-        if channel.pattern:
+        if channel.side:
             self.said.setdefault(channel, grant.place)
         if part:
             self.rules[channel].update(part)
