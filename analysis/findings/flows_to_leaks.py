@@ -95,15 +95,15 @@ def flows_to_leaks(
     """
     walk = _Walk(net, category, ends, past_leaks=past_leaks)
     starts = [v for v in net.spread.facts if net.spread.begins(v)] if sources is None else sources
-    edges, before, complete = walk.edges(starts, leaks), -1, True
+    edges, before, complete, longest = walk.edges(starts, leaks), -1, True, 0
     while len(edges) != before:  # what only a detour leads to is gone in the next round
         first, before = before < 0, len(edges)
         ahead, back = _distances(edges, BEGIN, forth=True), _distances(edges, END, forth=False)
         edges = [edge for edge in edges if edge[0] in ahead and edge[1] in back]
-        if first and about is not None:
-            longest = _longest(_lengths(edges, ahead, back), about)
+        if about is not None:  # the length of the first round: later ones know which paths were detours, so longer
+            longest = _longest(_lengths(edges, ahead, back), about) if first else longest
             short = [e for e in edges if ahead[e[0]] + (e[2] != NO_FLOW) + back[e[1]] <= longest]
-            edges, complete = short, len(short) == len(edges)
+            edges, complete = short, complete and len(short) == len(edges)
         edges = _without_detours(edges)
     return FlowsToLeaks(dict(sorted(_lengths(edges, ahead, back).items())), complete)
 
