@@ -66,8 +66,8 @@ def revealed(category: Category, contexts: Collection[str]) -> tuple[Legal, ...]
     """Return what data of a category may reveal in some contexts, beyond what is stated of the category anywhere.
 
     >>> from rosprivacy.analysis.example import CATEGORIES, LAW
-    >>> at_care = replace(LAW, verdict=MAY_REVEAL, context="care")
-    >>> video = replace(CATEGORIES["Video"], in_context=(at_care,))
+    >>> at_care = LAW._replace(verdict=MAY_REVEAL, context="care")
+    >>> video = CATEGORIES["Video"]._replace(in_context=(at_care,))
     >>> revealed(video, ["care"]) == (at_care,), revealed(video, ["school"])
     (True, ())
     """

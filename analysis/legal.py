@@ -119,7 +119,7 @@ def strongest_first(law: Iterable[Legal]) -> tuple[Legal, ...]:
     """Return provisions, what holds always first; the same said twice once.
 
     >>> from rosprivacy.analysis.example import LAW
-    >>> [legal.verdict for legal in strongest_first([replace(LAW, verdict=MAY_REVEAL), LAW, LAW])]
+    >>> [legal.verdict for legal in strongest_first([LAW._replace(verdict=MAY_REVEAL), LAW, LAW])]
     ['conditional', 'may-reveal']
     """
     distinct = {(legal.iri, legal.verdict, legal.condition): legal for legal in law}.values()

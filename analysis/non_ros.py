@@ -125,7 +125,7 @@ def kept_past(facts: NonRosFacts, kept: Duration) -> list[Reason]:
     """Return that a recording is older than it is kept; nothing where it is not, or where its age is not known.
 
     >>> from rosprivacy.analysis.durations import parse
-    >>> from rosprivacy.analysis.model import Recording
+    >>> from rosprivacy.analysis.model.recording import Recording
     >>> bag = Recording("run1", 0, 0, oldest=1_700_000_000 * 10**9)
     >>> [len(kept_past(NonRosFacts(recording=bag, day=day), parse("P30D"))) for day in ("2023-12-14", "2023-12-15")]
     [0, 1]

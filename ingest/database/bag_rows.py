@@ -43,7 +43,7 @@ class BagRows:
 def bag_rows(judged: JudgedBag, robot: str, assumptions: Mapping[str, Any]) -> BagRows:
     """Return the rows of a bag.
 
-    >>> from rosprivacy.analysis.model import Bag, BagTopic, JudgedBag, TopicKinds
+    >>> from rosprivacy.analysis.model.recording import Bag, BagTopic, JudgedBag, TopicKinds
     >>> rows = bag_rows(JudgedBag(Bag("/b"), (TopicKinds(BagTopic("/a")),)), "r1", {})
     >>> rows.bag["id"], rows.topics[0]["id"], rows.topics[0]["channels"]
     ('/b', '/b|/a', ['r1|topic|/a'])

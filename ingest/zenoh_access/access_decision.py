@@ -53,12 +53,12 @@ def passes(access: AccessFile, link: Link, flow: str, message: str, key: str) ->
         return True
     if not (access.rules and access.subjects and access.policies):
         return access.allow
-    mine = [rules for identity, rules in _identities(access).items() if _has(link, identity)]
+    mine = [rules for identity, rules in identities(access).items() if _has(link, identity)]
     return any(_allowed(rules, flow, message, key, default=access.allow) for rules in mine) if mine else access.allow
 
 
-def _identities(access: AccessFile) -> dict[Identity, list[AccessRule]]:
-    """The rules that hold for each identity; two subjects that state the same are one."""
+def identities(access: AccessFile) -> dict[Identity, list[AccessRule]]:
+    """Return the rules that hold for each identity; two subjects that state the same are one."""
     rules = {rule.id: rule for rule in access.rules}
     of_subject = {subject.id: _stated(subject) for subject in access.subjects}
     held: dict[Identity, list[AccessRule]] = defaultdict(list)

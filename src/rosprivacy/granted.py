@@ -1,4 +1,4 @@
-"""What a user names -> policies: SROS 2 policies, permissions files and keystores, each by its reader.
+"""What a user names -> policies: SROS 2 policies, permissions files, keystores and Zenoh files, each by its reader.
 
 In: paths, and the settings. Out: policies with what a reader has to know of them.
 """
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.model import Diagnostic, Policy
     from rosprivacy.settings import Settings
 
+ZENOH = ".json5"
+"""How the name of a Zenoh configuration ends."""
 Read = tuple[tuple["Policy", ...], tuple["Diagnostic", ...]]
 
 
@@ -36,10 +38,12 @@ def read_granted(names: Iterable[str], settings: Settings, within: str | None = 
     InputErrors
         With the problems of all files.
     """
-    granted, stated = deployed(names)
+    names = tuple(names)
+    access = [name for name in dict.fromkeys(names) if name.endswith(ZENOH)]
+    granted, stated = deployed(name for name in names if not name.endswith(ZENOH))
     policies: tuple[Policy, ...] = ()
     said: tuple[Diagnostic, ...] = ()
-    if stated or not granted:
+    if stated or not (granted or access):
         policies, said = read_policies(
             stated,
             include_root=settings.include_root,
@@ -51,7 +55,16 @@ def read_granted(names: Iterable[str], settings: Settings, within: str | None = 
     if granted:
         more, told = _deployed(granted, settings, within)
         policies, said = (*policies, *more), (*said, *told)
+    if access:
+        policies = (*policies, *_zenoh(access, settings, within))
     return policies, said
+
+
+def _zenoh(names: list[str], settings: Settings, within: str | None) -> tuple[Policy, ...]:
+    from rosprivacy.ingest.zenoh_access.access_grants import read_zenoh  # noqa: PLC0415 - light start
+
+    _confined(names, within)
+    return read_zenoh(names, settings.domain)
 
 
 def _deployed(names: list[str], settings: Settings, within: str | None) -> Read:

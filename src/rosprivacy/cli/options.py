@@ -57,7 +57,9 @@ ASKED = "What is asked"
 
 Policies = Annotated[
     list[str] | None,
-    typer.Argument(metavar="POLICY", help="SROS 2 policies: files, folders or globs; keystores.", show_default=False),
+    typer.Argument(
+        metavar="POLICY", help="SROS 2 policies: files, folders or globs; keystores; Zenoh files.", show_default=False
+    ),
 ]
 LabelFiles = Annotated[
     list[str] | None,

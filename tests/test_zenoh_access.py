@@ -1,0 +1,151 @@
+"""Zenoh files in place of a policy: what each process may send and receive is a flow, and doubts are told (S5, S11)."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from tests.helpers.command import cli
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from tests.helpers.command import Cli
+
+__all__ = ["cli"]
+LABELS = "labels: 1\nnodes: {/camera: {source: [Video]}, /uplink: {leak: [Video]}}\n"
+
+
+def rule(name: str, permission: str, message: str, flow: str, *keys: str) -> dict[str, Any]:
+    return {"id": name, "permission": permission, "messages": [message], "flows": [flow], "key_exprs": [*keys]}
+
+
+def put(
+    file: Path, *rules: dict[str, Any], default: str = "deny", subject: dict[str, Any] | None = None, **more: Any
+) -> Path:
+    ids = [one["id"] for one in rules]
+    section = {
+        "enabled": True,
+        "default_permission": default,
+        "rules": rules,
+        "subjects": [{"id": "s", **(subject or {})}],
+        "policies": [{"rules": ids, "subjects": ["s"]}],
+        **more,
+    }
+    file.write_text(f"{{ // Zenoh\n access_control: {json.dumps(section)} }}", "utf-8")
+    return file
+
+
+def answered(cli: Cli, folder: Path, *arguments: str | Path) -> tuple[int, list[list[str]], list[str]]:
+    """The exit code, the way of each finding, and what was said."""
+    (folder / "labels.yaml").write_text(LABELS, "utf-8")
+    done = cli("analyze", *arguments, "-l", folder / "labels.yaml", "--format", "json")
+    assert done.returncode in (0, 1, 4), done.stderr
+    document = json.loads(done.stdout)
+    ways = [[step["name"] for step in finding["witness"]] for finding in document["findings"]]
+    return done.returncode, ways, [one["message"] for one in document["diagnostics"]]
+
+
+SENDS = rule("out", "allow", "put", "egress", "0/video/*/*")
+WAY = ["/camera", "/video", "/uplink"]
+
+
+@pytest.mark.parametrize(
+    ("sender", "receiver", "through"),
+    [
+        ([SENDS], [rule("in", "allow", "put", "ingress", "0/video/*/*")], True),
+        ([SENDS], [rule("in", "allow", "put", "ingress", "0/other/*/*")], False),
+        ([SENDS], [rule("in", "allow", "put", "egress", "0/video/*/*")], False),
+        ([SENDS], [rule("in", "allow", "put", "ingress", "**")], True),
+        (
+            [SENDS],
+            [rule("in", "allow", "put", "ingress", "**"), rule("no", "deny", "put", "ingress", "0/video/**")],
+            False,
+        ),
+        (
+            [SENDS],
+            [rule("in", "allow", "put", "ingress", "**"), rule("no", "deny", "put", "ingress", "0/video/T/*")],
+            True,
+        ),
+        (
+            [SENDS],
+            [rule("in", "allow", "put", "ingress", "1/video/*/*"), rule("o", "allow", "put", "egress", "1/x/*/*")],
+            False,
+        ),
+        ([SENDS], [rule("in", "allow", "put", "ingress", "0/vid$*/*/*")], True),
+    ],
+)
+def test_what_passes_is_a_flow(
+    cli: Cli, tmp_path: Path, sender: list[dict[str, Any]], receiver: list[dict[str, Any]], *, through: bool
+) -> None:
+    files = put(tmp_path / "camera.json5", *sender), put(tmp_path / "uplink.json5", *receiver)
+    _, ways, _ = answered(cli, tmp_path, *files, "--domain", "0")
+    assert ([way for way in ways if way[0] == "/camera" and way[-1] == "/uplink"] != []) == through
+
+
+def test_the_old_form_of_a_key_covers_names_below(cli: Cli, tmp_path: Path) -> None:
+    """``/**`` at the end, as generated before rmw_zenoh 0.1.6."""
+    sender = put(tmp_path / "camera.json5", rule("out", "allow", "put", "egress", "0/video/raw/*/*"))
+    for key, through in (("0/video/**", True), ("0/video/*/*", False)):
+        receiver = put(tmp_path / "uplink.json5", rule("in", "allow", "put", "ingress", key))
+        _, ways, _ = answered(cli, tmp_path, sender, receiver)
+        assert bool(ways) == through
+
+
+def test_queries_and_replies_are_legs_of_a_service(cli: Cli, tmp_path: Path) -> None:
+    key = "0/ask/*/*"
+    client = put(tmp_path / "camera.json5", rule("q", "allow", "query", "egress", key))
+    server = put(tmp_path / "uplink.json5", rule("q", "allow", "query", "ingress", key))
+    assert answered(cli, tmp_path, client, server)[:2] == (1, [["/camera", "/ask", "/uplink"]])
+    silent = put(tmp_path / "uplink.json5", rule("r", "allow", "reply", "egress", key))
+    assert not answered(cli, tmp_path, client, silent)[1]
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        ({"enabled": False}, "access control is not enabled"),
+        ({"default": "allow"}, "default_permission is allow"),
+    ],
+)
+def test_what_is_open_is_granted_and_told(cli: Cli, tmp_path: Path, more: dict[str, Any], said: str) -> None:
+    sender = put(tmp_path / "camera.json5", SENDS)
+    receiver = put(tmp_path / "uplink.json5", rule("x", "allow", "put", "ingress", "0/other/*/*"), **more)
+    code, ways, told = answered(cli, tmp_path, sender, receiver)
+    assert code == 1
+    assert ways
+    assert [one for one in told if one.startswith(said)]
+
+
+def test_a_deny_that_does_not_hold_for_everybody_takes_nothing_away(cli: Cli, tmp_path: Path) -> None:
+    sender = put(tmp_path / "camera.json5", SENDS)
+    subjects = [{"id": "s"}, {"id": "t", "usernames": ["ann"]}]
+    rules = [rule("in", "allow", "put", "ingress", "0/video/*/*"), rule("no", "deny", "put", "ingress", "0/video/*/*")]
+    policies = [{"rules": ["in"], "subjects": ["t"]}, {"rules": ["no"], "subjects": ["s"]}]
+    receiver = put(tmp_path / "uplink.json5", *rules, subjects=subjects, policies=policies)
+    code, ways, told = answered(cli, tmp_path, sender, receiver)
+    assert (code, bool(ways)) == (1, True)
+    assert [one for one in told if one.endswith("it does not hold for everybody")]
+
+
+def test_a_file_for_another_domain_grants_nothing_and_that_is_told(cli: Cli, tmp_path: Path) -> None:
+    sender = put(tmp_path / "camera.json5", SENDS)
+    _, ways, told = answered(cli, tmp_path, sender, put(tmp_path / "uplink.json5", SENDS), "--domain", "3")
+    assert not ways
+    assert "nothing is granted in domain 3: the process can send and receive no data" in told
+
+
+def test_keys_of_two_domains_ask_for_one(cli: Cli, tmp_path: Path) -> None:
+    file = put(tmp_path / "camera.json5", SENDS, rule("o", "allow", "put", "egress", "1/video/*/*"))
+    done = cli("analyze", file)
+    assert done.returncode == 2
+    assert "keys of domain 0 and of domain 1; say which with --domain N" in done.stderr
+
+
+def test_a_problem_is_told_at_its_line(cli: Cli, tmp_path: Path) -> None:
+    file = put(tmp_path / "camera.json5", rule("out", "allow", "put", "egress", "0//video"))
+    done = cli("analyze", file)
+    assert done.returncode == 2
+    assert f"{file}:2: key expression '0//video': an empty chunk" in done.stderr
