@@ -13,6 +13,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
+from lxml import etree
 from measure import Measured, Row, corpus, per_robot, side_by_side, timed
 from turtlebot import MANY, POLICY, STEP_5, chosen_categories, label_file, six_lists
 
@@ -142,6 +143,8 @@ def rows(*, quick: bool) -> Iterator[Row]:
         different = (200, 50) if quick else (1_000, 100)
         what = f"per robot, fleet file to report: {different[0]:,} different small ones"
         yield Row(what, f"{different[1]:,}", lambda: _different(folder, known, different), bound=1.5)
+        what = f"{different[0]:,} different small robots, fleet file to report"
+        yield Row(what, "bare lxml", lambda: _bare(folder, known, different[0]), bound=90)
         if quick:
             return
         large, small = 300, 30
@@ -180,6 +183,15 @@ def _different(folder: Path, known: Vocabulary, sizes: tuple[int, int]) -> Measu
     large, small = (different_robots(folder, robots) for robots in sizes)
     seconds = side_by_side(3, lambda: answered(large, known), lambda: answered(small, known))
     return per_robot(seconds, sizes, "80 elements each, and a cloud that joins all")
+
+
+def _bare(folder: Path, known: Vocabulary, robots: int) -> Measured:
+    """Time different robots against lxml, which goes through the elements of their policies and does nothing more."""
+    file = different_robots(folder, robots)
+    policies = [folder / f"smallown{i}.policy.xml" for i in range(robots)]
+    return timed(
+        3, lambda: answered(file, known), lambda: [sum(1 for _ in etree.parse(policy).iter()) for policy in policies]
+    )
 
 
 def _placed(
