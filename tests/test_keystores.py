@@ -94,7 +94,7 @@ def test_where_permissions_are_not_asked_the_answer_is_undetermined_at_best(cli:
     arguments = ("analyze", made.folder, "-l", tmp_path / "labels.yaml")
     declared = cli(*arguments)
     assert declared.returncode == 4
-    assert declared.stdout.startswith("undetermined: no leak reached, but permissions are not asked everywhere")
+    assert declared.stdout.startswith("undetermined: no leak reached, but not all is known of what is allowed")
     enforced = cli(*arguments, "--view", "enforced", "--format", "json")
     [finding] = json.loads(enforced.stdout)["findings"]
     assert [step["name"] for step in finding["witness"]][::2] == ["/camera", "/uplink"]

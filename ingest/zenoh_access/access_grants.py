@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputErrors, PolicyError, shown
-from rosprivacy.analysis.model import Diagnostic, Grant, Policy, Profile, Severity
+from rosprivacy.analysis.model import ACCESS_GAP, Diagnostic, Grant, Policy, Profile, Severity
 from rosprivacy.ingest.policies.names import DDS
 from rosprivacy.ingest.reading.bounded_file import contents
 from rosprivacy.ingest.zenoh_access.access_decision import identities
@@ -125,7 +125,9 @@ def _of_rule(
         first = key.split("/")[0]
         names, exact = ros_names(key)
         if not names or not (first.isdigit() or _is_wild(first)):
-            said.append(_warning(place, f"{shown(key)!r} is not read: rmw_zenoh has <domain>/<name>/<type>/<hash>"))
+            message = f"{shown(key)!r} is not read: rmw_zenoh has <domain>/<name>/<type>/<hash>"
+            code = ACCESS_GAP if rule.allow else ""  # what it allows is not known
+            said.append(Diagnostic(place, Severity.WARNING, message, code))
             continue
         if not intersects(key, f"{domain}/**"):
             continue

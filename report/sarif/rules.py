@@ -112,10 +112,11 @@ BAG_GAPS = Rule(
 )
 ACCESS_GAPS = Rule(
     "access-gaps",
-    "PermissionsAreNotAsked",
-    "Permissions do not hold everywhere: that nothing is found does not say that there is nothing.",
-    "The governance switches access control off for some topics, so nothing keeps a program to its permissions there.",
-    ("Let the governance ask permissions, or analyse the enforced view: rosprivacy analyze --view enforced.",),
+    "WhatIsAllowedIsNotKnown",
+    "Not all is known of what is allowed: that nothing is found does not say that there is nothing.",
+    "The governance asks no permissions for some topics, or a key of an access list is not read: what a program does "
+    "there is not known.",
+    ("Let the governance ask permissions, or analyse the enforced view; write keys as rmw_zenoh has them.",),
 )
 FILES_NOT_READ = Rule(
     "files-not-read",

@@ -8,6 +8,7 @@ from rosprivacy.cli.app import program
 
 STILL_ENGLISH = {
     "bag": "what is in recordings",
+    "check": "rights, with lines of files",
     "lint": "rules for those who write policies",
     "db": "a server",
     "decide": "what was recorded",

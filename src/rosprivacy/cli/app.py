@@ -31,6 +31,7 @@ COMMANDS = {  # name -> its group in help; each stands in the module of its name
     "diff": ANALYSE,
     "bag": ANALYSE,
     "lint": ANALYSE,
+    "check": ANALYSE,
     "report": SEE,
     "graph": SEE,
     "decide": DECIDE,

@@ -1,0 +1,41 @@
+"""The document of a check -> lines for the terminal: by enclave, what only one of both sides says."""
+
+from __future__ import annotations
+
+from itertools import groupby
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.errors import shown
+from rosprivacy.analysis.text import counted
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rosprivacy.report.contract.deployment import CheckDocument, DifferenceEntry
+
+SAID = {"policy": "only the policy says", "deployed": "only what is deployed says"}
+
+
+def deployment_lines(document: CheckDocument) -> Iterator[str]:
+    """Yield the lines of an answer."""
+    found = document["differences"]
+    if not found:
+        yield "what is deployed is what the policy says"
+    for enclave, of_enclave in groupby(found, key=lambda entry: entry["enclave"]):
+        yield f"enclave {shown(enclave)}"
+        for side, entries in groupby(of_enclave, key=lambda entry: entry["only_in"]):
+            yield f"   {SAID[side]}"
+            yield from (f"      {_line(entry)}" for entry in entries)
+    for said in document["diagnostics"]:
+        place = f"{shown(str(said['file']))}:{said['line']}" if said["line"] else shown(str(said["file"]))
+        yield f"{said['severity']}: {place}: {said['message']}"
+    if found:
+        sides = [entry["only_in"] for entry in found]
+        yield ""
+        missing, more = counted(sides.count("policy"), "right"), counted(sides.count("deployed"), "right")
+        yield f"{missing} of the policy not deployed, {more} deployed and not in the policy"
+
+
+def _line(entry: DifferenceEntry) -> str:
+    leg = f" ({entry['leg']})" if entry["leg"] else ""
+    return f"{entry['right']} {entry['kind']} {shown(entry['name'])}{leg}   {shown(entry['file'])}:{entry['line']}"

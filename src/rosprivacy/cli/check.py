@@ -1,0 +1,45 @@
+"""``rosprivacy check``: what a policy says, and what is deployed."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from rosprivacy.cli.exit_code import LEAK
+from rosprivacy.cli.inputs import Inputs, reads_system
+from rosprivacy.cli.options import Output, TextOrJson
+from rosprivacy.cli.output import emit
+
+
+@reads_system(
+    "a policy and what is deployed",
+    without=(
+        "policies", "labels", "fleet", "from_database", "neo4j", "add", "ontology", "standard_channels",
+        "no_standard_channels", "types", "type_limits", "no_type_limits", "categories", "category", "view", "decisions",
+    ),
+)  # fmt: skip
+def check(
+    policy: Annotated[
+        str, typer.Argument(metavar="POLICY", help="What is meant: an SROS 2 policy, or a folder of such.")
+    ],
+    deployed: Annotated[
+        list[str], typer.Argument(metavar="DEPLOYED", help="A keystore, permissions files, or Zenoh configurations.")
+    ],
+    inputs: Inputs,
+    format: Annotated[TextOrJson, typer.Option("--format", "-f", help="Of the answer.")] = TextOrJson.text,  # noqa: A002 - the option's name
+    output: Output = None,
+) -> None:
+    """Compare a policy with what is deployed: which rights only one of them has, by enclave, each with its line.
+
+    Ends with 1 if there is a difference.
+    """
+    from rosprivacy.deployment import check_document
+    from rosprivacy.report.compare.deployment_lines import deployment_lines
+    from rosprivacy.report.json_text import as_text
+
+    document = check_document(policy, tuple(deployed), inputs.settings)
+    lines = "".join(f"{line}\n" for line in deployment_lines(document))
+    emit(as_text(document) if format is TextOrJson.json else lines, output)
+    if document["differences"]:
+        raise typer.Exit(LEAK)

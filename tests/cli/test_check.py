@@ -1,0 +1,88 @@
+"""``rosprivacy check``: what a policy says, and what is deployed."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING
+
+import jsonschema
+import pytest
+
+from tests.helpers.command import cli
+from tests.helpers.keystores import Keystore, grant, permissions, rule
+from tests.helpers.paths import ROOT
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from tests.helpers.command import Cli
+
+__all__ = ["cli"]
+
+POLICY = """<policy version="0.2.0"><enclaves>
+<enclave path="/camera"><profiles><profile ns="/" node="camera">
+<topics publish="ALLOW"><topic>/video</topic></topics>
+<services reply="ALLOW"><service>/start</service></services>
+</profile></profiles></enclave></enclaves></policy>
+"""
+REPLY = (rule("allow", publish=("rt/video", "rr/startReply", "ros_discovery_info"), subscribe=("rq/startRequest",)),)
+ACL = """{access_control: {enabled: true, default_permission: "deny",
+ rules: [{id: "r", messages: ["put"], flows: ["egress"], permission: "allow", key_exprs: ["0/audio/*/*"]}],
+ subjects: [{id: "s"}], policies: [{rules: ["r"], subjects: ["s"]}]}}
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "p.policy.xml").write_text(POLICY)
+    return tmp_path
+
+
+def test_what_sros2_made_of_a_policy_holds_what_it_says(cli: Cli, folder: Path) -> None:
+    Keystore(folder / "k").enclave("/camera", permissions(grant("/camera", *REPLY)))
+    done = cli("check", "p.policy.xml", "k", cwd=folder)
+    assert (done.returncode, done.stdout) == (0, "what is deployed is what the policy says\n")
+
+
+def test_what_only_one_of_them_says_is_told_with_its_line(cli: Cli, folder: Path) -> None:
+    other = rule("allow", publish=("rt/video", "rt/audio"))
+    Keystore(folder / "k").enclave("/camera", permissions(grant("/camera", other)))
+    done = cli("check", "p.policy.xml", "k", cwd=folder)
+    assert done.returncode == 1
+    lines = done.stdout.splitlines()
+    assert lines[:5] == [
+        "enclave /camera",
+        "   only what is deployed says",
+        "      write topic /audio   k/enclaves/camera/permissions.p7s:17",
+        "   only the policy says",
+        "      read service /start (request)   p.policy.xml:4",
+    ]
+    assert lines[-1] == "2 rights of the policy not deployed, 1 right deployed and not in the policy"
+
+
+def test_json_keeps_its_contract(cli: Cli, folder: Path) -> None:
+    Keystore(folder / "k").enclave("/viewer", permissions(grant("/viewer", rule("allow", subscribe=("rt/video",)))))
+    document = json.loads(cli("check", "p.policy.xml", "k", "-f", "json", cwd=folder).stdout)
+    jsonschema.validate(document, json.loads((ROOT / "docs/check.schema.json").read_text("utf-8")))
+    assert {(one["enclave"], one["only_in"], one["right"], one["name"]) for one in document["differences"]} == {
+        ("/camera", "policy", "write", "/video"),
+        ("/camera", "policy", "read", "/start"),
+        ("/camera", "policy", "write", "/start"),
+        ("/viewer", "deployed", "read", "/video"),
+    }
+
+
+def test_a_file_of_zenoh_is_compared_with_the_node_of_its_name(cli: Cli, folder: Path) -> None:
+    """The generator that rmw_zenoh has loses lines: these are told."""
+    pytest.importorskip("json5")
+    (folder / "camera.json5").write_text(ACL)
+    done = cli("check", "p.policy.xml", "camera.json5", cwd=folder)
+    assert done.returncode == 1
+    assert "      write topic /audio   camera.json5:2" in done.stdout.splitlines()
+    assert "      write topic /video   p.policy.xml:3" in done.stdout.splitlines()
+
+
+def test_what_is_not_verified_is_not_compared(cli: Cli, folder: Path) -> None:
+    (folder / "permissions.xml").write_text(permissions(grant("/camera", *REPLY)))
+    assert cli("check", "p.policy.xml", "permissions.xml", cwd=folder).returncode == 2
+    assert cli("check", "p.policy.xml", "permissions.xml", "--allow-unsigned", cwd=folder).returncode == 0
