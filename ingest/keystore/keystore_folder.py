@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputErrors, PolicyError, shown
-from rosprivacy.analysis.model import Diagnostic, Place, Severity
+from rosprivacy.analysis.model import NOT_READ, Diagnostic, Place, Severity
 from rosprivacy.ingest.keystore.certificate import given_by, read_certificate
 from rosprivacy.ingest.keystore.governance_file import read_governance
 from rosprivacy.ingest.keystore.grants import enclave_of
@@ -61,12 +61,16 @@ def read_keystore(
     InputErrors
         With every problem of the keystore, one line each.
     """
-    enclaves = sorted(path.parent for path in (Path(folder) / "enclaves").rglob(PERMISSIONS))
+    inside = Path(folder) / "enclaves"
+    enclaves = sorted({path.parent for name in (PERMISSIONS, CERTIFICATE) for path in inside.rglob(name)})
     problems: list[InputError] = []
     if not enclaves:
         problems.append(PolicyError(folder, 0, f"a keystore without any {PERMISSIONS}", "create an enclave in it"))
     deployed: list[Deployed] = []
-    said: list[Diagnostic] = []
+    said: list[Diagnostic] = [
+        Diagnostic(Place(str(file), 0), Severity.NOTICE, "not read: it is no part of the keystore", NOT_READ)
+        for file in sorted(Path(folder).glob("*.xml"))
+    ]
     for enclave in enclaves:
         reader = _Enclave(folder, enclave, today, allow_unsigned)
         try:

@@ -130,6 +130,16 @@ def test_governance_tells_where_permissions_do_not_hold_and_what_is_sent_in_the_
     assert "DDS topics * " not in said
 
 
+def test_permissions_that_are_missing_are_an_error(keystore: Keystore) -> None:
+    (keystore.folder / "enclaves/camera/permissions.p7s").unlink()
+    assert refused(keystore) == [("enclaves/camera/permissions.p7s", "file not found")]
+
+
+def test_a_policy_that_lies_in_a_keystore_is_told(keystore: Keystore) -> None:
+    (keystore.folder / "robot.policy.xml").write_text("<policy/>")
+    assert [d.message for d in read(keystore)[1]] == ["not read: it is no part of the keystore"]
+
+
 def test_an_empty_keystore_is_an_error(tmp_path: Path) -> None:
     (tmp_path / "k/enclaves").mkdir(parents=True)
     (tmp_path / "k/public").mkdir()
