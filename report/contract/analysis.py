@@ -144,6 +144,21 @@ class Assumptions(Given):
     globs: NotRequired[list[GlobEntry]]
 
 
+class AddedEntry(TypedDict):
+    """A finding that only the enforced view has, the enclaves that make it possible, and which to split to end it."""
+
+    finding: FindingEntry
+    enclaves: list[str]
+    split: list[str]
+
+
+class EnforcedEntry(TypedDict):
+    """What the enforced view adds to the declared one (rule S6)."""
+
+    verdict: str
+    added: list[AddedEntry]
+
+
 class AnalysisDocument(TypedDict):
     """``rosprivacy.analysis/1``."""
 
@@ -179,3 +194,4 @@ class AnalysisDocument(TypedDict):
     assumptions: Assumptions
     decisions: NotRequired[list[ListedDecision]]
     fleet: NotRequired[FleetEntry]
+    enforced: NotRequired[EnforcedEntry]

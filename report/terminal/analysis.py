@@ -17,6 +17,7 @@ from rosprivacy.report.observed_lines import observed_lines
 from rosprivacy.report.review_groups import SHOWN
 from rosprivacy.report.terminal.called_alike import legs
 from rosprivacy.report.terminal.denied import denied_lines
+from rosprivacy.report.terminal.enforced import enforced_lines
 from rosprivacy.report.terminal.finding_lines import MANY, details, law_lines, overview
 from rosprivacy.report.terminal.fleet import fleet_lines
 from rosprivacy.report.terminal.globs import glob_lines, glob_warnings
@@ -98,6 +99,7 @@ def _lines(report: Mapping[str, Any], words: Words, *, verbose: bool, quiet: boo
     yield _summary(report, words), ""
     yield from fleet_lines(report, words)
     yield from _findings(report, words, verbose=verbose)
+    yield from enforced_lines(report, words)
     yield from review_lines(report, words, verbose=verbose)
     yield from end_lines(report, most, words)
     yield from denied_lines(report, words, most=most)

@@ -104,10 +104,16 @@ def in_pieces(answer: Answer, name: str, style: Style | None = None) -> str | by
 
 def _text(answer: Answer, style: Style) -> str:
     from rosprivacy.report.document.whole import document
+
+    return text_of(document(answer), style)
+
+
+def text_of(told: Mapping[str, Any], style: Style) -> str:
+    """Return a document as text, for a terminal if the style says so."""
     from rosprivacy.report.terminal.analysis import print_report, report_text
     from rosprivacy.report.words.words import Words
 
-    words, told = Words(style.language), document(answer)
+    words = Words(style.language)
     width = terminal_width() if style.colour else None
     if width is not None:
         from io import StringIO

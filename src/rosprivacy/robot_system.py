@@ -29,7 +29,7 @@ from rosprivacy.question import question_of
 from rosprivacy.system import System
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Collection, Iterable
 
     from rosprivacy.analysis.model import Bound, Diagnostic, FlowGraph, Policy
     from rosprivacy.ingest.database.rows import RobotRows
@@ -65,10 +65,32 @@ def robot_system(policies: tuple[str, ...], labels: tuple[str | Labels, ...], qu
     InputErrors
         With every problem of the input, one line each.
     """
+    return system_reader(policies, labels, question)(())
+
+
+def system_reader(
+    policies: tuple[str, ...], labels: tuple[str | Labels, ...], question: Question
+) -> Callable[[Collection[str]], System]:
+    """Read policies once; return what makes a system of them with some enclaves split (rule S6).
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the input, one line each.
+    """
     settings = question.settings
     graphs = read_graphs(settings)
-    read, types = read_system(policies, settings, graphs), observed_types(settings, graphs)
-    return _under(labels, read=read, types=types, settings=settings, vocabulary=question.vocabulary)
+    (read, said), types = read_system(policies, settings, graphs), observed_types(settings, graphs)
+
+    def made(enclaves: Collection[str]) -> System:
+        there = read
+        if enclaves:
+            from rosprivacy.ingest.policies.split_enclaves import split  # noqa: PLC0415 - light start
+
+            there = split(read, enclaves)
+        return _under(labels, read=(there, said), types=types, settings=settings, vocabulary=question.vocabulary)
+
+    return made
 
 
 def _under(

@@ -76,7 +76,7 @@ def test_help_lists_each_option(cli: Cli, command: str) -> None:
             pytest.param(["rosprivacy", "analyze", *words], wanted, marks=pytest.mark.slow)
             for words, wanted in (
                 (["--fail"], {"--fail-on"}),
-                (["--view", ""], {"declared", "enforced"}),
+                (["--view", ""], {"declared", "enforced", "both"}),
                 (["--format", "j"], {"json", "json-ld"}),
                 (["--categories", "Vo"], {"Voice", "VoiceCommand", "VoicePrint"}),
             )
