@@ -46,6 +46,11 @@ ENDINGS = {
     f"diff {BEFORE}": 2,
     "bag examples/care-home/recording -l examples/care-home/care-home.labels.yaml": 1,
     "bag examples/care-home/nope.mcap": 2,
+    "lint examples/factory/before.policy.xml": 0,
+    "lint examples/factory/nope.xml": 2,
+    "check examples/factory/before.policy.xml examples/factory/before.policy.xml": 0,
+    "check examples/factory/before.policy.xml examples/factory/after.policy.xml": 1,
+    "check examples/factory/before.policy.xml nope": 2,
     "observe --text nope.txt": 2,  # an answer would name the time
     f"report {BEFORE} -f markdown --lang de": 0,
     "report examples/factory/nope.xml": 2,
