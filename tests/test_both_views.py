@@ -13,6 +13,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 import rosprivacy
+from rosprivacy.analysis.modes import View
 from rosprivacy.both_views import both_views
 from rosprivacy.settings import Settings
 from tests.helpers.command import cli
@@ -87,7 +88,7 @@ def apart(enclaves: Enclaves, chosen: list[str]) -> Enclaves:
     return found
 
 
-def ids(text: str, view: str) -> set[str]:
+def ids(text: str, view: View) -> set[str]:
     Path("q.xml").write_text(text)
     result = rosprivacy.analyze("q.xml", "l.yaml", view=view)
     return {finding.id for finding in result.analysis.findings if finding.stands}
@@ -109,11 +110,11 @@ def test_what_is_added_is_what_the_union_of_all_profiles_has_and_splitting_ends_
             raise
         declared = {finding.id for finding in result.analysis.findings if finding.stands}
         added = {entry["finding"]["id"] for entry in enforced["added"]}
-        assert added == ids(policy(union(enclaves)), "declared") - declared
+        assert added == ids(policy(union(enclaves)), View.declared) - declared
         for entry in enforced["added"]:
             assert entry["enclaves"]
             if entry["split"]:
-                assert entry["finding"]["id"] not in ids(policy(apart(enclaves, entry["split"])), "enforced")
+                assert entry["finding"]["id"] not in ids(policy(apart(enclaves, entry["split"])), View.enforced)
 
 
 @pytest.fixture
