@@ -25,8 +25,8 @@ MAX_BYTES = 2**18
 """Of a file; ``json5`` takes some ten seconds for a megabyte."""
 MISSING = "install the extra [zenoh] from where rosprivacy came from"
 _TOKEN = re.compile(
-    r"""//[^\n\r\u2028\u2029]* | /\*.*?\*/ | [{}\[\]]
-    | "(?:[^"\\]|\\.)*" | '(?:[^'\\]|\\.)*' | [^\s\ufeff{}\[\]"',:/]+""",
+    r"""//[^\n\r\u2028\u2029]* | /\*.*?(?:\*/|$) | [{}\[\]]
+    | "(?:[^"\\]|\\(?:.|$))*(?:"|$) | '(?:[^'\\]|\\(?:.|$))*(?:'|$) | [^\s\ufeff{}\[\]"',:/]+""",
     re.DOTALL | re.VERBOSE,
 )
 _PLACE = re.compile(r"<string>:(\d+) (.*)", re.DOTALL)
