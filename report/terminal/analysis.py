@@ -15,9 +15,9 @@ from rosprivacy.report.element_counts import count_rows
 from rosprivacy.report.naming import shown_name
 from rosprivacy.report.observed_lines import observed_lines
 from rosprivacy.report.review_groups import SHOWN
+from rosprivacy.report.terminal.added_lines import enforced_lines
 from rosprivacy.report.terminal.called_alike import legs
 from rosprivacy.report.terminal.denied import denied_lines
-from rosprivacy.report.terminal.enforced import enforced_lines
 from rosprivacy.report.terminal.finding_lines import MANY, details, law_lines, overview
 from rosprivacy.report.terminal.fleet import fleet_lines
 from rosprivacy.report.terminal.globs import glob_lines, glob_warnings

@@ -165,8 +165,13 @@ def test_what_makes_no_sense_for_a_command_is_refused_in_one_wording(cli: Cli, c
         (["--from-database"], ["--fleet", "f.yaml"], f"{STORED}: no --fleet"),
         (
             ["--from-database"],
-            ["--view", "enforced", "--no-standard-channels"],
-            f"{STORED}: no --no-standard-channels, --view",
+            ["--max-bytes", "5", "--no-standard-channels"],
+            f"{STORED}: no --no-standard-channels, --max-bytes",
+        ),
+        (
+            ["--from-database"],
+            ["--view", "enforced"],
+            f"{STORED}: no --view",
         ),
         (["--from-database"], ["--standard-channels", "s.yaml"], f"{STORED}: no --standard-channels"),
         (["--from-database"], ["--category", "Video"], f"{STORED}: no --category"),

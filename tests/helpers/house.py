@@ -65,7 +65,7 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "document": {"", "contract"},
         "terminal": {"", "document", "words"},
         "pictures": {"", "words"},
-        "compare": {"", "document"},
+        "compare": {"", "contract", "document"},
         "page": {"", "document", "pictures", "compare", "words"},
         "bags": {"", "contract"},
         "lint": {"", "contract", "sarif"},

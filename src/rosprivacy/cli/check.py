@@ -34,7 +34,7 @@ def check(
 
     Ends with 1 if there is a difference.
     """
-    from rosprivacy.deployment import check_document
+    from rosprivacy.checking import check_document
     from rosprivacy.report.compare.deployment_lines import deployment_lines
     from rosprivacy.report.json_text import as_text
 
