@@ -24,6 +24,7 @@ from rosprivacy.cli.inputs import WRITTEN
 from rosprivacy.cli.options import ASKED, READ
 from rosprivacy.ingest.database.schema import NODES, RELATIONSHIPS, Property
 from rosprivacy.ingest.labels.label_file import read_labels
+from rosprivacy.ingest.lint.rule_table import RULES
 from rosprivacy.ontology.vocabulary import TOP, load
 from rosprivacy.queries.library import pack
 from rosprivacy.report.terminal import categories
@@ -41,6 +42,7 @@ if TYPE_CHECKING:
 ARCHITECTURE = ROOT / "docs" / "architecture.md"
 COMMAND_LINE = ROOT / "docs" / "command-line.md"
 DATABASE = ROOT / "docs" / "database.md"
+LINT = ROOT / "docs" / "lint.md"
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md"]
 NEEDS_SERVER = ("load", "query", "db")  # their tests are those of the database
 SECURITY = ROOT / "docs" / "security.md"
@@ -162,6 +164,12 @@ def with_parts(text: str, **parts: str) -> str:
 
 def database_page(text: str) -> str:
     return with_parts(text, schema=schema_tables(), queries=query_table())
+
+
+def lint_page(text: str) -> str:
+    rows = [f"| `{rule.name}` | {rule.severity} | {rule.about} | {rule.why} |" for rule in RULES.values()]
+    head = ["| rule | severity | broken by | what comes of it |", "| --- | --- | --- | --- |"]
+    return with_parts(text, rules="\n".join([*head, *rows, ""]).replace("*", r"\*").replace("<", "&lt;"))
 
 
 def house() -> str:
@@ -306,6 +314,10 @@ def test_the_readme_has_the_table_of_exit_codes() -> None:
     assert EXIT_CODES in (ROOT / "README.md").read_text("utf-8")
 
 
+def test_the_page_of_lint_has_every_rule() -> None:
+    assert lint_page(LINT.read_text("utf-8")) == LINT.read_text("utf-8")
+
+
 def test_no_registry_is_named() -> None:
     """Mirrors are the user's own configuration."""
     for page in PAGES:
@@ -316,4 +328,5 @@ if __name__ == "__main__":
     ARCHITECTURE.write_text(with_parts(ARCHITECTURE.read_text("utf-8"), house=house()), "utf-8")
     CATEGORIES.write_text(categories_page(CATEGORIES.read_text("utf-8")), "utf-8")
     COMMAND_LINE.write_text(command_line(), "utf-8")
+    LINT.write_text(lint_page(LINT.read_text("utf-8")), "utf-8")
     DATABASE.write_text(database_page(DATABASE.read_text("utf-8")), "utf-8")
