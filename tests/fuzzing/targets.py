@@ -16,12 +16,15 @@ from rosprivacy.analysis.errors import InputError
 from rosprivacy.ingest.bags.bag_folders import read_bags
 from rosprivacy.ingest.decisions.decisions_file import read_decisions
 from rosprivacy.ingest.fleet.fleet_file import read_fleet
+from rosprivacy.ingest.keystore.governance_file import read_governance
+from rosprivacy.ingest.keystore.permissions_file import read_permissions
 from rosprivacy.ingest.labels.label_file import read_labels
 from rosprivacy.ingest.mitigation.limits_file import read_limits
 from rosprivacy.ingest.observe.text_files import TextFiles
 from rosprivacy.ingest.policies import common_names, names
 from rosprivacy.ingest.policies.policy_xml import read_policy
 from rosprivacy.ingest.policies.saved_graph import read_saved
+from rosprivacy.ingest.zenoh_access.access_file import read_access
 from rosprivacy.mitigation import run_mitigation
 from rosprivacy.observing import written
 from rosprivacy.ontology.own import with_own
@@ -30,7 +33,7 @@ from rosprivacy.queries.library import parse
 from rosprivacy.report.compare.earlier import read_earlier
 from rosprivacy.report.json_text import as_text
 from rosprivacy.spark import parquet
-from tests.fuzzing import bag_texts, label_texts, node_info_texts, other_texts, policy_texts
+from tests.fuzzing import bag_texts, label_texts, node_info_texts, other_texts, policy_texts, security_texts
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
@@ -163,7 +166,7 @@ def _with_base(*more: str) -> tuple[str, ...]:
 
 TARGETS = {target.name: target for target in (
     Target(
-        "policy", 300, policy_texts.policy_files, lambda: read_policy("policy.xml"),
+        "policy", 250, policy_texts.policy_files, lambda: read_policy("policy.xml"),
         lambda: rosprivacy.analyze("policy.xml", "star.yaml", today=TODAY),
         ("analyze", "policy.xml", "-l", "star.yaml"), "policy",
     ),
@@ -215,6 +218,21 @@ TARGETS = {target.name: target for target in (
         "node-info", 30, node_info_texts.node_info, _observed,
         lambda: rosprivacy.analyze("seen.policy.xml", "star.yaml", today=TODAY),
         ("observe", "--text", "graph.txt", "--at", SEEN_AT),
+    ),
+    Target(
+        "permissions", 20, security_texts.permission_files,
+        lambda: read_permissions(Path("permissions.xml").read_bytes(), "permissions.xml"),
+        lambda: rosprivacy.analyze("permissions.xml", "star.yaml", allow_unsigned=True, today=TODAY),
+        ("analyze", "permissions.xml", "--allow-unsigned", "-l", "star.yaml"), "policy",
+    ),
+    Target(
+        "governance", 10, security_texts.governance_files,
+        lambda: read_governance(Path("governance.xml").read_bytes(), "governance.xml"), words="policy",
+    ),
+    Target(
+        "zenoh", 20, security_texts.access_files, lambda: read_access("node.json5"),
+        lambda: rosprivacy.analyze("node.json5", "star.yaml", today=TODAY),
+        ("analyze", "node.json5", "-l", "star.yaml"),
     ),
     Target("names", 25, other_texts.names, _names, words=""),
 )}  # fmt: skip
