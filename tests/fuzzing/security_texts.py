@@ -66,7 +66,9 @@ def access_files(choices: Choices) -> dict[str, str | bytes]:
         }
         for number in range(1 + choices.below(2))
     ]
-    subjects: list[dict[str, Any]] = [{"id": "s"}, {"id": "t", "usernames": ["u"]}][: 1 + choices.below(2)]
+    subjects: list[dict[str, Any]] = [{"id": "s"}]
+    if choices.once_in(2):
+        subjects.append({"id": "t", "usernames": ["u"]})
     access: dict[str, Any] = {
         "enabled": not choices.once_in(5),
         "default_permission": choices.pick(("deny", "allow")),
