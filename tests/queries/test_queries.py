@@ -194,7 +194,7 @@ def test_on_an_empty_database_there_are_no_rows(driver: Driver) -> None:
 
 
 @pytest.mark.database
-@pytest.mark.parametrize("robots", one_in(6, [robots for robots, _ in by_load()]))
+@pytest.mark.parametrize("robots", one_in(6, [robots for robots, _ in by_load()][::-1]))
 def test_rows(robots: str, driver: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ROOT)
     fill(driver, json.loads(robots))
