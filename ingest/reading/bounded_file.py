@@ -85,3 +85,24 @@ def read_regular(file: str, max_bytes: int, fail: Callable[[int, str, str], Inpu
         return contents(path)
     except (OSError, ValueError) as error:
         raise fail(0, f"cannot be read: {reason(error)}", "check the path and its permissions") from None
+
+
+def read_utf8(file: str, max_bytes: int, fail: Callable[[int, str, str], InputError]) -> tuple[str, bytes]:
+    """Read a file whole as UTF-8; return its text and its bytes.
+
+    Parameters
+    ----------
+    fail
+        As in ``read_regular``.
+
+    Raises
+    ------
+    InputError
+        Of the caller's kind.
+    """
+    data = read_regular(file, max_bytes, fail)
+    try:
+        return data.decode("utf-8-sig"), data
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        raise fail(line, "not UTF-8", "save the file as UTF-8") from None

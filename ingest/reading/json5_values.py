@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import shown
-from rosprivacy.ingest.reading.bounded_file import read_regular
+from rosprivacy.ingest.reading.bounded_file import read_utf8
 from rosprivacy.ingest.reading.yaml_values import Builder
 
 if TYPE_CHECKING:
@@ -35,12 +35,7 @@ _TOO_DEEP = ("nested more deeply than can be read", "write it flatter")
 
 def read(file: str, fail: Callable[[int, str, str], InputError], bounds: Bounds = BOUNDS) -> tuple[Value, bytes]:
     """Read a file; see ``yaml_values.read``."""
-    data = read_regular(file, MAX_BYTES, fail)
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = data.count(b"\n", 0, error.start) + 1
-        raise fail(line, "not UTF-8", "save the file as UTF-8") from None
+    text, data = read_utf8(file, MAX_BYTES, fail)
     return parse(text, fail, bounds), data
 
 

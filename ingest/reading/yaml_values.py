@@ -16,7 +16,7 @@ import yaml
 
 from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import shown
-from rosprivacy.ingest.reading.bounded_file import read_regular
+from rosprivacy.ingest.reading.bounded_file import read_utf8
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -78,12 +78,7 @@ def read(file: str, fail: Callable[[int, str, str], InputError], bounds: Bounds 
     InputError
         Of the caller's kind.
     """
-    data = read_regular(file, MAX_BYTES, fail)
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = data.count(b"\n", 0, error.start) + 1
-        raise fail(line, "not UTF-8", "save the file as UTF-8") from None
+    text, data = read_utf8(file, MAX_BYTES, fail)
     return parse(text, fail, bounds), data
 
 
