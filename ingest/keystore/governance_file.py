@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosprivacy.ingest.keystore.permissions_file import NOWHERE
-from rosprivacy.ingest.keystore.security_xml import Source, security_document
+from rosprivacy.ingest.keystore.security_xml import Source, security_entries
 from rosprivacy.ingest.policies.names import covers
 
 if TYPE_CHECKING:
@@ -120,12 +120,9 @@ def read_governance(data: bytes, file: str, before: int = 0) -> Governance:
         With every problem of the text, each a ``PolicyError`` of one line.
     """
     source = Source(file, before)
-    section = security_document(data, source, "domain_access_rules")
-    rules = [_domain_rule(rule) for rule in section.children({"domain_rule"})] if section else []
-    if section and not rules:
-        source.problem(section.element, "<domain_access_rules> is empty", "add a <domain_rule>")
+    rules = tuple(map(_domain_rule, security_entries(data, source, "domain_access_rules", "domain_rule")))
     source.check()
-    return Governance(file, tuple(rules))
+    return Governance(file, rules)
 
 
 def _domain_rule(rule: Section) -> DomainRule:

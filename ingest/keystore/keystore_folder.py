@@ -66,13 +66,14 @@ def read_keystore(
     problems: list[InputError] = []
     if not enclaves:
         problems.append(PolicyError(folder, 0, f"a keystore without any {PERMISSIONS}", "create an enclave in it"))
+    verified: dict[str, SignedText] = {}
     deployed: list[Deployed] = []
     said: list[Diagnostic] = [
         Diagnostic(Place(str(file), 0), Severity.NOTICE, "not read: it is no part of the keystore", NOT_READ)
         for file in sorted(Path(folder).glob("*.xml"))
     ]
     for enclave in enclaves:
-        reader = _Enclave(folder, enclave, today, allow_unsigned)
+        reader = _Enclave(folder, enclave, today, allow_unsigned, verified)
         try:
             deployed.append(reader.read())
         except InputErrors as error:
@@ -91,6 +92,7 @@ class _Enclave:
     folder: Path
     today: str
     allow_unsigned: bool
+    verified: dict[str, SignedText]  # by file: the governance that all enclaves share is asked for once
     said: list[Diagnostic] = field(default_factory=list)
     problems: list[InputError] = field(default_factory=list)
     sources: dict[str, str] = field(default_factory=dict)
@@ -129,13 +131,15 @@ class _Enclave:
             file = str(shared)  # sros2 links it into each enclave
         authority = str(Path(self.keystore) / "public" / PERMISSIONS_CA)
         try:
-            signed = read_signed(file, authority)
+            signed = self.verified.get(file) or read_signed(file, authority)
         except PolicyError as error:
             if not self.allow_unsigned or not Path(file).is_file():
                 self.problems.append(error)
                 return None
             signed = read_signed(file, None)
             self._warn(file, f"not verified: {error.problem}; read all the same, as --allow-unsigned asks")
+        if signed.verified:
+            self.verified[file] = signed
         self.sources[file] = hashlib.sha256(signed.data).hexdigest()
         return signed
 

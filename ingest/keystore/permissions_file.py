@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.ingest.keystore.domains import Domains
-from rosprivacy.ingest.keystore.security_xml import Source, security_document
+from rosprivacy.ingest.keystore.security_xml import Source, security_entries
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -106,12 +106,9 @@ def read_permissions(data: bytes, file: str, before: int = 0) -> Permissions:
         With every problem of the text, each a ``PolicyError`` of one line.
     """
     source = Source(file, before)
-    section = security_document(data, source, "permissions")
-    grants = [_grant(grant) for grant in section.children({"grant"})] if section else []
-    if section and not grants:
-        source.problem(section.element, "<permissions> is empty", "add a <grant>")
+    grants = tuple(map(_grant, security_entries(data, source, "permissions", "grant")))
     source.check()
-    return Permissions(file, tuple(grants))
+    return Permissions(file, grants)
 
 
 def _grant(grant: Section) -> SubjectGrant:

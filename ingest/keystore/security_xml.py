@@ -57,8 +57,8 @@ class Source:
             raise InputErrors(sorted(self.problems, key=lambda error: error.line))
 
 
-def security_document(data: bytes, source: Source, section: str) -> Section | None:
-    """Return ``<dds><section>`` of a text; None, with the problem noted, if it is something else.
+def security_entries(data: bytes, source: Source, section: str, entry: str) -> list[Section]:
+    """Return the entries of ``<dds><section>`` in a text; that there are none is a problem.
 
     Raises
     ------
@@ -73,8 +73,12 @@ def security_document(data: bytes, source: Source, section: str) -> Section | No
     top = Section(root, source)
     if top.tag != "dds":
         source.problem(root, f"the root element is <{shown(top.tag)}>, not <dds>", f"name a file with <{section}>")
-        return None
-    return top.one(section)
+        return []
+    found = top.one(section)
+    entries = list(found.children({entry})) if found else []
+    if found and not entries:
+        source.problem(found.element, f"<{section}> is empty", f"add a <{entry}>")
+    return entries
 
 
 @dataclass(frozen=True, slots=True)
