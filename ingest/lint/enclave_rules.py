@@ -28,13 +28,13 @@ SIGNATURE = 1_700
 NAMED = 3
 
 
-def enclave_breaches(policies: Sequence[Policy], graph: FlowGraph, bound: Bound | None) -> Iterator[Breach]:
+def enclave_breaches(policies: Sequence[Policy], graph: FlowGraph, bound: Bound) -> Iterator[Breach]:
     """Yield the rules that enclaves break.
 
     Parameters
     ----------
     bound
-        What labels say of the graph; None where there are none.
+        What labels say of the graph.
     """
     profiles: dict[str, dict[str, Profile]] = defaultdict(dict)
     for policy in policies:
@@ -74,10 +74,10 @@ def permissions_sizes(grants: Iterable[Grant]) -> dict[str, int]:
     }
 
 
-def _labelled(graph: FlowGraph, bound: Bound | None) -> dict[str, set[str]]:
+def _labelled(graph: FlowGraph, bound: Bound) -> dict[str, set[str]]:
     """By role, the nodes that labels call sources and leaks."""
     found: dict[str, set[str]] = {"source": set(), "leak": set()}
-    for vertex, statements in (bound.elements if bound else {}).items():
+    for vertex, statements in bound.elements.items():
         for statement in statements:
             if graph.elements[vertex].is_node and statement.role in found:
                 found[statement.role].add(graph.elements[vertex].name)

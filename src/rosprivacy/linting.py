@@ -9,17 +9,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError
-from rosprivacy.granted import read_granted
-from rosprivacy.ingest.labels.add_non_ros import extend
-from rosprivacy.ingest.labels.binding import bind
 from rosprivacy.ingest.lint.enclave_rules import enclave_breaches
 from rosprivacy.ingest.lint.grant_rules import grant_breaches
 from rosprivacy.ingest.lint.read_rules import read_breaches
 from rosprivacy.ingest.lint.rule_table import RULES
-from rosprivacy.ingest.policies.flow_graph import build
-from rosprivacy.ingest.policies.joint_policies import joint_warnings
 from rosprivacy.question import question_of
-from rosprivacy.robot_system import read_label_files
+from rosprivacy.robot_system import robot_system
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -67,18 +62,12 @@ def lint_policies(
         With every problem of the input, one line each; an ``InputError`` if there is no such rule.
     """
     rules = chosen(tuple(select), tuple(ignore))
-    read, said = read_granted(policies, settings)
-    graph = build(read, "declared", settings.bounds)
-    bound = None
-    if labels:
-        files = read_label_files(labels, question_of(settings).vocabulary, settings)
-        graph = extend(graph, files)
-        bound = bind(graph, files, settings.bounds)
-    told = [one for policy in read for one in policy.diagnostics]
+    system = robot_system(policies, labels, question_of(settings))
+    read = system.policies
     breaches = {
-        *read_breaches((*told, *said, *joint_warnings(read))),
-        *grant_breaches([grant for policy in read for grant in policy.grants], graph),
-        *enclave_breaches(read, graph, bound),
+        *read_breaches(system.diagnostics),
+        *grant_breaches([grant for policy in read for grant in policy.grants], system.graph),
+        *enclave_breaches(read, system.graph, system.bound),
     }
     kept = sorted((breach for breach in breaches if breach.rule in rules), key=_order)
     return Linted(tuple(kept), rules, tuple(sorted({source for policy in read for source in policy.sources})))
