@@ -37,7 +37,8 @@ class Slice:
         self.counts = Counts()
         self.stopping = False
         self._written = time.monotonic()
-        self._due = self._commands_due = 0.0
+        self._due = 0.5  # so that the number of a short slice is rounded, not cut off: there are many targets
+        self._commands_due = 0.0
 
     def stop(self, _signal: int, _frame: FrameType | None) -> None:
         self.stopping = True
