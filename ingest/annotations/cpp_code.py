@@ -75,15 +75,12 @@ def read_cpp(file: str, data: bytes) -> Code:
 
     Raises
     ------
-    LabelError
+    ImportError
         If there is no library to read it with.
     """
-    try:
-        import tree_sitter  # noqa: PLC0415 - an extra, imported where it is used
-        import tree_sitter_cpp  # noqa: PLC0415
-    except ImportError as error:
-        what = f"C++ needs a library that is not installed ({error})"
-        raise LabelError(file, 0, what, "install the extra [code] from where rosprivacy came from") from None
+    import tree_sitter  # noqa: PLC0415 - an extra, imported where it is used
+    import tree_sitter_cpp  # noqa: PLC0415
+
     language = tree_sitter.Language(tree_sitter_cpp.language())
     return _Reader(file, data).read(tree_sitter.Parser(language).parse(data).root_node)
 

@@ -99,7 +99,7 @@ class Code(NamedTuple):
     Attributes
     ----------
     language
-        ``python`` or ``c++``.
+        ``python`` or ``c++``; empty for what could not be read.
     """
 
     file: str

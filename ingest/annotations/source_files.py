@@ -11,49 +11,51 @@ from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.errors import InputError, InputErrors, LabelError
+from rosprivacy.analysis.errors import LabelError
 from rosprivacy.ingest.annotations.cpp_code import read_cpp
 from rosprivacy.ingest.annotations.python_code import read_python
+from rosprivacy.ingest.annotations.source_code import Code
 from rosprivacy.ingest.policies.folders import contents
 from rosprivacy.ingest.reading.bounded_file import beginning, read_regular
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from rosprivacy.ingest.annotations.source_code import Code
+    from rosprivacy.analysis.errors import InputError
 
 PYTHON = (".py", ".pyi")
 CPP = (".c++", ".cc", ".cpp", ".cxx", ".h", ".h++", ".hh", ".hpp", ".hxx", ".inl", ".ipp", ".tpp")
 IGNORED = ("COLCON_IGNORE", "AMENT_IGNORE")
 MAX_BYTES = 4 * 2**20
 FIRST_LINE = 200
+MISSING = "install the extra [code] from where rosprivacy came from"
 
 
 def read_sources(sources: Iterable[str]) -> tuple[Code, ...]:
     """Read all source code that some files and folders hold, sorted by file.
 
-    Raises
-    ------
-    InputErrors
-        With every file that is not there or cannot be opened. What is wrong in the code of a file is in its ``Code``.
+    What cannot be read is in the result too, with its problem.
     """
-    files: set[str] = set()
     problems: list[InputError] = []
+    files: set[str] = set()
     for source in sources:
         try:
             files.update(_files(source, problems))
         except (OSError, ValueError):
             problems.append(LabelError(source, 0, "cannot be a path", "correct it"))
-    codes = []
+    codes = [Code(error.file, "", problems=(error,)) for error in problems]
+    lacking = False  # said once
     for file in sorted(files):
         try:
             data = read_regular(file, MAX_BYTES, partial(LabelError, file))
             codes.append((read_cpp if _language(file) == "c++" else read_python)(file, data))
         except LabelError as error:
-            problems.append(error)
-    if problems:
-        raise InputErrors(problems)
-    return tuple(codes)
+            codes.append(Code(file, "", problems=(error,)))
+        except ImportError as error:
+            refused = LabelError(file, 0, f"C++ needs a library that is not installed ({error})", MISSING)
+            codes += [] if lacking else [Code(file, "c++", problems=(refused,))]
+            lacking = True
+    return tuple(sorted(codes, key=lambda code: code.file))
 
 
 def _files(source: str, problems: list[InputError]) -> set[str]:
