@@ -115,6 +115,7 @@ def _joined(
     said += careful_notices(graph.careful)
     rests_on = {**files_read(policies, files, settings), **types_read(types)}
     bound = with_types(graph, bound, types)
+    said = tuple(dict.fromkeys(said))  # several enclaves share what is said of their governance
     return System(graph, bound, vocabulary, said, rests_on, policies, tuple(files), types=types)
 
 

@@ -66,7 +66,9 @@ ASKED = "What is asked"
 Policies = Annotated[
     list[str] | None,
     typer.Argument(
-        metavar="POLICY", help="SROS 2 policies: files, folders or globs; keystores; Zenoh files.", show_default=False
+        metavar="POLICY",
+        help="SROS 2 policies: files, folders or globs; keystores; permissions and governance; Zenoh files.",
+        show_default=False,
     ),
 ]
 LabelFiles = Annotated[
