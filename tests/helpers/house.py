@@ -39,6 +39,7 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "fleet": FACTS | {"findings"},
         "mitigation": FACTS | {"findings"},
         "parts": FACTS | {"findings", "fleet"},
+        "suggesting": {"model"},
     },
     "ingest": {
         "": set(),
