@@ -60,9 +60,11 @@ def open_remarks(files: Mapping[AccessFile, Keys]) -> Iterator[Diagnostic]:
         if not left:
             continue
         if access.enabled and not access.allow:
-            sent, got = (len({right.dds for right in left if right.role == role}) for role in ("subscribe", "publish"))
-            what = f"send {counted(sent, 'name')} that this list lets in"
-            what += f", and get {counted(got, 'name')} that it lets out"
+            ways = (("subscribe", "send", "lets in"), ("publish", "get", "lets out"))
+            names = [(len({right.dds for right in left if right.role == role}), *said) for role, *said in ways]
+            what = " and ".join(
+                f"{does} {counted(number, 'name')} that this list {lets}" for number, does, lets in names if number
+            )
         else:
             what = "send this process all that no deny names, and get it from there"
         message = f"{_who(access, known)} may {what}: what such a session does is not known; the declared view takes "
