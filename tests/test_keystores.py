@@ -94,6 +94,9 @@ def test_where_permissions_are_not_asked_the_answer_is_undetermined_at_best(cli:
     arguments = ("analyze", made.folder, "-l", tmp_path / "labels.yaml")
     declared = cli(*arguments)
     assert declared.returncode == 4
+    assert cli(*arguments, "--save-graph", tmp_path / "graph.json").returncode == 4
+    again = cli("analyze", "--add", tmp_path / "graph.json", "-l", tmp_path / "labels.yaml")
+    assert (again.returncode, again.stdout) == (4, declared.stdout)
     assert declared.stdout.startswith("undetermined: no leak reached, but not all is known of what is allowed")
     enforced = cli(*arguments, "--view", "enforced", "--format", "json")
     [finding] = json.loads(enforced.stdout)["findings"]

@@ -39,11 +39,13 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "fleet": FACTS | {"findings"},
         "mitigation": FACTS | {"findings"},
         "parts": FACTS | {"findings", "fleet"},
+        "suggesting": MODEL,
     },
     "ingest": {
         "": set(),
         "reading": set(),
         "types": {"reading"},
+        "packages": {"reading"},
         "policies": {"reading", "types"},
         "decisions": {"reading"},
         "bags": {"reading"},

@@ -52,9 +52,7 @@ NOISE = {
 
 
 class Call(NamedTuple):
-    name: str
-    section: str
-    which: int
+    place: tuple[str, int]  # section, and which of its calls
     label: int | None
     source: bool
     where: str
@@ -62,12 +60,10 @@ class Call(NamedTuple):
 
 
 def calls() -> st.SearchStrategy[Call]:
-    sections = st.sampled_from([(s, i) for s, some in CALLS.items() for i in range(len(some))])
+    places = st.sampled_from([(section, which) for section, some in CALLS.items() for which in range(len(some))])
     labels = st.none() | st.integers(0, len(OF_CHANNEL) - 1)
     where = st.sampled_from(["above", "behind", "inside", "named"])
-    return st.tuples(sections, labels, st.booleans(), where, st.integers(0, 9)).map(
-        lambda drawn: Call("", *drawn[0], *drawn[1:])
-    )
+    return st.builds(Call, places, labels, st.booleans(), where, st.integers(0, 9))
 
 
 class Class(NamedTuple):
@@ -107,13 +103,12 @@ def program(classes: list[Class], ending: str) -> tuple[str, dict[str, Any]]:
         for at, call in enumerate(one.calls):
             name = f"/r/c{number}_{at}"
             body += [NOISE[ending][call.noise]] if call.noise < len(NOISE[ending]) else []
-            in_python, in_cpp, writes = CALLS[call.section][call.which]
+            section, which = call.place
+            in_python, in_cpp, writes = CALLS[section][which]
             words = []
             if call.label is not None:
                 words.append(OF_CHANNEL[call.label][0])
-                meant.setdefault("channels" if call.where == "named" else call.section, {})[name] = OF_CHANNEL[
-                    call.label
-                ][1]
+                meant.setdefault("channels" if call.where == "named" else section, {})[name] = OF_CHANNEL[call.label][1]
             if call.source and writes:
                 words.append("source Video")
                 label.setdefault("Video", []).append(name)

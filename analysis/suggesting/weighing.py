@@ -1,0 +1,83 @@
+"""Evidence of all providers -> proposals: what several reasons for one label come to.
+
+The rules, in full (docs/suggestions.md):
+
+1. A proposal is as sure as its surest evidence.
+2. Where two independent grounds (code, package, type, name) each say no more than ``may``, both together are
+   ``likely``. Agreement never makes anything ``certain``: that is for one ground to say.
+3. What could hide a leak (sanitizer, conduit, mundane, never) is ``may``, whatever agrees; it is ``likely`` only if the
+   catalogue of packages says so.
+4. What takes data away (all of these but conduit) is ``may`` also there, for a kind of which a finding is known.
+"""
+
+from __future__ import annotations
+
+from itertools import groupby
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.model import Confidence
+from rosprivacy.analysis.suggesting.evidence import CONDUIT, GROUNDS, HIDING, INDEPENDENT, PACKAGE, ROLES, Proposal
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Sequence
+
+    from rosprivacy.analysis.suggesting.evidence import Evidence, Label
+
+_ORDER = {confidence: place for place, confidence in enumerate(Confidence)}  # the surest first
+
+
+def proposals(evidence: Iterable[Evidence], found: Collection[str] = ()) -> tuple[Proposal, ...]:
+    """Join evidence into proposals, one for each label, sorted by element, role and kind.
+
+    Parameters
+    ----------
+    evidence
+        Of all providers, in any order.
+    found
+        Categories of which a finding is known, with all that are broader or narrower.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.model import Element, Place
+    >>> from rosprivacy.analysis.suggesting.evidence import Evidence, Label
+    >>> camera = Label(Element("node", "/camera"), "source", "Video")
+    >>> rule = Place("names.yaml", 3)
+    >>> said = [Evidence(camera, ground, Confidence.MAY, f"its {ground}", rule) for ground in ("name", "type")]
+    >>> [(str(one.confidence), [reason.reason for reason in one.evidence]) for one in proposals(said)]
+    [('likely', ['its type', 'its name'])]
+    >>> relay = Label(Element("node", "/relay"), "conduit")
+    >>> str(proposals([Evidence(relay, "data-flow", Confidence.LIKELY, "its types", rule)])[0].confidence)
+    'may'
+    """
+    ordered = sorted(set(evidence), key=lambda one: (_label_order(one.label), *_evidence_order(one)))
+    groups = ((label, tuple(group)) for label, group in groupby(ordered, key=lambda one: one.label))
+    return tuple(Proposal(label, _confidence(label, reasons, found), reasons) for label, reasons in groups)
+
+
+def surer(one: Confidence, other: Confidence) -> bool:
+    """Return whether the first is surer than the second.
+
+    >>> surer(Confidence.LIKELY, Confidence.MAY), surer(Confidence.MAY, Confidence.MAY)
+    (True, False)
+    """
+    return _ORDER[one] < _ORDER[other]
+
+
+def _confidence(label: Label, reasons: Sequence[Evidence], found: Collection[str]) -> Confidence:
+    if label.role in HIDING:
+        said = [one.confidence for one in reasons if one.ground == PACKAGE]
+        if not said or (label.role != CONDUIT and found and (not label.kind or label.kind in found)):
+            return Confidence.MAY
+        return Confidence.MAY if min(said, key=_ORDER.__getitem__) is Confidence.MAY else Confidence.LIKELY
+    surest = reasons[0].confidence
+    if surest is Confidence.MAY and len({one.ground for one in reasons} & INDEPENDENT) > 1:
+        return Confidence.LIKELY
+    return surest
+
+
+def _label_order(label: Label) -> tuple[object, ...]:
+    return (label.element.sort_key(), ROLES.index(label.role), label.kind, label.method or "", label.to)
+
+
+def _evidence_order(one: Evidence) -> tuple[object, ...]:
+    return (_ORDER[one.confidence], GROUNDS.index(one.ground), one.reason, one.place)
