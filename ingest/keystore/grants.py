@@ -111,9 +111,7 @@ def _remarks(grant: SubjectGrant, domain: int | None) -> Iterator[Diagnostic]:
     for _, rule in rules:
         if domain is not None and not rule.domains.surely(domain):
             what = "it is taken to allow there" if rule.allow else "it is taken to deny nothing there"
-            message = (
-                f"domain {domain}: to Fast DDS an <id_range> without <max> is one domain, in the standard all from"
-            )
+            message = f"domain {domain}: to Fast DDS and Cyclone DDS an <id_range> without <max> is one domain, in the standard all from"
             yield _warning(rule.place, f"{message} there on; {what}; write <max>")
         for criterion in rule.criteria:
             yield from _narrowed(rule, criterion)
