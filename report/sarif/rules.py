@@ -96,6 +96,20 @@ UNREVIEWED = Rule(
     ),
     NONE,
 )
+BEYOND_PROFILE = Rule(
+    "beyond-profile",
+    "PersonalDataBeyondProfile",
+    "Personal data can reach a place only if a node does what another profile of its enclave allows.",
+    "The middleware holds an enclave to what its profiles allow together, not each node to its own profile. If a node "
+    "does not keep to its profile, by a fault or an attack, the path is open. It counts for no verdict: the answer of "
+    "record is what profiles declare.",
+    (
+        "Split the enclave, or move one profile to an enclave of its own, as the result says.",
+        "A DENY holds for the whole enclave: who rightly has the grant loses it, too.",
+        DECIDE,
+    ),
+    "note",
+)
 OBSERVATION_GAPS = Rule(
     "observation-gaps",
     "ObservationHasGaps",
