@@ -33,7 +33,7 @@ NEO4J = ("NEO4J_URI", "NEO4J_USERNAME", "NEO4J_PASSWORD", "ROSPRIVACY_NEO4J_HEAP
 GROUPS = {
     "neo4j": {"neo4j_server", "private_neo4j", "plain_neo4j", "_private_data"},
     "chromium": {"browser"},
-    "dds": {"fastdds", "cyclone_judge", "judge"},
+    "dds": {"cyclone_judge", "fastdds", "judge"},
     "rust": {"ros2_client"},
     "build": {"built"},  # builds in the folder of the sources
 }

@@ -176,8 +176,18 @@ def cyclone_judge(tmp_path_factory: pytest.TempPathFactory) -> Judge:
         pytest.skip("NO openssl, g++ and Cyclone DDS (cyclonedds-dev, cyclonedds-tools): it judged no permissions")
     folder = tmp_path_factory.mktemp("cyclone")
     program = folder / "cyclone_peer"
-    made = ["g++", "-O0", "-std=c++17", "-I.", "-o", program, PEERS / "cyclone_peer.cpp", "secured_text.o", "-lddsc"]
-    for command in (["idlc", PEERS / "secured_text.idl"], ["gcc", "-c", "secured_text.c"], made):
+    made: list[str | Path] = [
+        "g++",
+        "-O0",
+        "-std=c++17",
+        "-I.",
+        "-o",
+        program,
+        PEERS / "cyclone_peer.cpp",
+        "secured_text.o",
+        "-lddsc",
+    ]
+    for command in (["idlc", str(PEERS / "secured_text.idl")], ["gcc", "-c", "secured_text.c"], made):
         subprocess.run(command, cwd=folder, check=True, capture_output=True)
     start = partial(running, program, plugins.parent)
     return lambda trials: judged(start, tmp_path_factory.mktemp("keystores"), trials)
