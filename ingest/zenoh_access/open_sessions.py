@@ -60,11 +60,9 @@ def open_remarks(files: Mapping[AccessFile, Keys]) -> Iterator[Diagnostic]:
         if not left:
             continue
         if access.enabled and not access.allow:
-            ways = (("subscribe", "send", "lets in"), ("publish", "get", "lets out"))
-            names = [(len({right.dds for right in left if right.role == role}), *said) for role, *said in ways]
-            what = " and ".join(
-                f"{does} {counted(number, 'name')} that this list {lets}" for number, does, lets in names if number
-            )
+            ways = (("subscribe", "send {} that this list lets in"), ("publish", "get {} that this list lets out"))
+            names = ((words, {right.dds for right in left if right.role == role}) for role, words in ways)
+            what = " and ".join(words.format(counted(len(some), "name")) for words, some in names if some)
         else:
             what = "send this process all that no deny names, and get it from there"
         message = f"{_who(access, known)} may {what}: what such a session does is not known; the declared view takes "
