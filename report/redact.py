@@ -29,6 +29,7 @@ KEPT = {
 MAPS = ("because", "legal_bases", "purposes", "retention", "taken_away_by", "taken_by_kind")  # keys are no names
 NAMED = {
     "robot": "robot", "robots": "robot", "model": "model", "file": "file", "enclave": "enclave",
+    "enclaves": "enclave", "split": "enclave",
     "operator": "operator", "controller": "controller", "controllers": "controller", "dpo": "officer",
     "officers": "officer", "profile": "node", "nodes": "node",
 }  # fmt: skip

@@ -24,6 +24,7 @@ COMMANDS = {  # name -> its group in help; each stands in the module of its name
     "observe": OBSERVE,
     "labels": LABEL,
     "suggest": LABEL,
+    "annotations": LABEL,
     "categories": LABEL,
     "law": LABEL,
     "analyze": ANALYSE,
