@@ -67,7 +67,8 @@ def read_name_rules(
     >>> rules.carries["lidar",].kinds, ("camera", "info") in rules.silent
     (('LaserScan',), True)
     """
-    read, problems = [], []
+    read: list[NameFile] = []
+    problems: list[InputError] = []
     for file in dict.fromkeys((NAMES, *files)):
         try:
             read.append(_read(file, vocabulary, bounds))
