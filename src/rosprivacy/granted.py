@@ -56,15 +56,16 @@ def read_granted(names: Iterable[str], settings: Settings, within: str | None = 
     if granted:
         policies = (*policies, *_deployed(granted, settings, within))
     if access:
-        policies = (*policies, *_zenoh(access, settings, within))
+        more, told = _zenoh(access, settings, within)
+        policies, said = (*policies, *more), (*said, *told)
     return policies, said
 
 
-def _zenoh(names: list[str], settings: Settings, within: str | None) -> tuple[Policy, ...]:
-    from rosprivacy.ingest.zenoh_access.access_grants import read_zenoh  # noqa: PLC0415 - light start
+def _zenoh(names: list[str], settings: Settings, within: str | None) -> Read:
+    from rosprivacy.ingest.zenoh_access.zenoh_inputs import read_zenoh  # noqa: PLC0415 - light start
 
     _confined(names, within)
-    return read_zenoh(names, settings.domain)
+    return read_zenoh(names, settings.domain, view=settings.view)
 
 
 def _deployed(names: list[str], settings: Settings, within: str | None) -> Iterator[Policy]:

@@ -37,13 +37,12 @@ def _node(choices: Choices) -> dict[str, Any]:
 
 def _claim(choices: Choices) -> dict[str, Any]:
     kind = choices.pick(KINDS)
-    said = choices.pick(
-        (
-            {"source": [kind]},
-            {"leak": [kind], "to": choices.pick(WHERE)},
-            {"derives": [{"from": kind, "to": choices.pick(KINDS)}]},
-            {"sanitizer": {kind: str(choices.pick(METHODS))}},
-            {"conduit": choices.pick(("all", [kind]))},
-        )
+    roles: tuple[dict[str, Any], ...] = (
+        {"source": [kind]},
+        {"leak": [kind], "to": choices.pick(WHERE)},
+        {"derives": [{"from": kind, "to": choices.pick(KINDS)}]},
+        {"sanitizer": {kind: str(choices.pick(METHODS))}},
+        {"conduit": choices.pick(("all", [kind]))},
     )
+    said = choices.pick(roles)
     return {**said, "why": "it does", **({"confidence": "may"} if choices.once_in(3) else {})}
