@@ -31,7 +31,7 @@ def lossy_lists(policy: str, folder: Path, tail: str = "/*/*") -> list[Path]:
         Of keys: ``/**`` before Humble 0.1.6.
     """
     (enclave, *_) = etree.fromstring(policy.encode()).iter("enclave")
-    files = {}
+    files: dict[Path, None] = {}
     for profile in enclave.iter("profile"):
         file = folder / f"{profile.get('node')}.json5"
         file.write_text(json.dumps({"access_control": _section(profile, tail)}, indent=2))
