@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.kernel.bits import CategoryBits, bits_of
+from rosprivacy.analysis.many_flows import find
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -101,6 +102,19 @@ class Spread:
         self.bits = CategoryBits(len(self.categories))
         self.all_bits = self.bits.all
         self._both = _both(self.categories)
+
+    def with_fewer_flows(self, graph: FlowGraph) -> Spread:
+        """Return the same for a graph that lacks some flows; what arrives where is no less than it is there.
+
+        No source may name channels: what a channel carries hangs on flows then.
+        """
+        flows, old = graph.flows, self.graph.flows
+        moved = {index: find(flows, old[index]) for index in {*self.told_apart, *self.flow_facts}}
+        facts, emits, keeps = (
+            {now: of[index] for index in of if (now := moved[index]) is not None}
+            for of in (self.flow_facts, self.flow_emits, self.flow_keeps)
+        )
+        return replace(self, graph=graph, flow_facts=facts, flow_emits=emits, flow_keeps=keeps)
 
     @property
     def told_apart(self) -> set[int]:
