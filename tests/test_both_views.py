@@ -10,6 +10,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 import jsonschema
+import networkx as nx
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
@@ -21,6 +22,7 @@ from rosprivacy.settings import Settings
 from tests.helpers.command import cli
 from tests.helpers.paths import ROOT
 from tests.helpers.sarif import checked
+from tests.helpers.word import text_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -275,3 +277,72 @@ def test_sarif_has_notes_of_a_rule_of_their_own_at_the_line_of_another_profile(c
         "Nodes share enclave /robot. Gone if /robot is split into an enclave for each node."
         in (result["message"]["text"])
     )
+
+
+@pytest.mark.usefixtures("example")
+@pytest.mark.parametrize("form", ["html", "markdown", "docx"])
+def test_a_report_has_a_section_of_it_in_each_language_and_only_where_it_was_asked(cli: Cli, form: str) -> None:
+    Path("p.xml").write_text(policy(THREE))
+    for language, heading, step in (
+        ("en", "What nodes could do beyond their own profiles", "beyond its own profile"),
+        ("de", "Was Knoten über ihr eigenes Profil hinaus könnten", "über das eigene Profil hinaus"),
+        ("fr", "Ce que des nœuds pourraient faire au-delà de leur propre profil", "au-delà de son propre profil"),
+    ):
+        arguments = ("report", "p.xml", "-l", "l.yaml", "-f", form, "--lang", language)
+        assert cli(*arguments, "--view", "both", "-o", "both.out").returncode == 0
+        cli(*arguments, "-o", "alone.out")
+        told, alone = (read(Path(name), form) for name in ("both.out", "alone.out"))
+        assert heading in told
+        assert heading not in alone
+        marked = {"html": f"{step}</span>", "markdown": f"(**{step}**)", "docx": f"({step})"}
+        assert told.count(marked[form]) == 1  # one step of its path
+        assert (form == "html") == ('stroke="#cc79a7" stroke-width="3" stroke-dasharray' in told)
+        for part in ("/robot", "/blur", "DENY", "p.xml:8"):
+            assert part in told.split(heading)[-1]
+
+
+@pytest.mark.usefixtures("example")
+def test_a_redacted_report_has_no_name_of_it(cli: Cli) -> None:
+    Path("p.xml").write_text(policy(THREE))
+    for form in ("html", "markdown"):
+        cli("report", "p.xml", "-l", "l.yaml", "-f", form, "--view", "both", "--redact", "-o", "r.out")
+        text = Path("r.out").read_text("utf-8")
+        assert not [name for name in ("/robot", "/blur", "/camera", "/navigator", "/uplink", "p.xml") if name in text]
+        assert "proven by a new analysis" in text
+
+
+def read(file: Path, form: str) -> str:
+    return text_of(file.read_bytes()) if form == "docx" else file.read_text("utf-8").replace("\\", "")
+
+
+@pytest.mark.usefixtures("example")
+@pytest.mark.parametrize("show", ["ros", "privacy"])
+def test_a_picture_draws_apart_what_no_profile_allows_on_the_paths_of_added_findings_only(cli: Cli, show: str) -> None:
+    Path("p.xml").write_text(policy(THREE))
+    arguments = ("graph", "p.xml", "-l", "l.yaml", "--show", show, "-f", "graphml")
+    drawn, alone = (lines(cli(*arguments, *more).stdout) for more in (("--view", "both"), ()))
+    beyond = {ends for ends, look in drawn.items() if look == "beyond"}
+    assert beyond == {("/camera", "/blurred"), ("/video", "/navigator"), ("/navigator", "/blurred")}
+    assert {ends: look for ends, look in drawn.items() if look not in ("beyond", "onward")} == alone
+    onward = {("/blurred", "/uplink")} if show == "privacy" else set()  # no data gets there under the declared view
+    assert {ends for ends, look in drawn.items() if look == "onward"} == onward
+    enforced = lines(cli(*arguments, "--view", "enforced").stdout)
+    assert ("/camera", "/scan") not in drawn  # what the middleware lets through besides is on no path of a finding
+    assert ("/scan", "/blur") in enforced if show == "ros" else True
+    dot = cli("graph", "p.xml", "-l", "l.yaml", "--show", show, "--view", "both").stdout
+    assert 'label="beyond the node\'s own profile: only its enclave allows it"' in dot
+
+
+@pytest.mark.usefixtures("example")
+def test_the_picture_of_an_added_finding_is_that_of_the_enforced_view(cli: Cli) -> None:
+    [entry] = both_views(("p.xml",), ("l.yaml",), Settings()).document()["enforced"]["added"]
+    arguments = ("graph", "p.xml", "-l", "l.yaml", "--finding", entry["finding"]["id"], "-f", "graphml")
+    assert cli(*arguments).returncode == 2
+    drawn = lines(cli(*arguments, "--view", "both").stdout)
+    assert drawn == {("/camera", "/blurred"): "beyond", ("/blurred", "/uplink"): "shortest"}
+
+
+def lines(graphml: str) -> dict[tuple[str, str], str]:
+    graph = nx.parse_graphml(graphml)
+    names = nx.get_node_attributes(graph, "label")
+    return {(names[source], names[target]): data["look"] for source, target, data in graph.edges(data=True)}

@@ -11,7 +11,7 @@ from rosprivacy.analysis.many_flows import one_by_one, parted
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Finding
-    from rosprivacy.analysis.model import FlowGraph
+    from rosprivacy.analysis.model import FlowGraph, Place
 
 Key = tuple[str, str, str]
 Right = tuple[Key, str, Key]  # node, role, channel
@@ -48,7 +48,9 @@ class Added(NamedTuple):
     beyond
         The steps of its witness, by number, that the profile of their node does not allow.
     enclaves
-        Those that make it possible: they allow these steps.
+        Those that make it possible: they allow these steps to all of their nodes.
+    opened
+        Lines that make it possible, since they ask nobody for permissions; sorted.
     split
         Enclaves of which splitting into one for each node ends it; empty if none was found.
     move
@@ -69,6 +71,7 @@ class Added(NamedTuple):
     deny: tuple[DenyLine, ...] = ()
     loses: tuple[Right, ...] = ()
     robots: tuple[str, ...] = ()
+    opened: tuple[Place, ...] = ()
 
 
 def rights(graph: FlowGraph) -> frozenset[Right]:

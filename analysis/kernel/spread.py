@@ -109,12 +109,15 @@ class Spread:
         No source may name channels: what a channel carries hangs on flows then.
         """
         flows, old = graph.flows, self.graph.flows
-        moved = {index: find(flows, old[index]) for index in {*self.told_apart, *self.flow_facts}}
-        facts, emits, keeps = (
-            {now: of[index] for index in of if (now := moved[index]) is not None}
-            for of in (self.flow_facts, self.flow_emits, self.flow_keeps)
+        found = ((index, find(flows, old[index])) for index in {*self.told_apart, *self.flow_facts})
+        now = {index: there for index, there in found if there is not None}
+        return replace(
+            self,
+            graph=graph,
+            flow_facts={now[index]: facts for index, facts in self.flow_facts.items() if index in now},
+            flow_emits={now[index]: bits for index, bits in self.flow_emits.items() if index in now},
+            flow_keeps={now[index]: bits for index, bits in self.flow_keeps.items() if index in now},
         )
-        return replace(self, graph=graph, flow_facts=facts, flow_emits=emits, flow_keeps=keeps)
 
     @property
     def told_apart(self) -> set[int]:

@@ -138,7 +138,8 @@ class _Kept:
                 shared[channel] = right._replace(grants=left)
             for node in (*movers, *(others if left and owners else owners)):
                 own = self._left(right.grants, names[node], elements[channel], writes=writes)
-                single += [Flow(*((node, channel) if writes else (channel, node)), right.role, own)] if own else []
+                source, target = (node, channel) if writes else (channel, node)
+                single += [Flow(source, target, right.role, own)] if own else []
         if not shared or not others:
             return [], single
         some = tuple(shared)

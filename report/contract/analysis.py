@@ -18,6 +18,7 @@ if TYPE_CHECKING:
         LedgerRow,
         ListedDecision,
         OpenEntry,
+        PlaceEntry,
         Reached,
         RelianceEntry,
         UnknownEnd,
@@ -180,6 +181,7 @@ class AddedEntry(TypedDict):
     deny: NotRequired[list[DenyEntry]]
     loses: NotRequired[list[LostEntry]]
     robots: NotRequired[list[str]]
+    opened_by: NotRequired[list[PlaceEntry]]
 
 
 class EnforcedEntry(TypedDict):

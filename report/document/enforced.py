@@ -42,6 +42,8 @@ def _added(one: Added, finding: FindingEntry) -> AddedEntry:
     }
     if one.robots:
         entry["robots"] = list(one.robots)
+    if one.opened:
+        entry["opened_by"] = [{"file": place.file, "line": place.line} for place in one.opened]
     return entry
 
 

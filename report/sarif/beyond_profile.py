@@ -59,7 +59,10 @@ def _said(one: Added) -> Iterator[str]:
     yield f"Only if a node goes beyond its own profile: {text(finding.category)} can get {ends}."
     if one.robots:
         yield f"On {len(one.robots):,} {'robot' if len(one.robots) == 1 else 'robots'} of the fleet."
-    yield f"Nodes share enclave {_row(one.enclaves)}."
+    if one.enclaves:
+        yield f"Nodes share enclave {_row(one.enclaves)}."
+    if one.opened:
+        yield f"Permissions are not asked there: {_row(map(str, one.opened))}."
     if one.split:
         yield f"Gone if {_row(one.split)} is split into an enclave for each node."
     if one.move:

@@ -36,6 +36,10 @@ def _said(report: Mapping[str, Any], entry: Mapping[str, Any], words: Words) -> 
     if robots := entry.get("robots"):
         everybody = words.count(report["fleet"]["robots"], "ofrobots")
         yield words("tty.enforced.on", n=str(len(robots)), robots=everybody, names=named(robots, words))
+    if opened := entry.get("opened_by"):
+        yield words("tty.enforced.opened", lines=", ".join(f"{shown(one['file'])}:{one['line']}" for one in opened))
+    if not entry["enclaves"]:
+        return
     yield words("tty.enforced.by", enclaves=_listed(entry["enclaves"]))
     key = "tty.enforced.split" if entry["split"] else "tty.enforced.no.split"
     yield words(key, enclaves=_listed(entry["split"]))

@@ -10,6 +10,7 @@ WORDS = {
     "tty.gap.bag-gap": "kein Ausgang erreicht, aber von einer Aufzeichnung (Bag), die ein Speicher ist, ist nicht alles bekannt",
     "tty.enforced": "Was die Sicht enforced hinzufügt: {findings} (DDS lässt einen Knoten alles tun, was irgendein Profil seiner Enklave darf)",
     "tty.enforced.on": "kommt hinzu auf {n} von {robots}: {names}",
+    "tty.enforced.opened": "nur weil dort keine Berechtigungen geprüft werden: {lines}",
     "tty.enforced.by": "nur weil sich Knoten die Enklave {enclaves} teilen",
     "tty.enforced.split": "fällt weg, wenn {enclaves} in eine Enklave je Knoten geteilt wird: durch eine neue Analyse nachgewiesen",
     "tty.enforced.no.split": "es wurde keine Menge von Enklaven gefunden, deren Teilung ihn beendet",

@@ -10,6 +10,7 @@ WORDS = {
     "tty.gap.bag-gap": "no leak reached, but not all is known of a bag that is a storage",
     "tty.enforced": "What the enforced view adds: {findings} (DDS lets a node do whatever any profile of its enclave may)",
     "tty.enforced.on": "added on {n} of {robots}: {names}",
+    "tty.enforced.opened": "only because permissions are not asked there: {lines}",
     "tty.enforced.by": "only because nodes share enclave {enclaves}",
     "tty.enforced.split": "gone if {enclaves} is split into an enclave for each node: proven by a new analysis",
     "tty.enforced.no.split": "no set of enclaves was found of which splitting ends it",

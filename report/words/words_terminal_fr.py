@@ -12,6 +12,7 @@ _TYPED = {
     "tty.gap.bag-gap": "aucun point de sortie atteint, mais tout n'est pas connu d'un enregistrement (bag) qui est un stockage",
     "tty.enforced": "Ce que la vue enforced ajoute : {findings} (DDS laisse un nœud faire tout ce que permet n'importe quel profil de son enclave)",
     "tty.enforced.on": "s'ajoute sur {n} de {robots} : {names}",
+    "tty.enforced.opened": "seulement parce que les autorisations n'y sont pas vérifiées : {lines}",
     "tty.enforced.by": "seulement parce que des nœuds partagent l'enclave {enclaves}",
     "tty.enforced.split": "disparaît si {enclaves} est divisée en une enclave par nœud : prouvé par une nouvelle analyse",
     "tty.enforced.no.split": "aucun ensemble d'enclaves dont la division y mette fin n'a été trouvé",

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import Finding, Step
     from rosprivacy.analysis.findings.beyond import Ends, Right
-    from rosprivacy.analysis.model import Element
+    from rosprivacy.analysis.model import Element, Place
     from rosprivacy.system import System
     from rosprivacy.trials import Trials
 
@@ -55,24 +55,34 @@ class Remedies:
     def of(self, findings: Sequence[Finding], robots: tuple[str, ...] = ()) -> Added:
         """Return what ends some findings that differ only in the robot, of which the first is told."""
         steps = beyond(findings[0], self.known)
+        shared = self._shared(findings[0])
         deny = self._deny(findings)
         loses = self._rights(NO_CHANGE) - self._rights(Change(deny=frozenset(deny))) if deny else frozenset()
         return Added(
             findings[0],
             steps,
-            enclaves_of(findings[0], steps),
+            enclaves_of(findings[0], shared),
             self._split(findings),
             self._move(findings[0], findings),
             deny,
             tuple(sorted(right for right in loses if right[0][0] not in self.second)),
             robots,
+            _places(findings[0], set(steps) - set(shared)),
         )
+
+    def _shared(self, finding: Finding) -> tuple[int, ...]:
+        """The steps beyond a profile that an enclave of several nodes allows; others nobody asks permissions for."""
+        steps = ((n, finding.steps[n]) for n in beyond(finding, self.known))
+        return tuple(
+            n for n, step in steps
+            if all(g.node != _ends(step)[0].name and len(self.enclaves.get(g.enclave, ())) > 1 for g in step.grants)
+        )  # fmt: skip
 
     def _split(self, findings: Sequence[Finding]) -> tuple[str, ...]:
         enclaves: frozenset[str] = frozenset()
         left: Sequence[Finding] | None = findings
         while left:
-            more = enclaves.union(*(enclaves_of(one, beyond(one, self.known)) for one in left))
+            more = enclaves.union(*(enclaves_of(one, self._shared(one)) for one in left))
             if more == enclaves:
                 return ()
             enclaves = more
@@ -130,6 +140,10 @@ class Remedies:
 def _ends(step: Step) -> tuple[Element, Element]:
     """Node and channel of a step."""
     return (step.source, step.target) if step.target.is_channel else (step.target, step.source)
+
+
+def _places(finding: Finding, steps: Iterable[int]) -> tuple[Place, ...]:
+    return tuple(sorted({grant.place for n in steps for grant in finding.steps[n].grants}))
 
 
 def _lines(finding: Finding, number: int) -> Iterator[DenyLine]:

@@ -14,6 +14,7 @@ import rosprivacy
 from rosprivacy.analysis import durations
 from rosprivacy.analysis.errors import InputError
 from rosprivacy.analysis.model import Place, Profile
+from rosprivacy.annotating import annotated, differences
 from rosprivacy.ingest.bags.bag_folders import read_bags
 from rosprivacy.ingest.decisions.decisions_file import read_decisions
 from rosprivacy.ingest.fleet.fleet_file import read_fleet
@@ -36,7 +37,7 @@ from rosprivacy.queries.library import parse
 from rosprivacy.report.compare.earlier import read_earlier
 from rosprivacy.report.json_text import as_text
 from rosprivacy.spark import parquet
-from tests.fuzzing import bag_texts, label_texts, node_info_texts, other_texts, policy_texts, security_texts
+from tests.fuzzing import bag_texts, code_texts, label_texts, node_info_texts, other_texts, policy_texts, security_texts
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
@@ -132,6 +133,15 @@ def _observed() -> None:
     assert all(one.isprintable() for one in made.remarks), made.remarks
 
 
+def _annotated(file: str) -> None:
+    """What is made of the code is a label file that says what the code says."""
+    made = annotated([file], load())
+    assert all(line.isprintable() for line in made.text.split("\n")), made.text
+    Path("made.yaml").unlink(missing_ok=True)
+    Path("made.yaml").write_bytes(made.text.encode())
+    assert not differences(made, "made.yaml", load())
+
+
 def _governance() -> None:
     """What is left open is granted to every enclave."""
     read = read_governance(Path("governance.xml").read_bytes(), "governance.xml")
@@ -182,7 +192,7 @@ TARGETS = {target.name: target for target in (
         ("analyze", "policy.xml", "-l", "star.yaml"), "policy",
     ),
     Target(
-        "labels", 211, label_texts.labels, lambda: read_labels("labels.yaml", load()),
+        "labels", 191, label_texts.labels, lambda: read_labels("labels.yaml", load()),
         lambda: rosprivacy.analyze("base.xml", "labels.yaml", today=TODAY, paths="all"),
         ("analyze", "base.xml", "-l", "labels.yaml"),
     ),
@@ -244,5 +254,9 @@ TARGETS = {target.name: target for target in (
         lambda: rosprivacy.analyze("node.json5", "star.yaml", today=TODAY),
         ("analyze", "node.json5", "-l", "star.yaml"),
     ),
+    Target(
+        "python-code", 10, code_texts.python, lambda: _annotated("a.py"), arguments=("annotations", "a.py"),
+    ),
+    Target("cpp-code", 10, code_texts.cpp, lambda: _annotated("a.cpp"), arguments=("annotations", "a.cpp")),
     Target("names", 25, other_texts.names, _names, words=""),
 )}  # fmt: skip

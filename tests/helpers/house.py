@@ -50,6 +50,7 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "decisions": {"reading"},
         "bags": {"reading"},
         "labels": READING | {"bags"},
+        "annotations": READING | {"labels"},
         "mitigation": READING,
         "keystore": READING,
         "zenoh_access": READING,
