@@ -83,6 +83,23 @@ def test_a_topic_of_another_type_confirms_nothing() -> None:
     assert told(evidence(text, typed % "std_msgs/msg/Bool"), "source", "Video")[0][1] is MAY
 
 
+def test_a_node_of_known_types_without_the_interfaces_is_another_one_but_for_its_leaks() -> None:
+    typed = "labels: 1\nchannels:\n  /move: {types: [geometry_msgs/msg/Twist]}\n"
+    found = evidence(policy("/usb_cam>/move", "/rviz2</move"), typed)
+    assert told(found, "source", "Video") == []
+    assert told(found, "leak", "PersonalData") == [("/rviz2", MAY, "its name alone")]
+    assert told(evidence(policy("/usb_cam>/move,/more"), typed), "source", "Video")[0][1] is MAY, (
+        "one type is not known"
+    )
+
+
+def test_the_name_alone_is_evidence_of_a_name() -> None:
+    grounds = {
+        one.confidence: one.ground for one in evidence(policy("/usb_cam>/x", "/n/usb_cam>/image_raw,/camera_info"))
+    }
+    assert grounds == {MAY: "name", LIKELY: "package"}
+
+
 def test_the_direction_counts_and_a_wildcard_confirms_nothing() -> None:
     assert told(evidence(policy("/usb_cam</image_raw,/camera_info")), "source", "Video")[0][1] is MAY
     assert told(evidence(policy("/usb_cam>/*")), "source", "Video")[0][1] is MAY
