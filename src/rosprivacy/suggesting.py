@@ -17,7 +17,7 @@ from rosprivacy.analysis.suggesting.open_elements import of_channels, of_open
 from rosprivacy.analysis.suggesting.traffic import traffic
 from rosprivacy.analysis.suggesting.unsaid import unsaid
 from rosprivacy.analysis.suggesting.weighing import closes_finding, proposals
-from rosprivacy.ingest.packages.package_folders import packages as read_packages
+from rosprivacy.ingest.packages.package_folders import read_packages, rests_on
 from rosprivacy.ingest.suggestions.name_file import read_name_rules
 from rosprivacy.ingest.types import TABLE
 from rosprivacy.ingest.types.type_table import read_table
@@ -78,7 +78,7 @@ def suggest_labels(
     rules
         A user's files of rules about names.
     packages
-        A user's files about packages, or folders of them, beside the catalogue; ``ament`` for installed ones.
+        A user's files of packages, folders of them, or ``ament``.
 
     Raises
     ------
@@ -103,17 +103,17 @@ def suggested(result: Result, settings: Settings, rules: Sequence[str] = (), pac
     asked = unsaid(made, result.analysis.graph, result.bound, result.vocabulary.hierarchy)
     places = _review_places(result.analysis)
     by_hand = frozenset(one.label for one in asked if closes_finding(one.label, found))
-    return Suggested(in_review_order(asked, places), frozenset(places), by_hand, result, files)
+    return Suggested(in_review_order(asked, places), frozenset(places), by_hand, result, (*files, *rests_on(catalogue)))
 
 
-def evidence(analysis: Analysis, bound: Bound, rules: Rules, catalogue: Sequence[Package] = ()) -> Iterator[Evidence]:
+def evidence(analysis: Analysis, bound: Bound, rules: Rules, packages: Sequence[Package]) -> Iterator[Evidence]:
     """Yield what every provider finds; the order does not matter."""
     graph = analysis.graph
     told, clues = traffic(graph, bound), carried_kinds(graph, bound, rules)
-    yield from package_evidence(graph, bound.types, catalogue)
     yield from of_nodes(graph, bound, told, clues, rules)
     yield from of_channels(graph, clues)
     yield from of_open(analysis.open, graph, bound, told, rules)
+    yield from package_evidence(graph, bound.types, packages)
 
 
 def in_review_order(asked: Sequence[Proposal], places: Mapping[Place, int]) -> tuple[Proposal, ...]:

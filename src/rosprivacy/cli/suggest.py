@@ -33,8 +33,9 @@ def suggest(
     packages: Annotated[
         list[str] | None,
         typer.Option(
-            metavar="FILE_OR_DIR",
-            help="More packages beside the catalogue; 'ament' for those of installed packages; may be repeated.",
+            metavar="FILE|DIR|ament",
+            help="More packages, in the format of ontology/packages; 'ament' for those that installed packages ship; "
+            "may be repeated.",
             show_default=False,
         ),
     ] = None,
