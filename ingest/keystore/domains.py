@@ -1,9 +1,9 @@
 """DDS domains that a rule is about, and sets of domains.
 
-A range without ``<max>`` is open-ended in the standard and to Cyclone DDS; Fast DDS reads it as one domain. So a rule
-is about some domains surely, and about others perhaps.
+A range without ``<max>`` is open-ended in the standard; Fast DDS and Cyclone DDS read it as one domain. So a rule is
+about some domains surely, and about others perhaps.
 
-Source: DDS-Security 1.1, 9.4.1.2.4.1; ``CommonParser.cpp`` of Fast DDS, ``access_control_utils.c`` of Cyclone DDS.
+Source: DDS-Security 1.1, 9.4.1.2.4.1; ``CommonParser.cpp`` of Fast DDS, ``access_control_parser.c`` of Cyclone DDS.
 """
 
 from __future__ import annotations

@@ -35,7 +35,7 @@ def governance_remarks(governance: Governance, permissions: Permissions, domain:
 def rule_remarks(rule: DomainRule) -> Iterator[Diagnostic]:
     """Yield what is to be said of a rule that may decide."""
     if rule.domains.opened:
-        message = "<id_range> without <max>: to Fast DDS it is one domain, in the standard all from there on"
+        message = "<id_range> without <max>: to Fast DDS and Cyclone DDS one domain, in the standard all from there on"
         yield _warning(rule.place, f"{message}; the rules after this one are taken to hold too; write <max>")
     yield from _of_domain(rule)
 

@@ -112,9 +112,9 @@ def _remarks(grant: SubjectGrant, domain: int | None) -> Iterator[Diagnostic]:
         if domain is not None and not rule.domains.surely(domain):
             what = "it is taken to allow there" if rule.allow else "it is taken to deny nothing there"
             message = (
-                f"domain {domain}: to Fast DDS an <id_range> without <max> is one domain, in the standard all from"
+                f"<id_range> without <max>: to Fast DDS and Cyclone DDS not about domain {domain}, in the standard"
             )
-            yield _warning(rule.place, f"{message} there on; {what}; write <max>")
+            yield _warning(rule.place, f"{message} it is; {what}; write <max>")
         for criterion in rule.criteria:
             yield from _narrowed(rule, criterion)
     if grant.allow:

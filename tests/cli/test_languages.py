@@ -7,6 +7,7 @@ from typer.main import get_command
 from rosprivacy.cli.app import program
 
 STILL_ENGLISH = {
+    "annotations": "a label file, and what is wrong with code",
     "bag": "what is in recordings",
     "check": "rights, with lines of files",
     "lint": "rules for those who write policies",
@@ -18,6 +19,7 @@ STILL_ENGLISH = {
     "load": "counts",
     "mitigate": "proposals; the report tells them in a language",
     "observe": "what was written",
+    "suggest": "questions for a label file, whose words are English",
     "query": "rows of a database, with the heads of the queries",
     "unload": "counts",
     "why-not": "the answer",

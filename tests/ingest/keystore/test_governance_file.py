@@ -13,7 +13,7 @@ from rosprivacy.analysis.model import ACCESS_GAP
 from rosprivacy.ingest.keystore.deployed_inputs import read_deployed
 from rosprivacy.ingest.keystore.governance_file import Governance, read_governance
 from rosprivacy.ingest.keystore.governing import governed, ungoverned
-from tests.helpers.keystores import governance, grant, permissions, rule, topic_rule
+from tests.helpers.keystores import governance, grant, joined, permissions, rule, topic_rule
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -83,7 +83,7 @@ def test_upper_case_is_read_as_the_middlewares_do() -> None:
 
 
 FROM_SEVEN = "<id_range><min>7</min></id_range>"
-"""Of Fast DDS one domain, of the standard and Cyclone DDS all from there on."""
+"""To Fast DDS and Cyclone DDS one domain, in the standard all from there on."""
 
 
 def remarks(tmp_path: Path, of_governance: str, domains: str, domain: int | None = None) -> list[Diagnostic]:
@@ -96,9 +96,7 @@ def remarks(tmp_path: Path, of_governance: str, domains: str, domain: int | None
 
 def two_rules(first: str, second: str) -> str:
     """A governance whose rules ask for permissions, then do not."""
-    rules = governance(domains=first), governance(topic_rule(reading="false"), domains=second)
-    bodies = (text.partition("<domain_access_rules>")[2].partition("</domain_access_rules>")[0] for text in rules)
-    return f"<dds><domain_access_rules>{''.join(bodies)}</domain_access_rules></dds>"
+    return joined(governance(domains=first), governance(topic_rule(reading="false"), domains=second))
 
 
 @pytest.mark.parametrize(
@@ -132,9 +130,7 @@ RANGES = st.one_of(
 
 @given(st.lists(st.lists(RANGES, min_size=1, max_size=2).map("".join), min_size=1, max_size=4), DOMAINS)
 def test_of_each_reading_the_rule_that_decides_is_among_those_that_may(written: list[str], domain: int) -> None:
-    bodies = (governance(domains=domains).partition("<domain_access_rules>")[2] for domains in written)
-    rules = "".join(body.partition("</domain_access_rules>")[0] for body in bodies)
-    found = read(f"<dds><domain_access_rules>{rules}</domain_access_rules></dds>")
+    found = read(joined(*(governance(domains=domains) for domains in written)))
     may = [one.rule for one in governed(found, ((domain, domain),))]
     readings: tuple[Callable[[Domains], bool], ...] = (lambda one: domain in one, lambda one: one.surely(domain))
     for about in readings:

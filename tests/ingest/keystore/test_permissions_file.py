@@ -114,7 +114,7 @@ def test_rules_for_several_domains_need_a_domain() -> None:
 
 @pytest.mark.parametrize(("domain", "wins"), [(7, "deny"), (8, "allow")])
 def test_a_range_without_an_end_allows_from_there_on_and_denies_its_first_domain_only(domain: int, wins: str) -> None:
-    """The standard and Cyclone DDS read it as open-ended, Fast DDS as one domain; in doubt it is allowed (S5, S11)."""
+    """The standard has it open-ended, Fast DDS and Cyclone DDS read one domain; in doubt it is allowed (S5, S11)."""
     domains = "<id_range><min>7</min></id_range>"
     names = rule("deny", publish=("rt/a",), domains=domains), rule("allow", publish=("rt/*",), domains=domains)
     text = permissions(grant("/c", *names))
