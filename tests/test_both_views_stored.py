@@ -13,7 +13,7 @@ from rosprivacy.private_neo4j import connection
 from rosprivacy.queries.library import pack
 from rosprivacy.settings import Settings
 from tests.helpers.command import cli
-from tests.test_both_views import EXAMPLE, EXAMPLE_LABELS, FLEET, THREE, apart, policy
+from tests.helpers.shared_enclaves import EXAMPLE, EXAMPLE_LABELS, FLEET, THREE, apart, policy
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
