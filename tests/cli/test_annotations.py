@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from shutil import copytree
 from typing import TYPE_CHECKING
 
@@ -233,3 +234,37 @@ def test_own_kinds_take_part(tmp_path: Path, cli: Cli) -> None:
     assert cli("annotations", "a.py", cwd=tmp_path).returncode == 2
     done = cli("annotations", "a.py", "--ontology", "o.ttl", cwd=tmp_path)
     assert "  /n: {source: [PulseCurve]} # a.py:1" in done.stdout.splitlines()
+
+
+def test_hostile_names_of_files_reach_no_terminal(tmp_path: Path, cli: Cli) -> None:
+    """What stands in a folder was named by anybody; conflicts and differences tell it too."""
+    for number, name in enumerate((b"\x1b[31m\n.py", b"\xff\xe2\x80\xae.py")):
+        words = ("leak Voice", "conduit Voice")[number]
+        (tmp_path / os.fsdecode(name)).write_text(f"# privacy(/n): {words}\n# privacy(/only{number}): mundane\n")
+    done = cli("annotations", str(tmp_path), cwd=tmp_path)
+    assert (done.returncode, len(done.stderr.splitlines())) == (2, 1)
+    assert "/n is" in done.stderr
+    assert all(line.isprintable() for line in done.stderr.splitlines())
+    (tmp_path / os.fsdecode(b"\xff\xe2\x80\xae.py")).write_text("# privacy(/only1): mundane\n")
+    done = cli("annotations", str(tmp_path), "-o", "l.yaml", cwd=tmp_path)
+    assert done.returncode == 0
+    assert all(line.isprintable() for line in (tmp_path / "l.yaml").read_text().splitlines())
+    (tmp_path / "l.yaml").write_text("labels: 1\nchannels: {/only1: sensitive}\n")
+    done = cli("annotations", str(tmp_path), "--check", "l.yaml", cwd=tmp_path)
+    assert (done.returncode, len(done.stdout.splitlines())) == (1, 3)
+    assert all(line.isprintable() for line in done.stdout.splitlines())
+
+
+def test_one_that_states_its_method_beside_one_that_does_not(tmp_path: Path, cli: Cli) -> None:
+    said = ["sanitizer Video", "sanitizer Video pseudonymise"]
+    for some in (said, said[::-1]):
+        (tmp_path / "a.py").write_text("".join(f"# privacy(/x): {one}\n" for one in some))
+        assert "{sanitizer: {Video: pseudonymise}}" in cli("annotations", "a.py", cwd=tmp_path).stdout
+
+
+def test_long_names_are_told_at_their_line(tmp_path: Path, cli: Cli) -> None:
+    (tmp_path / "a.py").write_text(f"# privacy(/{'x' * 1500}): mundane\n")
+    assert cli("annotations", "a.py", "-o", "l.yaml", cwd=tmp_path).returncode == 0
+    assert cli("annotations", "a.py", "--check", "l.yaml", cwd=tmp_path).returncode == 0
+    (tmp_path / "a.py").write_text(f"# privacy(/{'x' * 20_000}): mundane\n")
+    assert cli("annotations", "a.py", cwd=tmp_path).stderr.startswith("a.py:1: a name of more than 2000 characters")
