@@ -172,7 +172,8 @@ def test_users_rules_and_kinds_take_part(cli: Cli, robot: Path) -> None:
 
 
 def test_packages_take_part_and_a_users_own(cli: Cli, tmp_path: Path) -> None:
-    (tmp_path / "p.xml").write_text(policy_of({"usb_cam": (["/image_raw", "/camera_info"], []), "badge": (["/b"], [])}), "utf-8")
+    nodes: Nodes = {"usb_cam": (["/image_raw", "/camera_info"], []), "badge": (["/b"], [])}
+    (tmp_path / "p.xml").write_text(policy_of(nodes), "utf-8")
     (tmp_path / "l.yaml").write_text("labels: 1\n", "utf-8")
     assert ("/usb_cam", "source", "Video", "likely") in rows(cli, tmp_path)
     (tmp_path / "own.yaml").write_text(PACKAGE, "utf-8")
