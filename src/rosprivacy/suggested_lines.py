@@ -29,7 +29,12 @@ if TYPE_CHECKING:
 
 
 def with_suggestions(
-    policies: tuple[str, ...], labels: tuple[str, ...], settings: Settings, file: str, rules: Sequence[str] = ()
+    policies: tuple[str, ...],
+    labels: tuple[str, ...],
+    settings: Settings,
+    file: str,
+    rules: Sequence[str] = (),
+    packages: Sequence[str] = (),
 ) -> Written:
     """Return a label file with what is suggested, in place of what was suggested before.
 
@@ -40,7 +45,7 @@ def with_suggestions(
     LabelError
         If the file has no room for comments, as JSON has none.
     """
-    told = suggest_labels(policies, labels, settings, rules)
+    told = suggest_labels(policies, labels, settings, rules, packages)
     vocabulary = told.result.vocabulary
     text = _text(file)
     comments = [comment_of(one) for one in told.proposals if one.label not in told.by_hand]

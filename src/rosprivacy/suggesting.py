@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.suggesting.by_package import package_evidence
 from rosprivacy.analysis.suggesting.carried_kinds import Rules, carried_kinds
 from rosprivacy.analysis.suggesting.evidence import LEAK, SOURCE
 from rosprivacy.analysis.suggesting.nodes import of_nodes
@@ -15,6 +16,7 @@ from rosprivacy.analysis.suggesting.open_elements import of_channels, of_open
 from rosprivacy.analysis.suggesting.traffic import traffic
 from rosprivacy.analysis.suggesting.unsaid import unsaid
 from rosprivacy.analysis.suggesting.weighing import closes_finding, proposals
+from rosprivacy.ingest.packages.package_folders import read_packages, rests_on
 from rosprivacy.ingest.suggestions.name_file import read_name_rules
 from rosprivacy.ingest.types import TABLE
 from rosprivacy.ingest.types.type_table import read_table
@@ -27,6 +29,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.model import Bound
     from rosprivacy.analysis.suggesting.evidence import Evidence, Label, Proposal
+    from rosprivacy.analysis.suggesting.ros_package import Package
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.result import Result
     from rosprivacy.settings import Settings
@@ -61,7 +64,11 @@ class Suggested:
 
 
 def suggest_labels(
-    policies: tuple[str, ...], labels: tuple[str, ...], settings: Settings, rules: Sequence[str] = ()
+    policies: tuple[str, ...],
+    labels: tuple[str, ...],
+    settings: Settings,
+    rules: Sequence[str] = (),
+    packages: Sequence[str] = (),
 ) -> Suggested:
     """Read a robot's system and say what its elements could be labelled as.
 
@@ -69,6 +76,8 @@ def suggest_labels(
     ----------
     rules
         A user's files of rules about names.
+    packages
+        A user's files of packages, folders of them, or ``ament``.
 
     Raises
     ------
@@ -78,20 +87,22 @@ def suggest_labels(
     result = answer_robot(policies, labels, settings)
     known, files = _rules(result.vocabulary, settings, rules)
     found = _with_findings(result)
-    made = proposals(evidence(result.analysis, result.bound, known), found)
+    catalogue = read_packages(packages, result.vocabulary, settings.bounds)
+    made = proposals(evidence(result.analysis, result.bound, known, catalogue), found)
     asked = unsaid(made, result.analysis.graph, result.bound, result.vocabulary.hierarchy)
     places = _review_places(result.document())
     by_hand = frozenset(one.label for one in asked if closes_finding(one.label, found))
-    return Suggested(in_review_order(asked, places), frozenset(places), by_hand, result, files)
+    return Suggested(in_review_order(asked, places), frozenset(places), by_hand, result, (*files, *rests_on(catalogue)))
 
 
-def evidence(analysis: Analysis, bound: Bound, rules: Rules) -> Iterator[Evidence]:
+def evidence(analysis: Analysis, bound: Bound, rules: Rules, packages: Sequence[Package]) -> Iterator[Evidence]:
     """Yield what every provider finds; the order does not matter."""
     graph = analysis.graph
     told, clues = traffic(graph, bound), carried_kinds(graph, bound, rules)
     yield from of_nodes(graph, bound, told, clues, rules)
     yield from of_channels(graph, clues)
     yield from of_open(analysis.open, graph, bound, told, rules)
+    yield from package_evidence(graph, bound.types, packages)
 
 
 def in_review_order(asked: Sequence[Proposal], places: Mapping[Place, int]) -> tuple[Proposal, ...]:
