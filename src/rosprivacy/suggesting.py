@@ -6,8 +6,9 @@ In: names of files. Out: ``Suggested``. Every provider of evidence is asked here
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.findings.review_order import Behind, review_order
 from rosprivacy.analysis.suggesting.by_package import package_evidence
 from rosprivacy.analysis.suggesting.carried_kinds import Rules, carried_kinds
 from rosprivacy.analysis.suggesting.evidence import LEAK, SOURCE
@@ -20,13 +21,12 @@ from rosprivacy.ingest.packages.package_folders import read_packages, rests_on
 from rosprivacy.ingest.suggestions.name_file import read_name_rules
 from rosprivacy.ingest.types import TABLE
 from rosprivacy.ingest.types.type_table import read_table
-from rosprivacy.report.review_groups import review_groups
 from rosprivacy.robot_system import answer_robot
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.analysis.answer import Analysis, OpenQuestion
     from rosprivacy.analysis.model import Bound
     from rosprivacy.analysis.suggesting.evidence import Evidence, Label, Proposal
     from rosprivacy.analysis.suggesting.ros_package import Package
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from rosprivacy.settings import Settings
 
 Place = tuple[str, str, str]  # identity of an element
+NOTHING_BEHIND = Behind()  # of what is open by a type only
 NOT_OPEN = 2**31  # behind every open element
 
 
@@ -84,13 +85,23 @@ def suggest_labels(
     InputErrors
         With every problem of the input, one line each.
     """
-    result = answer_robot(policies, labels, settings)
+    return suggested(answer_robot(policies, labels, settings), settings, rules, packages)
+
+
+def suggested(result: Result, settings: Settings, rules: Sequence[str] = (), packages: Sequence[str] = ()) -> Suggested:
+    """Return what could be said of the elements of an answer; parameters as of ``suggest_labels``.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the rules and packages.
+    """
     known, files = _rules(result.vocabulary, settings, rules)
-    found = _with_findings(result)
     catalogue = read_packages(packages, result.vocabulary, settings.bounds)
+    found = _with_findings(result)
     made = proposals(evidence(result.analysis, result.bound, known, catalogue), found)
     asked = unsaid(made, result.analysis.graph, result.bound, result.vocabulary.hierarchy)
-    places = _review_places(result.document())
+    places = _review_places(result.analysis)
     by_hand = frozenset(one.label for one in asked if closes_finding(one.label, found))
     return Suggested(in_review_order(asked, places), frozenset(places), by_hand, result, (*files, *rests_on(catalogue)))
 
@@ -130,11 +141,14 @@ def _with_findings(result: Result) -> frozenset[str]:
     return frozenset(kind for one in result.analysis.findings for kind in hierarchy.overlaps[one.category])
 
 
-def _review_places(document: Mapping[str, Any]) -> dict[Place, int]:
-    """The place of each open element in the order of review."""
-    places: dict[Place, int] = {}
-    for group in review_groups(document):
-        for question in (*group.now, *group.waiting, *group.proposed):
-            element = question["element"]
-            places.setdefault((element.get("robot", ""), element["kind"], element["name"]), len(places))
-    return places
+def _review_places(analysis: Analysis) -> dict[Place, int]:
+    """The place of each open element in the order of review: that of ``review_groups``, what can wait last."""
+    behind = review_order(analysis)
+
+    def place(question: OpenQuestion) -> tuple[int, bool, int, int, int]:
+        said = behind.get(question.element.shown_as, NOTHING_BEHIND)
+        group = 1 if question.element.is_channel else 0 if question.frontier else 2
+        return group, said.waits, -said.leaks, -said.closes, question.distance
+
+    identities = dict.fromkeys(question.element.identity for question in sorted(analysis.open, key=place))
+    return {identity: number for number, identity in enumerate(identities)}

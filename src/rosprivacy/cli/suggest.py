@@ -73,10 +73,10 @@ def _write(inputs: Inputs, file: Path, rules: Sequence[str], packages: Sequence[
     """The suggestions into a label file, in place of those that an earlier run has written there."""
     from rosprivacy.report.editing import editing
     from rosprivacy.suggested_lines import with_suggestions
+    from rosprivacy.suggesting import suggest_labels
 
     with editing(file):
-        written = with_suggestions(
-            inputs.named, tuple(inputs.labels or ()), inputs.settings, str(file), rules, packages
-        )
+        told = suggest_labels(inputs.named, tuple(inputs.labels or ()), inputs.settings, rules, packages)
+        written = with_suggestions(str(file), told)
         emit(written.text, file, edited=file)
     typer.echo(f"{file}: {counted(written.added, 'suggestion')}, as comments", err=True)
