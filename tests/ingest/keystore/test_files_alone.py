@@ -196,6 +196,26 @@ def test_the_library_a_fleet_and_check_take_them(cli: Cli, folder: Path) -> None
     ]
 
 
+@pytest.mark.parametrize(("name", "what"), [("x.xml", "it is"), ("x.p7s", "1 signed file is (x.p7s)")])
+def test_such_a_file_in_a_folder_of_policies_is_a_gap(cli: Cli, folder: Path, name: str, what: str) -> None:
+    mixed = folder / "mixed"
+    mixed.mkdir()
+    (mixed / "p.xml").write_text(POLICY)
+    (mixed / name).write_text(uplink())
+    (folder / "camera.yaml").write_text(
+        "labels: 1\nnodes: {/camera: {source: [Video], leak: none}}\nchannels: {/video: sensitive}\n"
+    )
+    done = cli("analyze", "mixed", "-l", "camera.yaml", "--save-graph", "g.json", cwd=folder)
+    assert done.returncode == 4
+    where = "mixed/x.xml:2" if name == "x.xml" else "mixed"
+    said = f"warning: {where}: not read: {what} permissions or governance, and what that grants is not known; name it"
+    assert said in done.stdout
+    (mixed / name).unlink()
+    assert said in cli("analyze", "--add", "g.json", "-l", "camera.yaml", cwd=folder).stdout
+    alone = cli("analyze", "mixed", "-l", "camera.yaml", cwd=folder)
+    assert (alone.returncode, said in alone.stdout) == (0, False)
+
+
 @pytest.mark.corpus
 def test_files_of_others_are_told_apart_by_what_is_in_them(corpus: Path) -> None:
     folder = corpus / "dds/OpenDDS__OpenDDS/tests/DCPS/Messenger"
