@@ -35,6 +35,7 @@ BENCHMARKS = (
     "ledger",
     "reliance",
     "wildcards",
+    "views",
     "fleet_flows",
     "fleet_kernel",
     "fleet_robots",
