@@ -34,6 +34,7 @@ BENCHMARKS = (
     "bags",
     "ledger",
     "reliance",
+    "suggestions",
     "wildcards",
     "views",
     "fleet_flows",

@@ -120,7 +120,7 @@ class _Reading(NamedTuple):
         yield granted
         if View(self.view) is View.enforced:
             for one in found:
-                yield open_topics(one.file, one.rule, granted.profiles)
+                yield open_topics(one.file, one.rule, granted.profiles, granted.sources)
 
     def _remarks(self, stated: Sequence[Permissions]) -> Iterator[Diagnostic]:
         yield from apart_remarks(stated, self.domain)

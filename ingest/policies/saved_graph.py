@@ -18,6 +18,7 @@ from rosprivacy.analysis.errors import GraphError, InputErrors, shown
 from rosprivacy.analysis.json_shape import MOST, misfits, validator
 from rosprivacy.analysis.json_values import parsed
 from rosprivacy.analysis.model import (
+    ACCESS_GAP,
     DEAD_DENY,
     NOT_READ,
     UNREAD_FILE,
@@ -76,7 +77,7 @@ def as_dict(
     observed = [types_file.as_dict(one) for one in types]
     policies = tuple(policies)
     own = {d for policy in policies for d in policy.diagnostics}
-    left = dict.fromkeys(d for d in diagnostics if d.code in (NOT_READ, UNREAD_FILE) and d not in own)
+    left = dict.fromkeys(d for d in diagnostics if d.code in (NOT_READ, UNREAD_FILE, ACCESS_GAP) and d not in own)
     return {
         "format": FORMAT,
         "policies": [_policy(policy) for policy in sorted(policies, key=lambda p: p.file)],

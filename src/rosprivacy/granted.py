@@ -56,12 +56,11 @@ def read_granted(names: Iterable[str], settings: Settings, within: str | None = 
     if granted:
         policies = (*policies, *_deployed(granted, settings, within))
     if access:
-        more, told = _zenoh(access, settings, within)
-        policies, said = (*policies, *more), (*said, *told)
+        policies = (*policies, *_zenoh(access, settings, within))
     return policies, said
 
 
-def _zenoh(names: list[str], settings: Settings, within: str | None) -> Read:
+def _zenoh(names: list[str], settings: Settings, within: str | None) -> tuple[Policy, ...]:
     from rosprivacy.ingest.zenoh_access.zenoh_inputs import read_zenoh  # noqa: PLC0415 - light start
 
     _confined(names, within)
