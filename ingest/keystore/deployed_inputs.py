@@ -6,15 +6,18 @@ In: their paths. Out: ``Policy`` facts, with what a reader has to know of govern
 from __future__ import annotations
 
 import hashlib
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputErrors, PolicyError
+from rosprivacy.analysis.model import Diagnostic, Place, Severity
 from rosprivacy.analysis.modes import View
 from rosprivacy.ingest.keystore.governance_remarks import governance_remarks, rules_of
 from rosprivacy.ingest.keystore.grants import expired, policy_of
 from rosprivacy.ingest.keystore.keystore_folder import read_keystore
 from rosprivacy.ingest.keystore.open_topics import open_topics
 from rosprivacy.ingest.keystore.permissions_file import read_permissions
+from rosprivacy.ingest.keystore.protections import protection
 from rosprivacy.ingest.keystore.signed_file import read_signed
 from rosprivacy.ingest.keystore.told_apart import is_keystore
 
@@ -22,7 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from rosprivacy.analysis.errors import InputError
-    from rosprivacy.analysis.model import Diagnostic, Policy
+    from rosprivacy.analysis.model import Policy
 
 Read = tuple[tuple["Policy", ...], tuple["Diagnostic", ...]]
 
@@ -81,11 +84,16 @@ def _read(
         policies = []
         for enclave in enclaves:
             granted = policy_of(enclave.permissions, domain, enclave.sources)
+            rules = rules_of(enclave.governance, enclave.permissions, domain)
+            remarks = tuple(governance_remarks(enclave.governance, enclave.permissions, domain))
+            granted = replace(
+                granted,
+                diagnostics=(*granted.diagnostics, *remarks),
+                protections=tuple(map(protection, rules)),
+            )
             policies.append(granted)
             if View(view) is View.enforced:
-                rules = rules_of(enclave.governance, enclave.permissions, domain)
                 policies += (open_topics(enclave.governance.file, rule, granted.profiles) for rule in rules)
-            said += governance_remarks(enclave.governance, enclave.permissions, domain)
         said += expired((enclave.permissions for enclave in enclaves), today)
         return policies, said
     signed = read_signed(argument, None)
@@ -94,4 +102,6 @@ def _read(
         raise PolicyError(argument, 0, what, "name the keystore, or read them all the same with --allow-unsigned")
     permissions = read_permissions(signed.data, argument, signed.before)
     sources = ((argument, hashlib.sha256(signed.data).hexdigest()),)
-    return [policy_of(permissions, domain, sources)], list(expired([permissions], today))
+    told = "no governance is read with it, so whether what is sent is encrypted is not known; name the keystore"
+    said = [Diagnostic(Place(argument, 0), Severity.NOTICE, told), *expired([permissions], today)]
+    return [policy_of(permissions, domain, sources)], said

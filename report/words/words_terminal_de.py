@@ -93,6 +93,7 @@ WORDS = {
     "tty.kind.disclosure": "{data}",
     "tty.kind.storage-limitation": "ohne angegebenes Ende oder zu lange aufbewahrt: {data}",
     "tty.kind.third-country-transfer": "verlässt den EWR ohne angegebene Grundlage: {data}",
+    "tty.kind.unprotected-channel": "im Netz lesbar: {data}",
     "tty.hidden": "{kind} (pseudonymisiert)",
     "tty.state.accepted": "akzeptiert",
     "tty.state.dismissed": "nur über einen anderen Ausgang",

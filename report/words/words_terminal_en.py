@@ -93,6 +93,7 @@ WORDS = {
     "tty.kind.disclosure": "{data}",
     "tty.kind.storage-limitation": "kept without a stated end, or too long: {data}",
     "tty.kind.third-country-transfer": "leaves the EEA without a stated basis: {data}",
+    "tty.kind.unprotected-channel": "can be read on the network: {data}",
     "tty.hidden": "pseudonymised {kind}",
     "tty.state.accepted": "accepted",
     "tty.state.dismissed": "only through another leak",

@@ -95,6 +95,7 @@ _TYPED = {
     "tty.kind.disclosure": "{data}",
     "tty.kind.storage-limitation": "conservées sans fin indiquée, ou trop longtemps : {data}",
     "tty.kind.third-country-transfer": "quitte l'EEE sans base indiquée : {data}",
+    "tty.kind.unprotected-channel": "lisible sur le réseau : {data}",
     "tty.hidden": "{kind} (pseudonymisées)",
     "tty.state.accepted": "accepté",
     "tty.state.dismissed": "uniquement par un autre point de sortie",

@@ -30,7 +30,7 @@ from rosprivacy.ingest.policies.merged_policies import OF_ONE_ROBOT, merging_not
 from rosprivacy.ingest.policies.namespaces import pushed, told
 from rosprivacy.ingest.types.channel_types import matching_nothing
 from rosprivacy.question import question_of
-from rosprivacy.robot_system import read_types_files, with_types
+from rosprivacy.robot_system import read_types_files, with_exposed, with_types
 from rosprivacy.system import System
 
 if TYPE_CHECKING:
@@ -180,6 +180,7 @@ class Reader:
         written = full if robot.strip else {}
         diagnostics += matching_nothing(extended, types, written)
         bound = with_types(extended, bind(extended, files, settings.bounds, robot.surroundings), types, written)
+        bound = with_exposed(extended, bound, policies)
         return Member(
             robot, policies, extended, bound, full, graph.profiles, tuple(files), tuple(dict.fromkeys(diagnostics)),
             types, robot.add,

@@ -109,7 +109,7 @@ def _joined(
     vocabulary: Vocabulary,
 ) -> System:  # fmt: skip
     policies, diagnostics = read
-    said = tuple(d for policy in policies for d in policy.diagnostics) + diagnostics
+    said = tuple(dict.fromkeys(d for policy in policies for d in policy.diagnostics)) + diagnostics
     said += (
         tuple(d for file in files for d in file.diagnostics)
         + tuple(remarks(graph, files))
@@ -117,7 +117,7 @@ def _joined(
     )
     said += careful_notices(graph.careful)
     rests_on = {**files_read(policies, files, settings), **types_read(types)}
-    bound = with_types(graph, bound, types)
+    bound = with_exposed(graph, with_types(graph, bound, types), policies)
     return System(graph, bound, vocabulary, said, rests_on, policies, tuple(files), types=types)
 
 
@@ -126,6 +126,16 @@ def with_types(graph: FlowGraph, bound: Bound, types: Types, written: Written = 
     seen = channel_types(graph, types, written)
     both = {v: (*bound.types.get(v, ()), *seen.get(v, ())) for v in {*bound.types, *seen}}
     return replace(bound, types=in_order(both))
+
+
+def with_exposed(graph: FlowGraph, bound: Bound, policies: Iterable[Policy]) -> Bound:
+    """Return what is bound to a graph with the channels that a governance leaves in the open (rule S10)."""
+    policies = [policy for policy in policies if policy.protections]
+    if not policies:
+        return bound
+    from rosprivacy.ingest.keystore.protections import exposed_channels  # noqa: PLC0415 - light start
+
+    return replace(bound, exposed=exposed_channels(graph, policies))
 
 
 def answer_each(
