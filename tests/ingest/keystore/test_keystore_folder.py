@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from datetime import UTC, datetime, timedelta
 from typing import TYPE_CHECKING
 
 import pytest
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.ingest.keystore.deployed_inputs import Read
 
-TODAY = "2026-11-22"
+TODAY = (datetime.now(UTC) + timedelta(days=1)).date().isoformat()  # the certificates are given today
 CAMERA = permissions(grant("/camera", rule("allow", publish=("rt/video",))))
 VIEWER = permissions(grant("/viewer", rule("allow", subscribe=("rt/video",))))
 
@@ -115,7 +116,7 @@ def test_an_expired_certificate_and_an_expired_grant_are_told_and_read(keystore:
     keystore.enclave("/old", past)
     policies, said = read(keystore)
     assert len(policies) == 3
-    message = "grant of CN=/old is valid from 2020-01-01 to 2021-01-01, not on 2026-11-22"
+    message = f"grant of CN=/old is valid from 2020-01-01 to 2021-01-01, not on {TODAY}"
     assert [d.message for d in said if d.message.startswith(message)]
     assert any("the certificate of CN=/camera is valid" in d.message for d in read(keystore, "2070-01-01")[1])
 
