@@ -23,6 +23,12 @@ class Concern(NamedTuple):
     bits: Mapping[int, int]
     reasons: Mapping[tuple[int, str], Reason]
 
+    def taken_up(self, spread: Spread) -> Mapping[int, int]:
+        """Return the bits without those that a channel does not carry, if they come."""
+        if self.kind != UNPROTECTED:
+            return self.bits
+        return {v: bits & spread.keeps.get(v, spread.all_bits) for v, bits in self.bits.items()}
+
 
 def concerns(spread: Spread, bound: Bound, hierarchy: Hierarchy) -> Iterator[Concern]:
     """Return where each kind of finding can be (rule S10); disclosure first.

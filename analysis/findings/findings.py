@@ -328,8 +328,8 @@ def _other_leaks(spread: Spread, path: list[tuple[int, int, int]], i: int, accep
 def finding_id(category: str, source: Element, leak: Element, kind: str = DISCLOSURE, *, beside: bool = False) -> str:
     """Return the stable id of a finding, made from category, source and leak, and the kind if several can be (S10).
 
-    Data as it is ``beside`` a pseudonymised finding has an id of its own, made with the word 'plain'. Only a channel has
-    a leg, or names that a DENY takes out.
+    Data as it is ``beside`` a pseudonymised finding has an id of its own, made with the word 'plain'. Only a
+    channel has a leg, or names that a DENY takes out.
 
     >>> finding_id("Video", Element("node", "/camera"), Element("node", "/uplink"))
     '72abf86b6fa9e2ae'

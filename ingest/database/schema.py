@@ -115,7 +115,9 @@ ELEMENT = NodeKind(
         Property("subjects", STRINGS, "of a source: whom its data are about"),
         Property("types", STRINGS, "of a channel: message types, as they were observed or stated"),
         Property("type_facts", STRINGS, "JSON: each of these with who states it, or which nodes were seen with it"),
-        Property("unprotected", STRINGS, "of a channel: why others on the network can read it, `not-encrypted: file:line`"),
+        Property(
+            "unprotected", STRINGS, "of a channel: why others on the network can read it, `not-encrypted: file:line`"
+        ),
         Property("context", STRINGS, f"where it works, with its system: some of {', '.join(CONTEXTS)}"),
         *_PROCESSING,
         Property("leaks", STRINGS, "kinds that it lets out, if they come"),

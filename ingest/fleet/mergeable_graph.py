@@ -18,7 +18,16 @@ from rosprivacy.ingest.labels.stated_types import in_order
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
-    from rosprivacy.analysis.model import Exposure, Grant, MessageType, NonRosFacts, Processing, Profile, Statement, Surroundings
+    from rosprivacy.analysis.model import (
+        Exposure,
+        Grant,
+        MessageType,
+        NonRosFacts,
+        Processing,
+        Profile,
+        Statement,
+        Surroundings,
+    )
 
 K = TypeVar("K")
 V = TypeVar("V")

@@ -102,6 +102,6 @@ def _read(
         raise PolicyError(argument, 0, what, "name the keystore, or read them all the same with --allow-unsigned")
     permissions = read_permissions(signed.data, argument, signed.before)
     sources = ((argument, hashlib.sha256(signed.data).hexdigest()),)
-    told = "no governance is read with it, so whether what is sent is encrypted is not known; name the keystore"
-    said = [Diagnostic(Place(argument, 0), Severity.NOTICE, told), *expired([permissions], today)]
+    what = "no governance is read with it, so whether what is sent is encrypted is not known; name the keystore"
+    said = [Diagnostic(Place(argument, 0), Severity.WARNING, what), *expired([permissions], today)]
     return [policy_of(permissions, domain, sources)], said

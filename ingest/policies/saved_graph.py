@@ -248,9 +248,7 @@ def _read_policy(saved: dict[str, Any]) -> Policy:
         said += more
     sources = tuple(sorted(saved["sources"].items()))
     protections = tuple(map(_read_protection, saved.get("protections", ())))
-    return Policy(
-        saved["file"], sources, profiles, tuple(grants), tuple(said), saved=True, protections=protections
-    )
+    return Policy(saved["file"], sources, profiles, tuple(grants), tuple(said), saved=True, protections=protections)
 
 
 def _of_earlier_version(grants: list[Grant], said: Iterable[Diagnostic]) -> tuple[list[Grant], list[Diagnostic]]:

@@ -127,7 +127,7 @@ def _different(old: Mapping[str, Any], new: Mapping[str, Any], were: Identity, a
 def _reason(finding: Mapping[str, Any]) -> str:
     """Why it is one, without a line by which it is so."""
     because = finding.get("because")
-    return because["key"] if because and "line" in because["values"] else finding.get("reason", "")
+    return str(because["key"] if because and "line" in because["values"] else finding.get("reason", ""))
 
 
 def _robots(finding: Mapping[str, Any], identity: Identity) -> Any:

@@ -162,7 +162,11 @@ class Processes:
         known, name, at = self.stated.get(leak.identity, {}), shown(leak.name), self.things.element(leak)
         if finding.kind != STORED:
             recipient = self.names.of("recipient", *leak.identity)
-            anybody = f"whoever reads {name} on the network" if finding.kind == OPEN else f"whoever receives what {name} lets out"
+            anybody = (
+                f"whoever reads {name} on the network"
+                if finding.kind == OPEN
+                else f"whoever receives what {name} lets out"
+            )
             label = shown(known["operator"]) if "operator" in known else anybody
             yield iri, DPV.hasRecipient, recipient
             role = PARTIES.get(known.get("role", ""))

@@ -90,8 +90,7 @@ RULES = (
         "The governance of DDS-Security does not have the channel encrypted, or lets a participant without a "
         "certificate join. Data that is signed only can be read, too.",
         (
-            "Set data_protection_kind or metadata_protection_kind of the topic rule to ENCRYPT, or rtps_protection_kind "
-            "of the domain rule, and sign the governance anew.",
+            "Set data_protection_kind or metadata_protection_kind there to ENCRYPT, and sign the governance anew.",
             "Set allow_unauthenticated_participants to false.",
             CLEAN,
             DECIDE,

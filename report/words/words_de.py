@@ -187,6 +187,8 @@ WORDS = {
     "z.instead": "Ohne Änderung der Datenflüsse kann, wenn es so ist oder sich einrichten lässt, angegeben werden:",
     "z.state.storage-limitation": "zu {element}, wie lange {data} aufbewahrt wird, innerhalb der Frist",
     "z.state.third-country-transfer": "zu {element} ein anderes Land, oder die Grundlage der Übermittlung von {data}",
+    "z.protect.not-encrypted": "In der Governance-Datei, bei {place}, schützt data_protection_kind ENCRYPT: {channels}; sie ist danach neu zu signieren. Davon hängt ab: {removed}.",
+    "z.protect.strangers": "In der Governance-Datei, bei {place}, hält allow_unauthenticated_participants false Teilnehmer ohne Zertifikat fern; sie ist danach neu zu signieren. Davon hängt ab: {removed}, über {channels}.",
     "z.stays": "Keine Änderung beseitigt:",
     "b.picture": "Die kürzesten Wege dessen, was zu entscheiden ist, in einem Bild",
     "b.picture.part": "Die kürzesten Wege der ersten {n} von {all} Punkten; die anderen haben unten je ein Bild",

@@ -218,6 +218,8 @@ WORDS = {
     "z.instead": "Without a change of flows, if it is so or can be arranged, a label file can state:",
     "z.state.storage-limitation": "of {element}, for how long {data} is kept, within the limit",
     "z.state.third-country-transfer": "of {element}, another country, or the basis of the transfer of {data}",
+    "z.protect.not-encrypted": "In the governance, at {place}, data_protection_kind ENCRYPT protects {channels}; it has to be signed anew. It is behind {removed}.",
+    "z.protect.strangers": "In the governance, at {place}, allow_unauthenticated_participants false keeps out whoever has no certificate; it has to be signed anew. It is behind {removed}, over {channels}.",
     "z.stays": "No change removes:",
     "b.picture": "The shortest paths of what is to be decided, in one picture",
     "b.picture.part": "The shortest paths of the first {n} of {all} to decide; the others have a picture each, below",

@@ -192,6 +192,8 @@ _TYPED = {
     "z.instead": "Sans modification des flux, si c'est le cas ou si cela peut être organisé, une annotation peut indiquer :",
     "z.state.storage-limitation": "pour {element}, la durée de conservation, dans la limite : {data}",
     "z.state.third-country-transfer": "pour {element}, un autre pays, ou le fondement du transfert : {data}",
+    "z.protect.not-encrypted": "Dans la gouvernance, à {place}, data_protection_kind ENCRYPT protège : {channels} ; elle est ensuite à signer de nouveau. En dépend : {removed}.",
+    "z.protect.strangers": "Dans la gouvernance, à {place}, allow_unauthenticated_participants false écarte les participants sans certificat ; elle est ensuite à signer de nouveau. En dépend : {removed}, par {channels}.",
     "z.stays": "Aucune modification ne supprime :",
     "b.picture": "Les plus courts chemins de ce qui est à décider, en une image",
     "b.picture.part": "Les plus courts chemins des {n} premiers points sur {all} ; les autres ont chacun une image plus bas",

@@ -102,7 +102,7 @@ class System:
         said = {v: (*said, *by_kind(elements[v])) for v, said in sorted(self.said.items())}
         facts = {v: facts for v, (_, facts) in self.facts.items()}
         statements = {v: some for v, some in said.items() if some}
-        exposed = {v: (IN_THE_OPEN,) for v in sorted(self.exposed)}
+        exposed = dict.fromkeys(sorted(self.exposed), (IN_THE_OPEN,))
         return Bound(statements, flows, self.through(), outside=facts, exposed=exposed)
 
     def analyse(self, options: Options | None = None) -> Analysis:
@@ -112,7 +112,15 @@ class System:
         never = {self.edges[i]: names for i, names in self.never.items()}
         names = {v: e.name for v, e in enumerate(self.graph().elements)}
         return Brute(
-            range(self.nodes), self.edges, self.said, self.hierarchy, never, self.facts, names, self.stated, self.sides,
+            range(self.nodes),
+            self.edges,
+            self.said,
+            self.hierarchy,
+            never,
+            self.facts,
+            names,
+            self.stated,
+            self.sides,
             self.exposed,
         )
 
