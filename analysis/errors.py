@@ -10,6 +10,7 @@ command line turns errors into exit codes::
         LabelError
         LimitsError
         TypesError
+        PackageError
         DecisionError
         FleetError
         OntologyError
@@ -97,6 +98,10 @@ class LimitsError(InputError):
 
 class TypesError(InputError):
     """A file of message types, or of what they cannot carry, that cannot be read."""
+
+
+class PackageError(InputError):
+    """A file that says what a package's nodes do with data, and that cannot be read."""
 
 
 class DecisionError(InputError):

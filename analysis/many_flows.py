@@ -1,6 +1,7 @@
-"""Flows of which most are alike: where many wildcards meet as many others, each pair is a flow, and none is stored.
+"""Flows of which most are alike: where each of many elements sends to each of as many, each pair is a flow, not stored.
 
-In: flows to store, and meetings: some written wildcards, each of which meets each of some read ones. Out: ``Flows``,
+In: flows to store, and meetings: some written wildcards, each of which meets each of some read ones; or the nodes of an
+enclave and the channels that each of them may write, or read, as the enforced view has it (rule S6). Out: ``Flows``,
 the sequence of all flows, sorted and numbered as if all were stored. Who goes through a meeting as a whole takes it
 from ``parted``; who asks for each flow gets each pair, up to the bound of flows.
 """
@@ -13,7 +14,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import accumulate, pairwise
-from typing import TYPE_CHECKING, NamedTuple, overload
+from typing import TYPE_CHECKING, overload
 
 from rosprivacy.analysis.bounds import BOUNDS, Bounds
 from rosprivacy.analysis.errors import InputErrors, PolicyError
@@ -22,23 +23,7 @@ from rosprivacy.analysis.model import Flow, Place
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
 
-MATCHES = "matches"
-
-
-class Meeting(NamedTuple):
-    """Written wildcards of which each meets each of some read ones, by index into the elements; both sorted."""
-
-    written: tuple[int, ...]
-    read: tuple[int, ...]
-
-    @property
-    def size(self) -> int:
-        """How many flows it stands for."""
-        return len(self.written) * len(self.read)
-
-    def pairs(self) -> Iterable[tuple[int, int]]:
-        """Return the ends of each flow that it stands for."""
-        return ((source, target) for source in self.written for target in self.read)
+    from rosprivacy.analysis.meeting import Meeting
 
 
 @dataclass(frozen=True)
@@ -56,6 +41,7 @@ class Flows(Sequence[Flow]):
 
     Examples
     --------
+    >>> from rosprivacy.analysis.meeting import Meeting
     >>> flows = Flows((Flow(0, 1, "publish"),), (Meeting((1, 2), (3, 4)),))
     >>> len(flows), [(flow.source, flow.target) for flow in flows], flows.number(2, 3)
     (5, [(0, 1), (1, 3), (1, 4), (2, 3), (2, 4)], 3)
@@ -81,14 +67,17 @@ class Flows(Sequence[Flow]):
         number = range(len(self))[at]
         if "_all" in self.__dict__:  # somebody has asked for all
             return self._all[number]
+        if number in self._told:
+            return self._told[number]
         source = self._sources[bisect_right(self._before, number) - 1]
         low, high = 0, self._highest
         while low < high:  # the first target up to which there are more flows than before the one asked for
             middle = (low + high) // 2
             low, high = (low, middle) if self.number(source, middle + 1) > number else (middle + 1, high)
-        if any(_has(read, low) for read in self._meets.get(source, ())):
-            return Flow(source, low, MATCHES)
-        return self.stored[bisect_left(self._ends, (source, low)) + number - self.number(source, low)]
+        for meeting in self._meets.get(source, ()):
+            if _has(meeting.read, low):
+                return meeting.flow(source, low)
+        raise AssertionError(number)
 
     def __iter__(self):  # type: ignore[no-untyped-def]  # noqa: ANN204 - as of Sequence
         """Go through all, one by one."""
@@ -108,7 +97,11 @@ class Flows(Sequence[Flow]):
         """Return the number of a pair of a meeting: so many flows come before it."""
         place = bisect_left(self._sources, source)
         stored = bisect_left(self._ends, (source, target)) - bisect_left(self._ends, (source,))
-        return self._before[place] + stored + sum(bisect_left(read, target) for read in self._meets.get(source, ()))
+        return (
+            self._before[place]
+            + stored
+            + sum(bisect_left(meeting.read, target) for meeting in self._meets.get(source, ()))
+        )
 
     def apart(self, special: Collection[int] = ()) -> tuple[list[tuple[int, Flow]], tuple[Meeting, ...]]:
         """Return flows with their numbers, in order, and the meetings that the others make.
@@ -116,16 +109,16 @@ class Flows(Sequence[Flow]):
         Parameters
         ----------
         special
-            Numbers of flows that are told by themselves, with all of their meeting.
+            Numbers of flows that are told by themselves, with all others of one of their ends in a meeting.
         """
-        ends = [(flow.source, flow.target) for flow in map(self.__getitem__, special) if flow.role == MATCHES]
-        split = {m for m in self.meetings for a, b in ends if _has(m.written, a) and _has(m.read, b)}
-        rows = [(self._number_of_stored(place), flow) for place, flow in enumerate(self.stored)]
-        if split:
-            self.check(sum(meeting.size for meeting in split))
-            pairs = (pair for meeting in split for pair in meeting.pairs())
-            rows = sorted([*rows, *((self.number(*pair), Flow(*pair, MATCHES)) for pair in pairs)], key=_first)
-        return rows, tuple(meeting for meeting in self.meetings if meeting not in split)
+        ends = [(flow.source, flow.target) for flow in map(self.__getitem__, special)]
+        if not ends:
+            return list(self._rows), self.meetings
+        parts = [meeting.parted(ends) for meeting in self.meetings]
+        self.check(sum(told.size for _, told in parts))
+        more = [(self.number(flow.source, flow.target), flow) for _, told in parts for flow in told.flows()]
+        self._told.update(more)
+        return sorted([*self._rows, *more], key=_first), tuple(left for left, _ in parts if left.size)
 
     def leaving(self) -> dict[int, range]:
         """Return the numbers of the flows out of each element that has any."""
@@ -139,19 +132,28 @@ class Flows(Sequence[Flow]):
     @cached_property
     def _all(self) -> tuple[Flow, ...]:
         self.check(sum(meeting.size for meeting in self.meetings))
-        pairs = (Flow(*pair, MATCHES) for meeting in self.meetings for pair in meeting.pairs())
-        return tuple(sorted([*self.stored, *pairs], key=lambda flow: (flow.source, flow.target, flow.role)))
+        made = (flow for meeting in self.meetings for flow in meeting.flows())
+        return tuple(sorted([*self.stored, *made], key=lambda flow: (flow.source, flow.target, flow.role)))
 
     def _number_of_stored(self, place: int) -> int:
         flow = self.stored[place]
         return self.number(flow.source, flow.target) + place - bisect_left(self._ends, (flow.source, flow.target))
 
     @cached_property
-    def _meets(self) -> Mapping[int, list[tuple[int, ...]]]:
-        meets: dict[int, list[tuple[int, ...]]] = defaultdict(list)
+    def _rows(self) -> Sequence[tuple[int, Flow]]:
+        return [(self._number_of_stored(place), flow) for place, flow in enumerate(self.stored)]
+
+    @cached_property
+    def _told(self) -> dict[int, Flow]:
+        """Flows by their number: those that are stored, and those that were told by themselves."""
+        return dict(self._rows)
+
+    @cached_property
+    def _meets(self) -> Mapping[int, list[Meeting]]:
+        meets: dict[int, list[Meeting]] = defaultdict(list)
         for meeting in self.meetings:
             for source in meeting.written:
-                meets[source].append(meeting.read)
+                meets[source].append(meeting)
         return dict(meets)
 
     @cached_property
@@ -168,8 +170,8 @@ class Flows(Sequence[Flow]):
         number: dict[int, int] = defaultdict(int)
         for flow in self.stored:
             number[flow.source] += 1
-        for source, reads in self._meets.items():
-            number[source] += sum(map(len, reads))
+        for source, meetings in self._meets.items():
+            number[source] += sum(len(meeting.read) for meeting in meetings)
         return list(accumulate((number[source] for source in self._sources), initial=0))
 
     @cached_property
@@ -189,6 +191,7 @@ def parted(
 
     Examples
     --------
+    >>> from rosprivacy.analysis.meeting import Meeting
     >>> own, meetings = parted(Flows((Flow(0, 1, "publish"),), (Meeting((1, 2), (3, 4)),)))
     >>> [number for number, _ in own], len(meetings)
     ([0], 1)
@@ -199,6 +202,7 @@ def parted(
 def number(flows: Sequence[Flow], source: int, target: int) -> int:
     """Return the number of a flow of a meeting.
 
+    >>> from rosprivacy.analysis.meeting import Meeting
     >>> number(Flows((), (Meeting((1, 2), (3, 4)),)), 2, 3)
     2
     """
@@ -216,6 +220,7 @@ def one_by_one(flows: Sequence[Flow]) -> Sequence[Flow]:
 
     Examples
     --------
+    >>> from rosprivacy.analysis.meeting import Meeting
     >>> len(one_by_one(Flows((), (Meeting((1, 2), (3, 4)),))))
     4
     """
@@ -225,6 +230,7 @@ def one_by_one(flows: Sequence[Flow]) -> Sequence[Flow]:
 def at_most(flows: Sequence[Flow], number: int) -> Sequence[Flow]:
     """Return flows of which so many are asked for; the same, where it is some of them only.
 
+    >>> from rosprivacy.analysis.meeting import Meeting
     >>> len(at_most(Flows((), (Meeting((1, 2), (3, 4)),)), 2))
     4
     """
@@ -236,6 +242,7 @@ def at_most(flows: Sequence[Flow], number: int) -> Sequence[Flow]:
 def leaving(flows: Sequence[Flow]) -> Mapping[int, range]:
     """Return the numbers of the flows out of each element that has any.
 
+    >>> from rosprivacy.analysis.meeting import Meeting
     >>> leaving(Flows((Flow(0, 1, "publish"),), (Meeting((1, 2), (3, 4)),)))
     {0: range(0, 1), 1: range(1, 3), 2: range(3, 5)}
     """

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.contexts import Contexts
 from rosprivacy.analysis.findings.globs import GlobUse, globs
@@ -23,12 +23,28 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.case import Case
     from rosprivacy.analysis.decisions import Decided, Decision
     from rosprivacy.analysis.durations import Duration
+    from rosprivacy.analysis.findings.beyond import Added
     from rosprivacy.analysis.findings.ledger import TakenAway
     from rosprivacy.analysis.findings.processed import Processed
     from rosprivacy.analysis.fleet.counts import Counts
     from rosprivacy.analysis.fleet.patterns import FleetView
     from rosprivacy.analysis.model import Bound, Diagnostic, NonRosFacts, Surroundings
     from rosprivacy.ontology.vocabulary import Vocabulary
+
+
+class Enforced(NamedTuple):
+    """What the enforced view adds to the declared one, which is the answer of record (rule S6).
+
+    Attributes
+    ----------
+    answer
+        Under the enforced view.
+    added
+        The findings that only this view has, in its order.
+    """
+
+    answer: Answer
+    added: tuple[Added, ...]
 
 
 @dataclass(frozen=True)
@@ -51,6 +67,8 @@ class Answer:
         (kind, name) of open channels that the program's own file proposes to take as mundane (rule S13).
     accepts
         As of ``Options``: whether a person has accepted what would be a finding.
+    enforced
+        What the enforced view adds to this one; None where nobody asked.
     """
 
     analysis: Analysis
@@ -63,6 +81,7 @@ class Answer:
     counts: Counts | None = None
     infrastructure: frozenset[tuple[str, str]] = frozenset()
     accepts: Callable[[Case], bool] | None = field(default=None, repr=False, compare=False)
+    enforced: Enforced | None = field(default=None, repr=False, compare=False)
 
     @property
     def shown(self) -> Analysis:

@@ -13,12 +13,12 @@ from rosprivacy.analysis.many_flows import parted
 from rosprivacy.analysis.model import Place
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
     from typing import Any
 
     from rosprivacy.analysis.answer import Analysis, Finding, OpenQuestion, Step
     from rosprivacy.analysis.kernel.roles import Facts
-    from rosprivacy.analysis.model import Element
+    from rosprivacy.analysis.model import Element, Flow, Grant
 
     Shown = tuple[str, ...]
 
@@ -116,14 +116,23 @@ def _lines(analysis: Analysis) -> dict[Shown, Place]:
     elements = analysis.graph.elements
     wanted = {question.element.shown_as for question in to_review(analysis) if question.element.is_channel}
     found: dict[Shown, tuple[str, int]] = {}
-    for _, flow in parted(analysis.graph.flows)[0] if wanted else ():  # no line states those of meetings
-        for end in (elements[flow.source].shown_as, elements[flow.target].shown_as):
-            if end in wanted:
-                lines = [(grant.place.file, grant.place.line) for grant in flow.grants if in_a_file(grant.place)]
-                known = [found[end]] if end in found else []
-                if lines or known:
-                    found[end] = min([*lines, *known])
+    for vertex, grants in _grants_at(analysis.graph.flows) if wanted else ():
+        end = elements[vertex].shown_as
+        if end in wanted:
+            lines = [(grant.place.file, grant.place.line) for grant in grants if in_a_file(grant.place)]
+            known = [found[end]] if end in found else []
+            if lines or known:
+                found[end] = min([*lines, *known])
     return {end: Place(*line) for end, line in found.items()}
+
+
+def _grants_at(flows: Sequence[Flow]) -> Iterator[tuple[int, tuple[Grant, ...]]]:
+    """What allows a flow at an element; of nodes that share their rights once, at the channels."""
+    own, meetings = parted(flows)
+    yield from ((vertex, flow.grants) for _, flow in own for vertex in (flow.source, flow.target))
+    for meeting in meetings:  # no line states those of wildcards
+        for side, rights in ((meeting.written, meeting.of_written), (meeting.read, meeting.of_read)):
+            yield from ((vertex, right.grants) for vertex, right in zip(side, rights, strict=False))
 
 
 def _first(places: Iterable[Place | None]) -> Place:

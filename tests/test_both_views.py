@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import json
 from contextlib import chdir
+from fnmatch import fnmatch
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+import jsonschema
+import networkx as nx
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
@@ -17,8 +20,13 @@ from rosprivacy.analysis.modes import View
 from rosprivacy.both_views import both_views
 from rosprivacy.settings import Settings
 from tests.helpers.command import cli
+from tests.helpers.paths import ROOT
+from tests.helpers.sarif import checked
+from tests.helpers.word import text_of
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from tests.helpers.command import Cli
 
 __all__ = ["cli"]
@@ -88,6 +96,41 @@ def apart(enclaves: Enclaves, chosen: list[str]) -> Enclaves:
     return found
 
 
+def moved(enclaves: Enclaves, move: Mapping[str, str]) -> Enclaves:
+    """The same for one profile only, which leaves a copy of its DENYs behind."""
+    found = {path: dict(profiles) for path, profiles in enclaves.items()}
+    profiles = found[move["enclave"]]
+    denied = [right for rights in profiles.values() for right in rights if right[2] == "DENY"]
+    gone = profiles.pop(move["profile"])
+    found["/moved"] = {move["profile"]: [*gone, *denied]}
+    left = next(iter(profiles))
+    profiles[left] = [*profiles[left], *(right for right in gone if right[2] == "DENY")]
+    return found
+
+
+def with_denials(enclaves: Enclaves, lines: list[dict[str, Any]]) -> Enclaves:
+    """The policy with these lines in the profiles that they name."""
+    found = {path: dict(profiles) for path, profiles in enclaves.items()}
+    for line in lines:
+        profile = found[line["enclave"]]
+        profile[line["profile"]] = [*profile[line["profile"]], (line["role"], line["channel"]["name"], "DENY")]
+    return found
+
+
+def may(enclaves: Enclaves) -> set[tuple[str, str, str]]:
+    """What profiles allow with the topics that are named, by rule S5, looked up name by name."""
+    topics = {topic for profiles in enclaves.values() for rights in profiles.values() for _, topic, _ in rights}
+    found = set()
+    for profiles in enclaves.values():
+        denied = [(role, name) for rights in profiles.values() for role, name, rule in rights if rule == "DENY"]
+        for node, rights in profiles.items():
+            for role, name, rule in rights:
+                for topic in topics - {"/*"} if rule == "ALLOW" else ():
+                    out = any(of == role and fnmatch(topic, taken) for of, taken in denied)
+                    found |= {(node, role, topic)} if fnmatch(topic, name) and not out else set()
+    return found
+
+
 def ids(text: str, view: View) -> set[str]:
     Path("q.xml").write_text(text)
     result = rosprivacy.analyze("q.xml", "l.yaml", view=view)
@@ -104,7 +147,8 @@ def test_what_is_added_is_what_the_union_of_all_profiles_has_and_splitting_ends_
         said = "".join(f"  {node}: {label}\n" for node, label in zip(NODES, drawn[1], strict=True))
         Path("l.yaml").write_text(f"labels: 1\nnodes:\n{said}")
         try:
-            result, enforced = both_views(("p.xml",), ("l.yaml",), Settings())
+            result = both_views(("p.xml",), ("l.yaml",), Settings())
+            enforced = result.document()["enforced"]
         except rosprivacy.InputErrors:
             assume(False)
             raise
@@ -115,6 +159,15 @@ def test_what_is_added_is_what_the_union_of_all_profiles_has_and_splitting_ends_
             assert entry["enclaves"]
             if entry["split"]:
                 assert entry["finding"]["id"] not in ids(policy(apart(enclaves, entry["split"])), View.enforced)
+            if entry["move"]:
+                assert entry["finding"]["id"] not in ids(policy(moved(enclaves, entry["move"])), View.enforced)
+            if entry["deny"]:
+                after = with_denials(enclaves, entry["deny"])
+                assert entry["finding"]["id"] not in ids(policy(after), View.enforced)
+                lost = {(one["node"]["name"], one["role"], one["channel"]["name"]) for one in entry["loses"]}
+                assert {one for one in lost if one[2] != "/*"} == may(enclaves) - may(after)
+            else:
+                assert entry["loses"] == []
 
 
 @pytest.fixture
@@ -150,8 +203,146 @@ def test_the_document_has_it_beside_the_declared_answer(cli: Cli) -> None:
 
 
 @pytest.mark.usefixtures("example")
-@pytest.mark.parametrize("more", [("-f", "sarif"), ("--per-policy",), ("--save-graph", "g.json")])
-def test_it_is_for_one_robot_in_text_and_json(cli: Cli, more: tuple[str, ...]) -> None:
+@pytest.mark.parametrize("more", [("-f", "turtle"), ("--per-policy",), ("-f", "cnil-pia")])
+def test_formats_that_do_not_tell_it_are_refused(cli: Cli, more: tuple[str, ...]) -> None:
     done = cli("analyze", "p.xml", "-l", "l.yaml", "--view", "both", *more)
     assert done.returncode == 2
-    assert "--view both is for the policies of one robot" in done.stderr
+    assert "--view both writes text, json and sarif" in done.stderr
+
+
+THREE = {
+    "/robot": {**EXAMPLE["/robot"], "/navigator": [("subscribe", "/scan", "ALLOW")]},
+    "/uplink": EXAMPLE["/uplink"],
+}
+FLEET = """fleet: 1
+models: {carrier: {policies: [p.xml], labels: [l.yaml]}}
+robots:
+  apart: {policies: [apart.xml], labels: [l.yaml]}
+  open: {policies: [open.xml], labels: [l.yaml]}
+groups: [{robots: 2, model: carrier}]
+"""
+
+
+@pytest.mark.usefixtures("example")
+def test_a_profile_that_is_moved_and_a_deny_are_remedies_of_their_own_the_deny_with_its_price(cli: Cli) -> None:
+    Path("p.xml").write_text(policy(THREE))
+    text = cli("analyze", "p.xml", "-l", "l.yaml", "--view", "both").stdout
+    assert "   gone, too, if only /blur is moved from /robot to an enclave of its own: proven" in text
+    assert "   gone, too, with a DENY to publish /blurred in /robot (p.xml): proven by a new analysis" in text
+    assert "what their own profiles allow: /blur publish /blurred\n" in text
+    document = both_views(("p.xml",), ("l.yaml",), Settings()).document()  # whoever stays has no right of the blur
+    [entry] = document["enforced"]["added"]
+    assert entry["move"] == {"enclave": "/robot", "profile": "/blur"}
+    assert [(line["enclave"], line["role"], line["channel"]["name"]) for line in entry["deny"]] == [
+        ("/robot", "publish", "/blurred")
+    ]
+    schema = json.loads((ROOT / "docs" / "analysis.schema.json").read_text("utf-8"))
+    jsonschema.Draft202012Validator(schema).validate(document)
+
+
+@pytest.mark.usefixtures("example")
+def test_of_a_fleet_each_pattern_has_the_robots_on_which_the_enforced_view_adds_it(cli: Cli) -> None:
+    """Each robot by itself gives the same: one is split already, one has the finding under the declared view."""
+    Path("apart.xml").write_text(policy(apart(EXAMPLE, ["/robot"])))
+    open_camera = [*EXAMPLE["/robot"]["/camera"], ("publish", "/blurred", "ALLOW")]
+    Path("open.xml").write_text(policy({**EXAMPLE, "/robot": {**EXAMPLE["/robot"], "/camera": open_camera}}))
+    Path("f.yaml").write_text(FLEET)
+    done = cli("analyze", "--fleet", "f.yaml", "--view", "both", "-f", "json")
+    document = json.loads(done.stdout)
+    alone = json.loads(cli("analyze", "--fleet", "f.yaml", "-f", "json").stdout)
+    enforced = document.pop("enforced")
+    assert document == alone
+    [entry] = enforced["added"]
+    robots = {name for group in document["fleet"]["alike"] for name in group["robots"]}
+    models = {"apart": "apart.xml", "open": "open.xml"}
+    added = {
+        name for name in robots
+        if both_views((models.get(name, "p.xml"),), ("l.yaml",), Settings()).document()["enforced"]["added"]
+    }  # fmt: skip
+    assert entry["robots"] == sorted(added) == sorted(robots - models.keys())
+    assert (entry["enclaves"], entry["split"]) == (["/robot"], ["/robot"])
+    text = cli("analyze", "--fleet", "f.yaml", "--view", "both").stdout
+    assert f"   added on 2 of 4 robots: {', '.join(entry['robots'])}" in text
+
+
+@pytest.mark.usefixtures("example")
+def test_sarif_has_notes_of_a_rule_of_their_own_at_the_line_of_another_profile(cli: Cli) -> None:
+    run = checked(json.loads(cli("analyze", "p.xml", "-l", "l.yaml", "--view", "both", "-f", "sarif").stdout))
+    [result] = [one for one in run["results"] if one["ruleId"] == "beyond-profile"]
+    assert run["tool"]["driver"]["rules"][result["ruleIndex"]]["id"] == "beyond-profile"
+    assert (result["level"], run["properties"]["verdict"]) == ("note", "no-leak-found")
+    line = result["locations"][0]["physicalLocation"]["region"]["startLine"]
+    assert Path("p.xml").read_text().splitlines()[line - 1].count("/blurred") == 1
+    assert (
+        "Nodes share enclave /robot. Gone if /robot is split into an enclave for each node."
+        in (result["message"]["text"])
+    )
+
+
+@pytest.mark.usefixtures("example")
+@pytest.mark.parametrize("form", ["html", "markdown", "docx"])
+def test_a_report_has_a_section_of_it_in_each_language_and_only_where_it_was_asked(cli: Cli, form: str) -> None:
+    Path("p.xml").write_text(policy(THREE))
+    for language, heading, step in (
+        ("en", "What nodes could do beyond their own profiles", "beyond its own profile"),
+        ("de", "Was Knoten über ihr eigenes Profil hinaus könnten", "über das eigene Profil hinaus"),
+        ("fr", "Ce que des nœuds pourraient faire au-delà de leur propre profil", "au-delà de son propre profil"),
+    ):
+        arguments = ("report", "p.xml", "-l", "l.yaml", "-f", form, "--lang", language)
+        assert cli(*arguments, "--view", "both", "-o", "both.out").returncode == 0
+        cli(*arguments, "-o", "alone.out")
+        told, alone = (read(Path(name), form) for name in ("both.out", "alone.out"))
+        assert heading in told
+        assert heading not in alone
+        marked = {"html": f"{step}</span>", "markdown": f"(**{step}**)", "docx": f"({step})"}
+        assert told.count(marked[form]) == 1  # one step of its path
+        assert (form == "html") == ('stroke="#cc79a7" stroke-width="3" stroke-dasharray' in told)
+        for part in ("/robot", "/blur", "DENY", "p.xml:8"):
+            assert part in told.split(heading)[-1]
+
+
+@pytest.mark.usefixtures("example")
+def test_a_redacted_report_has_no_name_of_it(cli: Cli) -> None:
+    Path("p.xml").write_text(policy(THREE))
+    for form in ("html", "markdown"):
+        cli("report", "p.xml", "-l", "l.yaml", "-f", form, "--view", "both", "--redact", "-o", "r.out")
+        text = Path("r.out").read_text("utf-8")
+        assert not [name for name in ("/robot", "/blur", "/camera", "/navigator", "/uplink", "p.xml") if name in text]
+        assert "proven by a new analysis" in text
+
+
+def read(file: Path, form: str) -> str:
+    return text_of(file.read_bytes()) if form == "docx" else file.read_text("utf-8").replace("\\", "")
+
+
+@pytest.mark.usefixtures("example")
+@pytest.mark.parametrize("show", ["ros", "privacy"])
+def test_a_picture_draws_apart_what_no_profile_allows_on_the_paths_of_added_findings_only(cli: Cli, show: str) -> None:
+    Path("p.xml").write_text(policy(THREE))
+    arguments = ("graph", "p.xml", "-l", "l.yaml", "--show", show, "-f", "graphml")
+    drawn, alone = (lines(cli(*arguments, *more).stdout) for more in (("--view", "both"), ()))
+    beyond = {ends for ends, look in drawn.items() if look == "beyond"}
+    assert beyond == {("/camera", "/blurred"), ("/video", "/navigator"), ("/navigator", "/blurred")}
+    assert {ends: look for ends, look in drawn.items() if look not in ("beyond", "onward")} == alone
+    onward = {("/blurred", "/uplink")} if show == "privacy" else set()  # no data gets there under the declared view
+    assert {ends for ends, look in drawn.items() if look == "onward"} == onward
+    enforced = lines(cli(*arguments, "--view", "enforced").stdout)
+    assert ("/camera", "/scan") not in drawn  # what the middleware lets through besides is on no path of a finding
+    assert ("/scan", "/blur") in enforced if show == "ros" else True
+    dot = cli("graph", "p.xml", "-l", "l.yaml", "--show", show, "--view", "both").stdout
+    assert 'label="beyond the node\'s own profile: only its enclave allows it"' in dot
+
+
+@pytest.mark.usefixtures("example")
+def test_the_picture_of_an_added_finding_is_that_of_the_enforced_view(cli: Cli) -> None:
+    [entry] = both_views(("p.xml",), ("l.yaml",), Settings()).document()["enforced"]["added"]
+    arguments = ("graph", "p.xml", "-l", "l.yaml", "--finding", entry["finding"]["id"], "-f", "graphml")
+    assert cli(*arguments).returncode == 2
+    drawn = lines(cli(*arguments, "--view", "both").stdout)
+    assert drawn == {("/camera", "/blurred"): "beyond", ("/blurred", "/uplink"): "shortest"}
+
+
+def lines(graphml: str) -> dict[tuple[str, str], str]:
+    graph = nx.parse_graphml(graphml)
+    names = nx.get_node_attributes(graph, "label")
+    return {(names[source], names[target]): data["look"] for source, target, data in graph.edges(data=True)}

@@ -94,9 +94,19 @@ def test_where_permissions_are_not_asked_the_answer_is_undetermined_at_best(cli:
     arguments = ("analyze", made.folder, "-l", tmp_path / "labels.yaml")
     declared = cli(*arguments)
     assert declared.returncode == 4
+    assert cli(*arguments, "--save-graph", tmp_path / "graph.json").returncode == 4
+    again = cli("analyze", "--add", tmp_path / "graph.json", "-l", tmp_path / "labels.yaml")
+    assert (again.returncode, again.stdout) == (4, declared.stdout)
     assert declared.stdout.startswith("undetermined: no leak reached, but not all is known of what is allowed")
     enforced = cli(*arguments, "--view", "enforced", "--format", "json")
     [finding] = json.loads(enforced.stdout)["findings"]
     assert [step["name"] for step in finding["witness"]][::2] == ["/camera", "/uplink"]
+    [added] = json.loads(cli(*arguments, "--view", "both", "--format", "json").stdout)["enforced"]["added"]
+    assert (added["finding"], added["enclaves"]) == (
+        finding,
+        [],
+    )  # nobody shares one
+    assert ["governance" in one["file"] for one in added["opened_by"]] == [True]
+    assert "only because permissions are not asked there: " in cli(*arguments, "--view", "both").stdout
     for language, words in (("de", "Berechtigungen"), ("fr", "autorisations")):
         assert words in cli(*arguments, "--lang", language).stdout.splitlines()[0]

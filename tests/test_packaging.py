@@ -25,6 +25,7 @@ def test_the_rooms_import_from_the_package_and_bring_their_data() -> None:
     assert ROOMS == ["analysis", "ingest", "ontology", "queries", "report"]
     assert files("rosprivacy.ontology").joinpath("categories.ttl").is_file()
     assert files("rosprivacy.ontology").joinpath("law.ttl").is_file()
+    assert files("rosprivacy.ontology").joinpath("packages", "nav2.yaml").is_file()
     assert files("rosprivacy.ingest.labels").joinpath("standard.yaml").is_file()
     assert files("rosprivacy.queries").joinpath("leak-paths.cypher").is_file()
     assert files("rosprivacy.report.page").joinpath("templates", "report.html.j2").is_file()

@@ -123,7 +123,9 @@ def test_where_permissions_are_not_asked_a_saved_graph_is_as_undetermined(cli: C
 def test_permissions_by_themselves_say_that_nothing_is_known_of_it(cli: Cli, tmp_path: Path) -> None:
     (tmp_path / "p.xml").write_text(permissions(grant("/camera", rule("allow", publish=("rt/video",)))))
     done = cli("analyze", "p.xml", "--allow-unsigned", cwd=tmp_path)
-    assert "no governance is read with it, so whether what is sent is encrypted is not known" in done.stdout
+    assert "no governance is named, so whether permissions are asked there is not known, nor what is encrypted" in (
+        done.stdout
+    )
 
 
 @pytest.mark.usefixtures("folder")

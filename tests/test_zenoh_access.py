@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from rosprivacy.ingest.zenoh_access.zenoh_inputs import read_zenoh
 from tests.helpers.command import cli
 
 if TYPE_CHECKING:
@@ -149,3 +150,116 @@ def test_a_problem_is_told_at_its_line(cli: Cli, tmp_path: Path) -> None:
     done = cli("analyze", file)
     assert done.returncode == 2
     assert f"{file}:2: key expression '0//video': an empty chunk" in done.stderr
+
+
+TAKES = rule("in", "allow", "put", "ingress", "0/commands/*/*")
+ANY_SESSION = [["/camera", "/commands", "/uplink"], ["/camera", "/video", "/uplink"]]
+
+
+def added(cli: Cli, folder: Path, *files: Path) -> list[list[str]]:
+    """The ways that only the enforced view has."""
+    _, declared, _ = answered(cli, folder, *files)
+    _, enforced, _ = answered(cli, folder, *files, "--view", "enforced")
+    assert all(way in enforced for way in declared)
+    return [way for way in enforced if way not in declared]
+
+
+def test_a_list_that_tells_nobody_apart_leaves_not_known_who_sends(cli: Cli, tmp_path: Path) -> None:
+    """Nobody has to load the list of another process: no leak is found, and that is undetermined (S6, S11)."""
+    sender = put(tmp_path / "camera.json5", SENDS)
+    receiver = put(tmp_path / "uplink.json5", TAKES)
+    code, ways, told = answered(cli, tmp_path, sender, receiver)
+    assert (code, ways) == (4, [])
+    message = "any session may send 1 name that this list lets in: what such a session does is not known; the declared "
+    message += "view takes each process to keep to its own list (rule S6)"
+    assert message in told
+
+
+def test_the_enforced_view_has_what_a_session_without_a_list_can_do(cli: Cli, tmp_path: Path) -> None:
+    """It sends what another list lets in, and gets what another list lets out (S6)."""
+    files = put(tmp_path / "camera.json5", SENDS), put(tmp_path / "uplink.json5", TAKES)
+    (way,) = added(cli, tmp_path, *files)
+    assert way in ANY_SESSION
+
+
+def test_a_single_process_gets_nothing_from_others(tmp_path: Path) -> None:
+    """The enforced view is about processes that are known."""
+    one, other = str(put(tmp_path / "camera.json5", SENDS)), str(put(tmp_path / "uplink.json5", TAKES))
+    assert [len(read_zenoh(files, None, view="enforced")[0]) for files in ([one], [one, other])] == [1, 3]
+
+
+@pytest.mark.parametrize(
+    ("who", "through", "said"),
+    [
+        ({"cert_common_names": ["camera"]}, True, ""),
+        ({"cert_common_names": ["planner"]}, False, ""),
+        ({"usernames": ["planner"]}, False, ""),
+        ({"usernames": ["camera", "planner"]}, True, ""),
+        (
+            {"cert_common_names": ["operator"]},
+            True,
+            "whoever is operator, after whom no file is named, may send 1 name",
+        ),
+        ({"interfaces": ["lo"]}, True, "any session may send 1 name"),
+        ({"zids": ["38a4829bce9166ee"]}, True, "any session may send 1 name"),
+    ],
+)
+def test_who_has_a_name_of_its_own_is_told_apart(
+    cli: Cli, tmp_path: Path, who: dict[str, Any], said: str, *, through: bool
+) -> None:
+    """A certificate or a user name; interfaces, protocols and ids of sessions prove nothing (S6)."""
+    camera = put(tmp_path / "camera.json5", SENDS, subject={"cert_common_names": ["planner"]})
+    planner = put(tmp_path / "planner.json5", rule("x", "allow", "declare_subscriber", "egress", "0/video/*/*"))
+    receiver = put(tmp_path / "uplink.json5", TAKES, subject=who)
+    ways = added(cli, tmp_path, camera, planner, receiver)
+    assert (ANY_SESSION[0] in ways) == through
+    assert ANY_SESSION[1] not in ways
+    _, _, told = answered(cli, tmp_path, camera, planner, receiver)
+    assert [one.startswith(said) for one in told if " may send " in one] == [True] * bool(said)
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        ({"enabled": False}, "any session may send this process all that no deny names"),
+        ({"default": "allow"}, "any session may send this process all that no deny names"),
+        ({"policies": []}, ""),
+    ],
+)
+def test_a_router_without_access_control_lets_any_session_do_everything(
+    cli: Cli, tmp_path: Path, more: dict[str, Any], said: str
+) -> None:
+    """With no policy at all the default holds for everybody (S6)."""
+    named = {"cert_common_names": ["router"]}
+    camera = put(tmp_path / "camera.json5", rule("out", "allow", "put", "egress", "0/mine/*/*"), subject=named)
+    uplink = put(tmp_path / "uplink.json5", rule("in", "allow", "put", "ingress", "0/other/*/*"), subject=named)
+    router = put(tmp_path / "router.json5", TAKES, **more)
+    _, ways, told = answered(cli, tmp_path, camera, uplink, router, "--view", "enforced")
+    assert bool(said) == any("/router" not in way for way in ways)
+    assert bool(said) == any(one.startswith(said) for one in told if said)
+
+
+def test_denies_for_everybody_hold_for_any_session(cli: Cli, tmp_path: Path) -> None:
+    denied = rule("no", "deny", "put", "ingress", "0/commands/*/*")
+    camera = put(tmp_path / "camera.json5", SENDS, subject={"usernames": ["camera"]})
+    everything = rule("in", "allow", "put", "ingress", "0/commands/*/*", "0/status/*/*")
+    ways = added(cli, tmp_path, camera, put(tmp_path / "uplink.json5", everything, denied))
+    assert ways == [["/camera", "/status", "/uplink"]]
+
+
+def test_both_views_name_the_sessions_that_are_not_told_apart(cli: Cli, tmp_path: Path) -> None:
+    files = put(tmp_path / "camera.json5", SENDS), put(tmp_path / "uplink.json5", TAKES)
+    (tmp_path / "labels.yaml").write_text(LABELS, "utf-8")
+    done = cli("analyze", *files, "-l", tmp_path / "labels.yaml", "--view", "both", "--format", "json")
+    (entry,) = json.loads(done.stdout)["enforced"]["added"]
+    assert entry["enclaves"] == entry["split"] == ["zenoh:any-session"]
+
+
+def test_check_says_who_is_let_in(cli: Cli, tmp_path: Path) -> None:
+    policy = tmp_path / "robot.policy.xml"
+    policy.write_text(
+        '<policy version="0.2.0"><enclaves><enclave path="/"><profiles><profile ns="/" node="uplink">'
+        '<topics subscribe="ALLOW"><topic>/commands</topic></topics></profile></profiles></enclave></enclaves></policy>'
+    )
+    done = cli("check", policy, put(tmp_path / "uplink.json5", TAKES))
+    assert (done.returncode, "any session may send 1 name that this list lets in" in done.stdout) == (0, True)

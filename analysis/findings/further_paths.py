@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.findings.disjoint_in_groups import Group
     from rosprivacy.analysis.kernel.search import Search
     from rosprivacy.analysis.kernel.states import Net
-    from rosprivacy.analysis.many_flows import Meeting
+    from rosprivacy.analysis.meeting import Meeting
     from rosprivacy.analysis.model import Element, FlowGraph
 
 State = int  # vertex * width + form
@@ -133,7 +133,7 @@ class Between:
     def _read(self, meeting: Meeting, bits: int) -> Iterator[State]:
         spread = self.states.net.spread
         for target in meeting.read:
-            yield from self._at(target, bits & spread.keeps.get(target, spread.all_bits))
+            yield from self._at(target, bits & spread.taken(target))
 
     def _at(self, vertex: int, bits: int) -> list[State]:
         """The states that data with some bits is in at a vertex, its two planes put together."""

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.kernel.spread import Spread
-    from rosprivacy.analysis.many_flows import Meeting
+    from rosprivacy.analysis.meeting import Meeting
     from rosprivacy.analysis.model import Element
 
 START = -1  # before all sources
@@ -103,7 +103,7 @@ class _Following(NamedTuple):
     single
         Vertex -> where flows with data lead.
     meetings
-        Of wildcards, with data; few enough of their pairs are among the single flows.
+        Of wildcards, and of nodes and channels that share rights.
     """
 
     spread: Spread
@@ -121,21 +121,15 @@ class _Following(NamedTuple):
                 along[index] = bits
                 single[flow.source].append(flow.target)
         single[START] = [vertex for vertex in range(len(spread.graph.elements)) if spread.begins(vertex)]
-        result = cls(spread, along, single, meetings)
-        if meetings and result.number() <= MOST:
-            for source, target in (pair for meeting in meetings for pair in meeting.pairs()):
-                if result.sent(source) & result.taken(target):
-                    single[source].append(target)
-            return cls(spread, along, {source: sorted(targets) for source, targets in single.items()}, ())
-        return result
+        return cls(spread, along, single, meetings)
 
     def sent(self, source: int) -> int:
-        """What is written to a wildcard."""
+        """What is sent in a meeting."""
         return self.spread.sent.get(source, 0)
 
     def taken(self, target: int) -> int:
-        """What a wildcard that is read takes up."""
-        return self.spread.keeps.get(target, self.spread.all_bits)
+        """What is taken up of it."""
+        return self.spread.taken(target)
 
     def number(self) -> int:
         """How many flows have data, with the steps to where it begins."""
@@ -144,6 +138,19 @@ class _Following(NamedTuple):
             sent, taken = Counter(map(self.sent, meeting.written)), Counter(map(self.taken, meeting.read))
             number += sum(n * m for bits, n in sent.items() for others, m in taken.items() if bits & others)
         return number
+
+    def with_hubs(self) -> dict[int, list[int]]:
+        """Return all flows; what of a meeting is sent alike goes through one vertex more: dominators stay."""
+        flows: dict[int, list[int]] = {vertex: list(targets) for vertex, targets in self.single.items()}
+        hub = len(self.spread.graph.elements)
+        for meeting in self.meetings:
+            for bits in {self.sent(source) for source in meeting.written} - {0}:
+                flows[hub] = [target for target in meeting.read if bits & self.taken(target)]
+                for source in meeting.written:
+                    if self.sent(source) == bits:
+                        flows.setdefault(source, []).append(hub)
+                hub += 1
+        return flows
 
     def reached(self) -> list[int]:
         """Every vertex that data gets to, the nearest to a source first."""
@@ -228,7 +235,7 @@ def _below(following: _Following, questions: Iterable[int], leaks: Iterable[int]
     """Vertex -> how many of the questions, and of the leaks, data gets to past it only; without itself."""
     if not 0 < following.number() <= MOST:
         return {}
-    parents = immediate_dominators(following.single, START)
+    parents = immediate_dominators(following.with_hubs(), START)
     asked, leaking = set(questions), set(leaks)
     below: dict[int, tuple[int, int]] = defaultdict(lambda: (0, 0))
     for vertex in asked | leaking:

@@ -8,13 +8,14 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING, NamedTuple
 
-from rosprivacy.analysis.many_flows import one_by_one
+from rosprivacy.analysis.many_flows import parted
 from rosprivacy.analysis.model import Method
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
+    from collections.abc import Collection, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.kernel.spread import Spread
+    from rosprivacy.analysis.meeting import Meeting
     from rosprivacy.analysis.model import Bound, Element, FlowGraph, Place
 
 
@@ -135,8 +136,7 @@ class _Around:
 
     def __init__(self, spread: Spread) -> None:
         self._spread = spread
-        self._into: Mapping[int, list[int]] | None = None
-        self._out: Mapping[int, list[int]] = {}
+        self._near: dict[bool, _Near] = {}  # by whether it is asked for what comes before
 
     def beside(self, vertex: int, category: str, bits: int) -> tuple[tuple[Element, ...], tuple[Element, ...]]:
         """Elements that get the category from a channel from which the vertex gets it: those that clean it last."""
@@ -152,25 +152,57 @@ class _Around:
 
     def _walk(self, begin: Sequence[int], bits: int, *, back: bool) -> set[int]:
         """Channels before an element, or what comes after channels: only other channels lie between (rule S4)."""
-        spread, graph = self._spread, self._spread.graph
-        if self._into is None:
-            self._into, self._out = self._flows()
-        flows = self._into if back else self._out
+        if not self._near:
+            self._near = {way: _Near.of(self._spread, back=way) for way in (False, True)}
+        elements, near = self._spread.graph.elements, self._near[back]
+        met: dict[int, int] = defaultdict(int)  # bits of which a meeting is done
         seen: set[int] = set()
         waiting = list(begin)
         while waiting:
-            for index in flows.get(waiting.pop(), ()):
-                other = graph.flows[index].source if back else graph.flows[index].target
-                if other in seen or not spread.along(index) & bits or (back and not graph.elements[other].is_channel):
+            for other in near.after(self._spread, waiting.pop(), bits, met):
+                if other in seen or (back and not elements[other].is_channel):
                     continue
                 seen.add(other)
-                if graph.elements[other].is_channel:
+                if elements[other].is_channel:
                     waiting.append(other)
         return seen
 
-    def _flows(self) -> tuple[dict[int, list[int]], dict[int, list[int]]]:
-        into, out = defaultdict(list), defaultdict(list)
-        for index, flow in enumerate(one_by_one(self._spread.graph.flows)):
-            into[flow.target].append(index)
-            out[flow.source].append(index)
-        return into, out
+
+class _Near(NamedTuple):
+    """What is one flow away, in one direction.
+
+    Attributes
+    ----------
+    flows
+        Vertex -> (flow, the vertex at its other end).
+    meetings
+        Vertex -> its meetings, with their members on the other side.
+    """
+
+    flows: Mapping[int, list[tuple[int, int]]]
+    meetings: Mapping[int, list[tuple[Meeting, Sequence[int]]]]
+    back: bool
+
+    @classmethod
+    def of(cls, spread: Spread, *, back: bool) -> _Near:
+        flows: dict[int, list[tuple[int, int]]] = defaultdict(list)
+        near: dict[int, list[tuple[Meeting, Sequence[int]]]] = defaultdict(list)
+        own, meetings = parted(spread.graph.flows, spread.told_apart)
+        for index, flow in own:
+            here, there = (flow.target, flow.source) if back else (flow.source, flow.target)
+            flows[here].append((index, there))
+        for meeting in meetings:
+            begin, end = (meeting.read, meeting.written) if back else (meeting.written, meeting.read)
+            for vertex in begin:
+                near[vertex].append((meeting, end))
+        return cls(flows, near, back)
+
+    def after(self, spread: Spread, here: int, bits: int, met: dict[int, int]) -> Iterator[int]:
+        """Yield where some bits go, or come from; of a meeting only what is new."""
+        yield from (there for index, there in self.flows.get(here, ()) if spread.along(index) & bits)
+        for meeting, end in self.meetings.get(here, ()):
+            new = bits & ~met[id(meeting)] & (spread.taken(here) if self.back else spread.sent.get(here, 0))
+            met[id(meeting)] |= new
+            for there in end if new else ():
+                if new & (spread.sent.get(there, 0) if self.back else spread.taken(there)):
+                    yield there

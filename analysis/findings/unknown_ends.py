@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
 
     from rosprivacy.analysis.kernel.spread import Spread
-    from rosprivacy.analysis.many_flows import Meeting
+    from rosprivacy.analysis.meeting import Meeting
     from rosprivacy.analysis.model import Element, FlowGraph
 
 
@@ -77,7 +77,8 @@ def _readable(graph: FlowGraph) -> Collection[int]:
             known.add(flow.source)
     met: dict[int, list[Meeting]] = defaultdict(list)
     for meeting in meetings:
-        for target in meeting.read:
+        known.update(meeting.written if meeting.of_written else ())
+        for target in meeting.read if meeting.of_wildcards else ():
             met[target].append(meeting)
     waiting = list(known)
     done: set[int] = set()
@@ -95,7 +96,7 @@ def _readable(graph: FlowGraph) -> Collection[int]:
 def _unreached(spread: Spread) -> Iterator[int]:
     """Elements outside ROS that nothing flows into; where data may begin, a flow out is enough."""
     graph = spread.graph
-    own = [flow for _, flow in parted(graph.flows)[0]]  # a meeting is one of channels
+    own = [flow for _, flow in parted(graph.flows)[0]]  # a meeting is one of channels, or of them and nodes
     entered = {flow.target for flow in own}
     left = {flow.source for flow in own}
     for vertex, element in enumerate(graph.elements):

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import LabelError, shown
 from rosprivacy.analysis.kernel.ranks import closes, in_words
 from rosprivacy.analysis.kernel.roles import facts
-from rosprivacy.analysis.many_flows import MATCHES, at_most, number, parted
+from rosprivacy.analysis.many_flows import at_most, number, parted
+from rosprivacy.analysis.meeting import MATCHES
 from rosprivacy.analysis.model import CHANGED, STATED
 
 if TYPE_CHECKING:
@@ -102,7 +103,7 @@ def named(
     for index, flow in own:
         if flow.role == MATCHES and graph.elements[flow.target].is_channel:  # past a proposed filter one ends at a node
             matches[flow.source].append(index)
-    for meeting in meetings:
+    for meeting in (one for one in meetings if one.of_wildcards):
         for written in meeting.written:
             met[written] += meeting.read
     for vertex, decided in elements.items():

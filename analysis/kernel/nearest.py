@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.kernel.spread import Spread
-    from rosprivacy.analysis.many_flows import Meeting
+    from rosprivacy.analysis.meeting import Meeting
     from rosprivacy.analysis.model import Flow
 
 FAR = 1 << 60  # further than any path is long

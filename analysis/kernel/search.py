@@ -30,7 +30,7 @@ class Search:
     ----------
     arrived
         Vertex -> (level, bits new at that level, flow that brought them), in order. The two sides of a wildcard are
-        at one level.
+        at one level. In place of a flow of a meeting stands -2 minus the vertex that it is from.
     left
         Vertex -> (bits, the bit that they were made from, or None if they just passed, or ``START``), in order.
     seen, gone
@@ -164,11 +164,11 @@ def _arrive(reach: Search, target: int, bits: int, level: int, flow: int, arrivi
 def _arrive_at_all(
     net: Net, reach: Search, vertex: int, targets: Iterable[int], bits: int, level: int, arriving: dict[int, int]
 ) -> None:
-    """What gets from a written wildcard to all read ones of a meeting."""
-    keeps, everything = net.spread.keeps, net.spread.all_bits
+    """What gets from an element to all that its meeting reads."""
+    taken, seen, came = net.spread.taken, reach.seen, -2 - vertex
     for target in targets:
-        if some := bits & keeps.get(target, everything) & ~reach.seen.get(target, 0):
-            _arrive(reach, target, some, level, number(net.spread.graph.flows, vertex, target), arriving)
+        if some := bits & ~seen.get(target, 0) & taken(target):
+            _arrive(reach, target, some, level, came, arriving)
 
 
 def _pass_on(
@@ -234,22 +234,23 @@ def path_to(net: Net, reach: Search, vertex: int, bit: int) -> list[tuple[int, i
     """
     graph, single = net.spread.graph, net.spread.flow_emits
     steps: list[tuple[int, int, int]] = []
-    came = _flow_of(reach, vertex, bit) if reach.arrives_first(vertex, bit) else START
+    came = _flow_of(net, reach, vertex, bit) if reach.arrives_first(vertex, bit) else START
     while True:
         if came == START:  # it was made here, or starts here
             origin = next((o for bits, o in reach.left.get(vertex, ()) if bits >> bit & 1 and o is not None), START)
             if origin == START:
                 return [(START, vertex, bit), *steps[::-1]]
             bit = origin
-            came = _flow_of(reach, vertex, bit)
+            came = _flow_of(net, reach, vertex, bit)
         steps.append((came, vertex, bit))
         vertex = graph.flows[came].source
         if vertex in reach.begun and single.get(came, 0) >> bit & 1:
             return [(START, vertex, bit), *steps[::-1]]
         passed = any(bits >> bit & 1 and origin is None for bits, origin in reach.left[vertex])
-        came = _flow_of(reach, vertex, bit) if passed else START
+        came = _flow_of(net, reach, vertex, bit) if passed else START
 
 
-def _flow_of(reach: Search, vertex: int, bit: int) -> int:
+def _flow_of(net: Net, reach: Search, vertex: int, bit: int) -> int:
     """The flow along which a bit first arrived."""
-    return next(flow for _, new, flow in reach.arrived[vertex] if new >> bit & 1)
+    came = next(flow for _, new, flow in reach.arrived[vertex] if new >> bit & 1)
+    return came if came >= 0 else number(net.spread.graph.flows, -2 - came, vertex)

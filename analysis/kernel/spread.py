@@ -104,7 +104,7 @@ class Spread:
 
     @property
     def told_apart(self) -> set[int]:
-        """Flows that emit or keep something of their own; all others of a meeting of wildcards are alike."""
+        """Flows that emit or keep something of their own; all others of a meeting are alike."""
         return {*self.flow_emits, *self.flow_keeps}
 
     def begins(self, vertex: int) -> int:
@@ -127,9 +127,12 @@ class Spread:
         return bits & self.flow_keeps.get(index, self.all_bits)
 
     def passing(self, index: int) -> int:
-        """What can go along a flow and be taken up at its end; a channel takes up only what it carries."""
-        target, bits = self.graph.flows[index].target, self.flow_keeps.get(index, self.all_bits)
-        return bits & self.keeps.get(target, self.all_bits) if self.graph.elements[target].is_channel else bits
+        """What can go along a flow and be taken up at its end."""
+        return self.flow_keeps.get(index, self.all_bits) & self.taken(self.graph.flows[index].target)
+
+    def taken(self, vertex: int) -> int:
+        """What an element takes up of what is sent to it: a channel what it carries, any other all."""
+        return self.keeps.get(vertex, self.all_bits) if self.graph.elements[vertex].is_channel else self.all_bits
 
     def along(self, index: int) -> int:
         """What goes along a flow and is taken up at its end."""

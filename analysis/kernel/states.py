@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from rosprivacy.analysis.kernel.spread import Spread
-    from rosprivacy.analysis.many_flows import Meeting
+    from rosprivacy.analysis.meeting import Meeting
 
 Move = tuple[int, int, int]  # flow, its target, bits that go along it and are taken up there
 
@@ -29,7 +29,7 @@ class Net(NamedTuple):
     flows
         All but those of meetings.
     meetings
-        Of wildcards that are written and have data.
+        Of wildcards that are written, and of nodes and channels that share rights, if they have data.
     inner
         Those from what is written to a wildcard to what is read from it: one element to the reader, and so no step.
     """
@@ -56,11 +56,11 @@ class Net(NamedTuple):
         met: dict[int, list[Meeting]] = defaultdict(list)
         for meeting in meetings:
             sides: dict[tuple[str, str, str, str], list[int]] = defaultdict(list)
-            for target in meeting.read:
+            for target in meeting.read if meeting.of_wildcards else ():
                 sides[graph.elements[target].shown_as].append(target)
             for source in filter(spread.leaves.get, meeting.written):
                 met[source].append(meeting)
-                for target in sides.get(graph.elements[source].shown_as, ()):
+                for target in sides.get(graph.elements[source].shown_as, ()) if sides else ():
                     inner[source].append(_move(spread, source, target))
         return cls(spread, flows, {source: sorted(moves) for source, moves in inner.items()}, met)
 
@@ -74,8 +74,8 @@ class Net(NamedTuple):
 
 
 def _move(spread: Spread, source: int, target: int) -> Move:
-    """One flow of a meeting: a channel takes up what it carries."""
-    return number(spread.graph.flows, source, target), target, spread.keeps.get(target, spread.all_bits)
+    """One flow of a meeting."""
+    return number(spread.graph.flows, source, target), target, spread.taken(target)
 
 
 class States(NamedTuple):

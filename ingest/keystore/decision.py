@@ -18,12 +18,13 @@ if TYPE_CHECKING:
 
 
 def may(grant: SubjectGrant, domain: int, direction: str, dds: str) -> bool:
-    """Return whether a subject may ``publish`` or ``subscribe`` a DDS topic.
+    """Return whether a subject may ``publish`` or ``subscribe`` a DDS topic, to some middleware.
 
     Linear in the topics of the grant.
     """
     for rule in grant.rules:
-        if domain in rule.domains and any(
+        about = domain in rule.domains if rule.allow else rule.domains.surely(domain)
+        if about and any(
             covers(expression, dds)
             for criterion in rule.criteria
             if criterion.direction == direction and (rule.allow or is_about_ros(criterion))

@@ -1,33 +1,36 @@
-"""Permissions files and keystores -> policies: what is deployed, in the facts that a policy gives.
+"""Keystores, permissions and governance files -> policies: what is deployed, in the facts that a policy gives.
 
 In: their paths. Out: ``Policy`` facts, with what a reader has to know of governance, signatures and dates.
 """
 
 from __future__ import annotations
 
-import hashlib
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from functools import partial
+from typing import TYPE_CHECKING, NamedTuple
 
-from rosprivacy.analysis.errors import InputErrors, PolicyError
-from rosprivacy.analysis.model import Diagnostic, Place, Severity
+from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.modes import View
-from rosprivacy.ingest.keystore.governance_remarks import governance_remarks, rules_of
+from rosprivacy.ingest.keystore.files_alone import read_alone
+from rosprivacy.ingest.keystore.governance_remarks import governance_remarks, rule_remarks
+from rosprivacy.ingest.keystore.governing import domains_of, governed
 from rosprivacy.ingest.keystore.grants import expired, policy_of
+from rosprivacy.ingest.keystore.joint_remarks import apart_remarks, joint_remarks
 from rosprivacy.ingest.keystore.keystore_folder import read_keystore
 from rosprivacy.ingest.keystore.open_topics import open_topics
-from rosprivacy.ingest.keystore.permissions_file import read_permissions
 from rosprivacy.ingest.keystore.protections import protection
-from rosprivacy.ingest.keystore.signed_file import read_signed
 from rosprivacy.ingest.keystore.told_apart import is_keystore
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator, Sequence
 
     from rosprivacy.analysis.errors import InputError
-    from rosprivacy.analysis.model import Policy
+    from rosprivacy.analysis.model import Diagnostic, Policy
+    from rosprivacy.ingest.keystore.governing import Governed
+    from rosprivacy.ingest.keystore.permissions_file import Permissions
 
 Read = tuple[tuple["Policy", ...], tuple["Diagnostic", ...]]
+_Found = tuple[list["Policy"], list["Diagnostic"]]
 
 
 def read_deployed(
@@ -38,7 +41,7 @@ def read_deployed(
     allow_unsigned: bool = False,
     view: str = View.declared,
 ) -> Read:
-    """Read permissions files and keystores.
+    """Read keystores, and permissions and governance files in any order.
 
     Parameters
     ----------
@@ -57,14 +60,16 @@ def read_deployed(
     InputErrors
         With every problem, one line each.
     """
+    arguments = tuple(arguments)
+    reading = _Reading(domain, today, allow_unsigned, view)
+    alone = [argument for argument in arguments if not is_keystore(argument)]
+    parts = [partial(reading.keystore, argument) for argument in arguments if is_keystore(argument)]
     policies: list[Policy] = []
     said: list[Diagnostic] = []
     problems: list[InputError] = []
-    for argument in arguments:
+    for part in (*parts, *([partial(reading.alone, alone)] if alone else ())):
         try:
-            read, more = _read(argument, domain, today, allow_unsigned=allow_unsigned, view=view)
-        except PolicyError as error:
-            problems.append(error)
+            read, more = part()
         except InputErrors as error:
             problems += error.errors
         else:
@@ -75,33 +80,51 @@ def read_deployed(
     return tuple(policies), tuple(dict.fromkeys(said))
 
 
-def _read(
-    argument: str, domain: int | None, today: str, *, allow_unsigned: bool, view: str
-) -> tuple[list[Policy], list[Diagnostic]]:
-    if is_keystore(argument):
-        enclaves, told = read_keystore(argument, today, allow_unsigned=allow_unsigned)
+class _Reading(NamedTuple):
+    """How to read, as ``read_deployed`` is told."""
+
+    domain: int | None
+    today: str
+    allow_unsigned: bool
+    view: str
+
+    def keystore(self, folder: str) -> _Found:
+        """What a keystore grants; each enclave has a governance beside it."""
+        enclaves, told = read_keystore(folder, self.today, allow_unsigned=self.allow_unsigned)
+        policies: list[Policy] = []
         said = list(told)
-        policies = []
         for enclave in enclaves:
-            granted = policy_of(enclave.permissions, domain, enclave.sources)
-            rules = rules_of(enclave.governance, enclave.permissions, domain)
-            remarks = tuple(governance_remarks(enclave.governance, enclave.permissions, domain))
-            granted = replace(
-                granted,
-                diagnostics=(*granted.diagnostics, *remarks),
-                protections=tuple(map(protection, rules)),
-            )
-            policies.append(granted)
-            if View(view) is View.enforced:
-                policies += (open_topics(enclave.governance.file, rule, granted.profiles) for rule in rules)
-        said += expired((enclave.permissions for enclave in enclaves), today)
-        return policies, said
-    signed = read_signed(argument, None)
-    if not allow_unsigned:
-        what = "permissions by themselves: nothing says who may sign them"
-        raise PolicyError(argument, 0, what, "name the keystore, or read them all the same with --allow-unsigned")
-    permissions = read_permissions(signed.data, argument, signed.before)
-    sources = ((argument, hashlib.sha256(signed.data).hexdigest()),)
-    what = "no governance is read with it, so whether what is sent is encrypted is not known; name the keystore"
-    said = [Diagnostic(Place(argument, 0), Severity.WARNING, what), *expired([permissions], today)]
-    return [policy_of(permissions, domain, sources)], said
+            found = governed(enclave.governance, domains_of(enclave.permissions, self.domain))
+            policies += self._granted(enclave.permissions, enclave.sources, found)
+            said += governance_remarks(enclave.governance, enclave.permissions, self.domain)
+        return policies, [*said, *self._remarks([enclave.permissions for enclave in enclaves])]
+
+    def alone(self, names: Iterable[str]) -> _Found:
+        """What files by themselves grant; each governance counts for the domains that its rules name."""
+        read = read_alone(names, allow_unsigned=self.allow_unsigned)
+        policies: list[Policy] = []
+        said: list[Diagnostic] = []
+        for permissions, source in read.permissions:
+            about = domains_of(permissions, self.domain)
+            found = [(hashed, one) for governance, hashed in read.governances for one in governed(governance, about)]
+            sources = tuple(sorted({source, *(hashed for hashed, _ in found)}))
+            policies += self._granted(permissions, sources, (one for _, one in found))
+            said += (remark for _, one in found for remark in rule_remarks(one.rule))
+        stated = [permissions for permissions, _ in read.permissions]
+        said += joint_remarks([governance for governance, _ in read.governances], stated, self.domain)
+        return policies, [*said, *self._remarks(stated)]
+
+    def _granted(
+        self, permissions: Permissions, sources: tuple[tuple[str, str], ...], found: Iterable[Governed]
+    ) -> Iterator[Policy]:
+        """What permissions grant, and in the enforced view what governance leaves open beside it."""
+        found = tuple(found)
+        granted = policy_of(permissions, self.domain, sources)
+        yield replace(granted, protections=tuple(protection(one.rule) for one in found))
+        if View(self.view) is View.enforced:
+            for one in found:
+                yield open_topics(one.file, one.rule, granted.profiles)
+
+    def _remarks(self, stated: Sequence[Permissions]) -> Iterator[Diagnostic]:
+        yield from apart_remarks(stated, self.domain)
+        yield from expired(stated, self.today)

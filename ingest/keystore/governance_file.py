@@ -81,6 +81,11 @@ class DomainRule:
         """Return the rule of a DDS topic; a middleware refuses a topic that has none."""
         return next((rule for rule in self.topics if covers(rule.expression, dds)), None)
 
+    def says(self) -> tuple[object, ...]:
+        """Return what it says, wherever it stands and whatever domains it is about."""
+        topics = ((t.expression, t.reading, t.writing, t.metadata, t.data) for t in self.topics)
+        return (self.unauthenticated, self.joining, self.rtps, *topics)
+
     def in_force(self) -> tuple[TopicRule, ...]:
         """Return the topic rules that an earlier one does not hide whole."""
         return tuple(
@@ -102,7 +107,7 @@ class Governance:
     rules: tuple[DomainRule, ...]
 
     def of(self, domain: int) -> DomainRule | None:
-        """Return the rule of a domain; without one no participant starts in it."""
+        """Return the rule of a domain, as the standard has it; without one no participant starts in it."""
         return next((rule for rule in self.rules if domain in rule.domains), None)
 
 

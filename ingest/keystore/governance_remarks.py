@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import ACCESS_GAP, Diagnostic, Severity
+from rosprivacy.ingest.keystore.domains import written
+from rosprivacy.ingest.keystore.governing import domains_of, governed, ungoverned
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -18,23 +20,24 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.keystore.permissions_file import Permissions
 
 
-def rules_of(governance: Governance, permissions: Permissions, domain: int | None) -> list[DomainRule]:
-    """Return the rules of a domain, or of the domains that permissions are about."""
-    if domain is None:
-        firsts = {first for grant in permissions.grants for rule in grant.rules for first, _ in rule.domains.ranges}
-    else:
-        firsts = {domain}
-    return [rule for rule in governance.rules if any(governance.of(first) is rule for first in firsts)]
+NO_RULE = "no rule is surely about it, and where none is, no participant starts"
 
 
 def governance_remarks(governance: Governance, permissions: Permissions, domain: int | None) -> Iterator[Diagnostic]:
     """Yield what is to be said of the domains that permissions are about."""
-    rules = rules_of(governance, permissions, domain)
-    if not rules and governance.rules:
-        where = "the domains of the permissions" if domain is None else f"domain {domain}"
-        yield _warning(governance.rules[0].place, f"no rule for {where}: no participant starts there")
-    for rule in rules:
-        yield from _of_domain(rule)
+    spans = domains_of(permissions, domain)
+    if governance.rules and (left := ungoverned([governance], spans)):
+        yield _warning(governance.rules[0].place, f"domain {written(left)}: {NO_RULE}")
+    for one in governed(governance, spans):
+        yield from rule_remarks(one.rule)
+
+
+def rule_remarks(rule: DomainRule) -> Iterator[Diagnostic]:
+    """Yield what is to be said of a rule that may decide."""
+    if rule.domains.opened:
+        message = "<id_range> without <max>: to Fast DDS and Cyclone DDS one domain, in the standard all from there on"
+        yield _warning(rule.place, f"{message}; the rules after this one are taken to hold too; write <max>")
+    yield from _of_domain(rule)
 
 
 def _of_domain(rule: DomainRule) -> Iterator[Diagnostic]:

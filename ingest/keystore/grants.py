@@ -73,6 +73,8 @@ def policy_of(permissions: Permissions, domain: int | None, sources: tuple[tuple
 
 def _grants(file: str, profile: Profile, grant: SubjectGrant, domain: int | None, *, dead: bool) -> Iterator[Grant]:
     for rank, rule in _rules(grant, domain):
+        if not rule.allow and domain is not None and not rule.domains.surely(domain):
+            continue  # to some middleware it is about another domain
         for criterion in rule.criteria:
             if criterion.direction in DIRECTIONS and (rule.allow or is_about_ros(criterion)):
                 for dds, place in criterion.topics:
@@ -107,6 +109,12 @@ def _remarks(grant: SubjectGrant, domain: int | None) -> Iterator[Diagnostic]:
     if domain is not None and not rules:
         yield _warning(grant.place, f"grant of {grant.subject} has no rule for domain {domain}: it cannot join it")
     for _, rule in rules:
+        if domain is not None and not rule.domains.surely(domain):
+            what = "it is taken to allow there" if rule.allow else "it is taken to deny nothing there"
+            message = (
+                f"<id_range> without <max>: to Fast DDS and Cyclone DDS not about domain {domain}, in the standard"
+            )
+            yield _warning(rule.place, f"{message} it is; {what}; write <max>")
         for criterion in rule.criteria:
             yield from _narrowed(rule, criterion)
     if grant.allow:

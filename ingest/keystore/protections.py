@@ -20,7 +20,7 @@ from rosprivacy.ingest.policies.names import covers, overlaps
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator
 
-    from rosprivacy.analysis.model import FlowGraph, Policy
+    from rosprivacy.analysis.model import FlowGraph, Grant, Policy
     from rosprivacy.ingest.keystore.governance_file import DomainRule
 
 
@@ -38,9 +38,8 @@ def exposed_channels(graph: FlowGraph, policies: Iterable[Policy]) -> dict[int, 
     """
     of = {policy.file: policy.protections for policy in policies if policy.protections}
     under: dict[int, set[tuple[str, tuple[Protection, ...]]]] = defaultdict(set)
-    for _, flow in parted(graph.flows)[0] if of else ():
-        channel = flow.target if graph.elements[flow.target].is_channel else flow.source
-        under[channel].update((grant.name, of[grant.policy]) for grant in flow.grants if grant.policy in of)
+    for channel, grants in _granted(graph) if of else ():
+        under[channel].update((grant.name, of[grant.policy]) for grant in grants if grant.policy in of)
     found = {}
     for vertex, some in sorted(under.items()):
         element = graph.elements[vertex]
@@ -50,6 +49,16 @@ def exposed_channels(graph: FlowGraph, policies: Iterable[Policy]) -> dict[int, 
             if exposures:
                 found[vertex] = tuple(sorted(exposures))
     return found
+
+
+def _granted(graph: FlowGraph) -> Iterator[tuple[int, Iterable[Grant]]]:
+    """(channel, the lines that allow a flow there); what the nodes of an enclave share is told once (rule S6)."""
+    flows, meetings = parted(graph.flows)
+    for _, flow in flows:
+        yield flow.target if graph.elements[flow.target].is_channel else flow.source, flow.grants
+    for meeting in meetings:
+        for channels, rights in ((meeting.written, meeting.of_written), (meeting.read, meeting.of_read)):
+            yield from ((channel, right.grants) for channel, right in zip(channels, rights, strict=False))
 
 
 def _exposures(rules: Protection, name: str, without: Collection[str]) -> Iterator[Exposure]:

@@ -57,6 +57,15 @@ class Source:
             raise InputErrors(sorted(self.problems, key=lambda error: error.line))
 
 
+def section_of(data: bytes, file: str) -> str:
+    """Return what a text has in its ``<dds>``: ``permissions``, ``domain_access_rules``; empty for all else."""
+    try:
+        root = parsed(data, file)
+    except PolicyError:
+        return ""  # who reads it says why not
+    return str(root[0].tag).rpartition("}")[2] if len(root) else ""
+
+
 def security_entries(data: bytes, source: Source, section: str, entry: str) -> list[Section]:
     """Return the entries of ``<dds><section>`` in a text; that there are none is a problem.
 
@@ -149,20 +158,23 @@ class Section:
 
     def domains(self) -> Domains:
         """Return the domains of ``<domains>`` (9.4.1.2.4.1, 9.4.1.3.2.3.1.1)."""
-        ranges = []
+        closed, opened = set(), set()
         for child in self.children({"id", "id_range"}):
             if child.tag == "id":
                 number = child.number()
-                ranges.append((number, number))
+                closed.add((number, number))
                 continue
             ends = {end.tag: end.number() for end in child.children({"min", "max"})}
             low, high = ends.get("min", 0), ends.get("max", LAST_DOMAIN)
             if not ends or low > high:
                 self.source.problem(child.element, "<id_range> that holds no domain", "write <min> and <max>")
-            ranges.append((low, high))
-        if not ranges:
+            elif "max" in ends:
+                closed.add((low, high))
+            else:
+                opened.add(low)
+        if not (closed or opened):
             self.source.problem(self.element, "<domains> is empty", "add <id>0</id>")
-        return Domains(tuple(sorted(set(ranges))))
+        return Domains(tuple(sorted(closed)), tuple(sorted(opened)))
 
     def number(self) -> int:
         """Return the number of a domain that is written; 0, with the problem noted, if it is none."""

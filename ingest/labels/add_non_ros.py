@@ -12,7 +12,7 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, InputErrors, LabelError, shown
-from rosprivacy.analysis.many_flows import Flows, Meeting, parted
+from rosprivacy.analysis.many_flows import Flows, parted
 from rosprivacy.analysis.model import PARTICIPANT, STATED, Element, Flow, FlowGraph, Grant
 from rosprivacy.analysis.written_names import literal, meant
 from rosprivacy.ingest.labels.bag_storages import recorded
@@ -177,8 +177,11 @@ def with_flows(
     own, meetings = parted(graph.flows)
     allowed: Sequence[Flow] = renumbered((flow for _, flow in own), added)
     if isinstance(graph.flows, Flows):  # no flow that is stated has both of its ends in a meeting
-        met = (Meeting(*(tuple(moved[end] for end in side) for side in (m.written, m.read))) for m in meetings)
-        allowed = replace(graph.flows, stored=tuple(allowed), meetings=tuple(met))
+        met = tuple(
+            m._replace(written=tuple(moved[v] for v in m.written), read=tuple(moved[v] for v in m.read))
+            for m in meetings
+        )
+        allowed = replace(graph.flows, stored=tuple(allowed), meetings=met)
     denied = renumbered(graph.denied)
     matches = renumbered(graph.denied_matches)
     return FlowGraph(tuple(known), allowed, denied, graph.profiles, graph.view, matches, graph.careful)

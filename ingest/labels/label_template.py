@@ -152,8 +152,11 @@ def neighbours(
     """Return the channels that each node, or element outside ROS, writes and reads, of those that are listed."""
     writes: dict[str, set[Channel]] = defaultdict(set)
     reads: dict[str, set[Channel]] = defaultdict(set)
-    for _, flow in parted(graph.flows)[0]:  # a meeting is one of channels
-        source, target = graph.elements[flow.source], graph.elements[flow.target]
+    own, meetings = parted(graph.flows)
+    ends = [(flow.source, flow.target) for _, flow in own]
+    ends += (pair for meeting in meetings if not meeting.of_wildcards for pair in meeting.pairs())
+    for here, there in ends:
+        source, target = graph.elements[here], graph.elements[there]
         if not source.is_channel and target.is_channel and _channel(target) in listed:
             writes[source.name].add(_channel(target))
         elif not target.is_channel and source.is_channel and _channel(source) in listed:

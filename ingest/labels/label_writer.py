@@ -82,18 +82,18 @@ def _by_hand(file: str, problem: str) -> LabelError:
 
 def _facts(entries: Iterable[Entry]) -> list[Any]:
     """Entries wherever they stand."""
-    return [_nowhere(entry) for entry in entries]
+    return [without_places(entry) for entry in entries]
 
 
-def _nowhere(fact: Any) -> Any:
-    """A fact with all that is in it, without the lines of the file."""
+def without_places(fact: Any) -> Any:
+    """Return a fact with all that is in it, without the lines of the file."""
     if isinstance(fact, Place):
         return _NOWHERE
     if isinstance(fact, tuple):
-        parts = map(_nowhere, fact)
+        parts = map(without_places, fact)
         return fact._make(parts) if hasattr(fact, "_make") else tuple(parts)
     if is_dataclass(fact) and not isinstance(fact, type):
-        return replace(fact, **{part.name: _nowhere(getattr(fact, part.name)) for part in fields(fact)})
+        return replace(fact, **{part.name: without_places(getattr(fact, part.name)) for part in fields(fact)})
     return fact
 
 

@@ -11,14 +11,17 @@ from collections import defaultdict
 from dataclasses import dataclass, field
 from itertools import product
 from operator import attrgetter
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.bounds import BOUNDS, Tally
 from rosprivacy.analysis.errors import PolicyError
-from rosprivacy.analysis.many_flows import Flows, Meeting
-from rosprivacy.analysis.model import PARTICIPANT, Element, Flow, FlowGraph, Grant, Profile
+from rosprivacy.analysis.many_flows import Flows
+from rosprivacy.analysis.meeting import Meeting
+from rosprivacy.analysis.model import PARTICIPANT, Element, Flow, FlowGraph, Grant, Place, Profile
 from rosprivacy.analysis.modes import View
 from rosprivacy.ingest.policies.comparisons import Comparisons, apart
+from rosprivacy.ingest.policies.enclave_rights import alike, enforced, of_each, shared
 from rosprivacy.ingest.policies.meetings import literal_ends, meetings
 from rosprivacy.ingest.policies.name_index import Expressions, PlainNames
 from rosprivacy.ingest.policies.names import dds_names, endpoints, is_pattern
@@ -27,11 +30,12 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.bounds import Bounds
-    from rosprivacy.analysis.model import Place, Policy
+    from rosprivacy.analysis.model import Policy
     from rosprivacy.ingest.policies.meetings import Ends
     from rosprivacy.ingest.policies.names import Endpoint
 
 _ends = attrgetter("source", "target", "role")  # of a flow
+NOWHERE = Place("", 0)
 STORED = 64  # times its members a group of wildcards that meet may have flows that are stored
 
 
@@ -58,10 +62,12 @@ def build(policies: Iterable[Policy], view: str = View.declared, bounds: Bounds 
     policies = tuple(policies)
     profiles = tuple(sorted({p for policy in policies for p in policy.profiles}, key=_profile_key))
     grants = sorted({grant for policy in policies for grant in policy.grants}, key=_grant_key)
-    rights = list(_rights([grant for grant in grants if grant.allow], profiles, View(view)))
+    allowed = [grant for grant in grants if grant.allow]
     work = Comparisons(bounds)
     denials = _Denials([grant for grant in grants if not grant.allow and not grant.dead], work)
     participants = {profile.node: profile.participant for profile in profiles if profile.participant}
+    groups = alike(profiles, participants) if View(view) is View.enforced else {}
+    rights = enforced(allowed, profiles, groups) if groups else ((grant.node, grant) for grant in allowed)
     drafts = _Drafts(work, bounds, participants)
     for profile in profiles:
         drafts.elements.add(drafts.owner(profile.node))
@@ -72,19 +78,7 @@ def build(policies: Iterable[Policy], view: str = View.declared, bounds: Bounds 
         for endpoint in endpoints(grant.role, grant.kind, grant.name):
             drafts.add(node, grant, endpoint, denials)
     drafts.join()
-    return drafts.graph(tuple(p for p in profiles if p.node not in participants), str(view))
-
-
-def _rights(grants: list[Grant], profiles: tuple[Profile, ...], view: View) -> Iterator[tuple[str, Grant]]:
-    """(node, grant): which node may use which grant."""
-    if view is View.declared:
-        yield from ((grant.node, grant) for grant in grants)
-        return
-    members: dict[str, list[str]] = defaultdict(list)
-    for enclave, node in sorted({(profile.enclave, profile.node) for profile in profiles}):
-        members[enclave].append(node)
-    for grant in grants:
-        yield from ((node, grant) for node in members[grant.enclave])
+    return drafts.graph(tuple(p for p in profiles if p.node not in participants), str(view), groups)
 
 
 Rule = tuple[str, Grant]  # DDS name or expression, and the line that denies it
@@ -304,8 +298,16 @@ class _Drafts:
                 lines = (lines or set()) | {line for _, line in near}
         return lines
 
-    def graph(self, profiles: tuple[Profile, ...], view: str) -> FlowGraph:
-        """Number the elements and sort everything (rule S14)."""
+    def graph(
+        self, profiles: tuple[Profile, ...], view: str, groups: Mapping[str, Sequence[str]] = MappingProxyType({})
+    ) -> FlowGraph:
+        """Number the elements and sort everything (rule S14).
+
+        Parameters
+        ----------
+        groups
+            Nodes that share the flows of the first of them, by that one.
+        """
         elements = tuple(sorted(self.elements, key=Element.sort_key))
         index = {element: i for i, element in enumerate(elements)}
         allowed, denied = [], []
@@ -319,15 +321,32 @@ class _Drafts:
             Flow(index[source], index[target], "matches", (), _in_order(lines))
             for (source, target), lines in self.refused.items()
         ]
+        met = [Meeting(_sorted(written, index), _sorted(read, index)) for written, read in self.meetings]
+        place = self.said[self.meetings[0][0][0]] if met else NOWHERE
+        several = {
+            index[self.owner(first)]: _sorted(map(self.owner, nodes), index)
+            for first, nodes in groups.items()
+            if len(nodes) > 1
+        }
+        if several:
+            place = next((flow.grants[0].place for flow in allowed if flow.grants), place)
+            before = len(allowed) + len(denied)
+            allowed, more = shared(allowed, several)
+            denied = list(of_each(denied, several))
+            members = sum(len(meeting.written) + len(meeting.read) for meeting in more)
+            self.count.add(max(0, len(allowed) + len(denied) + members - before), place)
+            met += more
         flows: Sequence[Flow] = tuple(sorted(allowed, key=_ends))
-        if self.meetings:
-            groups = (tuple(sorted(index[e] for e in group) for group in pair) for pair in self.meetings)
-            met = tuple(sorted((Meeting(*map(tuple, pair)) for pair in groups), key=lambda m: (m.written, m.read)))
-            flows = Flows(tuple(flows), met, self.bounds, self.said[self.meetings[0][0][0]])
+        if met:
+            flows = Flows(tuple(flows), tuple(sorted(met, key=lambda m: (m.written, m.read))), self.bounds, place)
         return FlowGraph(
             elements, flows, tuple(sorted(denied, key=_ends)), profiles, view,
             tuple(sorted(refused, key=_ends)), tuple(sorted(self.work.careful, key=lambda at: (at.file, at.line))),
         )  # fmt: skip
+
+
+def _sorted(elements: Iterable[Element], index: Mapping[Element, int]) -> tuple[int, ...]:
+    return tuple(sorted(index[element] for element in elements))
 
 
 def _profile_key(profile: Profile) -> tuple[str, str, str, int]:

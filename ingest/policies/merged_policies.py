@@ -33,7 +33,8 @@ def merging_notices(policies: Iterable[Policy], instead: str = ALONE) -> tuple[D
     instead
         What to do if they were not meant to make one graph.
     """
-    policies = sorted((policy for policy in deployed(policies) if policy.profiles), key=lambda policy: policy.file)
+    of_files = (policy for policy in deployed(policies) if policy.profiles and policy.sources)
+    policies = sorted(of_files, key=lambda policy: policy.file)
     if len(policies) < 2:  # noqa: PLR2004 - two make one
         return ()
     return (*_stated_differently(policies, instead), *_without_common_names(policies, instead))

@@ -27,6 +27,7 @@ EVENTS = "/_service_event"  # the topic on which a service tells what it is aske
 
 _OUT = {"publish", "request", "call"}
 DDS = "dds"  # kind of a grant that names a DDS topic, and what the name of a topic that is none of ROS begins with
+NON_ROS_KEYS = ("zenoh/", "zenoh@/")  # what names of Zenoh keys of no ROS channel begin with: plain, with a chunk @…
 _PART = re.compile(rf"(.+)/_action/({'|'.join(ACTION_SERVICES + ACTION_TOPICS)})", re.DOTALL)
 
 
@@ -117,7 +118,7 @@ def _ros_channel(dds: str) -> tuple[str, str, str]:
     elif dds.startswith("rr/") and dds.endswith("Reply"):
         kind, name, leg = "service", dds[2:-5], "response"
     else:
-        return "topic", f"{DDS}/{dds}", ""
+        return "topic", dds if dds.startswith(NON_ROS_KEYS) else f"{DDS}/{dds}", ""
     folded = None if is_pattern(name) else _PART.fullmatch(name)
     of_action = folded is not None and folded[2] in (ACTION_SERVICES if leg else ACTION_TOPICS)
     return ("action", folded[1], leg or "response") if folded and of_action else (kind, name, leg)
@@ -126,11 +127,11 @@ def _ros_channel(dds: str) -> tuple[str, str, str]:
 def dds_names(kind: str, name: str, leg: str) -> tuple[str, ...]:
     """Return the DDS topics that make up a channel, or one leg of it.
 
-    >>> dds_names("topic", "/scan", ""), dds_names("topic", "dds/Square", "")
-    (('rt/scan',), ('Square',))
+    >>> dds_names("topic", "/scan", ""), dds_names("topic", "dds/Square", ""), dds_names("topic", "zenoh/a", "")
+    (('rt/scan',), ('Square',), ('zenoh/a',))
     """
     if kind == "topic":
-        return (name.removeprefix(f"{DDS}/"),) if name.startswith(f"{DDS}/") else (f"rt{name}",)
+        return (f"rt{name}",) if not name.startswith((f"{DDS}/", *NON_ROS_KEYS)) else (name.removeprefix(f"{DDS}/"),)
     if kind == "service":
         return (f"rq{name}Request",) if leg == "request" else (f"rr{name}Reply",)
     if leg == "request":

@@ -31,7 +31,7 @@ def split(policies: Iterable[Policy], enclaves: Collection[str]) -> tuple[Policy
         replace(
             policy,
             profiles=tuple(
-                one._replace(enclave=_own(one.enclave, one.node)) if one.enclave in nodes else one
+                one._replace(enclave=own_enclave(one.enclave, one.node)) if one.enclave in nodes else one
                 for one in policy.profiles
             ),
             grants=tuple(of_node for one in policy.grants for of_node in _split(one, nodes)),
@@ -46,8 +46,9 @@ def _split(grant: Grant, nodes: dict[str, set[str]]) -> Iterator[Grant]:
         return
     of = {grant.node} if grant.allow else {grant.node, *nodes[grant.enclave]}
     for node in sorted(of):
-        yield grant._replace(enclave=_own(grant.enclave, node), node=node)
+        yield grant._replace(enclave=own_enclave(grant.enclave, node), node=node)
 
 
-def _own(enclave: str, node: str) -> str:
+def own_enclave(enclave: str, node: str) -> str:
+    """Return the path of the enclave that a node gets for itself."""
     return f"{enclave} {node}"  # no enclave has a space

@@ -94,6 +94,8 @@ class AccessFile:
         Nothing is held back without it.
     allow
         Whether what no rule names is allowed.
+    namespace
+        What all keys of the session begin with, on its links and in its rules too; empty for none.
     """
 
     file: str
@@ -103,6 +105,12 @@ class AccessFile:
     subjects: tuple[AccessSubject, ...]
     policies: tuple[AccessPolicy, ...]
     place: Place
+    namespace: str = ""
+
+    @property
+    def decides(self) -> bool:
+        """Whether rules are looked at: with a list missing or empty, Zenoh looks at none of them."""
+        return self.enabled and all((self.rules, self.subjects, self.policies))
 
 
 def read_access(file: str) -> AccessFile:
@@ -128,10 +136,10 @@ class _Reader(FileReader):
     """Walks the section once. Protocols of links are not checked: each version of Zenoh knows others."""
 
     def access(self, top: Value) -> AccessFile:
-        section = top.get(SECTION)
+        section, namespace = top.get(SECTION), self._namespace(top.get("namespace"))
         if section is None:
             return AccessFile(self.file, enabled=False, allow=False, rules=(), subjects=(), policies=(),
-                              place=Place(self.file, top.line))  # fmt: skip
+                              place=Place(self.file, top.line), namespace=namespace)  # fmt: skip
         parts = self._parts(section, ("enabled", "default_permission", *_LISTS))
         enabled = "enabled" in parts and self._chosen(parts["enabled"], {"true": True, "false": False}, "number")
         allow = "default_permission" in parts and self._chosen(parts["default_permission"], PERMISSIONS)
@@ -147,7 +155,16 @@ class _Reader(FileReader):
         self._once((policy.id, policy.place) for policy in policies if policy.id)
         if all(lists.values()):  # otherwise Zenoh looks at none of them
             self._known(policies, {rule.id for rule in rules}, {subject.id for subject in subjects})
-        return AccessFile(self.file, enabled, allow, rules, subjects, policies, Place(self.file, section.line))
+        place = Place(self.file, section.line)
+        return AccessFile(self.file, enabled, allow, rules, subjects, policies, place, namespace)
+
+    def _namespace(self, value: Value | None) -> str:
+        if value is None or value.kind == "empty":
+            return ""
+        if value.kind == "text" and problem_of(value.text) is None and not set(value.text) & set("*$"):
+            return value.text
+        self.problem(value.line, f"namespace {shown(value.text or value.kind)!r}", "write chunks without wildcards")
+        return ""
 
     def _rule(self, value: Value) -> AccessRule:
         parts = self._parts(value, ("id", "permission", "messages", "flows", "key_exprs"))

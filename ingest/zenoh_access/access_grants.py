@@ -1,177 +1,203 @@
 """Zenoh's access control -> a ``Policy``: what the process that loads the file may send and receive, as grants.
 
-In: the paths of configurations (JSON5). Out: for each an enclave with the file's name, and grants of the DDS topics
-that stand for the same channels: a ``put`` is a message of a topic, a ``query`` the request leg of a service, a
-``reply`` its response leg. What is not certain is granted: an allow that is narrower than a channel allows the channel,
-a deny counts only if it takes the whole channel from everybody (rules S5, S11).
-
-Source: the keys of rmw_zenoh, ``<domain>/<name>/<type>/<hash>``.
+In: access files. Out: for each an enclave with the file's name, and grants of the DDS topics that stand for the same
+channels: a ``put`` is a message of a topic, a ``query`` the request leg of a service, a ``reply`` its response leg.
+What is not certain is granted: an allow that is narrower than a channel allows the channel, a deny counts only if it
+takes the whole channel from everybody (rules S5, S11).
 """
 
 from __future__ import annotations
 
 import hashlib
+from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import InputErrors, PolicyError, shown
-from rosprivacy.analysis.model import ACCESS_GAP, Diagnostic, Grant, Policy, Profile, Severity
-from rosprivacy.ingest.policies.names import DDS
+from rosprivacy.analysis.model import Diagnostic, Grant, Policy, Profile, Severity
+from rosprivacy.ingest.policies.names import DDS, NON_ROS_KEYS
 from rosprivacy.ingest.reading.bounded_file import contents
 from rosprivacy.ingest.zenoh_access.access_decision import identities
-from rosprivacy.ingest.zenoh_access.access_file import read_access
-from rosprivacy.ingest.zenoh_access.key_expressions import ANY, INSIDE, ONE, VERBATIM, intersects
+from rosprivacy.ingest.zenoh_access.key_expressions import ONE
+from rosprivacy.ingest.zenoh_access.ros_keys import HISTORY, MESSAGES, OTHERS, TOKENS, Keys, channels, domain_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from rosprivacy.analysis.errors import InputError
     from rosprivacy.analysis.model import Place
+    from rosprivacy.ingest.zenoh_access.access_decision import Identity
     from rosprivacy.ingest.zenoh_access.access_file import AccessFile, AccessRule
+    from rosprivacy.ingest.zenoh_access.ros_keys import Channels
 
 LEGS = {"put": ("rt", ""), "query": ("rq", "Request"), "reply": ("rr", "Reply")}
 """Messages with data, and how the DDS topic of the same channel begins and ends; others carry none."""
+DATA = frozenset(LEGS)
 ROLES = {"egress": "publish", "ingress": "subscribe"}
-_KEY = 2  # chunks after the name: type and hash
+OTHER_WAY = {"publish": "subscribe", "subscribe": "publish"}
+LATE = {"publish": "late joiners get the messages", "subscribe": "as a late joiner it gets the messages"}
+Held = dict["Identity", list["AccessRule"]]
 
 
-def read_zenoh(files: Iterable[str], domain: int | None) -> tuple[Policy, ...]:
-    """Read configurations of Zenoh.
+class Right(NamedTuple):
+    """What a line allows or denies: ``publish`` or ``subscribe`` of a DDS topic."""
 
-    Parameters
-    ----------
-    domain
-        That of the robot; None where it does not matter, since all keys are of the same one.
-
-    Raises
-    ------
-    InputErrors
-        With every problem, one line each.
-    """
-    policies: list[Policy] = []
-    problems: list[InputError] = []
-    for file in files:
-        try:
-            policies.append(policy_of(read_access(file), domain))
-        except InputErrors as error:
-            problems += error.errors
-    if problems:
-        raise InputErrors(problems)
-    return tuple(policies)
+    allow: bool
+    role: str
+    dds: str
+    place: Place
 
 
-def policy_of(access: AccessFile, domain: int | None) -> Policy:
-    """Return what the process with an access list may send and receive.
-
-    Raises
-    ------
-    InputErrors
-        If the keys are of different domains, and none is given.
-    """
-    own = f"/{Path(access.file).stem}"
+def policy_of(access: AccessFile, keys: Keys) -> Policy:
+    """Return what the process with an access list may send and receive."""
+    own = process_of(access)
     profile = Profile(own, own, access.place)
-    said: list[Diagnostic] = []
+    said = list(_remarks(access, keys))
+    held = identities(access) if access.decides else {}
+    granted = rights(access, held, keys, said)
     grants = [
-        Grant(allow, ROLES[flow], DDS, dds, own, own, place, access.file, absolute=True)
-        for allow, flow, dds, place in _granted(access, _domain(access, domain), said)
+        Grant(right.allow, right.role, DDS, right.dds, own, own, right.place, access.file, absolute=True)
+        for right in granted
     ]
     if not any(grant.allow for grant in grants):
-        where = f" in domain {domain}" if domain is not None else ""
+        where = f" in domain {keys.domain}" if keys.domain != ONE else ""
         said.append(_warning(access.place, f"nothing is granted{where}: the process can send and receive no data"))
     digest = hashlib.sha256(contents(Path(access.file), access.file)).hexdigest()
     sources = ((access.file, digest),)
     return Policy(access.file, sources, (profile,), tuple(dict.fromkeys(grants)), tuple(dict.fromkeys(said)))
 
 
-def _domain(access: AccessFile, domain: int | None) -> str:
-    """The domain as a chunk; ``*`` where it does not matter."""
+def process_of(access: AccessFile) -> str:
+    """Return the name of the process that loads a file: that of the file."""
+    return f"/{Path(access.file).stem}"
+
+
+def keys_of(access: AccessFile, domain: int | None, namespaces: Iterable[str]) -> Keys:
+    """Return which keys the messages of a session have.
+
+    Parameters
+    ----------
+    domain
+        That of the robot; None where it does not matter, since all keys are of the same one.
+    namespaces
+        Of all sessions.
+
+    Raises
+    ------
+    InputErrors
+        If the keys are of different domains, and none is given.
+    """
+    own = (access.namespace,) if access.namespace else ("", *sorted(set(namespaces) - {""}))
     if domain is not None:
-        return str(domain)
+        return Keys(str(domain), own)
     first = ""
-    for rule in access.rules:
-        for key, place in rule.key_expressions:
-            written = key.split("/")[0]
-            if written.isdigit() and first not in ("", written):
-                what = f"keys of domain {first} and of domain {written}"
-                raise InputErrors([PolicyError(place.file, place.line, what, "say which with --domain N")])
-            first = written if written.isdigit() else first
-    return first or ONE
+    for key, place in (one for rule in access.rules for one in rule.key_expressions):
+        written = domain_of(key, own)
+        if written and first not in ("", written):
+            what = f"keys of domain {first} and of domain {written}"
+            raise InputErrors([PolicyError(place.file, place.line, what, "say which with --domain N")])
+        first = written or first
+    return Keys(first or ONE, own)
 
 
-def _granted(access: AccessFile, domain: str, said: list[Diagnostic]) -> Iterator[tuple[bool, str, str, Place]]:
-    """Yield (allowed, flow, DDS topic, line)."""
-    rules = identities(access)
-    decided = access.enabled and all((access.rules, access.subjects, access.policies))
+def rights(access: AccessFile, held: Held, keys: Keys, said: list[Diagnostic]) -> Iterator[Right]:
+    """Yield what passes a list between its process and those at the other end of a link.
+
+    Parameters
+    ----------
+    held
+        The rules of the identities that these may have; of none where no rule is looked at.
+    said
+        Gets what a reader has to know.
+    """
+    if access.allow or not access.enabled:
+        everything = [*(f"{begins}/*" for begins, _ in LEGS.values()), f"{NON_ROS_KEYS[0]}*", f"{NON_ROS_KEYS[1]}*"]
+        yield from (Right(True, role, dds, access.place) for role in OTHER_WAY for dds in everything)
+    everywhere = not access.allow or any(not any(identity) for identity in held)
+    rules = dict.fromkeys(rule for rules in held.values() for rule in rules)
+    late = frozenset(OTHER_WAY) if access.allow else _late(rules, keys)
+    for rule in rules:
+        if rule.allow:
+            yield from _of_rule(rule, keys)
+        else:
+            for_all = everywhere and all(rule in some for some in held.values())
+            yield from _of_deny(rule, keys, said, late if for_all else None)
+
+
+def _remarks(access: AccessFile, keys: Keys) -> Iterator[Diagnostic]:
     if not access.enabled or access.allow:
         why = "default_permission is allow" if access.enabled else "access control is not enabled"
-        said.append(_warning(access.place, f"{why}: whatever no deny names passes, and is read as granted"))
-        yield from ((True, flow, f"{begins}/*", access.place) for flow in ROLES for begins, _ in LEGS.values())
-    if not decided:
-        return
-    if all(not any(identity) for identity in rules):
-        message = "no subject says who is at the other end: this list holds its own process back, and nobody who sends"
-        said.append(Diagnostic(access.place, Severity.NOTICE, f"{message} is told from another"))
-    everywhere = not access.allow or any(not any(identity) for identity in rules)
-    for rule in dict.fromkeys(rule for held in rules.values() for rule in held):
-        for_all = everywhere and all(rule in held for held in rules.values())
-        yield from _of_rule(rule, domain, said, for_all=for_all)
+        yield _warning(access.place, f"{why}: whatever no deny names passes, and is read as granted")
+    for rule in access.rules if access.namespace else ():
+        for key, place in rule.key_expressions:
+            if not any(channels(key, keys._replace(domain=ONE))):
+                what = f"{shown(key)!r} is about no key of this session: they begin with its namespace"
+                yield _warning(place, f"{what} {shown(access.namespace)!r}")
 
 
-def _of_rule(
-    rule: AccessRule, domain: str, said: list[Diagnostic], *, for_all: bool
-) -> Iterator[tuple[bool, str, str, Place]]:
-    messages = [message for message in rule.messages if message in LEGS]
-    for key, place in rule.key_expressions if messages else ():
-        first = key.split("/")[0]
-        names, exact = ros_names(key)
-        if not names or not (first.isdigit() or _is_wild(first)):
-            message = f"{shown(key)!r} is not read: rmw_zenoh has <domain>/<name>/<type>/<hash>"
-            code = ACCESS_GAP if rule.allow else ""  # what it allows is not known
-            said.append(Diagnostic(place, Severity.WARNING, message, code))
-            continue
-        if not intersects(key, f"{domain}/**"):
-            continue
-        whole = exact and first in (ONE, ANY, domain)
-        if not rule.allow and not (whole and for_all):
-            why = "it does not hold for everybody" if whole else "it does not take a whole channel"
-            said.append(_warning(place, f"a deny of {shown(key)!r} is taken to deny nothing: {why}"))
-            continue
-        for flow in rule.flows:
-            for begins, ends in (LEGS[message] for message in messages):
-                yield from ((rule.allow, flow, f"{begins}{name}{ends}", place) for name in names)
+def _of_rule(rule: AccessRule, keys: Keys) -> Iterator[Right]:
+    for key, place in rule.key_expressions:
+        for some in channels(key, keys):
+            for flow, message in product(rule.flows, rule.messages):
+                yield from (Right(True, role, dds, place) for role, dds in _of_message(some, message, ROLES[flow]))
 
 
-def ros_names(key: str) -> tuple[tuple[str, ...], bool]:
-    """Return the names that a key expression is about, and whether it is about nothing less than all of each.
+def _of_deny(rule: AccessRule, keys: Keys, said: list[Diagnostic], late: frozenset[str] | None) -> Iterator[Right]:
+    """What a deny takes away, and what is said where it takes nothing.
 
-    >>> ros_names("0/camera/image/*/*"), ros_names("0/camera/**")
-    ((('/camera/image',), True), (('/camera', '/camera/*'), True))
-    >>> ros_names("*/$*cam/*/*"), ros_names("**")
-    ((('/*cam',), False), (('/*',), True))
+    Parameters
+    ----------
+    late
+        The roles in which late joiners are served by query and reply; None where the rule is not for everybody.
     """
-    first, *rest = key.split("/")
-    if VERBATIM in (chunk[0] for chunk in (first, *rest)):
-        return (), False
-    if first == ANY:
-        return ("/*",), not rest
-    if ANY not in rest:
-        name = rest[:-_KEY]
-        exact = rest[-_KEY:] == [ONE] * _KEY and not any(map(_is_wild, name))
-        return (_written(name),) if name else (), exact
-    base = rest[: rest.index(ANY)]
-    exact = rest[-1:] == [ANY] and len(base) == len(rest) - 1 and not any(map(_is_wild, base))
-    while base and (base[-1] == ONE or "::" in base[-1] or base[-1].startswith("RIHS")):
-        base, exact = base[:-1], False  # perhaps the type or the hash
-    return (_written(base), _written([*base, ONE])) if base else (_written([ONE]),), exact
+    for key, place in rule.key_expressions if not DATA.isdisjoint(rule.messages) else ():
+        for some in channels(key, keys):
+            why = "" if some.whole else "it does not take a whole channel"
+            if some.whole and late is None:
+                why = "it does not hold for everybody"
+            elif some.what in (OTHERS, TOKENS) and not DATA.issubset(rule.messages):
+                why = why or "it does not name put, query and reply"
+            for flow, message in product(rule.flows, rule.messages):
+                role = ROLES[flow]
+                served = some.what == MESSAGES and message == "put" and role in (late or ())
+                if not why and served and "reply" not in rule.messages:
+                    said.append(_nothing(key, place, f"{LATE[role]} by reply all the same; deny both in one rule"))
+                elif not why:
+                    yield from (Right(False, role, dds, place) for role, dds in _of_message(some, message, role))
+            if why:
+                said.append(_nothing(key, place, why))
 
 
-def _is_wild(chunk: str) -> bool:
-    return chunk in (ONE, ANY) or INSIDE in chunk or "[" in chunk
+def _late(rules: Iterable[AccessRule], keys: Keys) -> frozenset[str]:
+    """The roles in which a list lets queries for history through."""
+    return frozenset(
+        OTHER_WAY[ROLES[flow]]
+        for rule in rules
+        if rule.allow and "query" in rule.messages
+        for key, _ in rule.key_expressions
+        if any(some.what == HISTORY for some in channels(key, keys))
+        for flow in rule.flows
+    )
 
 
-def _written(name: list[str]) -> str:
-    """A name as policies write it, where ``*`` is more than a chunk, and ``[`` is no letter."""
-    return "".join(f"/{chunk.replace(INSIDE, ONE).replace('[', '?')}" for chunk in name)
+def _of_message(some: Channels, message: str, role: str) -> Iterator[tuple[str, str]]:
+    """Yield (role, DDS topic) of a message with data.
+
+    Who is asked for history sends messages of the topic, in replies with its own key; what is put behind ``@adv`` are
+    numbers. Replies about tokens say who is there.
+    """
+    if message not in LEGS:
+        return
+    if some.what == MESSAGES:
+        begins, ends = LEGS[message]
+        yield from ((role, f"{begins}{name}{ends}") for name in some.names)
+    elif some.what == HISTORY:
+        yield from ((OTHER_WAY[role], f"rt{name}") for name in some.names if message == "query")
+    elif not (some.what == TOKENS and message == "reply"):
+        yield from ((role, name) for name in some.names)
+
+
+def _nothing(key: str, place: Place, why: str) -> Diagnostic:
+    return _warning(place, f"a deny of {shown(key)!r} is taken to deny nothing: {why}")
 
 
 def _warning(place: Place, message: str) -> Diagnostic:

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
         LedgerRow,
         ListedDecision,
         OpenEntry,
+        PlaceEntry,
         Reached,
         RelianceEntry,
         UnknownEnd,
@@ -144,12 +145,43 @@ class Assumptions(Given):
     globs: NotRequired[list[GlobEntry]]
 
 
+class MoveEntry(TypedDict):
+    """A profile that would get an enclave of its own."""
+
+    enclave: str
+    profile: str
+
+
+class DenyEntry(TypedDict):
+    """A DENY line that nobody has written yet, and where it would stand; it holds for the whole enclave."""
+
+    file: str
+    enclave: str
+    profile: str
+    role: str
+    channel: ElementEntry
+
+
+class LostEntry(TypedDict):
+    """What a node could no longer do that its own profile allows."""
+
+    node: ElementEntry
+    role: str
+    channel: ElementEntry
+
+
 class AddedEntry(TypedDict):
-    """A finding that only the enforced view has, the enclaves that make it possible, and which to split to end it."""
+    """A finding that only the enforced view has, the enclaves that make it possible, and what ends it."""
 
     finding: FindingEntry
+    beyond: NotRequired[list[int]]
     enclaves: list[str]
     split: list[str]
+    move: NotRequired[MoveEntry | None]
+    deny: NotRequired[list[DenyEntry]]
+    loses: NotRequired[list[LostEntry]]
+    robots: NotRequired[list[str]]
+    opened_by: NotRequired[list[PlaceEntry]]
 
 
 class EnforcedEntry(TypedDict):

@@ -69,7 +69,7 @@ def analysis_document(answer: Answer) -> AnalysisDocument:
         "verdict": str(analysis.verdict),
         "view": graph.view,
         "categories": [_category(categories[name], hierarchy, contexts) for name in analysis.emitted],
-        "findings": [_finding(finding, at_sources) for finding in analysis.findings],
+        "findings": [finding_entry(finding, at_sources) for finding in analysis.findings],
         "open": _open(answer, analysis.open),
         "unknown_ends": [
             {
@@ -318,8 +318,8 @@ def _why(why: Reason) -> WhyEntry:
     return {"key": why.key, "values": dict(why.values)}
 
 
-def _finding(finding: Finding, contexts: Contexts) -> FindingEntry:
-    """A finding; its data became a special category at ``special_from``, where that was none before."""
+def finding_entry(finding: Finding, contexts: Contexts) -> FindingEntry:
+    """Return a finding; its data became a special category at ``special_from``, where that was none before."""
     categories = contexts.categories
     category, turned = categories[finding.category], turned_special(finding, categories)
     reason: FindingMore = {"reason": finding.reason, "because": _why(finding.why)} if finding.why else {}

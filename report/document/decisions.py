@@ -8,6 +8,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, cast
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from rosprivacy.analysis.decisions import Decided, Decision, State
     from rosprivacy.report.contract.analysis import AnalysisDocument
     from rosprivacy.report.contract.records import ChangedSince, DecisionEntry, FindingEntry, ListedDecision, Target
@@ -16,13 +18,18 @@ if TYPE_CHECKING:
 def with_decisions(document: AnalysisDocument, decided: Decided) -> AnalysisDocument:
     """Return a document with what was decided about its findings."""
     decisions = decided.decisions
-    on = {key: _decision(entry, decisions.state(entry), decided) for key, entry in decided.on.items()}
-    findings: list[FindingEntry] = [{**finding, "decision": on.get(finding["id"])} for finding in document["findings"]]
+    findings = decided_findings(document["findings"], decided)
     entries: list[ListedDecision] = [
         {**_decision(entry, state, decided), "target": _target(entry), "findings": list(about)}
         for entry, about, state in zip(decisions.entries, decided.about, decided.states, strict=True)
     ]
     return {**document, "findings": findings, "decisions": entries}
+
+
+def decided_findings(findings: Iterable[FindingEntry], decided: Decided) -> list[FindingEntry]:
+    """Return findings with what was decided about each."""
+    on = {key: _decision(entry, decided.decisions.state(entry), decided) for key, entry in decided.on.items()}
+    return [{**finding, "decision": on.get(finding["id"])} for finding in findings]
 
 
 def _decision(entry: Decision, state: State, decided: Decided) -> DecisionEntry:

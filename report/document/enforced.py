@@ -1,33 +1,66 @@
 """What the enforced view adds to the declared one, in the JSON document (rule S6).
 
-In: the document of the enforced view, and what is known of the findings that only it has. Out: an ``EnforcedEntry``.
+In: ``Enforced``. Out: an ``EnforcedEntry``.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.model import Element
+from rosprivacy.report.document.analysis import element_dict, finding_entry
+from rosprivacy.report.document.decisions import decided_findings
+
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from rosprivacy.analysis.findings.beyond import Added, DenyLine, Right
+    from rosprivacy.report.answer import Enforced
+    from rosprivacy.report.contract.analysis import AddedEntry, DenyEntry, EnforcedEntry, LostEntry
+    from rosprivacy.report.contract.records import FindingEntry
 
-    from rosprivacy.report.contract.analysis import AnalysisDocument, EnforcedEntry
 
-
-def enforced_document(
-    enforced: AnalysisDocument, added: Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]
-) -> EnforcedEntry:
-    """Return what the enforced view adds.
-
-    Parameters
-    ----------
-    added
-        By id of a finding: the enclaves that make it possible, and those of which splitting ends it.
-    """
+def enforced_document(enforced: Enforced) -> EnforcedEntry:
+    """Return what the enforced view adds."""
+    answer = enforced.answer
+    findings = [finding_entry(one.finding, answer.contexts) for one in enforced.added]
+    if answer.decided:
+        findings = decided_findings(findings, answer.decided)
     return {
-        "verdict": enforced["verdict"],
-        "added": [
-            {"finding": entry, "enclaves": list(added[entry["id"]][0]), "split": list(added[entry["id"]][1])}
-            for entry in enforced["findings"]
-            if entry["id"] in added
-        ],
+        "verdict": str(answer.analysis.verdict),
+        "added": [_added(one, finding) for one, finding in zip(enforced.added, findings, strict=True)],
+    }
+
+
+def _added(one: Added, finding: FindingEntry) -> AddedEntry:
+    entry: AddedEntry = {
+        "finding": finding,
+        "beyond": list(one.beyond),
+        "enclaves": list(one.enclaves),
+        "split": list(one.split),
+        "move": {"enclave": one.move[0], "profile": one.move[1]} if one.move else None,
+        "deny": [_deny(line) for line in one.deny],
+        "loses": [_lost(right) for right in one.loses],
+    }
+    if one.robots:
+        entry["robots"] = list(one.robots)
+    if one.opened:
+        entry["opened_by"] = [{"file": place.file, "line": place.line} for place in one.opened]
+    return entry
+
+
+def _deny(line: DenyLine) -> DenyEntry:
+    return {
+        "file": line.policy,
+        "enclave": line.enclave,
+        "profile": line.node,
+        "role": line.role,
+        "channel": element_dict(Element(line.kind, line.name)),
+    }
+
+
+def _lost(right: Right) -> LostEntry:
+    (robot, kind, name), role, channel = right
+    return {
+        "node": element_dict(Element(kind, name, robot)),
+        "role": role,
+        "channel": element_dict(Element(channel[1], channel[2], channel[0])),
     }

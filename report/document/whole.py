@@ -1,4 +1,6 @@
-"""An ``Answer`` -> the whole JSON document of the contract: the analysis, what was decided, what is told of a fleet."""
+"""An ``Answer`` -> the whole JSON document of the contract: the analysis, what was decided, what is told of a fleet,
+what the enforced view adds.
+"""
 
 from __future__ import annotations
 
@@ -24,4 +26,8 @@ def document(answer: Answer) -> AnalysisDocument:
         from rosprivacy.report.document.fleet import fleet_document  # noqa: PLC0415 - light start
 
         made = fleet_document(made, answer.fleet, answer.fleet_counts(answer.fleet))
+    if answer.enforced:
+        from rosprivacy.report.document.enforced import enforced_document  # noqa: PLC0415 - light start
+
+        made["enforced"] = enforced_document(answer.enforced)
     return made

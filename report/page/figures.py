@@ -1,6 +1,6 @@
 """The pictures of a report: one of each path to assess, as many as a file that can be mailed holds, and their legend.
 
-In: an ``Analysis`` and the entries of the report. Out: ``Figures``, which know what is missing, and why.
+In: an ``Answer`` and the entries of the report. Out: ``Figures``, which know what is missing, and why.
 """
 
 from __future__ import annotations
@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.report.page.inline import Inline, Wishes, picture_of_all, pictures_of
 from rosprivacy.report.page.redacted_pictures import renamed
+from rosprivacy.report.pictures.added_flows import marking
 from rosprivacy.report.pictures.graphviz import available
-from rosprivacy.report.pictures.looks import CLEANED, INK, LINE_LOOKS, ROLE_LOOKS, SHORTEST, WAY, Look
+from rosprivacy.report.pictures.looks import BEYOND, CLEANED, INK, LINE_LOOKS, ROLE_LOOKS, SHORTEST, WAY, Look
 from rosprivacy.report.pictures.overview import drawable
 from rosprivacy.report.pictures.phrases import Phrases
 from rosprivacy.report.words.typography import plain
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.report.answer import Answer
     from rosprivacy.report.page.outline import Outline
     from rosprivacy.report.pictures.picture import Key
     from rosprivacy.report.words.words import Words
@@ -40,16 +42,19 @@ class Figures:
         Whether what draws them is.
     overview
         The shortest paths of the first things to decide, in one picture; ``drawn`` says how many things these are.
+    beyond
+        As ``of``, of what only the enforced view has.
     """
 
     of: Mapping[str, Inline] = field(default_factory=dict)
     installed: bool = True
     overview: Inline | None = None
     drawn: int = 0
+    beyond: Mapping[str, Inline] = field(default_factory=dict)
 
 
 def figures(
-    analysis: Analysis, report: Outline, aliases: Mapping[Key, tuple[str, str]] | None = None, *, room: int = ROOM
+    answer: Answer, report: Outline, aliases: Mapping[Key, tuple[str, str]] | None = None, *, room: int = ROOM
 ) -> Figures:
     """Draw the entries of a report, in their order, until there is no more room.
 
@@ -65,6 +70,7 @@ def figures(
     """
     if not available():
         return Figures(installed=False)
+    analysis = answer.analysis
     findings = {finding.id: finding for finding in analysis.findings}
     entries = [entry for entry in report.entries if entry.told and entry.id in findings]
     words = report.words
@@ -84,7 +90,25 @@ def figures(
         if made:
             found[entry.id] = made
     picture, rows = _overview(analysis, report, wishes)
-    return Figures(found, overview=picture, drawn=rows)
+    return Figures(found, overview=picture, drawn=rows, beyond=_beyond(answer, report, wishes, room))
+
+
+def _beyond(answer: Answer, report: Outline, wishes: Wishes, room: int) -> dict[str, Inline]:
+    """What only the enforced view has, with the steps marked that no profile allows, while there is room."""
+    if not answer.enforced or not report.beyond or room < 0:
+        return {}
+    mark, renamed_as = marking(answer), wishes.change
+    labels = {entry.id: report.words("f.picture", way=entry.brief) for entry in report.beyond}
+    marked = replace(wishes, change=lambda picture: renamed_as(mark(picture)), labels=labels)
+    added = [one.finding for one in answer.enforced.added]
+    found = {}
+    for finding, made in zip(added, pictures_of(answer.enforced.answer.analysis, added, marked), strict=True):
+        room -= len(made.svg.encode()) if made else 0
+        if room < 0:
+            break
+        if made:
+            found[finding.id] = made
+    return found
 
 
 def _overview(analysis: Analysis, report: Outline, wishes: Wishes) -> tuple[Inline | None, int]:
@@ -100,8 +124,9 @@ def _overview(analysis: Analysis, report: Outline, wishes: Wishes) -> tuple[Inli
     return picture_of_all(analysis, shown, replace(wishes, labels={shown[0].id: label})), count
 
 
-def page_legend(words: Words) -> list[tuple[Look, bool, str]]:
+def page_legend(words: Words, *, beyond: bool = False) -> list[tuple[Look, bool, str]]:
     """Return what the pictures of a page mean: a look, whether it is that of a box or of a line, and words."""
     boxes = [(look, True, words(f"p.look.{name}")) for name, look in ROLE_LOOKS.items()]
     lines = [(LINE_LOOKS[name], False, words(f"p.look.{name}")) for name in (SHORTEST, WAY, CLEANED)]
+    lines += [(LINE_LOOKS[BEYOND], False, words(f"p.look.{BEYOND}"))] if beyond else []
     return [*boxes, *lines, (Look("", INK, style="dashed"), False, words("p.look.hidden"))]

@@ -180,9 +180,9 @@ def _entry(
         data=index.data(finding["category"], pseudonymised=finding["pseudonymised"]),
         source=name(finding["source"]),
         leak=name(finding["leak"]),
-        sentence=_sentence(finding, index),
+        sentence=sentence_of(finding, index),
         pseudonymised=finding["pseudonymised"],
-        hops=tuple(_hops(finding, index)) if told else (),
+        hops=tuple(hops_of(finding, index)) if told else (),
         notes=tuple(_notes(finding, index)) if told else (),
         special=_special(finding, index),
         others=tuple(f["id"] for f in group[1:]),
@@ -254,7 +254,8 @@ def _standing(robots: Sequence[str], index: Index) -> Iterator[str]:
     yield from map(fit, left)
 
 
-def _sentence(finding: Mapping[str, Any], index: Index) -> str:
+def sentence_of(finding: Mapping[str, Any], index: Index) -> str:
+    """Return what a finding says, in one sentence."""
     data = index.data(finding["category"], pseudonymised=finding["pseudonymised"])
     ends = {"source": name(finding["source"]), "leak": name(finding["leak"])}
     alone = finding["kind"] == "disclosure" and len(finding["witness"]) == 1
@@ -289,8 +290,8 @@ def _special(finding: Mapping[str, Any], index: Index) -> str:
     return index.words("f.special", element=name(turned)) if turned else ""
 
 
-def _hops(finding: Mapping[str, Any], index: Index) -> Iterator[Hop]:
-    """The witness: each element with what labels say of the data that is there, and the step that leaves it."""
+def hops_of(finding: Mapping[str, Any], index: Index) -> Iterator[Hop]:
+    """Return the witness: each element with what labels say of the data that is there, and the step that leaves it."""
     witness, steps = finding["witness"], finding["steps"]
     data = [(step["category"], step["pseudonymised"]) for step in steps]
     for number, element in enumerate(witness):

@@ -58,7 +58,7 @@ def html(report: Outline, drawn: Figures | None = None) -> str:
         drawn=drawn,
         undrawn=sum(entry.told and entry.id not in drawn.of for entry in report.entries) if drawn else 0,
         ink=INK,
-        looks=page_legend(report.words) if drawn and drawn.of else [],
+        looks=page_legend(report.words, beyond=bool(drawn.beyond)) if drawn and (drawn.of or drawn.beyond) else [],
         paragraphs=PARAGRAPHS,
     )
     return page.strip() + "\n"

@@ -21,6 +21,7 @@ from rosprivacy.report.naming import name
 from rosprivacy.report.page import assumed, elements, rights, sanitizers, tables
 from rosprivacy.report.page.assessment import Assessment, assessment
 from rosprivacy.report.page.assessment_file import Answers
+from rosprivacy.report.page.beyond_entries import Beyond, beyond_entries, beyond_said
 from rosprivacy.report.page.closed import Closed, closed
 from rosprivacy.report.page.closing import Closing, closing
 from rosprivacy.report.page.criteria import Criterion, criteria
@@ -45,7 +46,7 @@ if TYPE_CHECKING:
 
 DECIDE = "decide"  # its heading is what there is to decide
 SECTIONS = (
-    DECIDE, "closing", "hangs", "changes", "fleet", "findings", "questions", "tables", "rights", "outside",
+    DECIDE, "closing", "hangs", "changes", "fleet", "findings", "beyond", "questions", "tables", "rights", "outside",
     "sanitizers", "types", "risks", "criteria", "sign", "kinds", "assumptions", "inventory", "method",
 )  # fmt: skip
 NAMED = 3  # robots or policies in the title
@@ -129,6 +130,8 @@ class Outline:
     processed: tuple[Row, ...]
     kinds: tuple[Kind, ...]
     entries: tuple[Entry, ...]
+    beyond: tuple[Beyond, ...]
+    beyond_said: tuple[str, ...]
     orphans: tuple[Decision, ...]
     hanging: tuple[Hanging, ...]
     look_at: tuple[tuple[str, tuple[LookAt, ...]], ...]
@@ -194,7 +197,13 @@ def outline(
     subjects, silent = tables.subjects(index, links)
     closes = closing(index, entries, proposals)
     of_types = bool(document.get("types"))
-    there = {"closing": bool(closes), "changes": bool(differ), "fleet": bool(index.alike), "types": of_types}
+    there = {
+        "closing": bool(closes),
+        "changes": bool(differ),
+        "fleet": bool(index.alike),
+        "types": of_types,
+        "beyond": "enforced" in document,
+    }
     names = [name for name in SECTIONS if there.get(name, True)]
     return Outline(
         words=words,
@@ -223,6 +232,8 @@ def outline(
         processed=processed(index),
         kinds=kinds(index, entries),
         entries=entries,
+        beyond=beyond_entries(index),
+        beyond_said=beyond_said(index),
         orphans=orphans(index),
         hanging=hanging(index),
         look_at=further(index),

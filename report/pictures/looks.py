@@ -110,6 +110,7 @@ DRAWN_ROLES = {**ROLE_LOOKS, END: Look("ends what comes to it", GREEN, width=1.5
 
 ALLOWED, MATCHES, DENIED = "allowed", "matches", "denied"
 CLEANED, DATA, WAY, SHORTEST, OTHER = "cleaned", "data", "way", "shortest", "other"
+BEYOND, ONWARD = "beyond", "onward"
 LINE_LOOKS = {
     ALLOWED: Look("allowed, in the direction of the data", INK),
     MATCHES: Look("the wildcard covers it", INK, style="dotted"),
@@ -118,6 +119,8 @@ LINE_LOOKS = {
     DATA: Look("data can go here", INK),
     WAY: Look("on a path to a leak", RED, width=2.2),
     SHORTEST: Look("on the shortest path to a leak", RED, width=4.5),
+    BEYOND: Look("beyond the node's own profile: only its enclave allows it", PURPLE, 3.0, "dashed", head="vee"),
+    ONWARD: Look("data can go here only then", PURPLE, width=1.5),
     OTHER: Look("relationship of this type, no flow", QUIET, head="vee"),
 }
 

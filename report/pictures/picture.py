@@ -93,7 +93,8 @@ class Line:
     ----------
     look
         ``allowed``, ``matches`` or ``denied``; in the privacy view ``data``, ``way`` (to a leak), ``shortest``
-        or ``cleaned`` (it ends there, as a label says); ``other`` for what a query gives that is no flow.
+        or ``cleaned`` (it ends there, as a label says); ``other`` for what a query gives that is no flow; ``beyond``
+        what no profile of its node allows, ``onward`` where data goes only then (rule S6).
     roles
         Of the flows, sorted.
     carries

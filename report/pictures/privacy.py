@@ -119,7 +119,7 @@ class Reached:
         arriving = self._found.names(self._found.along(index) & self._mask)
         return tuple(category for category in arriving if category in facts and "sanitizer" in facts[category].roles)
 
-    def left_out(self, words: Words, beside: Collection[str] = ()) -> tuple[str, ...]:
+    def left_out(self, words: Words, beside: Collection[str] = (), also: Collection[Key] = ()) -> tuple[str, ...]:
         """Say what is not there: what ends the data, and what it does not get to.
 
         Parameters
@@ -128,10 +128,12 @@ class Reached:
             Of the reader's language.
         beside
             Robots that do not count, see ``views.privacy_view``.
+        also
+            What is drawn all the same.
         """
         ended, apart = [], 0
         for key, vertices in self._of.items():
-            if key[0] in beside or self._drawn(key, vertices):
+            if key[0] in beside or key in also or self._drawn(key, vertices):
                 continue
             if key[1] not in CHANNELS and any(self._found.arrives.get(vertex, 0) & self._mask for vertex in vertices):
                 ended.append(key[2])

@@ -186,7 +186,9 @@ def _place(place: Place) -> tuple[str, int]:
     return place.file, place.line
 
 
-def privacy_view(analysis: Analysis, beside: Collection[str] = (), say: Phrases | None = None) -> Picture:
+def privacy_view(
+    analysis: Analysis, beside: Collection[str] = (), say: Phrases | None = None, also: Collection[Key] = ()
+) -> Picture:
     """Return what some category reaches, with the paths to leaks marked.
 
     Parameters
@@ -195,6 +197,8 @@ def privacy_view(analysis: Analysis, beside: Collection[str] = (), say: Phrases 
         As in ``ros_view``.
     say
         The words, and what kinds of data are called.
+    also
+        What the caller draws beside it: it is not told as left out.
 
     Notes
     -----
@@ -216,7 +220,7 @@ def privacy_view(analysis: Analysis, beside: Collection[str] = (), say: Phrases 
     unreviewed = count_elements(q.element for q in analysis.open if q.element.robot not in beside).elements
     findings, elements = words.count(len(open_findings), "tty.finding"), words.count(unreviewed, "element")
     title = words("pic.privacy", what=what, view=str(analysis.graph.view), verdict=_verdict(analysis, words))
-    notes = (words("pic.count", findings=findings, elements=elements), *reached.left_out(words, beside))
+    notes = (words("pic.count", findings=findings, elements=elements), *reached.left_out(words, beside, also))
     shown = tuple(in_words(finding, say) for finding in open_findings)
     boxes_drawn, told = sorted_boxes(boxes.values()), tuple(map(plain, notes))
     return Picture(PRIVACY, plain(title), boxes_drawn, lines.made(), told, shown, core(open_findings), words)

@@ -9,7 +9,7 @@ result; other viewers show the first path only). What is cut is counted in a not
 
 from __future__ import annotations
 
-from itertools import islice
+from itertools import chain, islice
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.legal import strongest_first
@@ -17,10 +17,12 @@ from rosprivacy.analysis.model import NO_LEAK_NAMED, Place, Severity
 from rosprivacy.analysis.text import counted, utf8
 from rosprivacy.report.element_counts import ElementCount, count_elements
 from rosprivacy.report.places import Places, in_a_file, to_review
+from rosprivacy.report.sarif.beyond_profile import added_results
 from rosprivacy.report.sarif.flows import flows_between, further_paths, prose, text
 from rosprivacy.report.sarif.results import LAW, ROOT, Files, Results
 from rosprivacy.report.sarif.robots import with_robots
 from rosprivacy.report.sarif.rules import (
+    BEYOND_PROFILE,
     GAP_RULES,
     NO_LEAK,
     NO_VERDICT,
@@ -71,7 +73,9 @@ def _log(answer: Answer, root: Path) -> dict[str, Any]:
     codes = {said.code for said in diagnostics}
     not_read = [rule for code, rule in GAP_RULES.items() if code in codes][:1]
     not_named = [NO_LEAK] if analysis.lacking == NO_LEAK_NAMED else []
-    rules = {rule.id: rule for rule in (*RULES, *found, UNREVIEWED, NOTHING_FOLLOWED, *not_named, *not_read)}
+    beyond = [BEYOND_PROFILE] if answer.enforced else []
+    told = (*RULES, *found, UNREVIEWED, NOTHING_FOLLOWED, *not_named, *not_read, *beyond)
+    rules = {rule.id: rule for rule in told}
     made = Results(
         analysis,
         Places.of(analysis, assumptions),
@@ -85,8 +89,11 @@ def _log(answer: Answer, root: Path) -> dict[str, Any]:
         contexts=contexts,
         pointed=pointed,
     )
-    results = list(_within(islice(made.all(), MAX_RESULTS)))
-    notices = [*_about(analysis, results), *_said((*diagnostics, *analysis.diagnostics), files)]
+    all_results = made.all()
+    if answer.enforced:
+        all_results = chain(all_results, added_results(answer.enforced, made.rules[BEYOND_PROFILE.id], files))
+    results = list(_within(islice(all_results, MAX_RESULTS)))
+    notices = [*_about(answer, results), *_said((*diagnostics, *analysis.diagnostics), files)]
     driver = {
         "name": "rosprivacy",
         "version": str(assumptions.get("rosprivacy", "")),
@@ -168,18 +175,20 @@ def _unreviewed(analysis: Analysis) -> ElementCount:
     return count_elements(question.element for question in analysis.open)
 
 
-def _about(analysis: Analysis, results: Sequence[Mapping[str, Any]]) -> Iterator[dict[str, Any]]:
+def _about(answer: Answer, results: Sequence[Mapping[str, Any]]) -> Iterator[dict[str, Any]]:
     """The verdict with what is open, and what was left out of the file."""
+    analysis, added = answer.shown, answer.enforced.added if answer.enforced else ()
     count = _unreviewed(analysis)
     are = "is" if count.elements == 1 else "are"
     unreviewed = f"{counted(count.elements, 'element')} that data reaches {are} not reviewed{count.more}"
     yield _notice(
         "note" if not analysis.open else "warning", "verdict", f"{analysis.verdict}; {unreviewed}. {NO_VERDICT}"
     )
-    left_out = len(analysis.findings) + len(to_review(analysis)) - len(results)
+    findings = [*analysis.findings, *(one.finding for one in added)]
+    left_out = len(findings) + len(to_review(analysis)) - len(results)
     if left_out > 0:
         yield _notice("warning", "bound", f"{left_out} results are left out: a viewer takes {MAX_RESULTS} at most.")
-    left = sum(1 + further_paths(finding) for finding in analysis.findings)
+    left = sum(1 + further_paths(finding) for finding in findings)
     left -= sum(len(result.get("codeFlows", ())) for result in results)
     if left:
         yield _notice("note", "bound", f"{left} paths of findings are left out; --format json lists them.")

@@ -109,6 +109,20 @@ UNREVIEWED = Rule(
     ),
     NONE,
 )
+BEYOND_PROFILE = Rule(
+    "beyond-profile",
+    "PersonalDataBeyondProfile",
+    "Personal data can reach a place only if a node does what another profile of its enclave allows.",
+    "The middleware holds an enclave to what its profiles allow together, not each node to its own profile. If a node "
+    "does not keep to its profile, by a fault or an attack, the path is open. It counts for no verdict: the answer of "
+    "record is what profiles declare.",
+    (
+        "Split the enclave, or move one profile to an enclave of its own, as the result says.",
+        "A DENY holds for the whole enclave: who rightly has the grant loses it, too.",
+        DECIDE,
+    ),
+    "note",
+)
 OBSERVATION_GAPS = Rule(
     "observation-gaps",
     "ObservationHasGaps",
@@ -127,9 +141,9 @@ ACCESS_GAPS = Rule(
     "access-gaps",
     "WhatIsAllowedIsNotKnown",
     "Not all is known of what is allowed: that nothing is found does not say that there is nothing.",
-    "The governance asks no permissions for some topics, or a key of an access list is not read: what a program does "
-    "there is not known.",
-    ("Let the governance ask permissions, or analyse the enforced view; write keys as rmw_zenoh has them.",),
+    "The governance asks no permissions for some topics, or an access list of Zenoh does not tell who is at the other "
+    "end of a link: what a program does there is not known.",
+    ("Let the governance ask permissions, or name certificates in access lists; analyse the enforced view.",),
 )
 FILES_NOT_READ = Rule(
     "files-not-read",

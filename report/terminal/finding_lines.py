@@ -24,7 +24,7 @@ from rosprivacy.report.words.typography import spaced
 from rosprivacy.report.words.words import IN_ENGLISH, Words
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 
 Line = tuple[str, str]  # text, style
 MANY = 5  # findings; of more a list of one line each comes first
@@ -68,9 +68,18 @@ def overview(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
 
 
 def details(
-    report: Mapping[str, Any], findings: Sequence[Mapping[str, Any]], words: Words = IN_ENGLISH
+    report: Mapping[str, Any],
+    findings: Sequence[Mapping[str, Any]],
+    words: Words = IN_ENGLISH,
+    more: Callable[[Mapping[str, Any]], Iterable[Line]] = lambda _: (),
 ) -> Iterator[Line]:
-    """Return the findings hop by hop."""
+    """Return the findings hop by hop.
+
+    Parameters
+    ----------
+    more
+        What is told below each.
+    """
     roles = {(key(said["element"]), said["category"]): said["roles"] for said in report["roles"]}
     unreviewed, folder = _unreviewed(report, findings), policies_in(report)
     if folder and any(finding["steps"] for finding in findings):
@@ -90,6 +99,7 @@ def details(
         yield from _paths(finding, words)
         if finding["special_from"]:
             yield f"   {words('tty.special', element=shown_name(finding['special_from']))}", ""
+        yield from more(finding)
 
 
 def _reason(finding: Mapping[str, Any], words: Words) -> str:

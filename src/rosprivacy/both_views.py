@@ -1,98 +1,99 @@
-"""Policies under both views (rule S6): the declared answer of record, and what the enforced view adds to it.
+"""A system under both views (rule S6): the declared answer of record, and what the enforced view adds to it.
 
-In: names of files and settings. Out: the declared ``Result``, and a document of the findings that are there only
-because a node may do what other profiles of its enclave may; with the enclaves that make each possible, and which of
-them have to be split to end it, proven by a new analysis.
+In: names of files and settings. Out: the declared ``Result``, with the findings that are there only because a node may
+do what other profiles of its enclave may, the enclaves that make each possible, and what takes it away.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.findings.beyond import granted
+from rosprivacy.analysis.fleet.likeness import pattern_id
 from rosprivacy.analysis.modes import View
 from rosprivacy.answering import answer
+from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, Change
 from rosprivacy.question import question_of
-from rosprivacy.report.document.enforced import enforced_document
-from rosprivacy.report.document.whole import document
+from rosprivacy.remedies import Remedies
+from rosprivacy.report.answer import Enforced
 from rosprivacy.robot_system import system_reader
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping
 
-    from rosprivacy.analysis.answer import Analysis, Finding
+    from rosprivacy.analysis.answer import Finding
+    from rosprivacy.analysis.findings.beyond import Added
+    from rosprivacy.analysis.fleet.likeness import Likeness
+    from rosprivacy.analysis.model import Profile
     from rosprivacy.ingest.labels.label_file import Labels
+    from rosprivacy.question import Question
     from rosprivacy.result import Result
     from rosprivacy.settings import Settings
+    from rosprivacy.system import System
 
-TRIED = 20  # sets of enclaves that are split, each an analysis of its own
+    Reader = Callable[[Change], System]
 
 
-def both_views(
-    policies: tuple[str, ...], labels: tuple[str | Labels, ...], settings: Settings
-) -> tuple[Result, Mapping[str, Any]]:
+def both_views(policies: tuple[str, ...], labels: tuple[str | Labels, ...], settings: Settings) -> Result:
     """Analyse policies under both views.
 
     Returns
     -------
     Result
-        Of the declared view.
-    dict
-        What the enforced view adds, as it stands in the JSON document.
+        Of the declared view, with ``enforced``.
 
     Raises
     ------
     InputErrors
         With every problem of the input, one line each.
     """
-    of_record = question_of(replace(settings, view=View.declared.value))
-    declared = answer(system_reader(policies, labels, of_record)(()), of_record)
-    question = question_of(replace(settings, view=View.enforced.value))
-    read = system_reader(policies, labels, question)
-    enforced = answer(read(()), question)
-    known = {finding.id for finding in declared.analysis.findings if finding.stands}
-    added = [finding for finding in enforced.analysis.findings if finding.stands and finding.id not in known]
-    tried: dict[frozenset[str], Analysis] = {}
-
-    def without(enclaves: frozenset[str]) -> Analysis | None:
-        if enclaves not in tried:
-            if len(tried) == TRIED:
-                return None
-            tried[enclaves] = answer(read(enclaves), question).analysis
-        return tried[enclaves]
-
-    told = {finding.id: (enclaves_of(finding), splitting(finding, without)) for finding in added}
-    return declared, enforced_document(document(enforced), told)
+    return _both(settings, lambda question: system_reader(policies, labels, question))
 
 
-def enclaves_of(finding: Finding) -> tuple[str, ...]:
-    """Return the enclaves that let a node on the way do what only another profile of it may, sorted."""
-    found = set()
-    for step in finding.steps:
-        node = step.source.name if step.source.is_node else step.target.name
-        if step.grants and all(grant.node != node for grant in step.grants):
-            found |= {grant.enclave for grant in step.grants}
-    return tuple(sorted(found))
+def both_views_of_fleet(file: str, settings: Settings) -> Result:
+    """Analyse a fleet under both views; the enforced one adds to a pattern where one of its robots did not have it.
 
-
-def splitting(finding: Finding, without: Callable[[frozenset[str]], Analysis | None]) -> tuple[str, ...]:
-    """Return enclaves of which splitting ends a finding; empty if none was found.
-
-    Parameters
-    ----------
-    without
-        The analysis with some enclaves split; None where too many were tried.
+    Raises
+    ------
+    InputErrors
+        With every problem of the input, one line each.
     """
-    enclaves = frozenset(enclaves_of(finding))
-    while enclaves:
-        analysis = without(enclaves)
-        if analysis is None:
-            return ()
-        left = next((one for one in analysis.findings if one.id == finding.id and one.stands), None)
-        if left is None:
-            return tuple(sorted(enclaves))
-        more = enclaves | set(enclaves_of(left))
-        if more == enclaves:
-            return ()
-        enclaves = more
-    return ()
+    from rosprivacy.fleet_system import fleet_reader  # noqa: PLC0415 - light start
+
+    return _both(settings, lambda question: fleet_reader(file, question))
+
+
+def _both(settings: Settings, reader: Callable[[Question], Reader]) -> Result:
+    of_record = question_of(replace(settings, view=View.declared.value))
+    question = question_of(replace(settings, view=View.enforced.value))._replace(every=True)
+    declared, enforced = reader(of_record), reader(question)
+    system = declared(NO_CHANGE)
+    result = answer(system, of_record)
+    every = answer(system, of_record._replace(every=True)) if system.is_fleet else result
+    known = {finding.id for finding in every.analysis.findings if finding.stands}
+    whole = enforced(NO_CHANGE)
+    found = answer(whole, question)
+    remedies = Remedies(
+        enforced, declared, question, granted(system.graph), _enclaves(whole.graph.profiles), whole.likeness.second
+    )
+    new = (finding for finding in found.analysis.findings if finding.stands and finding.id not in known)
+    return replace(result, enforced=Enforced(found, tuple(_added(new, remedies, whole.likeness))))
+
+
+def _added(findings: Iterable[Finding], remedies: Remedies, likeness: Likeness) -> Iterator[Added]:
+    """Findings that differ only in the robot are told once, with the robots where they are added."""
+    alike: dict[str, list[Finding]] = {}
+    for finding in findings:
+        if likeness.count(finding) or not likeness.members:
+            alike.setdefault(pattern_id(finding, likeness), []).append(finding)
+    for some in alike.values():
+        robots = {name for one in some for name in likeness.placed(one.source.robot) or likeness.placed(one.leak.robot)}
+        yield remedies.of(some, tuple(sorted(robots)))
+
+
+def _enclaves(profiles: Iterable[Profile]) -> Mapping[str, frozenset[str]]:
+    nodes: dict[str, set[str]] = {}
+    for profile in profiles:
+        nodes.setdefault(profile.enclave, set()).add(profile.node)
+    return {enclave: frozenset(inside) for enclave, inside in nodes.items()}

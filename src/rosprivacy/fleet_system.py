@@ -12,7 +12,7 @@ from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.analysis.model import unread
 from rosprivacy.answering import answer
 from rosprivacy.assumptions import assumptions_of, files_read, remembered, types_read
-from rosprivacy.granted import read_granted
+from rosprivacy.granted import read_granted, with_exposed
 from rosprivacy.ingest.database.fleet_rows import FleetRows
 from rosprivacy.ingest.fleet.alike_robots import Alike, alike
 from rosprivacy.ingest.fleet.dds_domains import Member, stripped
@@ -23,6 +23,7 @@ from rosprivacy.ingest.labels.add_non_ros import extend
 from rosprivacy.ingest.labels.bag_storages import told_of_bags
 from rosprivacy.ingest.labels.binding import bind, remarks
 from rosprivacy.ingest.labels.label_file import Labels, read_labels
+from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, Change, changed
 from rosprivacy.ingest.policies.comparisons import careful_notices
 from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.ingest.policies.joint_policies import joint_warnings
@@ -30,10 +31,12 @@ from rosprivacy.ingest.policies.merged_policies import OF_ONE_ROBOT, merging_not
 from rosprivacy.ingest.policies.namespaces import pushed, told
 from rosprivacy.ingest.types.channel_types import matching_nothing
 from rosprivacy.question import question_of
-from rosprivacy.robot_system import read_types_files, with_exposed, with_types
+from rosprivacy.robot_system import read_types_files, with_types
 from rosprivacy.system import System
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from rosprivacy.analysis.model import Diagnostic, Policy
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.question import Question
@@ -73,7 +76,12 @@ def answer_fleet(file: str, settings: Settings) -> Result:
 
 
 def fleet_system(file: str, question: Question) -> FleetSystem:
-    """Read a fleet file and what it names, each kind of robot once.
+    """Read a fleet file and what it names, each kind of robot once; see ``fleet_reader``."""
+    return fleet_reader(file, question)(NO_CHANGE)
+
+
+def fleet_reader(file: str, question: Question) -> Callable[[Change], FleetSystem]:
+    """Read a fleet file and what it names, each kind of robot once; return what makes a system of it with a change.
 
     Parameters
     ----------
@@ -85,15 +93,19 @@ def fleet_system(file: str, question: Question) -> FleetSystem:
     InputErrors
         With every problem of the input, one line each.
     """
-    settings, vocabulary, decisions = question.settings, question.vocabulary, question.decisions
-    fleet = read_fleet(file, vocabulary, include_root=settings.include_root, bounds=settings.bounds)
+    settings, decisions = question.settings, question.decisions
+    fleet = read_fleet(file, question.vocabulary, include_root=settings.include_root, bounds=settings.bounds)
     groups = alike(fleet, decisions.told_apart) if decisions else alike(fleet)
-    reader = Reader(vocabulary, settings, fleet.root)
-    members = {}
+    reader = Reader(question.vocabulary, settings, fleet.root)
+    return lambda change: _made(fleet, groups, reader, change, question)
+
+
+def _made(fleet: Fleet, groups: tuple[Alike, ...], reader: Reader, change: Change, question: Question) -> FleetSystem:
+    settings, members = question.settings, {}
     problems: list[InputError] = []
     for group in groups:
         try:
-            members[group.robots[0].id] = reader.member(group.robots[0])
+            members[group.robots[0].id] = reader.member(group.robots[0], change)
         except InputErrors as error:
             problems += error.errors
     if problems:
@@ -107,7 +119,7 @@ def fleet_system(file: str, question: Question) -> FleetSystem:
     seen = {one.file: one for member in members.values() for one in member.types}
     types = tuple(one for _, one in sorted(seen.items()))
     return FleetSystem(
-        placed.graph, placed.bound, vocabulary, tuple(diagnostics),
+        placed.graph, placed.bound, question.vocabulary, tuple(diagnostics),
         {**files_read(policies, labels, settings), **types_read(types), "fleet": files},
         tuple({policy.file: policy for policy in policies}.values()), labels, placed.likeness, is_fleet=True,
         fleet=fleet, groups=groups, members=members, placed=placed, joins=joins,
@@ -143,9 +155,12 @@ class Reader:
         self._root = root
         self._policies: dict[tuple[str, ...], tuple[tuple[Policy, ...], tuple[Diagnostic, ...]]] = {}
         self._members: dict[object, Member] = {}
+        self._change = NO_CHANGE
 
-    def member(self, robot: Robot) -> Member:
-        """Return a robot with its graph."""
+    def member(self, robot: Robot, change: Change = NO_CHANGE) -> Member:
+        """Return a robot with its graph, if its policies had a change; graphs of the change before are forgotten."""
+        if change != self._change:
+            self._members, self._change = {}, change
         key = (robot.policies, robot.labels, robot.own, robot.strip, robot.add, robot.surroundings, robot.types)
         if key not in self._members:
             self._members[key] = self._made(robot)
@@ -166,6 +181,7 @@ class Reader:
         settings = self._settings
         files = self._read_labels(robot)
         policies, said = self._read_policies(robot)
+        policies = changed(policies, self._change)
         diagnostics = [*(d for policy in policies for d in policy.diagnostics), *said]
         diagnostics += [d for labels in files for d in labels.diagnostics]
         run = [pushed(policy, robot.add) for policy in policies]

@@ -190,7 +190,7 @@ def _html(answer: Answer, style: Style) -> str:
     from rosprivacy.report.page.html import html
 
     told, aliases = _outline(answer, style, answer.proposals())
-    return html(told, figures(answer.analysis, told, aliases))
+    return html(told, figures(answer, told, aliases))
 
 
 def _works_council(answer: Answer, style: Style) -> str:

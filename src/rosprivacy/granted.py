@@ -1,11 +1,13 @@
 """What a user names -> policies: SROS 2 policies, permissions files, keystores and Zenoh files, each by its reader.
 
-In: paths, and the settings. Out: policies with what a reader has to know of them.
+In: paths, and the settings. Out: policies with what a reader has to know of them; and, of their graph, the channels
+that lie in the open.
 """
 
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputErrors, PolicyError
@@ -15,9 +17,9 @@ from rosprivacy.ingest.policies.policy_files import read_policies
 from rosprivacy.ingest.reading.confined import WIDEN, leaves, what_leaves
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
-    from rosprivacy.analysis.model import Diagnostic, Policy
+    from rosprivacy.analysis.model import Bound, Diagnostic, FlowGraph, Policy
     from rosprivacy.settings import Settings
 
 ZENOH = ".json5"
@@ -53,21 +55,31 @@ def read_granted(names: Iterable[str], settings: Settings, within: str | None = 
             progress=settings.progress,
         )
     if granted:
-        more, told = _deployed(granted, settings, within)
-        policies, said = (*policies, *more), (*said, *told)
+        policies = (*policies, *_deployed(granted, settings, within))
     if access:
-        policies = (*policies, *_zenoh(access, settings, within))
+        more, told = _zenoh(access, settings, within)
+        policies, said = (*policies, *more), (*said, *told)
     return policies, said
 
 
-def _zenoh(names: list[str], settings: Settings, within: str | None) -> tuple[Policy, ...]:
-    from rosprivacy.ingest.zenoh_access.access_grants import read_zenoh  # noqa: PLC0415 - light start
+def with_exposed(graph: FlowGraph, bound: Bound, policies: Iterable[Policy]) -> Bound:
+    """Return what is bound to a graph with the channels that a governance leaves in the open (rule S10)."""
+    policies = [policy for policy in policies if policy.protections]
+    if not policies:
+        return bound
+    from rosprivacy.ingest.keystore.protections import exposed_channels  # noqa: PLC0415 - light start
+
+    return replace(bound, exposed=exposed_channels(graph, policies))
+
+
+def _zenoh(names: list[str], settings: Settings, within: str | None) -> Read:
+    from rosprivacy.ingest.zenoh_access.zenoh_inputs import read_zenoh  # noqa: PLC0415 - light start
 
     _confined(names, within)
-    return read_zenoh(names, settings.domain)
+    return read_zenoh(names, settings.domain, view=settings.view)
 
 
-def _deployed(names: list[str], settings: Settings, within: str | None) -> Read:
+def _deployed(names: list[str], settings: Settings, within: str | None) -> Iterator[Policy]:
     from rosprivacy.ingest.keystore.deployed_inputs import read_deployed  # noqa: PLC0415 - light start
 
     _confined(names, within)
@@ -76,7 +88,11 @@ def _deployed(names: list[str], settings: Settings, within: str | None) -> Read:
         names, settings.domain, on, allow_unsigned=settings.allow_unsigned, view=settings.view
     )
     _confined([file for policy in policies for file, _ in policy.sources], within)
-    return policies, said
+    files = {file for policy in policies for file, _ in policy.sources}
+    for policy in policies:  # what is said of a file goes with all that rests on it, into a saved graph too
+        own = {file for file, _ in policy.sources}
+        more = (one for one in said if one.place.file in own or (own and one.place.file not in files))
+        yield replace(policy, diagnostics=(*policy.diagnostics, *more))
 
 
 def _confined(files: Iterable[str], within: str | None) -> None:

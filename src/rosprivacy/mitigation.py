@@ -12,6 +12,7 @@ from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.mitigation.limits import CHANGES, DENY, Limits
 from rosprivacy.analysis.mitigation.propose import System, mitigate, open_findings
 from rosprivacy.analysis.model import UNPROTECTED
+from rosprivacy.granted import with_exposed
 from rosprivacy.ingest.labels.binding import join
 from rosprivacy.ingest.mitigation.deny_lines import denials, with_denied
 from rosprivacy.ingest.mitigation.deny_patch import Patch, patch
@@ -20,7 +21,6 @@ from rosprivacy.ingest.mitigation.open_wildcards import open_ended
 from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.report.document.mitigation import mitigation_document
 from rosprivacy.report.document.whole import document
-from rosprivacy.robot_system import with_exposed
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable

@@ -14,12 +14,13 @@ from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.analysis.model import MERGED, REFUSED_NAME, SEEN_ALTHOUGH_DENIED, SHARED_ENCLAVE
 from rosprivacy.answering import answer
 from rosprivacy.assumptions import files_read, remembered, types_read
-from rosprivacy.granted import Read, read_granted
+from rosprivacy.granted import Read, read_granted, with_exposed
 from rosprivacy.ingest.labels.add_non_ros import extend, extended
 from rosprivacy.ingest.labels.bag_storages import told_of_bags
 from rosprivacy.ingest.labels.binding import bind, join, remarks
 from rosprivacy.ingest.labels.label_file import Labels, read_labels, unknown_categories
 from rosprivacy.ingest.labels.stated_types import in_order
+from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, Change, changed
 from rosprivacy.ingest.policies.comparisons import careful_notices
 from rosprivacy.ingest.policies.flow_graph import build
 from rosprivacy.ingest.policies.joint_policies import joint_warnings
@@ -29,7 +30,7 @@ from rosprivacy.question import question_of
 from rosprivacy.system import System
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable
+    from collections.abc import Callable, Iterable
 
     from rosprivacy.analysis.model import Bound, Diagnostic, FlowGraph, Policy
     from rosprivacy.ingest.database.rows import RobotRows
@@ -65,13 +66,13 @@ def robot_system(policies: tuple[str, ...], labels: tuple[str | Labels, ...], qu
     InputErrors
         With every problem of the input, one line each.
     """
-    return system_reader(policies, labels, question)(())
+    return system_reader(policies, labels, question)(NO_CHANGE)
 
 
 def system_reader(
     policies: tuple[str, ...], labels: tuple[str | Labels, ...], question: Question
-) -> Callable[[Collection[str]], System]:
-    """Read policies once; return what makes a system of them with some enclaves split (rule S6).
+) -> Callable[[Change], System]:
+    """Read policies once; return what makes a system of them with a change (rule S6).
 
     Raises
     ------
@@ -82,12 +83,8 @@ def system_reader(
     graphs = read_graphs(settings)
     (read, said), types = read_system(policies, settings, graphs), observed_types(settings, graphs)
 
-    def made(enclaves: Collection[str]) -> System:
-        there = read
-        if enclaves:
-            from rosprivacy.ingest.policies.split_enclaves import split  # noqa: PLC0415 - light start
-
-            there = split(read, enclaves)
+    def made(change: Change) -> System:
+        there = changed(read, change)
         return _under(labels, read=(there, said), types=types, settings=settings, vocabulary=question.vocabulary)
 
     return made
@@ -109,7 +106,7 @@ def _joined(
     vocabulary: Vocabulary,
 ) -> System:  # fmt: skip
     policies, diagnostics = read
-    said = tuple(dict.fromkeys(d for policy in policies for d in policy.diagnostics)) + diagnostics
+    said = tuple(d for policy in policies for d in policy.diagnostics) + diagnostics
     said += (
         tuple(d for file in files for d in file.diagnostics)
         + tuple(remarks(graph, files))
@@ -118,6 +115,7 @@ def _joined(
     said += careful_notices(graph.careful)
     rests_on = {**files_read(policies, files, settings), **types_read(types)}
     bound = with_exposed(graph, with_types(graph, bound, types), policies)
+    said = tuple(dict.fromkeys(said))  # several enclaves share what is said of their governance
     return System(graph, bound, vocabulary, said, rests_on, policies, tuple(files), types=types)
 
 
@@ -126,16 +124,6 @@ def with_types(graph: FlowGraph, bound: Bound, types: Types, written: Written = 
     seen = channel_types(graph, types, written)
     both = {v: (*bound.types.get(v, ()), *seen.get(v, ())) for v in {*bound.types, *seen}}
     return replace(bound, types=in_order(both))
-
-
-def with_exposed(graph: FlowGraph, bound: Bound, policies: Iterable[Policy]) -> Bound:
-    """Return what is bound to a graph with the channels that a governance leaves in the open (rule S10)."""
-    policies = [policy for policy in policies if policy.protections]
-    if not policies:
-        return bound
-    from rosprivacy.ingest.keystore.protections import exposed_channels  # noqa: PLC0415 - light start
-
-    return replace(bound, exposed=exposed_channels(graph, policies))
 
 
 def answer_each(

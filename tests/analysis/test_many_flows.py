@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 
 from rosprivacy.analysis.bounds import Bounds
 from rosprivacy.analysis.errors import InputErrors
-from rosprivacy.analysis.many_flows import MATCHES, Flows, Meeting, leaving, number, one_by_one, parted
+from rosprivacy.analysis.many_flows import Flows, leaving, number, one_by_one, parted
+from rosprivacy.analysis.meeting import MATCHES, Meeting, Right
 from rosprivacy.analysis.model import Flow, Place
 
 SOME = st.sets(st.integers(0, 9), max_size=10)
@@ -20,7 +21,13 @@ def flows(draw: st.DrawFn) -> tuple[Flows, tuple[Flow, ...]]:
     free = {(a, b) for a in range(10) for b in range(10)}
     meetings = []
     for _ in range(draw(st.integers(1, 3))):
-        meeting = Meeting(*(tuple(sorted(draw(SOME))) for _ in range(2)))
+        written, read = (tuple(sorted(draw(SOME))) for _ in range(2))
+        of = draw(st.sampled_from(("", "written", "read")))
+        of_written, of_read = (
+            tuple(Right(f"{side} {vertex}") for vertex in ends) if of == side else ()
+            for side, ends in (("written", written), ("read", read))
+        )
+        meeting = Meeting(written, read, of_written, of_read)
         if meeting.size and free.issuperset(meeting.pairs()):
             free.difference_update(meeting.pairs())
             meetings.append(meeting)
@@ -30,9 +37,14 @@ def flows(draw: st.DrawFn) -> tuple[Flows, tuple[Flow, ...]]:
         if free
         else []
     )
-    every = [*stored, *(Flow(*pair, MATCHES) for meeting in meetings for pair in meeting.pairs())]
+    every = [*stored, *(_flow(meeting, *pair) for meeting in meetings for pair in meeting.pairs())]
     first, all_ = (tuple(sorted(some, key=lambda f: (f.source, f.target, f.role))) for some in (stored, every))
     return Flows(first, tuple(meetings)), all_
+
+
+def _flow(meeting: Meeting, source: int, target: int) -> Flow:
+    role = f"written {source}" if meeting.of_written else f"read {target}" if meeting.of_read else MATCHES
+    return Flow(source, target, role)
 
 
 @given(flows())
@@ -56,8 +68,9 @@ def test_each_flow_is_told_by_itself_or_in_one_meeting(pair: tuple[Flows, tuple[
     rows = dict(own)
     assert list(rows) == sorted(rows)
     assert special <= rows.keys()
-    rows |= {number(some, *ends): Flow(*ends, MATCHES) for meeting in meetings for ends in meeting.pairs()}
+    rows |= {number(some, *ends): _flow(meeting, *ends) for meeting in meetings for ends in meeting.pairs()}
     assert rows == dict(enumerate(stored))
+    assert [some[at] for at in rows] == [stored[at] for at in rows]  # also after some were told by themselves
 
 
 def test_more_pairs_than_the_bound_are_not_made_one_by_one() -> None:
@@ -65,6 +78,6 @@ def test_more_pairs_than_the_bound_are_not_made_one_by_one() -> None:
     some = Flows((), (meeting,), Bounds(flows=9_999), Place("policy.xml", 7))
     assert len(some) == 10_000
     assert some[9_999] == Flow(99, 199, MATCHES)
-    for asking in (list, one_by_one, lambda flows: parted(flows, [5])):
+    for asking in (list, one_by_one, lambda flows: parted(flows, range(0, 10_000, 101))):
         with pytest.raises(InputErrors, match=r"^policy.xml:7: more than the bound of 9,999 flows .* --bound flows=N$"):
             asking(some)

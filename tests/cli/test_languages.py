@@ -7,6 +7,7 @@ from typer.main import get_command
 from rosprivacy.cli.app import program
 
 STILL_ENGLISH = {
+    "annotations": "a label file, and what is wrong with code",
     "bag": "what is in recordings",
     "check": "rights, with lines of files",
     "lint": "rules for those who write policies",

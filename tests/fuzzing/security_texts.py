@@ -21,7 +21,10 @@ DOMAINS = (
 )
 TAGS = ("allow_rule", "publish", "topic", "domains", "default", "validity", "topic_rule", "dds", "data_protection_kind")
 KINDS = ("NONE", "SIGN", "ENCRYPT")
-KEYS = ("0/a/*/*", "0/a/**", "**", "0/$*b/*/*", "7/a/T::x/RIHS01_ab", "0/@x/**", "a")
+KEYS = (
+    "0/a/*/*", "0/a/**", "**", "0/$*b/*/*", "7/a/T::x/RIHS01_ab", "0/@x/**", "a", "r/0/a/*/*", "**/a/**",
+    "0/a/*/*/@adv/**", "@ros2_lv/0/**",
+)  # fmt: skip
 MESSAGES = ("put", "query", "reply", "delete", "declare_subscriber")
 
 
@@ -77,6 +80,8 @@ def access_files(choices: Choices) -> dict[str, str | bytes]:
         "policies": [{"rules": [one["id"] for one in rules], "subjects": [one["id"] for one in subjects]}],
     }
     whole = {"mode": "peer", "access_control": access}
+    if choices.once_in(4):
+        whole["namespace"] = choices.pick(("r", "r/0", "@r", "*", ""))
     if choices.once_in(3):
         whole = with_fault(choices, whole)
     text = json.dumps(whole, ensure_ascii=False, indent=1)

@@ -13,10 +13,14 @@ from typing import TYPE_CHECKING, Any
 import rosprivacy
 from rosprivacy.analysis import durations
 from rosprivacy.analysis.errors import InputError
+from rosprivacy.analysis.model import Place, Profile
+from rosprivacy.annotating import annotated, differences
 from rosprivacy.ingest.bags.bag_folders import read_bags
 from rosprivacy.ingest.decisions.decisions_file import read_decisions
 from rosprivacy.ingest.fleet.fleet_file import read_fleet
 from rosprivacy.ingest.keystore.governance_file import read_governance
+from rosprivacy.ingest.keystore.grants import policy_of
+from rosprivacy.ingest.keystore.open_topics import open_topics
 from rosprivacy.ingest.keystore.permissions_file import read_permissions
 from rosprivacy.ingest.labels.label_file import read_labels
 from rosprivacy.ingest.mitigation.limits_file import read_limits
@@ -24,7 +28,7 @@ from rosprivacy.ingest.observe.text_files import TextFiles
 from rosprivacy.ingest.policies import common_names, names
 from rosprivacy.ingest.policies.policy_xml import read_policy
 from rosprivacy.ingest.policies.saved_graph import read_saved
-from rosprivacy.ingest.zenoh_access.access_file import read_access
+from rosprivacy.ingest.zenoh_access.zenoh_inputs import read_zenoh
 from rosprivacy.mitigation import run_mitigation
 from rosprivacy.observing import written
 from rosprivacy.ontology.own import with_own
@@ -33,7 +37,7 @@ from rosprivacy.queries.library import parse
 from rosprivacy.report.compare.earlier import read_earlier
 from rosprivacy.report.json_text import as_text
 from rosprivacy.spark import parquet
-from tests.fuzzing import bag_texts, label_texts, node_info_texts, other_texts, policy_texts, security_texts
+from tests.fuzzing import bag_texts, code_texts, label_texts, node_info_texts, other_texts, policy_texts, security_texts
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
@@ -44,6 +48,7 @@ if TYPE_CHECKING:
     from tests.fuzzing.choices import Choices
 
 TODAY = "2026-06-01"
+ANYBODY = Profile("/a", "/a", Place("governance.xml", 1))
 SEEN_AT = "2026-06-01T00:00:00Z"
 
 
@@ -128,6 +133,22 @@ def _observed() -> None:
     assert all(one.isprintable() for one in made.remarks), made.remarks
 
 
+def _annotated(file: str) -> None:
+    """What is made of the code is a label file that says what the code says."""
+    made = annotated([file], load())
+    assert all(line.isprintable() for line in made.text.split("\n")), made.text
+    Path("made.yaml").unlink(missing_ok=True)
+    Path("made.yaml").write_bytes(made.text.encode())
+    assert not differences(made, "made.yaml", load())
+
+
+def _governance() -> None:
+    """What is left open is granted to every enclave."""
+    read = read_governance(Path("governance.xml").read_bytes(), "governance.xml")
+    for rule in read.rules:
+        assert all(grant.enclave == "/a" for grant in open_topics("governance.xml", rule, [ANYBODY]).grants)
+
+
 def _results() -> None:
     document, rows = parquet.read("results")
     list(rows)
@@ -171,7 +192,7 @@ TARGETS = {target.name: target for target in (
         ("analyze", "policy.xml", "-l", "star.yaml"), "policy",
     ),
     Target(
-        "labels", 211, label_texts.labels, lambda: read_labels("labels.yaml", load()),
+        "labels", 191, label_texts.labels, lambda: read_labels("labels.yaml", load()),
         lambda: rosprivacy.analyze("base.xml", "labels.yaml", today=TODAY, paths="all"),
         ("analyze", "base.xml", "-l", "labels.yaml"),
     ),
@@ -221,18 +242,21 @@ TARGETS = {target.name: target for target in (
     ),
     Target(
         "permissions", 20, security_texts.permission_files,
-        lambda: read_permissions(Path("permissions.xml").read_bytes(), "permissions.xml"),
+        lambda: policy_of(read_permissions(Path("permissions.xml").read_bytes(), "permissions.xml"), 0, ()),
         lambda: rosprivacy.analyze("permissions.xml", "star.yaml", allow_unsigned=True, today=TODAY),
         ("analyze", "permissions.xml", "--allow-unsigned", "-l", "star.yaml"), "policy",
     ),
     Target(
-        "governance", 10, security_texts.governance_files,
-        lambda: read_governance(Path("governance.xml").read_bytes(), "governance.xml"), words="policy",
+        "governance", 10, security_texts.governance_files, _governance, words="policy",
     ),
     Target(
-        "zenoh", 20, security_texts.access_files, lambda: read_access("node.json5"),
+        "zenoh", 20, security_texts.access_files, lambda: read_zenoh(["node.json5"], None),
         lambda: rosprivacy.analyze("node.json5", "star.yaml", today=TODAY),
         ("analyze", "node.json5", "-l", "star.yaml"),
     ),
+    Target(
+        "python-code", 10, code_texts.python, lambda: _annotated("a.py"), arguments=("annotations", "a.py"),
+    ),
+    Target("cpp-code", 10, code_texts.cpp, lambda: _annotated("a.cpp"), arguments=("annotations", "a.cpp")),
     Target("names", 25, other_texts.names, _names, words=""),
 )}  # fmt: skip

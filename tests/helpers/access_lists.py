@@ -70,9 +70,11 @@ def _rule(random: Random, name: str) -> dict[str, Any]:
     return {**rule, "flows": flows} if flows else rule
 
 
-def text_of(access: dict[str, Any]) -> str:
+def text_of(access: dict[str, Any], namespace: str = "") -> str:
     """A configuration with comments, as people write it."""
-    return f"// of one session\n{{ mode: 'client', access_control: /* ours */ {json.dumps(access, indent=1)}, }}\n"
+    space = f"namespace: '{namespace}', " if namespace else ""
+    section = json.dumps(access, indent=1)
+    return f"// of one session\n{{ mode: 'client', {space}access_control: /* ours */ {section}, }}\n"
 
 
 def heard(sender: Any, receiver: Any, expected: Samples, mark: str) -> Samples:

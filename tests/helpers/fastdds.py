@@ -52,9 +52,9 @@ class Peer:
 
 
 @contextmanager
-def running(program: Path) -> Iterator[Peer]:
+def running(program: Path, *arguments: str | Path) -> Iterator[Peer]:
     """Run one; it ends with the block."""
-    with subprocess.Popen([program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
+    with subprocess.Popen([program, *arguments], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
         try:
             yield Peer(process)
         finally:

@@ -53,6 +53,12 @@ def governance(
 """
 
 
+def joined(*governances: str) -> str:
+    """Return one governance with the domain rules of several, in their order."""
+    rules = (text.partition("<domain_access_rules>")[2].partition("</domain_access_rules>")[0] for text in governances)
+    return f"<dds><domain_access_rules>{''.join(rules)}</domain_access_rules></dds>"
+
+
 def rule(
     kind: str,
     publish: tuple[str, ...] = (),

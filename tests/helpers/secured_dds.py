@@ -1,4 +1,4 @@
-"""The real middleware as judge: what two secured participants of Fast DDS may exchange, on loopback.
+"""The real middlewares as judges: what two secured participants may exchange, on loopback.
 
 A trial is a keystore of two enclaves, ``/writer`` and ``/reader``, and some topics. The trials of a call run at one
 time, each in its own domain, all writers in one process and all readers in another one.
@@ -8,8 +8,11 @@ from __future__ import annotations
 
 import os
 import shutil
+import subprocess
 import time
 from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
@@ -19,10 +22,11 @@ from tests.helpers.keystores import Keystore, governance, grant, permissions, to
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
-    from pathlib import Path
+    from contextlib import AbstractContextManager
 
     from tests.helpers.fastdds import Peer
 
+    Start = Callable[[], AbstractContextManager[Peer]]
     Judge = Callable[[Mapping[str, "Trial"]], dict[str, "Outcome"]]
 
 ANY_DOMAIN = "<id_range><min>0</min><max>230</max></id_range>"
@@ -93,13 +97,13 @@ class Outcome:
         return next((stop for stop, passed in stops if not passed), "arrives")
 
 
-def judged(program: Path, folder: Path, trials: Mapping[str, Trial]) -> dict[str, Outcome]:
+def judged(start: Start, folder: Path, trials: Mapping[str, Trial]) -> dict[str, Outcome]:
     """Run trials, given by name, with keystores in a folder."""
     begun = Keystore(folder / "begun")
     for side in ("writer", "reader"):
         begun.enclave(f"/{side}", permissions(grant(f"/{side}")))
     places = {name: (folder / str(domain), domain) for domain, name in enumerate(trials, FIRST_DOMAIN)}
-    with running(program) as writers, running(program) as readers:
+    with start() as writers, start() as readers:
         made = {}
         for name, trial in trials.items():
             keystore, domain = places[name]
@@ -161,4 +165,29 @@ def judge(tmp_path_factory: pytest.TempPathFactory) -> Judge:
     if shutil.which("g++") is None or shutil.which("openssl") is None:
         pytest.skip("NO openssl, g++ and Fast DDS (libfastrtps-dev): no middleware judged what permissions say")
     program = built(tmp_path_factory.mktemp("secured"), PEERS / "secured_peer.cpp")
-    return lambda trials: judged(program, tmp_path_factory.mktemp("keystores"), trials)
+    return lambda trials: judged(partial(running, program), tmp_path_factory.mktemp("keystores"), trials)
+
+
+@pytest.fixture(scope="session")
+def cyclone_judge(tmp_path_factory: pytest.TempPathFactory) -> Judge:
+    """Judge trials by Cyclone DDS; what it prints goes to standard error."""
+    plugins = next(Path("/usr/lib").glob("*/libddsc*/libdds_security_ac.so"), None)
+    if plugins is None or any(shutil.which(program) is None for program in ("g++", "idlc", "openssl")):
+        pytest.skip("NO openssl, g++ and Cyclone DDS (cyclonedds-dev, cyclonedds-tools): it judged no permissions")
+    folder = tmp_path_factory.mktemp("cyclone")
+    program = folder / "cyclone_peer"
+    made: list[str | Path] = [
+        "g++",
+        "-O0",
+        "-std=c++17",
+        "-I.",
+        "-o",
+        program,
+        PEERS / "cyclone_peer.cpp",
+        "secured_text.o",
+        "-lddsc",
+    ]
+    for command in (["idlc", str(PEERS / "secured_text.idl")], ["gcc", "-c", "secured_text.c"], made):
+        subprocess.run(command, cwd=folder, check=True, capture_output=True)
+    start = partial(running, program, plugins.parent)
+    return lambda trials: judged(start, tmp_path_factory.mktemp("keystores"), trials)

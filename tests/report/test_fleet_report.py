@@ -120,7 +120,7 @@ def test_deviants_stand_by_themselves_with_links_to_the_ways(language: str) -> N
     assert [(row.shown, len(row.robots)) for row in fleet.alike] == [
         ("carrier_01", 23), ("carrier_lent", 1), ("cleaner_1", 4), ("guide_01", 12),
     ]  # fmt: skip
-    page = html(told(language), figures(found().analysis, told(language)))
+    page = html(told(language), figures(found(), told(language)))
     text = markdown(told(language))
     for shown in (page, text):
         assert "carrier_lent" in shown.replace("\\", "")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -12,7 +11,7 @@ import typer
 from rosprivacy.analysis.modes import Article9Level, Paths
 from rosprivacy.cli.exit_code import FailOn, exit_code
 from rosprivacy.cli.inputs import Inputs, reads_system, refuse
-from rosprivacy.cli.options import ASKED, Engine, Format, Language, Output
+from rosprivacy.cli.options import ASKED, Engine, Format, Language, Output, ViewOrBoth, ViewOrBothChosen
 from rosprivacy.cli.output import emit
 
 if TYPE_CHECKING:
@@ -21,15 +20,8 @@ if TYPE_CHECKING:
     from rosprivacy.settings import Settings
 
 
-class ViewOrBoth(StrEnum):
-    """What nodes declare, what DDS enforces per enclave, or the first with what the second adds."""
-
-    declared = "declared"
-    enforced = "enforced"
-    both = "both"
-
-
 LINKED_DATA = (Format.turtle, Format.json_ld)
+TELL_BOTH = (Format.text, Format.json, Format.sarif)
 IN_LANGUAGES = (Format.text, Format.cnil_pia)
 SPARK = "Where it is computed"  # a panel of help
 
@@ -62,13 +54,7 @@ def analyze(
             rich_help_panel=SPARK,
         ),
     ] = None,
-    view: Annotated[
-        ViewOrBoth,
-        typer.Option(
-            help="What nodes declare, or what DDS enforces per enclave; both: the first, and what the second adds.",
-            rich_help_panel=ASKED,
-        ),
-    ] = ViewOrBoth.declared,
+    view: ViewOrBothChosen = ViewOrBoth.declared,
     per_policy: Annotated[
         bool,
         typer.Option("--per-policy", help="Analyse each policy alone; by default several make one graph."),
@@ -149,9 +135,9 @@ def analyze(
     """Find where each kind of personal data can get from its sources, and whether it reaches a leak."""
     from rosprivacy.formats import Style, in_pieces
 
+    inputs = inputs.viewed(view)
     settings = replace(
         inputs.settings,
-        view="declared" if view is ViewOrBoth.both else view.value,
         article9=article9,
         article9_level=article9_level and article9_level.value,
         data_types=tuple(data_type or ()),
@@ -159,8 +145,6 @@ def analyze(
         paths=paths.value,
         max_paths=max_paths,
     )
-    if inputs.from_database and view is not ViewOrBoth.declared:
-        refuse("--from-database", "what is in the database", ["--view"])
     _check(inputs, engine, save_graph=bool(save_graph), per_policy=per_policy, of_spark=bool(master or results))
     if base is not None and format not in LINKED_DATA:
         raise typer.BadParameter("--base is for --format turtle and json-ld")
@@ -170,11 +154,9 @@ def analyze(
         raise typer.BadParameter("--lang is for --format text and cnil-pia")
     language = (lang or Language.en).value
     style = Style(verbose=verbose, quiet=quiet, colour=output is None, language=language, base=base, redact=redact)
-    if view is ViewOrBoth.both:
-        of_one = not (per_policy or save_graph or inputs.fleet or inputs.from_database)
-        if not of_one or format not in (Format.text, Format.json):
-            raise typer.BadParameter("--view both is for the policies of one robot, and writes text and json")
-        raise typer.Exit(_both_views(inputs, settings, format, style, output, fail_on))
+    if view is ViewOrBoth.both and (per_policy or engine is Engine.spark or format not in TELL_BOTH):
+        said = "--view both writes text, json and sarif, and takes neither --per-policy nor --engine spark"
+        raise typer.BadParameter(said)
     if per_policy:
         raise typer.Exit(_each_alone(inputs, settings, format, style, output, fail_on))
     if results and output:
@@ -186,7 +168,7 @@ def analyze(
 
         result = run_on_spark(inputs.fleet, settings, master, results)
     else:
-        result = inputs.result(settings)
+        result = inputs.result(settings, both=view is ViewOrBoth.both)
     graphs = {save_graph: _saved_graph(result)} if save_graph else {}
     emit(in_pieces(result, format.value, style), output, graphs)
     raise typer.Exit(exit_code(result, fail_on))
@@ -215,20 +197,6 @@ def _saved_graph(result: Result) -> str:
     from rosprivacy.report.json_text import as_text
 
     return as_text(as_dict(result.policies, result.diagnostics, result.types))
-
-
-def _both_views(
-    inputs: Inputs, settings: Settings, form: Format, style: Style, output: Path | None, fail_on: FailOn
-) -> int:
-    from rosprivacy.both_views import both_views
-    from rosprivacy.formats import text_of
-    from rosprivacy.report.document.whole import document
-    from rosprivacy.report.json_text import as_text
-
-    result, enforced = both_views(inputs.named, tuple(inputs.labels or ()), settings)
-    told = {**document(result), "enforced": enforced}
-    emit(text_of(told, style) if form is Format.text else as_text(told), output)
-    return exit_code(result, fail_on)
 
 
 def _each_alone(

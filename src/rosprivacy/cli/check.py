@@ -24,7 +24,10 @@ def check(
         str, typer.Argument(metavar="POLICY", help="What is meant: an SROS 2 policy, or a folder of such.")
     ],
     deployed: Annotated[
-        list[str], typer.Argument(metavar="DEPLOYED", help="A keystore, permissions files, or Zenoh configurations.")
+        list[str],
+        typer.Argument(
+            metavar="DEPLOYED", help="A keystore, permissions and governance files, or Zenoh configurations."
+        ),
     ],
     inputs: Inputs,
     format: Annotated[TextOrJson, typer.Option("--format", "-f", help="Of the answer.")] = TextOrJson.text,  # noqa: A002 - the option's name

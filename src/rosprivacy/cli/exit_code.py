@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 CODES = {
     0: "no leak found; of other commands: done",
     1: "what the command exists to find: a leak; for `bag` personal data; for `diff` a finding that is new or worse, "
-    "with `--as usage` something that runs and is not granted; for `lint` a broken rule; for `check` a difference",
+    "with `--as usage` something that runs and is not granted; for `lint` a broken rule; for `check` "
+    "and `annotations --check` a difference",
     2: "bad input or usage",
     3: "a server (database, middleware, Spark) cannot be reached",
     4: "`analyze` and `bag`: undetermined; `--fail-on leak` makes it 0, but never where no data was followed; "

@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from rosprivacy.cli.inputs import Inputs, reads_system
-from rosprivacy.cli.options import Language, Output
+from rosprivacy.cli.options import Language, Output, ViewOrBoth, ViewOrBothChosen
 from rosprivacy.cli.output import emit, not_for_a_terminal
 from rosprivacy.report.pictures.picture import LEGIBLE
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.model import Profile
+    from rosprivacy.report.pictures.phrases import Phrases
     from rosprivacy.report.pictures.picture import Picture
     from rosprivacy.result import Result
 
@@ -80,6 +81,7 @@ SUFFIXES = {".gv": PictureFormat.dot, ".mmd": PictureFormat.mermaid}
 @reads_system("policies, saved graphs or a fleet", without=("from_database", "neo4j", "decisions"))
 def graph(
     inputs: Inputs,
+    view: ViewOrBothChosen = ViewOrBoth.declared,
     show: Annotated[
         Shown | None,
         typer.Option(
@@ -175,7 +177,7 @@ def graph(
     show = _shown(show, part, everything=everything)
     form = _format(format, output)
     not_for_a_terminal(form.upper() if form is not PictureFormat.mermaid else "a drawing", output)
-    result, own = _drawn_of(inputs)
+    result, own = _drawn_of(inputs.viewed(view), both=view is ViewOrBoth.both)
     picture = _view(result, show, part, lang, carried_only=bool(inputs.categories), standard=draw_standard_channels)
     if result.fleet and not finding:
         from rosprivacy.report.pictures.fleet_view import label, represented
@@ -203,18 +205,19 @@ def _shown(show: Shown | None, part: Part, *, everything: bool) -> Shown:
     return show or (Shown.privacy if of_privacy else Shown.ros)
 
 
-def _drawn_of(inputs: Inputs) -> tuple[Result, dict[str, tuple[Profile, ...]]]:
+def _drawn_of(inputs: Inputs, *, both: bool) -> tuple[Result, dict[str, tuple[Profile, ...]]]:
     """The analysis, and of a fleet the profiles of each robot."""
     settings = inputs.settings
     if not inputs.fleet:
-        return inputs.result(settings), {}
+        return inputs.result(settings, both=both), {}
     from rosprivacy.answering import answer
     from rosprivacy.fleet_system import fleet_system
     from rosprivacy.question import question_of
 
     question = question_of(settings)
     system = fleet_system(inputs.fleet, question)
-    return answer(system, question), dict(system.placed.profiles)
+    result = inputs.result(settings, both=True) if both else answer(system, question)
+    return result, dict(system.placed.profiles)
 
 
 def _format(given: PictureFormat | None, output: Path | None) -> PictureFormat:
@@ -233,6 +236,7 @@ def _view(
     result: Result, show: Shown, part: Part, language: Language, *, carried_only: bool, standard: bool
 ) -> Picture:
     from rosprivacy.report.pictures import narrow, views
+    from rosprivacy.report.pictures.added_flows import with_added
     from rosprivacy.report.pictures.phrases import Phrases
     from rosprivacy.report.words.words import Words
 
@@ -242,12 +246,25 @@ def _view(
     beside = result.fleet.likeness.second if result.fleet else ()
     if show is Shown.privacy:
         if part.finding:
-            about = views.PER_BOX * part.most if part.most else None
-            return views.finding_view(result.analysis, narrow.the_finding(result.analysis, part.finding), about, say)
-        return views.privacy_view(result.analysis, beside, say)
+            return _finding(result, part.finding, views.PER_BOX * part.most if part.most else None, say)
+        return with_added(result, say, lambda also: views.privacy_view(result.analysis, beside, say, also))
     denials = [grant for policy in result.policies for grant in policy.grants if not grant.allow]
-    picture = views.ros_view(result.analysis, denials, words, standard=standard, beside=beside)
+    picture = with_added(
+        result, say, lambda _: views.ros_view(result.analysis, denials, words, standard=standard, beside=beside)
+    )
     return narrow.carrying(picture, result.analysis) if carried_only else picture
+
+
+def _finding(result: Result, wanted: str, about: int | None, say: Phrases) -> Picture:
+    """One that only the enforced view has is drawn of that view, with what no profile allows marked."""
+    from rosprivacy.report.pictures import narrow, views
+    from rosprivacy.report.pictures.added_flows import marking
+
+    added = [one.finding for one in result.enforced.added] if result.enforced else []
+    if result.enforced and any(finding.id.startswith(wanted) for finding in added):
+        finding = narrow.the_finding(replace(result.analysis, findings=tuple(added)), wanted)
+        return marking(result)(views.finding_view(result.enforced.answer.analysis, finding, about, say))
+    return views.finding_view(result.analysis, narrow.the_finding(result.analysis, wanted), about, say)
 
 
 def _narrowed(picture: Picture, part: Part) -> Picture:

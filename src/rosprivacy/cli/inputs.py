@@ -37,6 +37,7 @@ from rosprivacy.cli.options import (
     TypeLimitsFile,
     TypesFiles,
     ViewChosen,
+    ViewOrBoth,
 )
 from rosprivacy.cli.output import progress_of
 
@@ -113,8 +114,16 @@ class Inputs(NamedTuple):
         if self.fleet:
             refuse("--fleet", "what the fleet file names", self.given("policies", "labels", "add", "types"))
 
-    def result(self, settings: Settings) -> Result:
-        """Read the system and analyse it."""
+    def viewed(self, view: ViewOrBoth) -> Inputs:
+        """Return the same under the view of a command that has one more; with both, the declared one is of record."""
+        if self.from_database and view is not ViewOrBoth.declared:
+            refuse("--from-database", "what is in the database", ["--view"])
+        return self._replace(view=View.enforced if view is ViewOrBoth.enforced else View.declared)
+
+    def result(self, settings: Settings, *, both: bool = False) -> Result:
+        """Read the system and analyse it; with ``both`` under both views (rule S6)."""
+        if both:
+            return self._both(settings)
         if self.from_database:
             from rosprivacy.stored_system import answer_stored
 
@@ -127,6 +136,13 @@ class Inputs(NamedTuple):
         from rosprivacy.robot_system import answer_robot
 
         return answer_robot(self.named, tuple(self.labels or ()), settings)
+
+    def _both(self, settings: Settings) -> Result:
+        from rosprivacy.both_views import both_views, both_views_of_fleet
+
+        if self.fleet:
+            return both_views_of_fleet(self.fleet, settings)
+        return both_views(self.named, tuple(self.labels or ()), settings)
 
 
 OF_FILES = (

@@ -30,6 +30,14 @@ class TextOrJson(StrEnum):
     json = "json"
 
 
+class ViewOrBoth(StrEnum):
+    """What nodes declare, what DDS enforces per enclave, or the first with what the second adds."""
+
+    declared = "declared"
+    enforced = "enforced"
+    both = "both"
+
+
 class Language(StrEnum):
     """Of names and texts."""
 
@@ -58,7 +66,9 @@ ASKED = "What is asked"
 Policies = Annotated[
     list[str] | None,
     typer.Argument(
-        metavar="POLICY", help="SROS 2 policies: files, folders or globs; keystores; Zenoh files.", show_default=False
+        metavar="POLICY",
+        help="SROS 2 policies: files, folders or globs; keystores; permissions and governance; Zenoh files.",
+        show_default=False,
     ),
 ]
 LabelFiles = Annotated[
@@ -214,6 +224,13 @@ SixLists = Annotated[
 ]
 ViewChosen = Annotated[
     View, typer.Option(help="What nodes declare, or what DDS enforces per enclave.", rich_help_panel=ASKED)
+]
+ViewOrBothChosen = Annotated[
+    ViewOrBoth,
+    typer.Option(
+        help="What nodes declare, or what DDS enforces per enclave; both: the first, and what the second adds.",
+        rich_help_panel=ASKED,
+    ),
 ]
 DecisionsFile = Annotated[
     Path | None,

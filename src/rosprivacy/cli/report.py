@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from rosprivacy.cli.inputs import Inputs, reads_system
-from rosprivacy.cli.options import Language, Output
+from rosprivacy.cli.options import Language, Output, ViewOrBoth, ViewOrBothChosen
 from rosprivacy.cli.output import emit, not_for_a_terminal
 
 
@@ -26,6 +26,7 @@ class ReportFormat(StrEnum):
 @reads_system()
 def report(
     inputs: Inputs,
+    view: ViewOrBothChosen = ViewOrBoth.declared,
     format: Annotated[  # noqa: A002 - the option's name
         ReportFormat,
         typer.Option(
@@ -71,7 +72,11 @@ def report(
         not_for_a_terminal("a page", output)
     if format is ReportFormat.docx:
         not_for_a_terminal("a Word document", output)
-    result = inputs.result(inputs.settings)
+    both = view is ViewOrBoth.both
+    if both and format in (ReportFormat.article30, ReportFormat.works_council):
+        raise typer.BadParameter("--view both is for html, markdown and docx: the others tell what is declared")
+    inputs = inputs.viewed(view)
+    result = inputs.result(inputs.settings, both=both)
     style = Style(
         language=lang.value,
         title=title,

@@ -112,6 +112,22 @@ def test_rules_for_several_domains_need_a_domain() -> None:
     assert said(text, 3) == ["grant of CN=/c has no rule for domain 3: it cannot join it"]
 
 
+@pytest.mark.parametrize(("domain", "wins"), [(7, "deny"), (8, "allow")])
+def test_a_range_without_an_end_allows_from_there_on_and_denies_its_first_domain_only(domain: int, wins: str) -> None:
+    """The standard has it open-ended, Fast DDS and Cyclone DDS read one domain; in doubt it is allowed (S5, S11)."""
+    domains = "<id_range><min>7</min></id_range>"
+    names = rule("deny", publish=("rt/a",), domains=domains), rule("allow", publish=("rt/*",), domains=domains)
+    text = permissions(grant("/c", *names))
+    [one] = read(text).grants
+    assert may(one, domain, "publish", "rt/b")
+    assert not may(one, 6, "publish", "rt/b")
+    assert may(one, domain, "publish", "rt/a") == (wins == "allow")
+    assert [g.allow for g in policy_of(read(text), domain, ()).grants] == ([False, True] if wins == "deny" else [True])
+    taken = [message.split("; ")[1] for message in said(text, domain)]
+    assert taken == ([] if wins == "deny" else ["it is taken to deny nothing there", "it is taken to allow there"])
+    assert [g.allow for g in policy_of(read(text), None, ()).grants] == [False, True]  # both hold, or neither
+
+
 @pytest.mark.parametrize(("domain", "allowed"), [(1, False), (2, True), (5, True), (6, False), (9, True)])
 def test_a_rule_is_about_its_domains_and_ranges(domain: int, *, allowed: bool) -> None:
     domains = "<id>9</id><id_range><min>2</min><max>5</max></id_range>"

@@ -59,10 +59,10 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     said = {
         "care-en": html(outline(care(), "en", made="2026-11-21")),
         "care-de": html(outline(care(), "de", made="2026-11-21")),
-        "all-en": html(all_told, figures(care_home().analysis, all_told)),
-        "open-de": html(open_told, figures(factory(2).analysis, open_told)),
+        "all-en": html(all_told, figures(care_home(), all_told)),
+        "open-de": html(open_told, figures(factory(2), open_told)),
         "fleet-en": html(outline(fleet(care(), [f"robot{i:03}" for i in range(300)]), "en")),
-        "hospital-de": html(several, figures(hospital().analysis, several)),
+        "hospital-de": html(several, figures(hospital(), several)),
         "none-en": html(outline(care() | {"findings": [], "verdict": "no-leak-found"}, "en")),
         "hostile-en": html(outline(harm, "en", title=HOSTILE[0], earlier=Earlier(harm, HOSTILE[1], "0" * 64)), harmful),
         "hostile-de": html(outline(harm, "de")),

@@ -18,6 +18,8 @@
 #include <string>
 #include <vector>
 
+#include "words.hpp"
+
 using namespace eprosima::fastdds::dds;
 using namespace eprosima::fastrtps::rtps;
 using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
@@ -63,20 +65,4 @@ static DomainParticipantQos on_loopback() {
   qos.wire_protocol().builtin.initialPeersList.push_back(here);
   qos.wire_protocol().builtin.metatrafficUnicastLocatorList.push_back(here);
   return qos;
-}
-
-// The next word of a line: %XX stands for a byte, and - for nothing.
-static std::string word(std::istream& line) {
-  std::string raw, text;
-  line >> raw;
-  if (raw == "-") return "";
-  for (size_t i = 0; i < raw.size(); i++) {
-    if (raw[i] == '%' && i + 2 < raw.size()) {
-      text += static_cast<char>(std::stoi(raw.substr(i + 1, 2), nullptr, 16));
-      i += 2;
-    } else {
-      text += raw[i];
-    }
-  }
-  return text;
 }

@@ -1,14 +1,12 @@
-// Participants that are not ours (Fast DDS), each with the security plugins and the files of an enclave's folder, as
-// sros2 names them. It reads commands, one on each line; words are as in fastdds_parts.hpp:
-//   participant NAME DOMAIN SEAT FOLDER   writer NAME TOPIC PARTITION   reader NAME TOPIC PARTITION   received NAME
-// After each it prints a line that begins with "done": with "yes" or "no" where the middleware may refuse, or with the
-// topics of which data came. The seats of a domain are 0 to 3: Fast DDS numbers all participants of a process, whatever
-// their domain, and looks for others at the ports of the first four only. A writer writes one sample, which readers that come later get too.
+// Participants that are not ours (Fast DDS), each with the security plugins; commands are those of secured_commands.hpp.
+// The seats of a domain are 0 to 3: Fast DDS numbers all participants of a process, whatever their domain, and looks for
+// others at the ports of the first four only.
 #include <fastdds/dds/log/Log.hpp>
 #include <fastdds/dds/log/StdoutErrConsumer.hpp>
 #include <set>
 
 #include "fastdds_parts.hpp"
+#include "secured_commands.hpp"
 
 static DomainParticipantQos secured(int domain, int seat, const std::string& folder) {
   DomainParticipantQos qos = on_loopback();
@@ -88,28 +86,5 @@ int main() {
   errors->stderr_threshold(Log::Kind::Info);
   Log::ClearConsumers();
   Log::RegisterConsumer(std::move(errors));
-  std::map<std::string, Secured> all;
-  for (std::string line; std::getline(std::cin, line);) {
-    std::istringstream words(line);
-    const std::string command = word(words), name = word(words);
-    std::string answer;
-    const auto says = [](bool it) { return it ? " yes" : " no"; };
-    if (command == "participant") {
-      const int domain = std::stoi(word(words)), seat = std::stoi(word(words));
-      const auto one = all.emplace(std::piecewise_construct, std::forward_as_tuple(name),
-                                   std::forward_as_tuple(domain, seat, word(words)));
-      answer = says(one.first->second.there());
-    } else if (command == "writer" || command == "reader") {
-      const std::string topic = word(words), partition = word(words);
-      Secured& one = all.at(name);
-      answer = says(one.there() && (command == "writer" ? one.writer(topic, partition) : one.reader(topic, partition)));
-    } else if (command == "received") {
-      answer = all.at(name).received();
-    } else {
-      std::cerr << "unknown command: " << command << std::endl;
-      return 2;
-    }
-    std::cout << "done" << answer << std::endl;
-  }
-  std::exit(0);
+  std::exit(serve<Secured>(stdout));
 }

@@ -1,0 +1,122 @@
+"""Evidence of packages: nodes that are called like those of a well-known package, and have its interfaces.
+
+In: a graph, the message types of its channels, packages. Out: evidence. The rule (docs/packages.md): the name and at
+least half of the interfaces are ``likely``, the name alone is ``may``; nothing is ever ``certain``, since anybody may
+call a node so. A channel confirms an interface by the end of its name, in the same use, unless its message types are
+known and the package's is not among them. What a policy grants by a wildcard confirms nothing.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from fnmatch import fnmatchcase
+from typing import TYPE_CHECKING, NamedTuple
+
+from rosprivacy.analysis.many_flows import parted
+from rosprivacy.analysis.model import Confidence
+from rosprivacy.analysis.suggesting.evidence import PACKAGE, Evidence, Label, whole
+from rosprivacy.analysis.suggesting.ros_package import USES
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+    from rosprivacy.analysis.model import FlowGraph, MessageType
+    from rosprivacy.analysis.suggesting.ros_package import Interface, Package, PackageNode
+
+Use = tuple[str, str]  # kind of channel, role of a grant
+Channels = dict[Use, dict[str, frozenset[str]]]  # names of channels by use, each with the names of its types
+
+
+class _Match(NamedTuple):
+    """A node that is called like one of a package."""
+
+    vertex: int
+    package: Package
+    node: PackageNode
+
+
+def package_evidence(
+    graph: FlowGraph, types: Mapping[int, tuple[MessageType, ...]], packages: Sequence[Package]
+) -> tuple[Evidence, ...]:
+    """Return what packages say of the nodes of a graph.
+
+    Parameters
+    ----------
+    types
+        By vertex: the message types of a channel (rule S15), as far as they are known.
+
+    Examples
+    --------
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.model import Place
+    >>> from rosprivacy.analysis.suggesting.ros_package import Claim, Interface, Package, PackageNode, Source
+    >>> graph, bound, _ = factory()
+    >>> film = Claim("source", "Video", Confidence.LIKELY, "it films", Place("camera.yaml", 9))
+    >>> node = PackageNode(("camera",), (Interface("publishes", "video"),), (film,))
+    >>> camera = Package("camera", "", (Source("a page", "2026-11-23", "1.0"),), (node,), Place("camera.yaml", 1))
+    >>> [(str(one.confidence), one.reason) for one in package_evidence(graph, {}, [camera])]
+    [('likely', 'package camera 1.0: it films (its name, 1 of 1 of its interfaces)')]
+    """
+    found = tuple(_matches(graph, packages))
+    channels = _channels(graph, types, {match.vertex for match in found})
+    return tuple(said for match in found for said in _evidence(graph, match, channels[match.vertex]))
+
+
+def _matches(graph: FlowGraph, packages: Iterable[Package]) -> Iterator[_Match]:
+    named: dict[str, list[tuple[Package, PackageNode]]] = defaultdict(list)
+    made_up: list[tuple[str, tuple[Package, PackageNode]]] = []
+    for package in packages:
+        for node in package.nodes:
+            for name in node.names:
+                if "*" in name:
+                    made_up.append((name, (package, node)))
+                else:
+                    named[name].append((package, node))
+    for vertex, element in enumerate(graph.elements):
+        if element.is_node:
+            base = element.name.rpartition("/")[2]
+            more = [pair for name, pair in made_up if fnmatchcase(base, name)]
+            for package, node in (*named.get(base, ()), *more):
+                yield _Match(vertex, package, node)
+
+
+def _channels(graph: FlowGraph, types: Mapping[int, tuple[MessageType, ...]], wanted: set[int]) -> dict[int, Channels]:
+    """What the nodes that are looked at do with which channels; wildcards left out."""
+    found: dict[int, Channels] = defaultdict(lambda: defaultdict(dict))
+    if not wanted:
+        return found
+    flows, _ = parted(graph.flows)
+    for _, flow in flows:
+        for vertex, channel in ((flow.source, flow.target), (flow.target, flow.source)):
+            element = graph.elements[channel]
+            if vertex in wanted and element.is_channel and not element.pattern:
+                known = found[vertex][element.kind, flow.role]
+                seen = frozenset(one.name for one in types.get(channel, ()))
+                known[element.name] = known.get(element.name, frozenset()) | seen
+    return found
+
+
+def _evidence(graph: FlowGraph, match: _Match, channels: Channels) -> Iterator[Evidence]:
+    element = whole(graph.elements[match.vertex])
+    base = element.name.rpartition("/")[2]
+    interfaces = match.node.interfaces
+    seen = sum(_confirmed(one, base, channels) for one in interfaces)
+    matched = bool(interfaces) and 2 * seen >= len(interfaces)
+    by = f"its name, {seen} of {len(interfaces)} of its interfaces" if seen else "its name alone"
+    for claim in match.node.claims:
+        label = Label(element, claim.role, claim.kind, claim.method, claim.to)
+        confidence = claim.confidence if matched else Confidence.MAY
+        where = f", to a {claim.where}" if claim.where else ""
+        reason = f"package {match.package.name} {match.package.version}: {claim.why}{where} ({by})"
+        yield Evidence(label, PACKAGE, confidence, reason, claim.place)
+
+
+def _confirmed(interface: Interface, base: str, channels: Channels) -> bool:
+    name = interface.name.removeprefix("/")
+    parts = (f"{base}/{name[2:]}" if name.startswith("~/") else name).split("/")
+    for channel, types in channels.get(USES[interface.use], {}).items():
+        last = channel.split("/")[1:][-len(parts) :]
+        same = len(last) == len(parts) and all(map(fnmatchcase, last, parts))
+        if same and (not types or not interface.type or interface.type in types):
+            return True
+    return False

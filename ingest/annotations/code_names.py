@@ -1,0 +1,103 @@
+"""Literal names in code -> names of nodes and channels as ROS resolves them; what is not known has none.
+
+In: the files of a package. Out: the node that a class or a variable is, the full name at a call. Remapping and launch
+files are not seen: labels name what policies name, and a name that is not there is an error then (rule S11).
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TYPE_CHECKING
+
+from rosprivacy.ingest.annotations.source_code import NODE, NODE_CLASSES, class_of
+from rosprivacy.ingest.policies.names import resolve
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rosprivacy.ingest.annotations.source_code import Code, Site
+
+ROOT = "/"
+
+
+class CodeNames:
+    """The names in some files of source code.
+
+    Parameters
+    ----------
+    namespace
+        Of nodes that state none.
+    """
+
+    def __init__(self, codes: Sequence[Code], namespace: str = ROOT) -> None:
+        self.namespace = namespace
+        self._bases: dict[tuple[str, str], set[str]] = defaultdict(set)
+        for code in codes:
+            for one in code.classes:
+                self._bases[code.language, one.name].update(one.bases)
+        self._node_classes = {language: self._derived(language) for language in {code.language for code in codes}}
+        self._of_file: dict[tuple[str, str], set[str | None]] = defaultdict(set)
+        self._of_language: dict[tuple[str, str], set[str | None]] = defaultdict(set)
+        for code in codes:
+            for site in code.sites:
+                if site.kind == NODE and site.owner and not site.head and self.is_node(code, site):
+                    name = self._of_site(site)
+                    self._of_file[code.file, site.owner].add(name)
+                    self._of_language[code.language, site.owner].add(name)
+
+    def is_node(self, code: Code, site: Site) -> bool:
+        """Return whether a site that may be one of a node is one."""
+        name, classes = class_of(site.owner), self._node_classes[code.language]
+        if not name:
+            return True
+        if not site.base:
+            return name in classes
+        known = self._bases.get((code.language, name))
+        return site.base in (NODE_CLASSES if known is None else known) and site.base in classes
+
+    def node(self, code: Code, owner: str) -> str:
+        """Return the full name of the node that a class or a variable is; empty where it is not known."""
+        here = self._of_file.get((code.file, owner), set())
+        names = here or (self._of_language.get((code.language, owner), set()) if class_of(owner) else set())
+        return next(iter(names)) or "" if len(names) == 1 else ""
+
+    def name(self, code: Code, site: Site) -> str:
+        """Return the full name at a site; empty where it is not known."""
+        if site.kind == NODE:
+            return self.node(code, site.owner) if site.head else self._of_site(site) or ""
+        written = site.written or ""
+        if not is_ros_name(written):
+            return ""
+        node = self.node(code, site.owner)
+        if written.startswith("~") and not node:
+            return ""
+        space, _, base = node.rpartition("/") if node else (self.namespace, "", "")
+        return resolve(written, space or ROOT, base)
+
+    def _of_site(self, site: Site) -> str | None:
+        """The name of a node where it is made."""
+        written, space = site.written or "", site.namespace
+        if not written.isascii() or not written.isidentifier() or space is None:
+            return None
+        space = resolve(space.rstrip("/"), self.namespace, "") if space.strip("/") else self.namespace
+        return resolve(written, space, "") if is_ros_name(space) or space == ROOT else None
+
+    def _derived(self, language: str) -> set[str]:
+        """Classes of nodes: those of ROS, and what is derived from one."""
+        known, before = set(NODE_CLASSES), 0
+        while len(known) > before:
+            before = len(known)
+            known |= {name for (of, name), bases in self._bases.items() if of == language and bases & known}
+        return known
+
+
+def is_ros_name(name: str) -> bool:
+    """Return whether a name is one that ROS takes as it is, without substitutions.
+
+    >>> [is_ros_name(one) for one in ("image", "/a/b", "~/c", "~", "a//b", "{node}/x", "", "a b")]
+    [True, True, True, True, False, False, False, False]
+    """
+    if name == "~":
+        return True
+    parts = name.removeprefix("~").removeprefix("/").split("/")
+    return all(part.isascii() and part.isidentifier() for part in parts) and not name.startswith("~~")

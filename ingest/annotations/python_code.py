@@ -1,0 +1,229 @@
+"""Python source -> what is read in it, by Python's own parser and tokenizer; no recursion, nothing is run.
+
+Source: the signatures of rclpy (``Node``, ``create_node``, ``create_publisher`` …, ``rclpy.action``).
+"""
+
+from __future__ import annotations
+
+import ast
+import io
+import sys
+import tokenize
+import warnings
+from typing import TYPE_CHECKING, NamedTuple
+
+from rosprivacy.analysis.errors import LabelError, shown
+from rosprivacy.ingest.annotations.source_code import (
+    NODE,
+    NODE_CLASSES,
+    Code,
+    Comment,
+    Lines,
+    NodeClass,
+    Site,
+    class_owner,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+FAILURES = (SyntaxError, ValueError, RecursionError, MemoryError, tokenize.TokenError)
+VERSION = ".".join(map(str, sys.version_info[:2]))
+CORRECT = "correct it, or name the other files; newer syntax needs a newer Python"
+
+
+class _Call(NamedTuple):
+    """How a call names its channel: kind, role, and the places of name, type and node among its arguments."""
+
+    kind: str
+    role: str
+    name: tuple[int, str]
+    type: tuple[int, str]
+    node: tuple[int, str] | None = None
+
+
+METHODS = {
+    "create_publisher": _Call("topic", "publish", (1, "topic"), (0, "msg_type")),
+    "create_subscription": _Call("topic", "subscribe", (1, "topic"), (0, "msg_type")),
+    "create_service": _Call("service", "reply", (1, "srv_name"), (0, "srv_type")),
+    "create_client": _Call("service", "request", (1, "srv_name"), (0, "srv_type")),
+}
+ACTIONS = {
+    "ActionServer": _Call("action", "execute", (2, "action_name"), (1, "action_type"), (0, "node")),
+    "ActionClient": _Call("action", "call", (2, "action_name"), (1, "action_type"), (0, "node")),
+}
+INTERFACES = ("msg", "srv", "action")
+
+
+class _Where(NamedTuple):
+    """Where a piece of code stands: class, function, statement, and the variable that is given its value."""
+
+    of_class: str = ""
+    function: str = ""
+    statement: Lines | None = None
+    target: str = ""
+
+
+def read_python(file: str, data: bytes) -> Code:
+    """Read a file.
+
+    Parameters
+    ----------
+    file
+        For messages.
+    """
+    try:
+        encoding, _ = tokenize.detect_encoding(io.BytesIO(data).readline)
+        text = data.decode(encoding).replace("\r\n", "\n").replace("\r", "\n")
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # what Python thinks of the code is its author's business
+            tree = ast.parse(text)
+        comments = tuple(_comments(text))
+    except FAILURES as error:
+        line = (isinstance(error, SyntaxError) and error.lineno) or 1
+        what = error.msg if isinstance(error, SyntaxError) else str(error) or type(error).__name__
+        return Code(file, "python", problems=(LabelError(file, line, f"not Python {VERSION}: {shown(what)}", CORRECT),))
+    imports = dict(_imports(tree))
+    classes, sites = [], []
+    for node, where in _walk(tree):
+        if isinstance(node, ast.ClassDef):
+            classes.append(_class(node))
+            lines = classes[-1].lines
+            sites.append(Site(NODE, None, lines, lines, class_owner(node.name), head=True))
+        elif isinstance(node, ast.Call) and (site := _site(node, where, imports)):
+            sites.append(site)
+    return Code(file, "python", comments, tuple(classes), tuple(sites))
+
+
+def _comments(text: str) -> Iterator[Comment]:
+    for token in tokenize.generate_tokens(io.StringIO(text).readline):
+        if token.type == tokenize.COMMENT:
+            alone = not token.line[: token.start[1]].strip()
+            yield Comment(token.start[0], token.string.lstrip("#!: ").rstrip(), alone)
+
+
+def _walk(tree: ast.Module) -> Iterator[tuple[ast.AST, _Where]]:
+    """All nodes in the order of the text, each with where it stands."""
+    waiting: list[tuple[ast.AST, _Where]] = [(tree, _Where())]
+    while waiting:
+        node, where = waiting.pop()
+        yield node, where
+        waiting += [(child, _inside(node, child, where)) for child in reversed([*ast.iter_child_nodes(node)])]
+
+
+def _inside(node: ast.AST, child: ast.AST, where: _Where) -> _Where:
+    if isinstance(node, ast.ClassDef) and isinstance(child, ast.stmt):
+        where = _Where(of_class=node.name)
+    elif isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda):
+        where = where._replace(function=f"{node.lineno}:{node.col_offset}", target="")
+    if isinstance(child, ast.stmt):
+        whole = None if hasattr(child, "body") or isinstance(child, ast.Match) else _lines(child)
+        return where._replace(statement=whole, target="")
+    targets = node.targets if isinstance(node, ast.Assign) else [node.target] if isinstance(node, ast.AnnAssign) else []
+    named = _dotted(targets[0]) if len(targets) == 1 and child is getattr(node, "value", None) else ""
+    return where._replace(target=named)
+
+
+def _lines(node: ast.AST) -> Lines:
+    first = int(getattr(node, "lineno", 1))
+    return Lines(first, int(getattr(node, "end_lineno", None) or first))
+
+
+def _class(node: ast.ClassDef) -> NodeClass:
+    head = [*node.bases, *node.keywords]
+    first = min([node.lineno, *(_lines(one).first for one in node.decorator_list)])
+    last = max([node.lineno, *(_lines(one).last for one in head)])
+    bases = tuple(name.rpartition(".")[2] for name in map(_dotted, node.bases) if name)
+    return NodeClass(node.name, bases, Lines(first, last))
+
+
+def _dotted(node: ast.AST) -> str:
+    """A name as it is written, ``self.node``; empty for what is none."""
+    parts = []
+    while isinstance(node, ast.Attribute):
+        parts.append(node.attr)
+        node = node.value
+    return ".".join([node.id, *reversed(parts)]) if isinstance(node, ast.Name) else ""
+
+
+def _imports(tree: ast.Module) -> Iterator[tuple[str, str]]:
+    """Names and what they stand for."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom):
+            yield from ((alias.asname or alias.name, f"{node.module}.{alias.name}") for alias in node.names)
+        elif isinstance(node, ast.Import):
+            for alias in node.names:
+                name = alias.name if alias.asname else alias.name.partition(".")[0]
+                yield alias.asname or name, name
+
+
+def _site(call: ast.Call, where: _Where, imports: Mapping[str, str]) -> Site | None:
+    function = _dotted(call.func)
+    last = call.func.attr if isinstance(call.func, ast.Attribute) else function
+    lines = _lines(call)
+    at = lines, where.statement or lines
+    if last == "__init__" and where.of_class:
+        return _own_constructor(call, where, at)
+    if last == "create_node" or (last in NODE_CLASSES and _whole(function, imports).startswith("rclpy.")):
+        owner = _variable(where.target, where) if where.target else ""
+        name, space = _text(_argument(call, 0, "node_name")), _namespace(call)
+        return Site(NODE, name, *at, owner, namespace=space)
+    how = METHODS.get(last) if isinstance(call.func, ast.Attribute) else None
+    how = how or ACTIONS.get(last)
+    if how is None:
+        return None
+    node = _argument(call, *how.node) if how.node else getattr(call.func, "value", None)
+    owner = _variable(_dotted(node), where) if node is not None else ""
+    found = _message_type(_dotted(_argument(call, *how.type) or ast.Constant(None)), imports)
+    return Site(how.kind, _text(_argument(call, *how.name)), *at, owner, how.role, found)
+
+
+def _own_constructor(call: ast.Call, where: _Where, at: tuple[Lines, Lines]) -> Site | None:
+    """``super().__init__('camera')`` or ``Node.__init__(self, 'camera')``."""
+    before = call.func.value if isinstance(call.func, ast.Attribute) else None
+    if isinstance(before, ast.Call) and _dotted(before.func) == "super":
+        place, base = 0, ""
+    elif before is not None and call.args and _dotted(call.args[0]) == "self":
+        place, base = 1, _dotted(before).rpartition(".")[2]
+    else:
+        return None
+    name = _text(_argument(call, place, "node_name"))
+    return Site(NODE, name, *at, class_owner(where.of_class), namespace=_namespace(call), base=base)
+
+
+def _namespace(call: ast.Call) -> str | None:
+    given = next((one.value for one in call.keywords if one.arg == "namespace"), None)
+    if given is None or (isinstance(given, ast.Constant) and given.value is None):
+        return ""
+    return _text(given)
+
+
+def _argument(call: ast.Call, place: int, name: str) -> ast.expr | None:
+    if len(call.args) > place:
+        before = call.args[: place + 1]
+        return None if any(isinstance(one, ast.Starred) for one in before) else call.args[place]
+    return next((one.value for one in call.keywords if one.arg == name), None)
+
+
+def _text(node: ast.expr | None) -> str | None:
+    return node.value if isinstance(node, ast.Constant) and isinstance(node.value, str) else None
+
+
+def _variable(name: str, where: _Where) -> str:
+    """What a variable is known by: ``self`` is the class, ``self.x`` is of the class, others of their function."""
+    if name == "self":
+        return class_owner(where.of_class)
+    scope = where.of_class if name.startswith("self.") else f"{where.of_class}/{where.function}"
+    return f"{scope}:{name}" if name else ""
+
+
+def _whole(name: str, imports: Mapping[str, str]) -> str:
+    head, dot, rest = name.partition(".")
+    return imports.get(head, "") + dot + rest
+
+
+def _message_type(name: str, imports: Mapping[str, str]) -> str:
+    """``sensor_msgs/msg/Image`` of a name that is imported."""
+    parts = _whole(name, imports).split(".")
+    known = len(parts) >= len(("package", "msg", "Name")) and parts[1] in INTERFACES and all(parts)
+    return f"{parts[0]}/{parts[1]}/{parts[-1]}" if known else ""

@@ -1,0 +1,124 @@
+"""What is read in one file of source code: comments, classes, and calls that make a node or an end of a channel.
+
+Made by ``python_code.py`` and ``cpp_code.py``. Nothing is run, built or guessed: what is no literal has no name.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from rosprivacy.analysis.errors import InputError
+
+NODE = "node"
+CLASS = "class "
+NODE_CLASSES = ("Node", "LifecycleNode")  # of rclpy, rclcpp, rclcpp_lifecycle, nav2_util
+WRITES = ("publish", "reply", "request", "execute", "call")  # roles of what sends something into its channel
+
+
+class Lines(NamedTuple):
+    """From one line of a file to another, both included."""
+
+    first: int
+    last: int
+
+
+class Comment(NamedTuple):
+    """One line of a comment.
+
+    Attributes
+    ----------
+    text
+        Without the signs that make it a comment.
+    alone
+        Whether no code stands before it on its line.
+    """
+
+    line: int
+    text: str
+    alone: bool
+
+
+class NodeClass(NamedTuple):
+    """A class.
+
+    Attributes
+    ----------
+    bases
+        Last names of the classes that it is derived from.
+    """
+
+    name: str
+    bases: tuple[str, ...]
+    lines: Lines
+
+
+class Site(NamedTuple):
+    """A class, or a call, that an annotation can stand beside.
+
+    Attributes
+    ----------
+    kind
+        ``node``, ``topic``, ``service`` or ``action``.
+    written
+        The name, if it is a literal.
+    lines, statement
+        Of the class's head or the call; of the whole statement that it is a part of.
+    owner
+        Of a channel: what makes it; of a node: what it is known by. A class, or a variable with where it is known.
+    role
+        Of a channel: ``publish``, ``subscribe``, ``reply``, ``request``, ``execute``, ``call``.
+    type
+        Of a channel: its message type, ``pkg/msg/Name``, where imports tell it.
+    namespace
+        Of a node: as it is written; None where it is no literal.
+    base
+        Of a node: the constructor that is called, where it is one of a class that may be no node.
+    more
+        Whether channels below this name are written with it, as image_transport does.
+    head
+        Whether it is the head of a class; its constructors name its nodes.
+    """
+
+    kind: str
+    written: str | None
+    lines: Lines
+    statement: Lines
+    owner: str
+    role: str = ""
+    type: str = ""
+    namespace: str | None = ""
+    base: str = ""
+    more: bool = False
+    head: bool = False
+
+
+class Code(NamedTuple):
+    """A file of source code.
+
+    Attributes
+    ----------
+    language
+        ``python`` or ``c++``; empty for what could not be read.
+    """
+
+    file: str
+    language: str
+    comments: tuple[Comment, ...] = ()
+    classes: tuple[NodeClass, ...] = ()
+    sites: tuple[Site, ...] = ()
+    problems: tuple[InputError, ...] = ()
+
+
+def class_owner(name: str) -> str:
+    """Return what stands for the nodes of a class in ``Site.owner``; see ``class_of``.
+
+    >>> class_owner("Camera"), class_of(class_owner("Camera")), class_of("/3:0:node")
+    ('class Camera', 'Camera', '')
+    """
+    return f"{CLASS}{name}" if name else ""
+
+
+def class_of(owner: str) -> str:
+    """Return the name of a class whose nodes are meant; empty for a variable."""
+    return owner.removeprefix(CLASS) if owner.startswith(CLASS) else ""

@@ -1,0 +1,110 @@
+"""Which files of packages are read: the shipped catalogue, a file or a folder, those of installed packages.
+
+In: what ``--packages`` names. Out: packages, sorted by name; a user's file stands in place of a shipped one of the same
+name. ``ament`` means ``share/<package>/rosprivacy/package.yaml`` below every prefix of ``AMENT_PREFIX_PATH``, where the
+first prefix wins, as an overlay does in ROS: the way for a vendor to ship such a file (docs/packages.md).
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.bounds import BOUNDS
+from rosprivacy.analysis.errors import InputError, InputErrors, PackageError, shown
+from rosprivacy.ingest.packages.package_file import read_package
+from rosprivacy.ontology.vocabulary import FOLDER
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from rosprivacy.analysis.bounds import Bounds
+    from rosprivacy.analysis.suggesting.ros_package import Package
+    from rosprivacy.ontology.vocabulary import Vocabulary
+
+AMENT = "ament"
+PREFIXES = "AMENT_PREFIX_PATH"
+PLACE = ("rosprivacy", "package.yaml")  # below share/<package>
+ENDINGS = (".yaml", ".yml", ".json")
+SHIPPED = "rosprivacy:packages/"  # how messages and reasons call the shipped folder
+
+
+def catalogue(vocabulary: Vocabulary) -> tuple[Package, ...]:
+    """Read the shipped catalogue.
+
+    >>> from rosprivacy.ontology.vocabulary import load
+    >>> "nav2" in [package.name for package in catalogue(load())]
+    True
+    """
+    files = sorted((FOLDER / "packages").glob("*.yaml"))
+    return tuple(read_package(str(file), vocabulary, SHIPPED + file.name) for file in files)
+
+
+def packages(named: Iterable[str], vocabulary: Vocabulary, bounds: Bounds = BOUNDS) -> tuple[Package, ...]:
+    """Return the shipped packages with those of a user.
+
+    Parameters
+    ----------
+    named
+        Files, folders, or ``ament`` for those of installed packages.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of all files, each a ``PackageError`` of one line.
+    """
+    problems: list[InputError] = []
+    own: dict[str, Package] = {}
+    for file, folder in _files(named, problems):
+        try:
+            package = read_package(file, vocabulary, bounds=bounds)
+        except InputErrors as errors:
+            problems += errors.errors
+            continue
+        if package.name in own:
+            what = f"package {package.name} again, first in {shown(own[package.name].place.file)}"
+            problems.append(PackageError(file, package.place.line, what, "keep one"))
+        elif folder not in ("", package.name):
+            what = f"it speaks of {package.name}, and lies in the package {shown(folder)}"
+            problems.append(PackageError(file, package.place.line, what, "name the package that ships it"))
+        own.setdefault(package.name, package)
+    if problems:
+        raise InputErrors(problems)
+    known = {package.name: package for package in catalogue(vocabulary)} | own
+    return tuple(known[name] for name in sorted(known))
+
+
+def _files(named: Iterable[str], problems: list[InputError]) -> Iterable[tuple[str, str]]:
+    """Files to read, each once, with the installed package that ships it; empty for others."""
+    found: dict[str, str] = {}
+    for argument in named:
+        if argument == AMENT:
+            found |= _installed(os.environ, problems)
+        elif Path(argument).is_dir():
+            files = sorted(str(file) for file in Path(argument).iterdir() if file.suffix in ENDINGS)
+            if not files:
+                what = f"a folder without files that end in {', '.join(ENDINGS)}"
+                problems.append(PackageError(argument, 0, what, "name the folder that the files lie in"))
+            found |= dict.fromkeys(files, "")
+        else:
+            found[argument] = ""
+    return found.items()
+
+
+def _installed(environment: Mapping[str, str], problems: list[InputError]) -> dict[str, str]:
+    """Files that installed packages ship: path -> name of the package; of one package that of the first prefix."""
+    prefixes = [prefix for prefix in environment.get(PREFIXES, "").split(os.pathsep) if prefix]
+    if not prefixes:
+        problems.append(
+            PackageError(AMENT, 0, f"{PREFIXES} is not set", "source the setup file of ROS, or name a file")
+        )
+    first: dict[str, str] = {}
+    for prefix in prefixes:
+        share = Path(prefix) / "share"
+        for file in sorted(share.glob("/".join(("*", *PLACE)))):
+            first.setdefault(file.relative_to(share).parts[0], str(file))
+    if prefixes and not first:
+        what = f"no installed package has a file {'/'.join(PLACE)} in its share folder"
+        problems.append(PackageError(AMENT, 0, what, "name a file or a folder"))
+    return {file: package for package, file in first.items()}

@@ -1,0 +1,116 @@
+"""What a node could do beyond its own profile, as entries of a report: what only the enforced view has (rule S6).
+
+In: an ``Index``. Out: ``Beyond``, with what makes each possible and what takes it away, in words.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.text import fit
+from rosprivacy.report.naming import line, name
+from rosprivacy.report.page.finding_entries import NAMED, hops_of, sentence_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from rosprivacy.report.page.finding_entries import Hop
+    from rosprivacy.report.page.index import Index
+
+MOST = 200  # that are told one by one
+
+
+@dataclass(frozen=True, slots=True)
+class Beyond:
+    """A finding that only the enforced view has.
+
+    Attributes
+    ----------
+    hops
+        Its path; with each whether the step that leaves it is beyond the profile of its node.
+    why
+        What makes it possible, and where.
+    remedies
+        What takes it away, splitting first.
+    """
+
+    id: str
+    source: str
+    leak: str
+    sentence: str
+    article9: str
+    hops: tuple[tuple[Hop, bool], ...]
+    why: tuple[str, ...]
+    remedies: tuple[str, ...]
+
+    @property
+    def brief(self) -> str:
+        """The path in one line."""
+        return " → ".join(hop.name for hop, _ in self.hops)
+
+
+def beyond_entries(index: Index) -> tuple[Beyond, ...]:
+    """Return what the enforced view adds, as many as are told one by one; nothing where nobody asked."""
+    return tuple(_entry(added, index) for added in _added(index)[:MOST])
+
+
+def beyond_said(index: Index) -> tuple[str, ...]:
+    """Return what is to be known of all of it: how much there is, and how many are not told one by one."""
+    words, number = index.words, len(_added(index))
+    left = number - MOST
+    return (words.count(number, "y.number"), *([words.count(left, "y.left")] if left > 0 else []))
+
+
+def _added(index: Index) -> list[Mapping[str, Any]]:
+    return list(index.document.get("enforced", {}).get("added", ()))
+
+
+def _entry(added: Mapping[str, Any], index: Index) -> Beyond:
+    finding, beyond = added["finding"], set(added.get("beyond", ()))
+    return Beyond(
+        id=finding["id"],
+        source=name(finding["source"]),
+        leak=name(finding["leak"]),
+        sentence=sentence_of(finding, index),
+        article9=finding["article9"],
+        hops=tuple((hop, number in beyond) for number, hop in enumerate(hops_of(finding, index))),
+        why=tuple(_why(added, index)),
+        remedies=tuple(_remedies(added, index)),
+    )
+
+
+def _why(added: Mapping[str, Any], index: Index) -> Iterator[str]:
+    words = index.words
+    if added["enclaves"]:
+        yield words("y.shared", enclaves=_row(added["enclaves"], index))
+    if opened := added.get("opened_by"):
+        yield words("y.opened", lines=words.row(map(line, opened)))
+    if robots := added.get("robots"):
+        named = f" ({_row(robots, index)})" if len(robots) <= NAMED else ""
+        yield words("y.robots", n=len(robots), all=words.count(len(index.robots()), "ofrobots"), names=named)
+
+
+def _remedies(added: Mapping[str, Any], index: Index) -> Iterator[str]:
+    words = index.words
+    if added["split"]:
+        yield words("y.split", enclaves=_row(added["split"], index))
+    elif added["enclaves"]:
+        yield words("y.split.none")
+    if move := added.get("move"):
+        yield words("y.move", profile=fit(move["profile"]), enclave=fit(move["enclave"]))
+    if added.get("deny"):
+        lines = (
+            words("y.line", role=one["role"], channel=name(one["channel"]), enclave=fit(one["enclave"]),
+                  file=fit(one["file"]))
+            for one in added["deny"]
+        )  # fmt: skip
+        lost = (
+            words("y.right", node=name(one["node"]), role=one["role"], channel=name(one["channel"]))
+            for one in added["loses"]
+        )
+        yield words("y.deny", lines=words.row(lines), rights=words.row(lost))
+
+
+def _row(names: Iterable[str], index: Index) -> str:
+    return index.words.row(map(fit, names))

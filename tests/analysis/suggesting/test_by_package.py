@@ -1,0 +1,144 @@
+"""Nodes of well-known packages in policies: the name and half of the interfaces, or the name alone (issue 21)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+import rosprivacy
+from rosprivacy.analysis.model import Confidence
+from rosprivacy.analysis.suggesting.by_package import package_evidence
+from rosprivacy.ingest.packages.package_folders import catalogue
+from rosprivacy.ontology.vocabulary import load
+from rosprivacy.question import question_of
+from rosprivacy.robot_system import robot_system
+from rosprivacy.settings import Settings
+from tests.helpers.fleet_files import policy
+
+if TYPE_CHECKING:
+    from rosprivacy.analysis.suggesting.evidence import Evidence
+
+LIKELY, MAY = Confidence.LIKELY, Confidence.MAY
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def evidence(text: str, labels: str = "labels: 1\n") -> tuple[Evidence, ...]:
+    Path("p.xml").write_text(text, "utf-8")
+    Path("l.yaml").write_text(labels, "utf-8")
+    system = robot_system(("p.xml",), ("l.yaml",), question_of(Settings()))
+    return package_evidence(system.graph, system.bound.types, catalogue(load()))
+
+
+def told(found: tuple[Evidence, ...], role: str, kind: str) -> list[tuple[str, Confidence, str]]:
+    return [
+        (one.label.element.name, one.confidence, one.reason.rpartition(" (")[2][:-1])
+        for one in found
+        if (one.label.role, one.label.kind) == (role, kind)
+    ]
+
+
+def test_the_name_and_half_of_the_interfaces_are_likely_in_any_namespace() -> None:
+    found = evidence(policy("/robot1/usb_cam>/robot1/image_raw,/robot1/camera_info", "/v/usb_cam>/v/image_raw"))
+    assert told(found, "source", "Video") == [
+        ("/robot1/usb_cam", LIKELY, "its name, 2 of 3 of its interfaces"),
+        ("/v/usb_cam", MAY, "its name, 1 of 3 of its interfaces"),
+    ]
+    assert all(one.reason.startswith("package usb_cam 0.8.1: it publishes what the camera films") for one in found)
+    assert {str(one.place) for one in found} == {"rosprivacy:packages/usb_cam.yaml:16"}
+
+
+def test_the_name_alone_may_and_another_name_is_no_match() -> None:
+    found = evidence(policy("/usb_cam>/else", "/camera_2>/image_raw,/camera_info"))
+    assert told(found, "source", "Video") == [("/usb_cam", MAY, "its name alone")]
+
+
+def test_a_private_name_follows_the_node() -> None:
+    names = ("color/image_raw", "color/camera_info", "depth/image_rect_raw")
+    (seen,) = [
+        one
+        for one in told(
+            evidence(policy("/x/camera>" + ",".join(f"/x/camera/{n}" for n in names))), "source", "DepthImage"
+        )
+        if "3 of 5" in one[2]
+    ]
+    assert seen[:2] == ("/x/camera", LIKELY)
+    other = told(evidence(policy("/x/camera>" + ",".join(f"/y/{n}" for n in names))), "source", "DepthImage")
+    assert {confidence for _, confidence, _ in other} == {MAY}
+
+
+def test_a_topic_of_another_type_confirms_nothing() -> None:
+    text = policy("/usb_cam>/image_raw,/camera_info")
+    typed = "labels: 1\nchannels:\n  /image_raw: {types: [%s]}\n"
+    assert told(evidence(text, typed % "sensor_msgs/msg/Image"), "source", "Video")[0][1] is LIKELY
+    assert told(evidence(text, typed % "std_msgs/msg/Bool"), "source", "Video")[0][1] is MAY
+
+
+def test_the_direction_counts_and_a_wildcard_confirms_nothing() -> None:
+    assert told(evidence(policy("/usb_cam</image_raw,/camera_info")), "source", "Video")[0][1] is MAY
+    assert told(evidence(policy("/usb_cam>/*")), "source", "Video")[0][1] is MAY
+
+
+def test_a_made_up_end_of_a_name_is_no_part_of_it() -> None:
+    found = evidence(policy("/rqt_gui_py_node_4711</image", "/xrqt_gui_py_node_1</image"))
+    assert told(found, "leak", "PersonalData") == [("/rqt_gui_py_node_4711", MAY, "its name alone")]
+
+
+def test_services_and_actions_confirm_too() -> None:
+    text = policy("/slam_toolbox>/map</scan").replace(
+        "</profile>",
+        '<services reply="ALLOW"><service>/slam_toolbox/save_map</service>'
+        "<service>/slam_toolbox/dynamic_map</service></services></profile>",
+    )
+    found = evidence(text)
+    assert told(found, "leak", "HomeMap") == [("/slam_toolbox", MAY, "its name, 4 of 7 of its interfaces")]
+    assert told(found, "derivation", "LaserScan")[0][1] is LIKELY
+
+
+def test_nothing_is_certain_and_each_reason_quotes_its_package() -> None:
+    text = policy(
+        *(f"/{node.names[0].replace('*', 'x')}>/out" for package in catalogue(load()) for node in package.nodes)
+    )
+    found = evidence(text)
+    assert len(found) >= sum(len(node.claims) for package in catalogue(load()) for node in package.nodes) - 20
+    assert {one.confidence for one in found} <= {LIKELY, MAY}
+    names = {package.name for package in catalogue(load())}
+    assert {one.reason.split()[1].rstrip(":") for one in found} == names
+
+
+def labels_of(found: tuple[Evidence, ...]) -> str:
+    """A label file that accepts every word of the catalogue."""
+    said: dict[str, dict[str, list[str]]] = {}
+    for one in found:
+        entry = said.setdefault(one.label.element.name, {})
+        kind = f"{{from: {one.label.kind}, to: {one.label.to}}}" if one.label.to else one.label.kind or "PersonalData"
+        key = "derives" if one.label.to else one.label.role
+        if kind not in entry.setdefault(key, []):
+            entry[key].append(kind)
+    lines = []
+    for name, entry in said.items():
+        stated = ", ".join(f"{key}: [{', '.join(kinds)}]" for key, kinds in entry.items())
+        lines.append(f"  {name}: {{{stated}}}")
+    return "\n".join(lines)
+
+
+def test_accepting_all_of_it_hides_no_planted_leak() -> None:
+    """Through a node of the catalogue, whatever it calls it, data still get to a leak: that node or the next."""
+    nodes = [node.names[0].replace("*", "x") for package in catalogue(load()) for node in package.nodes]
+    chains = [(f"/n{at}/planted", f"/n{at}/{name}", f"/n{at}/thief") for at, name in enumerate(nodes)]
+    text = policy(*(p for a, b, c in chains for p in (f"{a}>{a}/in", f"{b}>{b}/out<{a}/in", f"{c}<{b}/out")))
+    kinds = ("Video", "Voice", "PersonName", "HomeMap")
+    planted = "".join(
+        f"  {a}: {{source: [{', '.join(kinds)}]}}\n  {c}: {{leak: [{', '.join(kinds)}]}}\n" for a, _, c in chains
+    )
+    Path("all.yaml").write_text(f"labels: 1\nnodes:\n{planted}{labels_of(evidence(text))}\n", "utf-8")
+    analysis = rosprivacy.analyze("p.xml", "all.yaml").analysis
+    found = {(one.category, one.source.name, one.leak.name) for one in analysis.findings}
+    for source, node, thief in chains:
+        for kind in kinds:
+            assert {(kind, source, thief), (kind, source, node)} & found, (node, kind)

@@ -1,0 +1,76 @@
+"""The shipped catalogue of packages: each entry names its sources, and says no more than they do (issue 21)."""
+
+from __future__ import annotations
+
+import re
+from datetime import date
+from typing import TYPE_CHECKING
+
+import pytest
+
+from rosprivacy.analysis.model import Confidence
+from rosprivacy.ingest.packages.package_file import read_package
+from rosprivacy.ingest.packages.package_folders import catalogue
+from rosprivacy.ontology.vocabulary import FOLDER, load
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+FILES = sorted((FOLDER / "packages").glob("*"))
+HIDING = ("sanitizer", "conduit")
+
+
+@pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
+def test_an_entry_is_read_and_names_its_sources(file: Path) -> None:
+    package = read_package(str(file), load())
+    assert file.name == f"{package.name}.yaml"
+    assert package.about[0].isupper()
+    assert package.about.endswith(".")
+    for source in package.sources:
+        assert re.fullmatch(r"https://[a-z0-9.]+/[\w./-]+", source.at)
+        assert re.fullmatch(r"[0-9a-f]{40}", source.commit)
+        assert source.files
+        assert date.fromisoformat(source.read) >= date(2026, 11, 1)
+    assert len({name for node in package.nodes for name in node.names}) == sum(
+        len(node.names) for node in package.nodes
+    )
+
+
+@pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
+def test_an_entry_says_no_more_than_it_can_know(file: Path) -> None:
+    package = read_package(str(file), load())
+    for node in package.nodes:
+        assert node.claims
+        for claim in node.claims:
+            assert claim.confidence in (Confidence.LIKELY, Confidence.MAY)
+            assert claim.kind or claim.role == "conduit"
+            assert len(claim.why.split()) >= 4
+        ended = [claim for claim in node.claims if claim.role == "sanitizer"]
+        assert not ended, "no documentation that was read is plain enough about a sanitizer"
+        if any(claim.role == "conduit" and not claim.kind for claim in node.claims):
+            assert not [
+                claim for claim in node.claims if claim.role == "leak" and claim.confidence is Confidence.LIKELY
+            ]
+
+
+def test_there_are_many_and_each_is_of_one_package() -> None:
+    found = catalogue(load())
+    assert len(found) >= 40
+    assert len({package.name for package in found}) == len(found) == len(FILES)
+
+
+@pytest.mark.parametrize(
+    ("package", "node", "role", "kind"),
+    [
+        ("realsense2_camera", "camera", "source", "Video"),
+        ("audio_common", "audio_capture_node", "source", "Voice"),
+        ("hri_face_identification", "hri_face_identification", "leak", "FaceTemplate"),
+        ("foxglove_bridge", "foxglove_bridge", "leak", "PersonalData"),
+        ("rosbag2", "rosbag2_recorder", "leak", "PersonalData"),
+        ("nav2", "amcl", "derivation", "LaserScan"),
+    ],
+)
+def test_what_everybody_knows_of_a_package_is_in_it(package: str, node: str, role: str, kind: str) -> None:
+    (entry,) = (one for one in catalogue(load()) if one.name == package)
+    claims = [claim for one in entry.nodes if node in one.names for claim in one.claims]
+    assert (role, kind) in [(claim.role, claim.kind) for claim in claims]
