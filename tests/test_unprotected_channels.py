@@ -225,3 +225,17 @@ def test_the_kinds_of_findings_are_one_list() -> None:
     assert KIND in kinds
     for file in ("ontology/elements.ttl", "report/rdf/findings.shapes.ttl", "report/sarif/rules.py"):
         assert all(f'"{kind}"' in (ROOT / file).read_text("utf-8") for kind in kinds)
+
+
+def test_many_that_one_line_stands_behind_are_one_line_of_the_list(cli: Cli, tmp_path: Path) -> None:
+    kinds = ["Video", "Voice", "Location"]
+    made = Keystore(tmp_path / "keystore")
+    made.enclave("/camera", permissions(grant("/camera", rule("allow", publish=("rt/a", "rt/b", "rt/c")))))
+    made.governance(governance(topic_rule(metadata="NONE", data="NONE")))
+    (tmp_path / "l.yaml").write_text(f"labels: 1\nnodes: {{/camera: {{source: [{', '.join(kinds)}]}}}}\n")
+    done = cli("analyze", "keystore", "-l", "l.yaml", cwd=tmp_path)
+    [line] = [line for line in done.stdout.splitlines() if "can be read on the network: " in line]
+    assert line.startswith("  1. can be read on the network: Location, Video, Voice, 9 findings, 3 channels; nothing")
+    assert (
+        len(json.loads(cli("analyze", "keystore", "-l", "l.yaml", "-f", "json", cwd=tmp_path).stdout)["findings"]) == 9
+    )

@@ -25,6 +25,8 @@ WORDS = {
     "tty.lacking.nothing": "es wurden keine Daten verfolgt",
     "tty.finding.one": "{n} Befund",
     "tty.finding.many": "{n} Befunde",
+    "tty.channel.one": "{n} Kanal",
+    "tty.channel.many": "{n} Kanäle",
     "tty.n.accepted": "{findings} akzeptiert",
     "tty.end.reader.one": "{n} Kanal endet bei keinem bekannten Leser",
     "tty.end.reader.many": "{n} Kanäle enden bei keinem bekannten Leser",

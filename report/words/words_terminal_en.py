@@ -25,6 +25,8 @@ WORDS = {
     "tty.lacking.nothing": "no data was followed",
     "tty.finding.one": "{n} finding",
     "tty.finding.many": "{n} findings",
+    "tty.channel.one": "{n} channel",
+    "tty.channel.many": "{n} channels",
     "tty.n.accepted": "{findings} accepted",
     "tty.end.reader.one": "{n} channel ends at no known reader",
     "tty.end.reader.many": "{n} channels end at no known reader",

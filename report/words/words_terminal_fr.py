@@ -27,6 +27,8 @@ _TYPED = {
     "tty.lacking.nothing": "aucune donnée n'a été suivie",
     "tty.finding.one": "{n} constat",
     "tty.finding.many": "{n} constats",
+    "tty.channel.one": "{n} canal",
+    "tty.channel.many": "{n} canaux",
     "tty.n.accepted": "{findings} accepté(s)",
     "tty.end.reader.one": "{n} canal ne mène à aucun lecteur connu",
     "tty.end.reader.many": "{n} canaux ne mènent à aucun lecteur connu",
