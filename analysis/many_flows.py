@@ -103,6 +103,16 @@ class Flows(Sequence[Flow]):
             + sum(bisect_left(meeting.read, target) for meeting in self._meets.get(source, ()))
         )
 
+    def find(self, flow: Flow) -> int | None:
+        """Return the number of a flow between the same ends in the same role; None if there is none."""
+        for meeting in self._meets.get(flow.source, ()):
+            if _has(meeting.read, flow.target):
+                same = meeting.flow(flow.source, flow.target).role == flow.role
+                return self.number(flow.source, flow.target) if same else None
+        place = bisect_left(self._ends, flow[:3])
+        there = place < len(self._ends) and self._ends[place] == flow[:3]
+        return self._number_of_stored(place) if there else None
+
     def apart(self, special: Collection[int] = ()) -> tuple[list[tuple[int, Flow]], tuple[Meeting, ...]]:
         """Return flows with their numbers, in order, and the meetings that the others make.
 
@@ -141,7 +151,16 @@ class Flows(Sequence[Flow]):
 
     @cached_property
     def _rows(self) -> Sequence[tuple[int, Flow]]:
-        return [(self._number_of_stored(place), flow) for place, flow in enumerate(self.stored)]
+        rows: list[tuple[int, Flow]] = []
+        place, sources = 0, iter(zip(self._sources, self._before, strict=False))
+        source, number = -1, 0
+        for flow in self.stored:
+            while source != flow.source:
+                source, number = next(sources)
+                place, reads = 0, [meeting.read for meeting in self._meets.get(source, ())]
+            rows.append((number + place + sum(bisect_left(read, flow.target) for read in reads), flow))
+            place += 1
+        return rows
 
     @cached_property
     def _told(self) -> dict[int, Flow]:
@@ -208,6 +227,19 @@ def number(flows: Sequence[Flow], source: int, target: int) -> int:
     """
     assert isinstance(flows, Flows), "no others have meetings"
     return flows.number(source, target)
+
+
+def find(flows: Sequence[Flow], flow: Flow) -> int | None:
+    """Return the number of a flow between the same ends in the same role; None if there is none.
+
+    >>> from rosprivacy.analysis.meeting import Meeting
+    >>> find(Flows((), (Meeting((1, 2), (3, 4)),)), Flow(2, 3, "matches")), find((), Flow(2, 3, "matches"))
+    (2, None)
+    """
+    if isinstance(flows, Flows):
+        return flows.find(flow)
+    at = bisect_left(flows, flow[:3], key=lambda one: one[:3])
+    return at if at < len(flows) and flows[at][:3] == flow[:3] else None
 
 
 def one_by_one(flows: Sequence[Flow]) -> Sequence[Flow]:

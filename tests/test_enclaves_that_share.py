@@ -6,7 +6,6 @@ The brute force is the plain union: each node by itself, with every grant of its
 from __future__ import annotations
 
 import json
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
@@ -19,51 +18,16 @@ from rosprivacy.analysis.modes import View
 from rosprivacy.api import analyze
 from rosprivacy.ingest.policies import enclave_rights, flow_graph
 from rosprivacy.ingest.policies.policy_xml import read_policy
-from tests.helpers.enclaves import each_alone, policy_of
-from tests.helpers.written_systems import ROLES
+from tests.helpers.enclaves import NODES, each_alone, systems, write
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from pathlib import Path
 
     from tests.helpers.enclaves import Enclaves
 
-NODES = tuple(f"/n{i}" for i in range(5))
-PATHS = ("/e", "/f")
-TOPICS = ("/a", "/b", "/c/_action/feedback", "/a*", "/*", "/parameter_events")
-RIGHTS = tuple(
-    [(role, "topic", name, "ALLOW") for role in ("publish", "subscribe") for name in TOPICS]
-    + [(role, "service", name, "ALLOW") for role in ("request", "reply") for name in ("/s", "/c/_action/send_goal")]
-    + [(role, "action", "/c", "ALLOW") for role in ("call", "execute")]
-    + [("publish", "topic", "/b", "DENY"), ("subscribe", "topic", "/a*", "DENY"), ("request", "service", "/s", "DENY")]
-)
-ALWAYS = {"/n0": RIGHTS[:1], "/n1": [("subscribe", "topic", "/b", "ALLOW")]}  # labels name these
-CHANNEL = ("mundane", "sensitive", "{only: [Video]}", "{never: [Voice]}")
-SOURCES = (ROLES[0], "{source: {Video: [/a]}}", "{source: {Video: [/a], Voice: ['/*']}}")
 FORMATS = ("json", "text", "sarif", "turtle", "cnil-pia", "html")
 EVERYTHING, NOTHING = 0, 10**9  # of groups of nodes and channels is stored for each node
-
-
-@st.composite
-def systems(draw: st.DrawFn) -> tuple[Enclaves, str]:
-    """Enclaves, some nodes of which stand in both; and the text of a label file."""
-    enclaves: Enclaves = {}
-    for node in NODES:
-        for path in draw(st.sampled_from((PATHS[:1], PATHS[:1], PATHS[1:], PATHS))):
-            some = draw(st.lists(st.sampled_from(RIGHTS), max_size=4, unique=True))
-            enclaves.setdefault(path, {})[node] = [*ALWAYS.get(node, ()), *some]
-    roles = {node: draw(st.sampled_from(ROLES)) for node in NODES[1:]}
-    roles["/n0"] = draw(st.sampled_from(SOURCES))
-    used = sorted({name for some in enclaves.values() for of in some.values() for _, _, name, _ in of})
-    plain = [name for name in used if name in ("/a", "/b", "/s")]
-    channels = {name: draw(st.sampled_from(CHANNEL)) for name in plain if draw(st.integers(0, 3)) == 0}
-    lines = ["labels: 1", "nodes:", *(f"  {name}: {said}" for name, said in sorted(roles.items()))]
-    lines += ["channels:", *(f'  "={name}": {said}' for name, said in channels.items())] if channels else []
-    lines += ["elements:", "  disk: {kind: storage, country: US, retention: P3D}"]
-    lines += ["flows:", f"  - {{from: {draw(st.sampled_from(NODES))}, to: disk}}"]
-    limit = draw(
-        st.sampled_from(("", "", '{from: "*", to: {topic: /a}, never: [Voice]}', "{from: /b, to: /n1, only: [Voice]}"))
-    )
-    return enclaves, "\n".join([*lines, *([f"  - {limit}"] if limit else []), ""])
 
 
 def told(stored: int, *, alone: bool = False) -> list[str]:
@@ -83,11 +47,6 @@ def told(stored: int, *, alone: bool = False) -> list[str]:
             proposals = str(error)
         why = [repr(result.why_not("/n0", node)) for node in NODES[1:3]]
         return [*(str(result.to(name)) for name in FORMATS), str(counted.to("json")), proposals, *why]
-
-
-def write(enclaves: Enclaves, labels: str = "") -> None:
-    Path("p.xml").write_text(policy_of(enclaves), "utf-8")
-    Path("l.yaml").write_text(labels, "utf-8")
 
 
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture])

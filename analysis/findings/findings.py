@@ -110,7 +110,7 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
     spread = spreading.spread(graph, bound, hierarchy)
     kinds = tuple(concerns(spread, bound, hierarchy))
     wanted = [c for c in spread.categories if options.categories is None or c in options.categories]
-    mask = sum(spread.both(category) for category in wanted)
+    mask = _mask(spread, options)
     net = Net.of(spread)
     work = _Work(options.bounds)
     findings = tuple(_findings(net, mask, kinds, options, work))
@@ -140,6 +140,29 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
         lacking=lacks,
         types={graph.elements[v]: tuple(sorted({one.name for one in some})) for v, some in bound.types.items()},
     )
+
+
+def chosen_findings(net: Net, bound: Bound, hierarchy: Hierarchy, options: Options) -> tuple[Finding, ...]:
+    """Return some findings of a net, those that the options choose; nothing else of the answer is worked out.
+
+    >>> from rosprivacy.analysis.example import factory
+    >>> graph, bound, hierarchy = factory()
+    >>> net = Net.of(spreading.spread(graph, bound, hierarchy))
+    >>> [finding.leak.name for finding in chosen_findings(net, bound, hierarchy, Options())]
+    ['/archive', 'disk']
+    """
+    spread = net.spread
+    bound = replace(bound, outside=on_day(bound.outside, options.today))
+    return tuple(
+        _findings(
+            net, _mask(spread, options), tuple(concerns(spread, bound, hierarchy)), options, _Work(options.bounds)
+        )
+    )
+
+
+def _mask(spread: Spread, options: Options) -> int:
+    """The bits of the categories that the answer is about."""
+    return sum(spread.both(c) for c in spread.categories if options.categories is None or c in options.categories)
 
 
 class _Work:

@@ -285,9 +285,9 @@ class Flood:
             for index, target in moves.get(vertex, ()):
                 self._arrive((target,), self.doing.along(index, bits), pending)
             for meeting in meetings.get(vertex, ()):
-                new = bits & ~met[id(meeting)]
-                met[id(meeting)] |= new
-                self._arrive(meeting.read if new else (), new, pending)
+                if new := bits & ~met[id(meeting)]:
+                    met[id(meeting)] |= new
+                    self._arrive(meeting.read, new, pending)
 
     def _arrive(self, targets: Iterable[int], bits: int, pending: dict[int, int]) -> None:
         doing, arrives, leaves = self.doing, self.arrives, self.leaves

@@ -117,9 +117,9 @@ def search(net: Net, starts: Iterable[int], allowed: int, stop: Mapping[int, int
                 if bits & passing & ~seen.get(target, 0):
                     _arrive(reach, target, bits & passing, level, index, arriving)
             for meeting in net.meetings.get(vertex, ()):
-                new = bits & ~met[id(meeting)]
-                met[id(meeting)] |= new
-                _arrive_at_all(net, reach, vertex, meeting.read if new else (), new, level, arriving)
+                if new := bits & ~met[id(meeting)]:
+                    met[id(meeting)] |= new
+                    _arrive_at_all(net, reach, vertex, meeting.read, new, level, arriving)
         leaving = defaultdict(int)
         for vertex, bits in sorted(arriving.items()):
             if vertex in stop or vertex in derives:

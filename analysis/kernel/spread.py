@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.kernel.bits import CategoryBits, bits_of
+from rosprivacy.analysis.many_flows import find
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -101,6 +102,22 @@ class Spread:
         self.bits = CategoryBits(len(self.categories))
         self.all_bits = self.bits.all
         self._both = _both(self.categories)
+
+    def with_fewer_flows(self, graph: FlowGraph) -> Spread:
+        """Return the same for a graph that lacks some flows; what arrives where is no less than it is there.
+
+        No source may name channels: what a channel carries hangs on flows then.
+        """
+        flows, old = graph.flows, self.graph.flows
+        found = ((index, find(flows, old[index])) for index in {*self.told_apart, *self.flow_facts})
+        now = {index: there for index, there in found if there is not None}
+        return replace(
+            self,
+            graph=graph,
+            flow_facts={now[index]: facts for index, facts in self.flow_facts.items() if index in now},
+            flow_emits={now[index]: bits for index, bits in self.flow_emits.items() if index in now},
+            flow_keeps={now[index]: bits for index, bits in self.flow_keeps.items() if index in now},
+        )
 
     @property
     def told_apart(self) -> set[int]:

@@ -106,13 +106,20 @@ class Source(NamedTuple):
 
 
 class Package(NamedTuple):
-    """What one file says of one package."""
+    """What one file says of one package.
+
+    Attributes
+    ----------
+    place, sha256
+        Of the file.
+    """
 
     name: str
     about: str
     sources: tuple[Source, ...]
     nodes: tuple[PackageNode, ...]
     place: Place
+    sha256: str = ""
 
     @property
     def version(self) -> str:

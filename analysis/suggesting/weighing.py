@@ -63,12 +63,24 @@ def surer(one: Confidence, other: Confidence) -> bool:
     return _ORDER[one] < _ORDER[other]
 
 
+def closes_finding(label: Label, found: Collection[str]) -> bool:
+    """Return whether a label takes away data of which a finding is known; a conduit takes nothing away.
+
+    >>> from rosprivacy.analysis.model import Element
+    >>> from rosprivacy.analysis.suggesting.evidence import Label
+    >>> topic = Element("topic", "/t")
+    >>> [closes_finding(Label(topic, role, "Video"), {"Video"}) for role in ("never", "sensitive")]
+    [True, False]
+    """
+    takes_away = label.role in HIDING and label.role != CONDUIT
+    return takes_away and bool(found) and (not label.kind or label.kind in found)
+
+
 def _confidence(label: Label, reasons: Sequence[Evidence], found: Collection[str]) -> Confidence:
     if label.role in HIDING:
         said = [one.confidence for one in reasons if one.ground == PACKAGE]
-        if not said or (label.role != CONDUIT and found and (not label.kind or label.kind in found)):
-            return Confidence.MAY
-        return Confidence.MAY if min(said, key=_ORDER.__getitem__) is Confidence.MAY else Confidence.LIKELY
+        sure = any(surer(one, Confidence.MAY) for one in said) and not closes_finding(label, found)
+        return Confidence.LIKELY if sure else Confidence.MAY
     surest = reasons[0].confidence
     if surest is Confidence.MAY and len({one.ground for one in reasons} & INDEPENDENT) > 1:
         return Confidence.LIKELY

@@ -69,7 +69,7 @@ NODE_KEYS = (
     "author",
 )
 SAYS_NOTHING = ("subjects", "context", *OF_ELEMENT, "note", "author")  # of what data does
-CHANNEL_KEYS = ("only", "never", "types", "note", "author")
+CHANNEL_KEYS = ("sensitive", "only", "never", "types", "note", "author")
 FLOW_KEYS = ("from", "to", "only", "never", "note", "author")
 OUTSIDE = ("elements", "limits")
 SURROUNDINGS = ("context", "country")  # of a system
@@ -317,15 +317,20 @@ class LabelReader(NameReader):
             return
         if label.kind != "map":
             what = f"label {shown(label.text or label.kind)!r} on a channel"
-            self.problem(place.line, what, "write mundane, sensitive, {only: […]}, {never: […]} or {types: […]}")
+            hint = "write mundane, sensitive, {sensitive: […]}, {only: […]}, {never: […]} or {types: […]}"
+            self.problem(place.line, what, hint)
             return
         yield from self._restrictions(label, CHANNEL_KEYS, rank)
 
     def _restrictions(self, label: Value, keys: tuple[str, ...], rank: tuple[int, int]) -> Iterable[Statement]:
-        """``only`` and ``never`` of a channel or flow."""
+        """``only`` and ``never`` of a channel or flow, and for which kinds a channel is reviewed."""
         named: set[str] = set()
         for key, line, value in self.entries_of(label, keys):
-            if key in ("only", "never"):
+            if key == "sensitive":
+                reviewed = tuple(self.categories_of(value, key))
+                if reviewed:
+                    yield Statement(key, reviewed, rank, Place(self.file, line))
+            elif key in ("only", "never"):
                 names = tuple(self.categories_of(value, key))
                 for name in sorted(named.intersection(names)):
                     self.problem(line, f"{name} is under only and under never", "name it under one of them")

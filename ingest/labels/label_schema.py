@@ -142,6 +142,7 @@ def _definitions(categories: list[Category]) -> dict[str, Any]:
         "note": {"type": "string", "description": "Why; stands in the report where the answer hangs on it."},
         "author": AUTHOR,
     }
+    reviewed = {**some, "description": "Reviewed: may carry these."}
     restrictions = {
         "only": {**some, "description": "Carries these at most."},
         "never": {**some, "description": "Does not carry these."},
@@ -158,7 +159,7 @@ def _definitions(categories: list[Category]) -> dict[str, Any]:
             "anyOf": [
                 {"type": "null"},
                 {"enum": ["mundane", "sensitive"]},
-                _object({**restrictions, "types": TYPES, **said}),
+                _object({"sensitive": reviewed, **restrictions, "types": TYPES, **said}),
             ]
         },
         "duration": {"type": "string", "pattern": "^P", "description": "ISO 8601, such as P30D."},

@@ -60,15 +60,15 @@ def with_lines(file: str, text: str, lines: Sequence[NewLine], vocabulary: Vocab
 
     def change(top: Any) -> None:
         for line in lines:
-            _add(top, line)
+            add_line(top, line)
 
     try:
         new = changed(text, change)
         after = parse_labels(new, vocabulary, name=file).entries
     except FAILURES as error:
         raise _by_hand(file, f"cannot be changed: {shown(str(error).splitlines()[0])}") from None
-    wanted = Counter((*_facts(before), *((SECTIONS[line.section], line.name) for line in lines)))
-    found = Counter([*(f for f in _facts(after) if f in wanted), *_names(after, lines)])
+    wanted = Counter((*facts_of(before), *((SECTIONS[line.section], line.name) for line in lines)))
+    found = Counter([*(f for f in facts_of(after) if f in wanted), *_names(after, lines)])
     if len(after) != len(before) + len(lines) or wanted - found:
         raise _by_hand(file, "cannot be changed without changing another entry")
     if not keeps_comments(text, new):
@@ -80,8 +80,8 @@ def _by_hand(file: str, problem: str) -> LabelError:
     return LabelError(file, 0, problem, "add the lines by hand")
 
 
-def _facts(entries: Iterable[Entry]) -> list[Any]:
-    """Entries wherever they stand."""
+def facts_of(entries: Iterable[Entry]) -> list[Any]:
+    """Return entries as they are wherever they stand: two files that say the same have the same."""
     return [without_places(entry) for entry in entries]
 
 
@@ -102,7 +102,8 @@ def _names(entries: Iterable[Entry], lines: Iterable[NewLine]) -> list[Any]:
     return [(entry.kinds, entry.name) for entry in entries if (entry.kinds, entry.name) in added]
 
 
-def _add(top: Any, line: NewLine) -> None:
+def add_line(top: Any, line: NewLine) -> None:
+    """Add a line at the end of its section, in what ruamel.yaml has read."""
     section = top.get(line.section)
     if section is None:
         rest = top.ca.items.pop(line.section, None)  # comments after an empty section go with the key

@@ -2,19 +2,26 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import Breach
 from rosprivacy.ingest.lint.rule_table import RULES
-from rosprivacy.ingest.policies.names import is_pattern
+from rosprivacy.ingest.policies.names import covers, is_pattern
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from rosprivacy.analysis.model import FlowGraph, Grant
+    from rosprivacy.analysis.model import FlowGraph, Grant, Place
 
 EVERYTHING = ("*", "/*", "rt/*", "rq/*", "rr/*")
+NAMED = 3  # of the names that a line stands for
+RELATIVE, WRITE_OUT = "relative-standard-name", "write out the names that are meant"
+OTHER_END = {
+    "publish": "subscribe", "subscribe": "publish", "request": "reply", "reply": "request", "call": "execute",
+    "execute": "call",
+}  # fmt: skip
 STANDARD = ("rosout", "parameter_events", "clock")  # of every node, under one name in all namespaces
 
 
@@ -26,23 +33,66 @@ def grant_breaches(grants: Iterable[Grant], graph: FlowGraph) -> Iterator[Breach
     graph
         Of the same policies, in the declared view.
     """
+    grants = tuple(grants)
+    of_line: dict[tuple[str, Place], list[Grant]] = defaultdict(list)
     for grant in grants:
-        yield from _of_name(grant)
-    taken: dict[Grant, None] = {}
-    for flow in graph.denied:
-        taken.update(dict.fromkeys(flow.grants))
-    denials = {grant: flow.denials[0].place for flow in graph.denied for grant in flow.grants}
-    for grant in taken:
-        message = f"{grant.role} {shown(grant.name)} of {shown(grant.node)} is allowed here and denied at"
-        yield Breach(RULES["overridden-allow"], grant.place, f"{message} {denials[grant]}: it grants nothing")
+        if rule := _rule(grant):
+            of_line[rule, grant.place].append(grant)
+    for (rule, place), some in of_line.items():
+        roles, named = ", ".join(dict.fromkeys(grant.role for grant in some)), _few(grant.name for grant in some)
+        base = some[0].name.rpartition("/")[2]
+        hint = f"nodes use /{base}, whatever their namespace; write it so" if rule == RELATIVE else WRITE_OUT
+        yield Breach(RULES[rule], place, f"{roles} {named}: {hint}")
+    yield from _overridden(graph)
+    yield from _alone_in_a_namespace(grants)
 
 
-def _of_name(grant: Grant) -> Iterator[Breach]:
-    if grant.allow and is_pattern(grant.name):
-        rule = RULES["wildcard-everything" if grant.name in EVERYTHING else "wildcard"]
-        message = f"{grant.role} {shown(grant.name)}: write out the names that are meant"
-        yield Breach(rule, grant.place, message)
+def _rule(grant: Grant) -> str:
+    """The rule that a line breaks by its name alone; empty if none."""
     base = grant.name.rpartition("/")[2]
+    if grant.allow and is_pattern(grant.name):
+        return "wildcard-everything" if grant.name in EVERYTHING else "wildcard"
     if grant.kind == "topic" and not grant.absolute and base in STANDARD and grant.name != f"/{base}":
-        message = f"{grant.role} {shown(grant.name)}: nodes use /{base}, whatever their namespace; write it so"
-        yield Breach(RULES["relative-standard-name"], grant.place, message)
+        return RELATIVE
+    return ""
+
+
+def _overridden(graph: FlowGraph) -> Iterator[Breach]:
+    taken: dict[tuple[Place, str, str], dict[str, Place]] = defaultdict(dict)
+    for flow in graph.denied:
+        for grant in flow.grants:
+            taken[grant.place, grant.role, grant.name].setdefault(grant.node, flow.denials[0].place)
+    for (place, role, name), nodes in taken.items():
+        message = f"{role} {shown(name)} of {_few(nodes)} is allowed here and denied at {next(iter(nodes.values()))}"
+        yield Breach(RULES["overridden-allow"], place, f"{message}: it grants nothing")
+
+
+def _alone_in_a_namespace(grants: Iterable[Grant]) -> Iterator[Breach]:
+    """Lines that are other names in other namespaces: at the other end of some somebody is, of others nobody."""
+    ends: dict[tuple[str, str], list[str]] = defaultdict(list)
+    shared: dict[tuple[Place, str, str], dict[str, None]] = defaultdict(dict)
+    for grant in grants:
+        if not grant.allow:
+            continue
+        ends[grant.role, grant.kind].append(grant.name)
+        own = grant.name.startswith(f"{grant.node}/")  # ~/name
+        standard = grant.name.rpartition("/")[2] in STANDARD
+        if grant.place.file != grant.policy and not (grant.absolute or own or standard or is_pattern(grant.name)):
+            shared[grant.place, grant.role, grant.kind][grant.name] = None
+    plain = {key: set(names) for key, names in ends.items()}
+    patterns = {key: [name for name in names if is_pattern(name)] for key, names in plain.items()}
+    for (place, role, kind), names in shared.items():
+        other = OTHER_END[role], kind
+        met = [
+            name
+            for name in names
+            if name in plain.get(other, ()) or any(covers(pattern, name) for pattern in patterns.get(other, ()))
+        ]
+        if lone := [name for name in names if name not in met] if met else []:
+            message = f"{role} {_few(lone)}: no other end, as {_few(met)} has; write it absolute, if that one is meant"
+            yield Breach(RULES["relative-shared-name"], place, message)
+
+
+def _few(names: Iterable[str]) -> str:
+    unlike = list(dict.fromkeys(names))
+    return ", ".join(map(shown, unlike[:NAMED])) + (", …" if len(unlike) > NAMED else "")

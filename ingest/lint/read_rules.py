@@ -6,11 +6,13 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import (
     DEAD_DENY,
+    DIALECT,
     DUPLICATE_ENCLAVE,
     EMPTY_GROUP,
     EMPTY_INCLUDE,
     FALLBACK_TAKEN,
     MISTAKEN_TILDE,
+    ODD_NAMESPACE,
     REFUSED_NAME,
     SEVERAL_PROFILES,
     SHARED_ENCLAVE,
@@ -27,6 +29,8 @@ if TYPE_CHECKING:
 OF_CODE = {
     code: RULES[rule]
     for code, rule in (
+        (DIALECT, "refused-policy"),
+        (ODD_NAMESPACE, "odd-namespace"),
         (DEAD_DENY, "dead-deny"),
         (DUPLICATE_ENCLAVE, "duplicate-enclave"),
         (SEVERAL_PROFILES, "several-profiles"),

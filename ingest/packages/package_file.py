@@ -6,6 +6,7 @@ problems of a file are raised at once.
 
 from __future__ import annotations
 
+import hashlib
 import re
 from dataclasses import dataclass
 from functools import partial
@@ -49,14 +50,14 @@ def read_package(file: str, vocabulary: Vocabulary, shown_as: str = "", bounds: 
     """
     name = shown_as or file
     try:
-        top, _ = yaml_values.read(file, partial(PackageError, name), bounds)
+        top, data = yaml_values.read(file, partial(PackageError, name), bounds)
     except InputError as error:
         raise InputErrors([error]) from None
     reader = _Reader(name, error=PackageError, bounds=bounds, vocabulary=vocabulary)
     package = reader.document(top)
     if reader.problems or package is None:
         raise InputErrors(reader.problems)
-    return package
+    return package._replace(sha256=hashlib.sha256(data).hexdigest())
 
 
 @dataclass(kw_only=True, eq=False, repr=False)

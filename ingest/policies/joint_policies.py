@@ -19,7 +19,7 @@ from rosprivacy.ingest.policies.names import is_pattern
 from rosprivacy.ingest.policies.seen_although_denied import seen_although_denied
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Collection, Iterable, Iterator, Sequence
 
     from rosprivacy.analysis.model import Grant, Policy
 
@@ -56,9 +56,11 @@ def _shared_enclaves(policies: Sequence[Policy]) -> Iterator[Diagnostic]:
     for policy in deployed(policies):
         for profile in policy.profiles:
             stated[profile.enclave].setdefault(policy.file, profile.place)
+    several = {enclave: files for enclave, files in stated.items() if len(files) > 1}
+    said = _said(policies, several) if several else {}
     shared: dict[tuple[str, ...], list[str]] = defaultdict(list)
-    for enclave, files in stated.items():
-        if len(files) > 1:
+    for enclave, files in several.items():
+        if any(said[file, enclave] != said[next(iter(files)), enclave] for file in files):
             shared[tuple(files)].append(enclave)
     for names, enclaves in sorted(shared.items()):
         named = ", ".join([*map(shown, sorted(enclaves)[:NAMED]), *(["…"] if len(enclaves) > NAMED else [])])
@@ -67,6 +69,20 @@ def _shared_enclaves(policies: Sequence[Policy]) -> Iterator[Diagnostic]:
         message = f"{what} stated in {others} too: sros2 makes permissions of one file; all are read, and no file's "
         message += "DENY cuts what another file allows; name only what is deployed"
         yield Diagnostic(stated[min(enclaves)][names[0]], Severity.WARNING, message, SHARED_ENCLAVE)
+
+
+def _said(policies: Sequence[Policy], enclaves: Collection[str]) -> dict[tuple[str, str], set[object]]:
+    """By file and enclave, the lines that state it: the same ones where a policy includes another one's enclave."""
+    said: dict[tuple[str, str], set[object]] = defaultdict(set)
+    for policy in policies:
+        for profile in policy.profiles:
+            if profile.enclave in enclaves:
+                said[policy.file, profile.enclave].add(profile)
+        for grant in policy.grants:
+            if grant.enclave in enclaves:
+                line = grant.place, grant.allow, grant.role, grant.name, grant.node, grant.dead
+                said[policy.file, grant.enclave].add(line)
+    return said
 
 
 def why_refused(name: str) -> str:

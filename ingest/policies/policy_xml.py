@@ -18,9 +18,11 @@ from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import InputError, InputErrors, PolicyError, shown
 from rosprivacy.analysis.model import (
     DEAD_DENY,
+    DIALECT,
     DUPLICATE_ENCLAVE,
     EMPTY_GROUP,
     MISTAKEN_TILDE,
+    ODD_NAMESPACE,
     SEVERAL_PROFILES,
     Diagnostic,
     Grant,
@@ -136,7 +138,7 @@ class _Reader:
             raise InputErrors([_not_a_policy(root)])
         self.namespace = root.namespace
         if root.namespace:
-            self._notice(root.place, "default namespace on <policy>: sros2 refuses it; read as if it had none")
+            self._dialect(root.place, "default namespace on <policy>: sros2 refuses it; read as if it had none")
         self._version(root)
         self._attributes(root, {"version"})
         sections = list(self._elements(root, {"enclaves", "contexts", "profiles"}))
@@ -162,14 +164,14 @@ class _Reader:
                 message = (
                     "<profiles> without <enclaves>, as in format 0.1.0: each node is taken as an enclave of its own"
                 )
-            self._notice(section.place, message)
+            self._dialect(section.place, message)
             self._profiles(section, None)
             return
         if version == VERSIONS[0]:
-            self._notice(section.place, "version 0.1.0 has no enclaves: read as 0.2.0")
+            self._dialect(section.place, "version 0.1.0 has no enclaves: read as 0.2.0")
         inner = {"enclaves": "enclave", "contexts": "context"}[section.tag]
         if section.tag == "contexts":
-            self._notice(section.place, "<contexts> of a transitional format: read as <enclaves>")
+            self._dialect(section.place, "<contexts> of a transitional format: read as <enclaves>")
         self._attributes(section, set())
         enclaves = list(self._elements(section, {inner}))
         if not enclaves:
@@ -247,7 +249,7 @@ class _Reader:
         namespace, node = self._required(profile, "ns", empty=True), self._required(profile, "node")
         if not namespace.startswith("/") and profile.element.get("ns") is not None:
             message = f"namespace {namespace!r} does not begin with /: its names are taken as sros2 writes them"
-            self._warning(profile.place, message)
+            self._warning(profile.place, message, ODD_NAMESPACE)
         name = namespace + node if namespace.endswith("/") else f"{namespace}/{node}"
         owner = Profile(name if enclave is None else enclave, name, profile.place, self.participants.get(name, ""))
         self.profiles.append(owner)
@@ -319,7 +321,7 @@ class _Reader:
         for child in children:
             tag = child.tag
             if child.namespace and child.namespace != self.namespace:
-                self._notice(child.place, f"<{tag}> in a namespace of its own: read as if it had none")
+                self._dialect(child.place, f"<{tag}> in a namespace of its own: read as if it had none")
             if tag in allowed:
                 yield child
             elif tag != "metadata":
@@ -344,8 +346,9 @@ class _Reader:
     def _warning(self, place: Place, message: str, code: str = "") -> None:
         self.diagnostics.append(Diagnostic(place, Severity.WARNING, shown(message), code))
 
-    def _notice(self, place: Place, message: str) -> None:
-        self.diagnostics.append(Diagnostic(place, Severity.NOTICE, shown(message)))
+    def _dialect(self, place: Place, message: str) -> None:
+        """A form that sros2 refuses."""
+        self.diagnostics.append(Diagnostic(place, Severity.NOTICE, shown(message), DIALECT))
 
 
 def _misplaced(tag: str, parent: str, allowed: Collection[str]) -> tuple[str, str]:

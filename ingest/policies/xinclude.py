@@ -151,10 +151,14 @@ class Documents:
             raise _error(place, f"include loop: {shown(file)} includes itself", "break the loop")
         top = Item.of(self._load(path, file, place), file, (*include.chain, (file, xpointer)))
         chosen = self._select(top, xpointer, place) if xpointer else [top]
+        self.took(include, file, xpointer, chosen)
         if not chosen:
             message = f"the include brings nothing: {xpointer} selects no element of {file}"
             self.diagnostics.append(Diagnostic(place, Severity.WARNING, shown(message), EMPTY_INCLUDE))
         yield from chosen
+
+    def took(self, include: Item, file: str, xpointer: str, brought: list[Item]) -> None:
+        """An include was read; for those who look at includes themselves."""
 
     def _target(self, href: str, include: Item) -> tuple[Path, str]:
         """The file behind an href: its real path, and as it is shown."""

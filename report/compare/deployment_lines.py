@@ -26,6 +26,7 @@ def deployment_lines(document: CheckDocument) -> Iterator[str]:
         for side, entries in groupby(of_enclave, key=lambda entry: entry["only_in"]):
             yield f"   {SAID[side]}"
             yield from (f"      {_line(entry)}" for entry in entries)
+    yield from (one["message"] for one in document["losses"])
     for said in document["diagnostics"]:
         place = f"{shown(str(said['file']))}:{said['line']}" if said["line"] else shown(str(said["file"]))
         yield f"{said['severity']}: {place}: {said['message']}"

@@ -19,11 +19,21 @@ class DifferenceEntry(TypedDict):
     line: int
 
 
+class LossEntry(TypedDict):
+    """A line that does not hold, as the known generator of Zenoh lists loses it."""
+
+    loss: str
+    message: str
+    file: str
+    line: int
+
+
 class CheckDocument(TypedDict):
     """What a policy says and what is deployed."""
 
     format: str
     differences: list[DifferenceEntry]
+    losses: list[LossEntry]
     diagnostics: list[dict[str, object]]
     policies: list[dict[str, str]]
     rosprivacy: str

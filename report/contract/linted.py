@@ -28,5 +28,6 @@ class LintDocument(TypedDict):
 
     format: str
     breaches: list[BreachEntry]
+    not_looked_at: list[str]
     policies: list[LintedFile]
     rosprivacy: str

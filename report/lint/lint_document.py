@@ -13,17 +13,22 @@ if TYPE_CHECKING:
 FORMAT = "rosprivacy.lint/1"
 
 
-def lint_document(breaches: Iterable[Breach], files: Iterable[tuple[str, str]], version: str) -> LintDocument:
+def lint_document(
+    breaches: Iterable[Breach], files: Iterable[tuple[str, str]], unseen: Iterable[str], version: str
+) -> LintDocument:
     """Return the document.
 
     Parameters
     ----------
     files
         (file, SHA-256) of what was read.
+    unseen
+        Names of rules that were not looked at, since no labels are named.
     """
     return {
         "format": FORMAT,
         "breaches": [_entry(breach) for breach in breaches],
+        "not_looked_at": list(unseen),
         "policies": [{"file": file, "sha256": digest} for file, digest in files],
         "rosprivacy": version,
     }

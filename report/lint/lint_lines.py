@@ -22,9 +22,16 @@ def lint_lines(document: LintDocument) -> Iterator[str]:
         yield f"{place}: {breach['severity']} {breach['rule']}: {breach['message']}"
     if not breaches:
         yield f"no rule is broken in {counted(len(document['policies']), 'file')}"
+        yield from _unseen(document)
         return
     yield ""
     times = Counter(breach["rule"] for breach in breaches)
     why = {breach["rule"]: breach["why"] for breach in breaches}
     for rule, count in times.items():
         yield f"{rule} ({count}): {why[rule]}"
+    yield from _unseen(document)
+
+
+def _unseen(document: LintDocument) -> Iterator[str]:
+    for rule in document["not_looked_at"]:
+        yield f"{rule} was not looked at: it needs labels; name them with -l"

@@ -18,6 +18,7 @@ from rosprivacy.question import question_of
 from rosprivacy.remedies import Remedies
 from rosprivacy.report.answer import Enforced
 from rosprivacy.robot_system import system_reader
+from rosprivacy.trials import Trials
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -75,7 +76,11 @@ def _both(settings: Settings, reader: Callable[[Question], Reader]) -> Result:
     whole = enforced(NO_CHANGE)
     found = answer(whole, question)
     remedies = Remedies(
-        enforced, declared, question, granted(system.graph), _enclaves(whole.graph.profiles), whole.likeness.second
+        Trials(whole, found, enforced, question),
+        declared,
+        granted(system.graph),
+        _enclaves(whole.graph.profiles),
+        whole.likeness.second,
     )
     new = (finding for finding in found.analysis.findings if finding.stands and finding.id not in known)
     return replace(result, enforced=Enforced(found, tuple(_added(new, remedies, whole.likeness))))

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.granted import ZENOH, read_granted
 from rosprivacy.ingest.keystore.deployed_rights import differences
+from rosprivacy.ingest.keystore.generator_losses import generator_losses
 from rosprivacy.version import __version__
 
 if TYPE_CHECKING:
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.model import Diagnostic, Grant, Policy
     from rosprivacy.ingest.keystore.deployed_rights import Difference
+    from rosprivacy.ingest.keystore.generator_losses import Loss
     from rosprivacy.report.contract.deployment import CheckDocument, DifferenceEntry
     from rosprivacy.settings import Settings
 
@@ -26,7 +28,7 @@ def check_document(policy: str, deployed: tuple[str, ...], settings: Settings) -
     """Compare a policy with what is deployed.
 
     A file of Zenoh is the view of one process, and its name that of a node: it is compared with what the policy grants
-    to the nodes of that name. All else is compared by enclave.
+    to the nodes of that name, and what the known generator loses is told as such. All else is compared by enclave.
 
     Raises
     ------
@@ -37,17 +39,24 @@ def check_document(policy: str, deployed: tuple[str, ...], settings: Settings) -
     zenoh = [name for name in deployed if name.endswith(ZENOH)]
     others = [name for name in deployed if not name.endswith(ZENOH)]
     found: list[Difference] = []
+    losses: tuple[Loss, ...] = ()
     read: list[Policy] = [*stated]
     for names, who in ((others, _enclave), (zenoh, _base_name)):
         if names:
             there, more = read_granted(names, settings)
-            found += differences(stated, there, who)
+            new = differences(stated, there, who)
+            found += new
+            losses = generator_losses(stated, there, new, who) if names is zenoh else losses
             read += there
             said += more
     told = [one for one_read in read for one in one_read.diagnostics]
     return {
         "format": FORMAT,
         "differences": [_entry(difference) for difference in sorted(found)],
+        "losses": [
+            {"loss": one.fault, "message": one.message, "file": one.place.file, "line": one.place.line}
+            for one in losses
+        ],
         "diagnostics": list(_diagnostics([*told, *said])),
         "policies": [
             {"file": file, "sha256": digest} for file, digest in sorted({one for some in read for one in some.sources})

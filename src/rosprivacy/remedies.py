@@ -11,7 +11,6 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.findings.beyond import Added, DenyLine, beyond, enclaves_of, rights
-from rosprivacy.answering import answer
 from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, Change
 
 if TYPE_CHECKING:
@@ -20,8 +19,8 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Finding, Step
     from rosprivacy.analysis.findings.beyond import Ends, Right
     from rosprivacy.analysis.model import Element, Place
-    from rosprivacy.question import Question
     from rosprivacy.system import System
+    from rosprivacy.trials import Trials
 
 TRIED = 20  # changes of each kind, each an analysis of its own
 
@@ -32,10 +31,10 @@ class Remedies:
 
     Attributes
     ----------
-    enforced, declared
-        Read the policies with a change, under each view.
-    question
-        What was asked under the enforced view.
+    trials
+        Tell what a change leaves of findings under the enforced view.
+    declared
+        Reads the policies with a change.
     known
         The flows that profiles allow.
     enclaves
@@ -44,13 +43,12 @@ class Remedies:
         Robots that only stand beside others like them.
     """
 
-    enforced: Callable[[Change], System]
+    trials: Trials
     declared: Callable[[Change], System]
-    question: Question
     known: frozenset[Ends]
     enclaves: Mapping[str, frozenset[str]]
     second: Collection[str]
-    tried: dict[Change, Mapping[str, Finding]] = field(default_factory=dict)
+    tried: set[Change] = field(default_factory=set)
     allowed: dict[Change, frozenset[Right]] = field(default_factory=dict)
     counts: dict[int, int] = field(default_factory=dict)
 
@@ -130,10 +128,8 @@ class Remedies:
             self.counts[kind] = self.counts.get(kind, 0) + 1
             if self.counts[kind] > TRIED:
                 return None
-            analysis = answer(self.enforced(change), self.question).analysis
-            self.tried[change] = {one.id: one for one in analysis.findings if one.stands}
-        there = self.tried[change]
-        return [there[one.id] for one in findings if one.id in there]
+            self.tried.add(change)
+        return self.trials.left(change, findings)
 
     def _rights(self, change: Change) -> frozenset[Right]:
         if change not in self.allowed:

@@ -19,6 +19,7 @@ STILL_ENGLISH = {
     "load": "counts",
     "mitigate": "proposals; the report tells them in a language",
     "observe": "what was written",
+    "suggest": "questions for a label file, whose words are English",
     "query": "rows of a database, with the heads of the queries",
     "unload": "counts",
     "why-not": "the answer",

@@ -57,6 +57,8 @@ ENDINGS = {
     f"graph {BEFORE} --format mermaid": 0,
     f"graph {BEFORE} --format nope": 2,
     "labels --init examples/factory/before.policy.xml": 0,
+    "suggest examples/factory/before.policy.xml": 0,
+    "suggest examples/factory/nope.xml": 2,
     "labels --init examples/factory/nope.xml": 2,
     "annotations examples/annotated": 0,
     "annotations examples/annotated --check examples/annotated/robot.labels.yaml": 0,

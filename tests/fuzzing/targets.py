@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any
 import rosprivacy
 from rosprivacy.analysis import durations
 from rosprivacy.analysis.errors import InputError
-from rosprivacy.analysis.model import Place, Profile
+from rosprivacy.analysis.model import Confidence, Place, Profile
+from rosprivacy.analysis.suggesting.by_package import package_evidence
 from rosprivacy.annotating import annotated, differences
 from rosprivacy.ingest.bags.bag_folders import read_bags
 from rosprivacy.ingest.decisions.decisions_file import read_decisions
@@ -25,6 +26,7 @@ from rosprivacy.ingest.keystore.permissions_file import read_permissions
 from rosprivacy.ingest.labels.label_file import read_labels
 from rosprivacy.ingest.mitigation.limits_file import read_limits
 from rosprivacy.ingest.observe.text_files import TextFiles
+from rosprivacy.ingest.packages.package_file import read_package
 from rosprivacy.ingest.policies import common_names, names
 from rosprivacy.ingest.policies.policy_xml import read_policy
 from rosprivacy.ingest.policies.saved_graph import read_saved
@@ -37,7 +39,16 @@ from rosprivacy.queries.library import parse
 from rosprivacy.report.compare.earlier import read_earlier
 from rosprivacy.report.json_text import as_text
 from rosprivacy.spark import parquet
-from tests.fuzzing import bag_texts, code_texts, label_texts, node_info_texts, other_texts, policy_texts, security_texts
+from tests.fuzzing import (
+    bag_texts,
+    code_texts,
+    label_texts,
+    node_info_texts,
+    other_texts,
+    package_texts,
+    policy_texts,
+    security_texts,
+)
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
@@ -96,6 +107,14 @@ def _known() -> Known:
 def _limits() -> Result:
     as_text(run_mitigation(_base(), "limits.yaml").document())
     return _base()
+
+
+def _matched() -> None:
+    """What a package says is never certain, and of nodes that are there."""
+    graph = _base().analysis.graph
+    for said in package_evidence(graph, {}, [read_package("package.yaml", load())]):
+        assert said.confidence is not Confidence.CERTAIN
+        assert said.label.element in graph.elements
 
 
 def _since() -> Result:
@@ -192,7 +211,7 @@ TARGETS = {target.name: target for target in (
         ("analyze", "policy.xml", "-l", "star.yaml"), "policy",
     ),
     Target(
-        "labels", 191, label_texts.labels, lambda: read_labels("labels.yaml", load()),
+        "labels", 181, label_texts.labels, lambda: read_labels("labels.yaml", load()),
         lambda: rosprivacy.analyze("base.xml", "labels.yaml", today=TODAY, paths="all"),
         ("analyze", "base.xml", "-l", "labels.yaml"),
     ),
@@ -254,6 +273,7 @@ TARGETS = {target.name: target for target in (
         lambda: rosprivacy.analyze("node.json5", "star.yaml", today=TODAY),
         ("analyze", "node.json5", "-l", "star.yaml"),
     ),
+    Target("package", 10, package_texts.package, _matched),
     Target(
         "python-code", 10, code_texts.python, lambda: _annotated("a.py"), arguments=("annotations", "a.py"),
     ),

@@ -33,15 +33,33 @@ def labels(
     next_round: Annotated[
         bool, typer.Option("--next", help="Add lines for what to review next to the file of --labels.")
     ] = False,
+    accept: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="WHAT",
+            help="Make labels of suggestions in the file of --labels: the surest of an element, by its name, or all "
+            "that are certain, likely or may, with those that are surer; may be repeated.",
+            show_default=False,
+        ),
+    ] = None,
+    by: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="Who accepts suggestions; by default the author of the file."),
+    ] = None,
     output: Output = None,
 ) -> None:
     """Make a label file or add to one, or print the schema or the files that come with the program."""
-    if [init, schema, standard, infrastructure, update, next_round].count(True) != 1:
-        raise typer.BadParameter("name one of --init, --update, --next, --schema, --standard, --infrastructure")
+    if [init, schema, standard, infrastructure, update, next_round, bool(accept)].count(True) != 1:
+        hint = "name one of --init, --update, --next, --accept, --schema, --standard, --infrastructure"
+        raise typer.BadParameter(hint)
+    if accept:
+        _accept(inputs, accept, by, output)
+        return
+    refuse("labels", "--by with --accept only", ["--by"] if by else [])
     if update or next_round:
         _add(inputs, output, update=update)
         return
-    refuse("labels", "label files with --update and --next only", inputs.given("labels"))
+    refuse("labels", "label files with --update, --next and --accept only", inputs.given("labels"))
     if init:
         _begin(inputs, output)
     elif schema:
@@ -64,6 +82,24 @@ def _add(inputs: Inputs, output: Path | None, *, update: bool) -> None:
         if written.added or output:
             emit(written.text, file, edited=Path(written.file))
     typer.echo(f"{file}: {counted(written.added, 'line')} added", err=True)
+
+
+def _accept(inputs: Inputs, accepted: list[str], by: str | None, output: Path | None) -> None:
+    """Suggestions that a person accepts become labels, in the file that people edit."""
+    from rosprivacy.label_lines import own_file
+    from rosprivacy.report.editing import editing
+    from rosprivacy.suggested_lines import with_accepted
+
+    refuse("labels --accept", "the label file alone", inputs.given("policies", "add"))
+    labels = tuple(inputs.labels or ())
+    file = output or Path(own_file(labels))
+    with editing(file):
+        written = with_accepted(labels, accepted, by, inputs.settings)
+        for remark in written.remarks:
+            typer.echo(remark, err=True)
+        if written.added or output:
+            emit(written.text, file, edited=Path(written.file))
+    typer.echo(f"{file}: {counted(written.added, 'suggestion')} accepted", err=True)
 
 
 def _begin(inputs: Inputs, output: Path | None) -> None:

@@ -63,7 +63,7 @@ def lint(
         root = repository_root(file for file, _ in found.files)
         emit(as_text(lint_sarif(found.breaches, found.rules, found.files, __version__, root)), output)
     else:
-        document = lint_document(found.breaches, found.files, __version__)
+        document = lint_document(found.breaches, found.files, found.unseen, __version__)
         lines = "".join(f"{line}\n" for line in lint_lines(document))
         emit(as_text(document) if format is LintFormat.json else lines, output)
     if any(breach.rule.severity is not Severity.NOTICE for breach in found.breaches):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 from importlib.resources import files
 from pathlib import Path
@@ -57,6 +58,7 @@ def test_a_file_says_what_its_nodes_do() -> None:
     Path("p.yaml").write_text(GOOD, "utf-8")
     package = read_package("p.yaml", load())
     assert (package.name, package.version) == ("face_blur", "2.1")
+    assert package.sha256 == hashlib.sha256(Path("p.yaml").read_bytes()).hexdigest()
     (node,) = package.nodes
     assert node.names == ("face_blur", "face_blur_*", "blur_node")
     assert node.interfaces == (

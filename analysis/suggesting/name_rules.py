@@ -1,0 +1,149 @@
+"""Rules about names of topics and nodes, as data, and which of them speaks about a name.
+
+A name is taken apart at ``/``, at signs that are no letters, and where a small letter meets a capital one. Only its
+last part speaks; a part with nothing but neutral words hands over to the one before it. There the last word says most.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from rosprivacy.analysis.model import Confidence, Place
+
+Phrase = tuple[str, ...]  # words that follow each other
+LONGEST_PHRASE = 4  # words
+_HUMP = re.compile("([a-z])([A-Z])")
+_NO_LETTERS = re.compile("[^a-z]+")
+
+
+class NameRule(NamedTuple):
+    """What some words of a name suggest.
+
+    Attributes
+    ----------
+    kinds
+        Names of categories; none where the words say that data leave the robot, or that a topic carries none.
+    why
+        The reason, in a few words.
+    instead_of
+        Categories: where another word of the name suggests one of these, it is the kinds of this rule instead.
+    """
+
+    kinds: tuple[str, ...]
+    confidence: Confidence
+    why: str
+    place: Place
+    instead_of: tuple[str, ...] = ()
+
+
+class NameRules(NamedTuple):
+    """The rules of all files, by phrase.
+
+    Attributes
+    ----------
+    carries
+        Of topics: what is sent through them.
+    nothing
+        Of topics: that they are not made for personal data.
+    brings_in, lets_out
+        Of nodes: that they are sources of kinds, or leaks.
+    silent
+        Phrases that suggest nothing wherever they stand last, such as ``camera_info``.
+    neutral
+        Words that say nothing by themselves, such as ``raw``.
+    becomes
+        Category -> the categories that nodes make of it, each with its rule.
+    """
+
+    carries: Mapping[Phrase, NameRule]
+    nothing: Mapping[Phrase, NameRule]
+    brings_in: Mapping[Phrase, NameRule]
+    lets_out: Mapping[Phrase, NameRule]
+    silent: frozenset[Phrase]
+    neutral: frozenset[str]
+    becomes: Mapping[str, Mapping[str, NameRule]]
+
+
+class Spoken(NamedTuple):
+    """A rule that speaks about a name, and the words of the name that it is about."""
+
+    rule: NameRule
+    words: Phrase
+
+
+def words(name: str) -> Phrase:
+    """Return the words of one part of a name, in small letters.
+
+    >>> words("cameraInfo_2raw")
+    ('camera', 'info', 'raw')
+    """
+    return tuple(word for word in _NO_LETTERS.split(_HUMP.sub(r"\1_\2", name).lower()) if word)
+
+
+def of_topic(name: str, rules: NameRules) -> Spoken | None:
+    """Return the rule that says what a topic of this name carries, if there is one.
+
+    >>> from rosprivacy.analysis.suggesting.example_names import NAMES
+    >>> names = ("/head/camera/image_raw", "/camera/depth/image_raw", "/camera/info")
+    >>> [said and (said.rule.kinds, said.words) for said in (of_topic(name, NAMES) for name in names)]
+    [(('Video',), ('image',)), (('DepthImage',), ('depth',)), None]
+    """
+    parts = [words(part) for part in name.split("/")]
+    for part in reversed(parts):
+        if not set(part) <= rules.neutral:
+            return _instead(_last(part, rules.carries, rules.silent), parts, rules)
+    return None
+
+
+def of_topic_nothing(name: str, rules: NameRules) -> Spoken | None:
+    """Return the rule that says that a topic of this name is not made for personal data, if there is one.
+
+    >>> from rosprivacy.analysis.suggesting.example_names import NAMES
+    >>> of_topic_nothing("/robot/cmd_vel", NAMES).words, of_topic_nothing("/robot/cmd_vel/face", NAMES)
+    (('cmd', 'vel'), None)
+    """
+    return _last(words(name.rpartition("/")[2]), rules.nothing, frozenset(), whole=True)
+
+
+def of_node(name: str, rules: Mapping[Phrase, NameRule]) -> Spoken | None:
+    """Return the rule that speaks about a node of this name, by its own part of the name.
+
+    >>> from rosprivacy.analysis.suggesting.example_names import NAMES
+    >>> of_node("/front/camera_driver", NAMES.brings_in).words, of_node("/camera/pose", NAMES.brings_in)
+    (('camera',), None)
+    """
+    return _last(words(name.rpartition("/")[2]), rules, frozenset())
+
+
+def _last(
+    part: Phrase, rules: Mapping[Phrase, NameRule], silent: frozenset[Phrase], *, whole: bool = False
+) -> Spoken | None:
+    """The rule about the last words of a part that a rule is about; of several phrases there the longest."""
+    for end in range(len(part), 0, -1):
+        for phrase in _ending_at(part, end):
+            if phrase in silent:
+                return None
+            if phrase in rules and (not whole or phrase == part):
+                return Spoken(rules[phrase], phrase)
+    return None
+
+
+def _ending_at(part: Phrase, end: int) -> Iterator[Phrase]:
+    return (part[start:end] for start in range(max(0, end - LONGEST_PHRASE), end))
+
+
+def _instead(spoken: Spoken | None, parts: Sequence[Phrase], rules: NameRules) -> Spoken | None:
+    """What another word of the name makes of what its last one says: a depth image is no video."""
+    if spoken is None:
+        return None
+    for part in reversed(parts):
+        for end in range(len(part), 0, -1):
+            for phrase in _ending_at(part, end):
+                rule = rules.carries.get(phrase)
+                if rule and not set(spoken.rule.kinds).isdisjoint(rule.instead_of):
+                    return Spoken(rule, phrase)
+    return spoken

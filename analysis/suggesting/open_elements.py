@@ -1,0 +1,125 @@
+"""What a person could say of elements that data reach and that nobody has reviewed (rule S11).
+
+A node there passes data on, or is an end of them: a conduit. A channel there is sensitive, since what arrives there may
+go through it; or it is made for other things than that kind, by its types or its name: never. All of it is ``may``.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.model import Confidence, Place
+from rosprivacy.analysis.suggesting.carried_kinds import cannot_carry
+from rosprivacy.analysis.suggesting.evidence import (
+    CONDUIT,
+    DATA_FLOW,
+    NAMED,
+    NEIGHBOUR,
+    NEVER,
+    SENSITIVE,
+    TYPE,
+    Evidence,
+    Label,
+    whole,
+)
+from rosprivacy.analysis.suggesting.name_rules import of_topic_nothing
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+    from rosprivacy.analysis.answer import OpenQuestion
+    from rosprivacy.analysis.model import Bound, Element, FlowGraph
+    from rosprivacy.analysis.suggesting.carried_kinds import Clue, Rules
+    from rosprivacy.analysis.suggesting.traffic import Traffic
+
+FLOWS = Place("the policies", 0)  # where a reason stands that is drawn from who writes and reads what
+SHOWN = 3  # names in a reason
+
+
+def of_channels(graph: FlowGraph, clues: Mapping[int, tuple[Clue, ...]]) -> Iterator[Evidence]:
+    """Yield of each channel that it may carry what its types and its name suggest.
+
+    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.suggesting.carried_kinds import Rules, carried_kinds
+    >>> from rosprivacy.analysis.suggesting.example_names import NAMES
+    >>> graph, bound, hierarchy = factory()
+    >>> said = of_channels(graph, carried_kinds(graph, bound, Rules({}, {}, NAMES, hierarchy)))
+    >>> [(one.label.element.name, one.label.role, one.label.kind) for one in said]
+    [('/faces', 'sensitive', 'FaceTemplate'), ('/video', 'sensitive', 'Video')]
+    """
+    for vertex, said in clues.items():
+        for clue in said:
+            label = Label(whole(graph.elements[vertex]), SENSITIVE, clue.kind)
+            yield Evidence(label, clue.ground, clue.confidence, clue.reason, clue.place)
+
+
+def of_open(
+    questions: Iterable[OpenQuestion], graph: FlowGraph, bound: Bound, told: Traffic, rules: Rules
+) -> Iterator[Evidence]:
+    """Yield what could be said of open elements, for each kind that reaches them.
+
+    >>> from rosprivacy.analysis.answer import OpenQuestion
+    >>> from rosprivacy.analysis.example import FILTERED, factory
+    >>> from rosprivacy.analysis.suggesting.carried_kinds import Rules
+    >>> from rosprivacy.analysis.suggesting.example_names import NAMES
+    >>> from rosprivacy.analysis.suggesting.traffic import traffic
+    >>> graph, bound, hierarchy = factory()
+    >>> asked = [OpenQuestion(graph.elements[FILTERED], ("Video",), 3, False)]
+    >>> (said,) = of_open(asked, graph, bound, traffic(graph, bound), Rules({}, {}, NAMES, hierarchy))
+    >>> said.label.role, said.reason
+    ('sensitive', 'neighbour of /filter, which Video reaches')
+    """
+    at: dict[tuple[str, str, str], list[int]] = {}
+    for vertex, element in enumerate(graph.elements):
+        at.setdefault(element.identity, []).append(vertex)
+    for question in questions:
+        vertices = [
+            one for one in at[question.element.identity] if graph.elements[one].shown_as == question.element.shown_as
+        ]
+        if question.element.is_node:
+            yield from _passed_on(question, vertices, graph, told)
+        elif question.element.is_channel:
+            yield from _at_channel(question, vertices, graph, bound, told, rules)
+
+
+def _passed_on(question: OpenQuestion, vertices: Sequence[int], graph: FlowGraph, told: Traffic) -> Iterator[Evidence]:
+    written = sorted({graph.elements[one].name for vertex in vertices for one in told.writes.get(vertex, ())})
+    goes = f"which can go on to {_some(written)}" if written else "and nothing goes out of it by what policies grant"
+    for kind in question.categories:
+        label = Label(whole(question.element), CONDUIT, kind)
+        yield Evidence(label, DATA_FLOW, Confidence.MAY, f"it gets {kind}, {goes}", FLOWS)
+
+
+def _at_channel(
+    question: OpenQuestion, vertices: Sequence[int], graph: FlowGraph, bound: Bound, told: Traffic, rules: Rules
+) -> Iterator[Evidence]:
+    element = question.element
+    types = sorted({said.name for vertex in vertices for said in bound.types.get(vertex, ())})
+    nothing = of_topic_nothing(element.name, rules.names) if element.kind == "topic" else None
+    writers = sorted({graph.elements[one].name for vertex in vertices for one in told.writers.get(vertex, ())})
+    for kind in question.categories:
+        never = Label(whole(element), NEVER, kind)
+        if cannot_carry(kind, element, types, rules):
+            reason = f"type {_some(types)} of {element.name} is not made for {kind}"
+            yield Evidence(never, TYPE, Confidence.MAY, reason, _place(types, element, rules))
+        elif nothing:
+            reason = f"'{'_'.join(nothing.words)}' is its name: {nothing.rule.why}"
+            yield Evidence(never, NAMED, Confidence.MAY, reason, nothing.rule.place)
+        else:
+            reason = f"neighbour of {_some(writers)}, which {kind} reaches" if writers else f"{kind} reaches it"
+            yield Evidence(Label(whole(element), SENSITIVE, kind), NEIGHBOUR, Confidence.MAY, reason, FLOWS)
+
+
+def _some(names: Sequence[str]) -> str:
+    more = f" and {len(names) - SHOWN} more" if len(names) > SHOWN else ""
+    return ", ".join(names[:SHOWN]) + more
+
+
+def _place(types: Sequence[str], element: Element, rules: Rules) -> Place:
+    """The line of the table that says what a type cannot carry, or what it suggests."""
+    for name in types:
+        limit = rules.limits.get((name, element.leg))
+        said = rules.suggestions.get((name, element.leg), ())
+        if limit or said:
+            return limit.place if limit else said[0].place
+    return FLOWS

@@ -1,0 +1,52 @@
+"""Who writes and who reads which channel by its name: the flows of grants, without standard channels (rules S3, S13).
+
+What a wildcard covers is not followed: a grant for everything says nothing of what a node is for.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TYPE_CHECKING, NamedTuple
+
+from rosprivacy.analysis.many_flows import parted
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rosprivacy.analysis.model import Bound, FlowGraph
+
+
+class Traffic(NamedTuple):
+    """By vertex of a node the vertices of channels that it writes and reads, and the other way round; sorted."""
+
+    writes: Mapping[int, tuple[int, ...]]
+    reads: Mapping[int, tuple[int, ...]]
+    writers: Mapping[int, tuple[int, ...]]
+    readers: Mapping[int, tuple[int, ...]]
+
+
+def traffic(graph: FlowGraph, bound: Bound) -> Traffic:
+    """Return the traffic of a graph; of a service or action each leg is a channel (rule S2).
+
+    >>> from rosprivacy.analysis.example import CAMERA, FILTER, factory
+    >>> graph, bound, _ = factory()
+    >>> told = traffic(graph, bound)
+    >>> named = lambda vertices: [graph.elements[vertex].name for vertex in vertices]
+    >>> named(told.writes[CAMERA]), named(told.reads[FILTER]), named(told.readers[told.writes[CAMERA][0]])
+    (['/video'], ['/video'], ['/face_id', '/filter'])
+    """
+    elements = graph.elements
+    standard = {vertex for vertex, said in bound.elements.items() if any(one.shipped for one in said)}
+    found: list[dict[int, set[int]]] = [defaultdict(set) for _ in Traffic._fields]
+    writes, reads, writers, readers = found
+    for _, flow in parted(graph.flows)[0]:  # a meeting is one of channels
+        source, target = flow.source, flow.target
+        if elements[source].is_channel == elements[target].is_channel or standard & {source, target}:
+            continue
+        if elements[target].is_channel:
+            writes[source].add(target)
+            writers[target].add(source)
+        else:
+            reads[target].add(source)
+            readers[source].add(target)
+    return Traffic(*({at: tuple(sorted(ends)) for at, ends in sorted(one.items())} for one in found))

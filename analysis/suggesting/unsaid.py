@@ -1,0 +1,94 @@
+"""Of all proposals those that a person is asked about: what nobody has said yet, one answer to each question.
+
+A person's word is never proposed away: where a label of a user, by a name or a glob, speaks of an element for a kind,
+no proposal does. Where proposals for one element go against each other, the one that could hide something is left out.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.suggesting.evidence import (
+    CONDUIT,
+    LEAK,
+    MUNDANE,
+    NEIGHBOUR,
+    NEVER,
+    SANITIZER,
+    SENSITIVE,
+    SOURCE,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from rosprivacy.analysis.hierarchy import Hierarchy
+    from rosprivacy.analysis.model import Bound, FlowGraph, Statement
+    from rosprivacy.analysis.suggesting.evidence import Label, Proposal
+
+Identity = tuple[str, str, str]
+
+
+def unsaid(proposals: Iterable[Proposal], graph: FlowGraph, bound: Bound, hierarchy: Hierarchy) -> tuple[Proposal, ...]:
+    """Return the proposals that ask something.
+
+    >>> from rosprivacy.analysis.example import ARCHIVE, FILTERED, VIDEO, factory
+    >>> from rosprivacy.analysis.model import Confidence, Place
+    >>> from rosprivacy.analysis.suggesting.evidence import Evidence, Label
+    >>> from rosprivacy.analysis.suggesting.weighing import proposals
+    >>> graph, bound, hierarchy = factory()
+    >>> labels = [Label(graph.elements[ARCHIVE], "leak", "Video")]
+    >>> both = ("sensitive", "never")
+    >>> labels += [Label(graph.elements[at], role, "Video") for at in (FILTERED, VIDEO) for role in both]
+    >>> said = [Evidence(label, "name", Confidence.MAY, "a word", Place("names.yaml", 1)) for label in labels]
+    >>> [(one.label.element.name, one.label.role) for one in unsaid(proposals(said), graph, bound, hierarchy)]
+    [('/filtered', 'sensitive'), ('/video', 'sensitive')]
+    """
+    said: dict[Identity, list[Statement]] = defaultdict(list)
+    for vertex, statements in bound.elements.items():
+        said[graph.elements[vertex].identity] += [one for one in statements if not one.shipped and one.rank[0] > 0]
+    by_element: dict[Identity, list[Proposal]] = defaultdict(list)
+    for one in proposals:
+        if not _covered(one.label, said.get(one.label.element.identity, ()), hierarchy):
+            by_element[one.label.element.identity].append(one)
+    kept = (one for together in by_element.values() for one in together if not _outdone(one, together, hierarchy))
+    return tuple(kept)
+
+
+def _covered(label: Label, said: Sequence[Statement], hierarchy: Hierarchy) -> bool:
+    """Whether a person has spoken of the element for a kind that it may be about."""
+    return any(
+        not one.categories
+        or not label.kind
+        or one.role == "only"
+        or any(hierarchy.overlap(label.kind, kind) is not None for kind in one.categories)
+        for one in said
+    )
+
+
+def _outdone(one: Proposal, together: Sequence[Proposal], hierarchy: Hierarchy) -> bool:
+    """Whether another proposal for the element answers the same question, and hides less."""
+    label = one.label
+    others = [each for each in together if each is not one and _related(label, each.label, hierarchy)]
+    roles: Mapping[str, list[Proposal]] = defaultdict(list)
+    for each in others:
+        roles[each.label.role].append(each)
+    if label.role == CONDUIT:
+        return any(each.label.role in (LEAK, SANITIZER) for each in others)
+    if label.role == SANITIZER:
+        return bool(roles[SOURCE] or roles[LEAK])
+    if label.role in (NEVER, MUNDANE):
+        return any(_of_its_own(each) for each in roles[SENSITIVE])
+    if label.role == SENSITIVE and not _of_its_own(one):
+        return any(each.label.role in (NEVER, MUNDANE) for each in others)
+    return False
+
+
+def _of_its_own(one: Proposal) -> bool:
+    """Whether anything of the channel itself says it, and not only what is beside it."""
+    return any(reason.ground != NEIGHBOUR for reason in one.evidence)
+
+
+def _related(label: Label, other: Label, hierarchy: Hierarchy) -> bool:
+    return not label.kind or not other.kind or hierarchy.overlap(label.kind, other.kind) is not None

@@ -1,0 +1,1 @@
+"""Files of rules that suggest labels, and suggestions in label files; what they mean is in ``analysis/suggesting``."""

@@ -1,0 +1,123 @@
+"""Suggestions in a label file: comments that say what would be written, and what comes of those that a person accepts.
+
+A comment is one line, ``# suggest: likely {"nodes": {"/camera": {"source": ["Video"]}}} because …``: JSON in ASCII, so
+that no name can end the line. They stand at the end of the file. People may remove lines, and change what they say.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from rosprivacy.analysis.errors import InputErrors, LabelError, shown
+from rosprivacy.analysis.model import Confidence
+from rosprivacy.analysis.suggesting.evidence import HIDING
+from rosprivacy.analysis.suggesting.written import written
+from rosprivacy.analysis.text import blanked, fit
+from rosprivacy.ingest.labels.label_reader import SECTIONS
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rosprivacy.analysis.suggesting.evidence import Proposal
+
+MARK = "# suggest: "
+BECAUSE = " because "
+EXAMPLE = f'{MARK}likely {{"nodes": {{"/camera": {{"source": ["Video"]}}}}}}{BECAUSE}…'
+_DECODER = json.JSONDecoder()
+
+
+class Comment(NamedTuple):
+    """A suggestion that stands in a label file.
+
+    Attributes
+    ----------
+    line
+        Of the file, as it is there.
+    said
+        The label: a role and what it names.
+    why
+        The reasons.
+    """
+
+    line: int
+    confidence: Confidence
+    section: str
+    name: str
+    said: dict[str, Any]
+    why: str
+
+    @property
+    def hides(self) -> bool:
+        """Whether a wrong one could hide a leak, or that nobody has looked."""
+        return not HIDING.isdisjoint(self.said)
+
+
+def comment_of(one: Proposal) -> str:
+    """Return the line of a proposal.
+
+    >>> from rosprivacy.analysis.model import Element, Place
+    >>> from rosprivacy.analysis.suggesting.evidence import Evidence, Label, Proposal
+    >>> label = Label(Element("node", "/camera"), "source", "Video")
+    >>> why = Evidence(label, "type", Confidence.LIKELY, "type sensor_msgs/msg/Image of /image", Place("t.yaml", 1))
+    >>> print(comment_of(Proposal(label, Confidence.LIKELY, (why,))))
+    # suggest: likely {"nodes": {"/camera": {"source": ["Video"]}}} because type sensor_msgs/msg/Image of /image
+    """
+    at = written(one.label)
+    said = json.dumps({at.section: {at.name: at.said}})
+    reasons = "; ".join(dict.fromkeys(fit(reason.reason) for reason in one.evidence))
+    return f"{MARK}{one.confidence} {said}{BECAUSE}{blanked(reasons, '?')}"
+
+
+def taken_apart(file: str, text: str) -> tuple[str, tuple[Comment, ...]]:
+    """Return the text of a label file without the comments that are suggestions, and these.
+
+    Raises
+    ------
+    InputErrors
+        With every comment that begins as a suggestion and is none.
+    """
+    kept, comments, problems = [], [], []
+    for number, line in enumerate(text.split("\n"), 1):
+        if not line.startswith(MARK):
+            kept.append(line)
+            continue
+        comment = _comment(number, line.removeprefix(MARK).rstrip("\r"))
+        if comment is None:
+            hint = f"write it as {EXAMPLE}, or remove the line"
+            problems.append(LabelError(file, number, f"{shown(line.strip())!r} is no suggestion", hint))
+        else:
+            comments.append(comment)
+    if problems:
+        raise InputErrors(problems)
+    return "\n".join(kept), tuple(comments)
+
+
+def with_comments(text: str, comments: Iterable[str]) -> str:
+    """Return a text with comments at its end."""
+    lines = "".join(f"{line}\n" for line in comments)
+    if "\r\n" in text:
+        lines = lines.replace("\n", "\r\n")
+    return text + ("\n" if text and not text.endswith("\n") and lines else "") + lines
+
+
+def as_written(comment: Comment) -> str:
+    """Return the line of a comment that was read."""
+    said = json.dumps({comment.section: {comment.name: comment.said}})
+    return f"{MARK}{comment.confidence} {said}{BECAUSE}{comment.why}"
+
+
+def _comment(number: int, line: str) -> Comment | None:
+    """What a line says; None if it is no suggestion. Whether it is a label, the label file's reader says."""
+    sure, _, rest = line.partition(" ")
+    try:
+        top, end = _DECODER.raw_decode(rest)
+        ((section, names),) = top.items()
+        ((name, said),) = names.items()
+        ((_, value),) = said.items()
+    except (ValueError, AttributeError, RecursionError):
+        return None
+    why = rest[end:].removeprefix(BECAUSE)
+    if sure not in tuple(Confidence) or section not in SECTIONS or not isinstance(value, list | dict):
+        return None
+    return Comment(number, Confidence(sure), section, name, said, why)

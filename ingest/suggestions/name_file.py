@@ -1,0 +1,204 @@
+"""Rules about names of topics and nodes: ``ontology/names.yaml`` and users' files of that format -> ``NameRules``.
+
+A phrase of a user's file stands for the same phrase of ours; of one file every phrase is said once.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass, field
+from functools import partial
+from typing import TYPE_CHECKING
+
+from rosprivacy.analysis.bounds import BOUNDS
+from rosprivacy.analysis.errors import InputError, InputErrors, shown
+from rosprivacy.analysis.model import Confidence, Place
+from rosprivacy.analysis.suggesting.name_rules import LONGEST_PHRASE, NameRule, NameRules, words
+from rosprivacy.ingest.reading import yaml_values
+from rosprivacy.ingest.reading.format_reader import FileReader
+from rosprivacy.ontology.vocabulary import FOLDER
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rosprivacy.analysis.bounds import Bounds
+    from rosprivacy.analysis.suggesting.name_rules import Phrase
+    from rosprivacy.ingest.reading.yaml_values import Value
+    from rosprivacy.ontology.vocabulary import Vocabulary
+
+NAMES = "rosprivacy:names"  # the shipped file
+WITH_KINDS, WITHOUT_KINDS = ("carries", "brings_in"), ("nothing", "lets_out")
+PARTS = ("name_rules", "version", "silent", "neutral", *WITH_KINDS, *WITHOUT_KINDS, "becomes")
+KEYS = ("words", "kinds", "confidence", "why", "source", "instead_of")
+SURE = (Confidence.LIKELY, Confidence.MAY)  # a name proves nothing, so no rule about one is certain
+
+
+@dataclass(frozen=True, slots=True)
+class NameFile:
+    """One file of rules.
+
+    Attributes
+    ----------
+    sections
+        By section the rules of each phrase; of ``becomes``, by category and what is made of it.
+    """
+
+    file: str
+    sha256: str
+    silent: frozenset[Phrase]
+    neutral: frozenset[str]
+    sections: dict[str, dict[Phrase, NameRule]]
+
+
+def read_name_rules(
+    files: Iterable[str], vocabulary: Vocabulary, bounds: Bounds = BOUNDS
+) -> tuple[NameRules, tuple[tuple[str, str], ...]]:
+    """Read the shipped rules and a user's; return them joined, and (file, SHA-256) of each.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the files, each of one line.
+
+    Examples
+    --------
+    >>> from rosprivacy.ontology.vocabulary import load
+    >>> rules, _ = read_name_rules((), load())
+    >>> rules.carries["lidar",].kinds, ("camera", "info") in rules.silent
+    (('LaserScan',), True)
+    """
+    read: list[NameFile] = []
+    problems: list[InputError] = []
+    for file in dict.fromkeys((NAMES, *files)):
+        try:
+            read.append(_read(file, vocabulary, bounds))
+        except InputErrors as error:
+            problems += error.errors
+    if problems:
+        raise InputErrors(problems)
+    joined = {
+        name: {phrase: rule for one in read for phrase, rule in one.sections[name].items()}
+        for name in (*WITH_KINDS, *WITHOUT_KINDS)
+    }
+    becomes: dict[str, dict[str, NameRule]] = {}
+    for one in read:
+        for (source, made), rule in one.sections["becomes"].items():
+            becomes.setdefault(source, {})[made] = rule
+    rules = NameRules(
+        **joined,
+        silent=_silent(read),
+        neutral=frozenset().union(*(one.neutral for one in read)),
+        becomes=becomes,
+    )
+    return rules, tuple((one.file, one.sha256) for one in read)
+
+
+def _silent(read: list[NameFile]) -> frozenset[Phrase]:
+    """The phrases of all files, but for those of which a user's file says what they carry."""
+    every = frozenset(phrase for one in read for phrase in one.silent)
+    return every - {phrase for one in read[1:] for phrase in one.sections["carries"]}
+
+
+def _read(file: str, vocabulary: Vocabulary, bounds: Bounds) -> NameFile:
+    path = str(FOLDER / "names.yaml") if file == NAMES else file
+    try:
+        top, data = yaml_values.read(path, partial(InputError, file), bounds)
+    except InputError as error:
+        raise InputErrors([error]) from None
+    reader = _Reader(file, vocabulary, error=InputError, bounds=bounds)
+    read = reader.document(top, hashlib.sha256(data).hexdigest())
+    if reader.problems:
+        raise InputErrors(reader.problems)
+    return read
+
+
+@dataclass(eq=False, repr=False)
+class _Reader(FileReader):
+    """One file."""
+
+    vocabulary: Vocabulary
+    sections: dict[str, dict[Phrase, NameRule]] = field(
+        default_factory=lambda: {name: {} for name in (*WITH_KINDS, *WITHOUT_KINDS, "becomes")}
+    )
+
+    def document(self, top: Value, digest: str) -> NameFile:
+        said: dict[str, Value] = {}
+        if top.kind != "map":
+            self.problem(top.line, f"rules about names are a map, not a {top.kind}", "begin with 'name_rules: 1'")
+        else:
+            self.version(top, "name_rules", "rules")
+            said = {key: value for key, _, value in self.entries_of(top, PARTS)}
+        for section in (*WITH_KINDS, *WITHOUT_KINDS):
+            for item in self._items(said, section):
+                self._rule(section, item)
+        for item in self._items(said, "becomes"):
+            self._becomes(item)
+        silent = frozenset(phrase for item in self._items(said, "silent") if (phrase := self._phrase(item)))
+        neutral = frozenset(word for item in self._items(said, "neutral") for word in self._phrase(item))
+        return NameFile(self.file, digest, silent, neutral, self.sections)
+
+    def _items(self, said: dict[str, Value], key: str) -> tuple[Value, ...]:
+        return self.list_of(said[key], key) if key in said else ()
+
+    def _rule(self, section: str, item: Value) -> None:
+        keys = KEYS if section in WITH_KINDS else tuple(key for key in KEYS if key not in ("kinds", "instead_of"))
+        said = self._entry(item, keys, ("words", "why", *(("kinds",) if section in WITH_KINDS else ())))
+        rule = NameRule(
+            self._kinds(said, "kinds"),
+            self._confidence(said),
+            said["why"].text if "why" in said else "",
+            Place(self.file, item.line),
+            self._kinds(said, "instead_of"),
+        )
+        known = self.sections[section]
+        for word in self._items(said, "words"):
+            phrase = self._phrase(word)
+            if phrase in known:
+                what = f"{'_'.join(phrase)} again, first in line {known[phrase].place.line}"
+                self.problem(word.line, what, "say each phrase once")
+            elif phrase:
+                known[phrase] = rule
+
+    def _becomes(self, item: Value) -> None:
+        said = self._entry(item, ("from", "to", "confidence", "why", "source"), ("from", "to", "why"))
+        confidence, why = self._confidence(said), said["why"].text if "why" in said else ""
+        source = self._kind(said["from"]) if "from" in said else ""
+        for made in self._kinds(said, "to"):
+            if source:
+                self.sections["becomes"][source, made] = NameRule((made,), confidence, why, Place(self.file, item.line))
+
+    def _entry(self, item: Value, keys: tuple[str, ...], needed: tuple[str, ...]) -> dict[str, Value]:
+        said = {key: value for key, _, value in self.entries_of(item, keys)}
+        for key in needed:
+            if key not in said or not (said[key].text or said[key].items):
+                self.problem(item.line, f"a rule without {key}", f"write {', '.join(needed)}")
+        return said
+
+    def _phrase(self, item: Value) -> Phrase:
+        phrase = words(item.text) if item.kind == "text" else ()
+        if not phrase or len(phrase) > LONGEST_PHRASE:
+            hint = f"write words of letters with _ between them, at most {LONGEST_PHRASE}; quote no, on and yes"
+            self.problem(item.line, f"{shown(item.text or item.kind)!r} is no word of a name", hint)
+            return ()
+        return phrase
+
+    def _confidence(self, said: dict[str, Value]) -> Confidence:
+        if "confidence" not in said:
+            return Confidence.MAY
+        value = said["confidence"]
+        if value.text not in SURE:
+            hint = f"write {' or '.join(SURE)}: a name proves nothing"
+            self.problem(value.line, f"confidence {shown(value.text or value.kind)!r}", hint)
+            return Confidence.MAY
+        return Confidence(value.text)
+
+    def _kinds(self, said: dict[str, Value], key: str) -> tuple[str, ...]:
+        return tuple(name for item in self._items(said, key) if (name := self._kind(item)))
+
+    def _kind(self, item: Value) -> str:
+        category = self.vocabulary.find(item.text) if item.kind == "text" else None
+        if category is None:
+            hint = self.vocabulary.hint(item.text)
+            self.problem(item.line, f"unknown category {shown(item.text or item.kind)!r}", hint)
+            return ""
+        return category.name

@@ -1,0 +1,68 @@
+"""``rosprivacy suggest``: what elements could be labelled as, each with its reasons."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from rosprivacy.analysis.text import counted
+from rosprivacy.cli.inputs import Inputs, reads_system
+from rosprivacy.cli.options import Output, TextOrJson
+from rosprivacy.cli.output import emit
+
+
+@reads_system(
+    "the policies of one robot, and label files",
+    without=("fleet", "from_database", "neo4j", "no_type_limits", "categories", "decisions"),
+)
+def suggest(
+    inputs: Inputs,
+    rules: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="FILE",
+            help="More rules about names, in the format of ontology/names.yaml; may be repeated.",
+            show_default=False,
+        ),
+    ] = None,
+    into: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="Write the suggestions into this label file, as comments that 'labels --accept' reads.",
+            show_default=False,
+        ),
+    ] = None,
+    format: Annotated[TextOrJson, typer.Option("--format", "-f", help="Of the answer.")] = TextOrJson.text,  # noqa: A002 - the option's name
+    output: Output = None,
+) -> None:
+    """Say what nodes and channels could be labelled as, with reasons: questions, in the order of review.
+
+    Nothing is applied. 'rosprivacy labels --accept' makes labels of those that a person accepts.
+    """
+    from rosprivacy.report.json_text import as_text
+    from rosprivacy.report.suggest.suggestion_document import suggestions_document
+    from rosprivacy.report.suggest.suggestion_lines import suggestion_lines
+    from rosprivacy.suggesting import suggest_labels
+
+    labels = tuple(inputs.labels or ())
+    if into:
+        _write(inputs, into, rules or ())
+        return
+    told = suggest_labels(inputs.named, labels, inputs.settings, rules or ())
+    document = suggestions_document(told.proposals, told.open, told.by_hand, told.result, told.rules)
+    lines = "".join(f"{line}\n" for line in suggestion_lines(document))
+    emit(as_text(document) if format is TextOrJson.json else lines, output)
+
+
+def _write(inputs: Inputs, file: Path, rules: list[str] | tuple[str, ...]) -> None:
+    """The suggestions into a label file, in place of those that an earlier run has written there."""
+    from rosprivacy.report.editing import editing
+    from rosprivacy.suggested_lines import with_suggestions
+
+    with editing(file):
+        written = with_suggestions(inputs.named, tuple(inputs.labels or ()), inputs.settings, str(file), rules)
+        emit(written.text, file, edited=file)
+    typer.echo(f"{file}: {counted(written.added, 'suggestion')}, as comments", err=True)

@@ -1,0 +1,129 @@
+"""Policies, label files and observed types -> proposals of labels, in the order in which a person reviews them.
+
+In: names of files. Out: ``Suggested``. Every provider of evidence is asked here; none of them labels anything.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from rosprivacy.analysis.suggesting.carried_kinds import Rules, carried_kinds
+from rosprivacy.analysis.suggesting.evidence import LEAK, SOURCE
+from rosprivacy.analysis.suggesting.nodes import of_nodes
+from rosprivacy.analysis.suggesting.open_elements import of_channels, of_open
+from rosprivacy.analysis.suggesting.traffic import traffic
+from rosprivacy.analysis.suggesting.unsaid import unsaid
+from rosprivacy.analysis.suggesting.weighing import closes_finding, proposals
+from rosprivacy.ingest.suggestions.name_file import read_name_rules
+from rosprivacy.ingest.types import TABLE
+from rosprivacy.ingest.types.type_table import read_table
+from rosprivacy.report.review_groups import review_groups
+from rosprivacy.robot_system import answer_robot
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.analysis.model import Bound
+    from rosprivacy.analysis.suggesting.evidence import Evidence, Label, Proposal
+    from rosprivacy.ontology.vocabulary import Vocabulary
+    from rosprivacy.result import Result
+    from rosprivacy.settings import Settings
+
+Place = tuple[str, str, str]  # identity of an element
+NOT_OPEN = 2**31  # behind every open element
+
+
+@dataclass(frozen=True, slots=True)
+class Suggested:
+    """What a person is asked.
+
+    Attributes
+    ----------
+    proposals
+        In review order: open elements, then sources and leaks, then the others.
+    open
+        Identities of the elements that are open.
+    by_hand
+        Labels that would take away data of which a finding is known: they are told, and not written into a label file.
+    result
+        The answer that they belong to.
+    rules
+        (file, SHA-256) of the rules.
+    """
+
+    proposals: tuple[Proposal, ...]
+    open: frozenset[Place]
+    by_hand: frozenset[Label]
+    result: Result
+    rules: tuple[tuple[str, str], ...]
+
+
+def suggest_labels(
+    policies: tuple[str, ...], labels: tuple[str, ...], settings: Settings, rules: Sequence[str] = ()
+) -> Suggested:
+    """Read a robot's system and say what its elements could be labelled as.
+
+    Parameters
+    ----------
+    rules
+        A user's files of rules about names.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the input, one line each.
+    """
+    result = answer_robot(policies, labels, settings)
+    known, files = _rules(result.vocabulary, settings, rules)
+    found = _with_findings(result)
+    made = proposals(evidence(result.analysis, result.bound, known), found)
+    asked = unsaid(made, result.analysis.graph, result.bound, result.vocabulary.hierarchy)
+    places = _review_places(result.document())
+    by_hand = frozenset(one.label for one in asked if closes_finding(one.label, found))
+    return Suggested(in_review_order(asked, places), frozenset(places), by_hand, result, files)
+
+
+def evidence(analysis: Analysis, bound: Bound, rules: Rules) -> Iterator[Evidence]:
+    """Yield what every provider finds; the order does not matter."""
+    graph = analysis.graph
+    told, clues = traffic(graph, bound), carried_kinds(graph, bound, rules)
+    yield from of_nodes(graph, bound, told, clues, rules)
+    yield from of_channels(graph, clues)
+    yield from of_open(analysis.open, graph, bound, told, rules)
+
+
+def in_review_order(asked: Sequence[Proposal], places: Mapping[Place, int]) -> tuple[Proposal, ...]:
+    """Return proposals in the order in which a person reviews them (rule S11)."""
+
+    def place(one: Proposal) -> tuple[int, int]:
+        at = places.get(one.label.element.identity, NOT_OPEN)
+        return at, 0 if one.label.role in (SOURCE, LEAK) else 1
+
+    return tuple(sorted(asked, key=place))  # stable: by element, role and kind within
+
+
+def _rules(
+    vocabulary: Vocabulary, settings: Settings, files: Sequence[str]
+) -> tuple[Rules, tuple[tuple[str, str], ...]]:
+    table = read_table(settings.type_limits or TABLE, vocabulary, settings.bounds)
+    names, read = read_name_rules(files, vocabulary, settings.bounds)
+    rules = Rules(table.suggestions, table.limits.of, names, vocabulary.hierarchy)
+    return rules, ((table.limits.file, table.limits.sha256), *read)
+
+
+def _with_findings(result: Result) -> frozenset[str]:
+    """The categories of findings, with all that data of them may be of."""
+    hierarchy = result.vocabulary.hierarchy
+    return frozenset(kind for one in result.analysis.findings for kind in hierarchy.overlaps[one.category])
+
+
+def _review_places(document: Mapping[str, Any]) -> dict[Place, int]:
+    """The place of each open element in the order of review."""
+    places: dict[Place, int] = {}
+    for group in review_groups(document):
+        for question in (*group.now, *group.waiting, *group.proposed):
+            element = question["element"]
+            places.setdefault((element.get("robot", ""), element["kind"], element["name"]), len(places))
+    return places

@@ -1,0 +1,439 @@
+"""``rosprivacy suggest`` and ``labels --accept``: questions, and nothing that nobody accepted (issue 21)."""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import TYPE_CHECKING, Any
+
+import jsonschema
+import pytest
+
+import rosprivacy
+from rosprivacy.analysis.errors import InputErrors
+from rosprivacy.report.contract import suggested
+from rosprivacy.settings import Settings
+from rosprivacy.suggested_lines import with_accepted, with_suggestions
+from tests.helpers.command import LINE, cli
+from tests.helpers.paths import ROOT
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from pathlib import Path
+
+    from tests.helpers.command import Cli
+
+__all__ = ["cli"]
+
+CARE = ROOT / "examples" / "care-home" / "care-home.policy.xml"
+SCHEMA = json.loads((ROOT / "docs" / "suggestions.schema.json").read_text("utf-8"))
+IMAGE, IDS, STRING = "sensor_msgs/msg/Image", "hri_msgs/msg/IdsList", "std_msgs/msg/String"
+POSE, TWIST, CLOUD = "geometry_msgs/msg/PoseStamped", "geometry_msgs/msg/Twist", "sensor_msgs/msg/PointCloud2"
+DAY = "1767225600"
+Nodes = dict[str, tuple[list[str], list[str]]]  # node -> topics that it publishes, and those that it subscribes to
+ROBOT: Nodes = {
+    "driver": (["/a", "/b"], []),
+    "finder": (["/c"], ["/a"]),
+    "mover": (["/d"], ["/c"]),
+    "foxglove_bridge": ([], ["/c", "/d"]),
+}
+
+
+def policy_of(nodes: Nodes) -> str:
+    def granted(role: str, names: Iterable[str]) -> str:
+        lines = "".join(f"<topic>{name}</topic>" for name in names)
+        return f'<topics {role}="ALLOW">{lines}</topics>' if lines else ""
+
+    enclaves = "".join(
+        f'<enclave path="/{node}"><profiles><profile ns="/" node="{node}">\n'
+        f"{granted('publish', out)}{granted('subscribe', into)}</profile></profiles></enclave>\n"
+        for node, (out, into) in nodes.items()
+    )
+    return f'<policy version="0.2.0"><enclaves>\n{enclaves}</enclaves></policy>\n'
+
+
+def typed(**types: str) -> str:
+    lines = "".join(f"  /{name}: {{types: [{said}]}}\n" for name, said in types.items())
+    return f"labels: 1\ntopics:\n{lines}"
+
+
+@pytest.fixture
+def robot(tmp_path: Path) -> Path:
+    (tmp_path / "p.xml").write_text(policy_of(ROBOT), "utf-8")
+    (tmp_path / "l.yaml").write_text(typed(a=IMAGE, b=CLOUD, c=IDS, d=TWIST), "utf-8")
+    return tmp_path
+
+
+def rows(cli: Cli, folder: Path, *more: str) -> list[tuple[str, str, str, str]]:
+    """(name, role, kind and what is made of it, confidence)."""
+    document = json.loads(cli("suggest", "p.xml", "-l", "l.yaml", "-f", "json", *more, cwd=folder).stdout)
+    jsonschema.validate(document, SCHEMA)
+    return [
+        (one["name"], one["role"], " ".join([one["kind"], *(d["to"] for d in one["label"].get("derives", ()))]),
+         one["confidence"])
+        for one in document["suggestions"]
+    ]  # fmt: skip
+
+
+# ---------------------------------------------------------------- what is suggested
+
+
+def test_types_tell_sources_derivations_and_what_drops_data(cli: Cli, robot: Path) -> None:
+    found = rows(cli, robot)
+    assert ("/driver", "source", "Video", "likely") in found
+    assert ("/driver", "source", "PersonPointCloud", "may") in found
+    assert ("/finder", "derivation", "Video PersonIdentifier", "likely") in found
+    assert ("/finder", "sanitizer", "Video", "may") in found
+    assert ("/mover", "sanitizer", "PersonIdentifier", "may") in found
+    assert ("/foxglove_bridge", "leak", "PersonalData", "may") in found
+    assert not [row for row in found if row[:2] == ("/finder", "source")]  # it reads images
+
+
+def test_a_node_that_reads_what_it_writes_brings_nothing_in(cli: Cli, tmp_path: Path) -> None:
+    (tmp_path / "p.xml").write_text(policy_of({"a": (["/x"], []), "b": (["/y"], ["/x"])}), "utf-8")
+    (tmp_path / "l.yaml").write_text(typed(x=IMAGE, y="sensor_msgs/msg/CompressedImage"), "utf-8")
+    assert {row[0] for row in rows(cli, tmp_path) if row[1] == "source"} == {"/a"}
+
+
+@pytest.mark.parametrize(
+    ("name", "type_", "expected"),
+    [
+        ("person_pose", POSE, ("PersonTrack", "likely")),  # both say may
+        ("pose", POSE, ("RobotPosition", "likely")),
+        ("x", POSE, ("RobotPosition", "may")),
+        ("person", "", ("PersonTrack", "may")),  # a name alone
+        ("depth/image", IMAGE, ("DepthImage", "likely")),
+        ("depth/image", IMAGE, ("Video", "may")),  # the name says that it is none
+        ("image", IMAGE, ("Video", "likely")),
+        ("speech", STRING, ("SpeechTranscript", "may")),  # a type that can carry anything agrees with nothing
+    ],
+)
+def test_a_name_and_a_type_that_agree_are_surer(
+    cli: Cli, tmp_path: Path, name: str, type_: str, expected: tuple[str, str]
+) -> None:
+    (tmp_path / "p.xml").write_text(policy_of({"n": ([f"/{name}"], [])}), "utf-8")
+    (tmp_path / "l.yaml").write_text(typed(**{name: type_}) if type_ else "labels: 1\n", "utf-8")
+    assert ("/n", "source", *expected) in rows(cli, tmp_path)
+
+
+@pytest.mark.parametrize("type_", [TWIST, "std_msgs/msg/Bool"])
+def test_a_type_that_carries_nothing_outweighs_a_name(cli: Cli, tmp_path: Path, type_: str) -> None:
+    (tmp_path / "p.xml").write_text(policy_of({"camera": (["/camera/image"], [])}), "utf-8")
+    (tmp_path / "l.yaml").write_text(typed(**{"camera/image": type_}), "utf-8")
+    assert rows(cli, tmp_path) == []
+
+
+def test_open_elements_come_first_with_their_neighbours(cli: Cli, robot: Path) -> None:
+    (robot / "l.yaml").write_text(typed(b=CLOUD) + "nodes:\n  /driver: {source: [Video]}\n", "utf-8")
+    text = cli("suggest", "p.xml", "-l", "l.yaml", cwd=robot).stdout
+    first = text.index("Open elements, in review order:")
+    assert first < text.index("/finder") < text.index("/mover")
+    assert text.index("node    /finder") < text.index("topic   /b")
+    assert "neighbour of /driver, which Video reaches" in text
+    assert "it gets Video, which can go on to /c" in text
+    said = rows(cli, robot)
+    assert ("/finder", "conduit", "Video", "may") in said
+    assert ("/a", "sensitive", "Video", "may") in said
+    assert not [row for row in said if row[0] == "/driver" and row[2] == "Video"]  # a person has spoken of it
+
+
+def test_of_an_open_node_that_lets_data_out_no_conduit_is_suggested(cli: Cli, robot: Path) -> None:
+    """A conduit of a narrower kind would outrank the leak (rule S7)."""
+    (robot / "l.yaml").write_text("labels: 1\nnodes:\n  /driver: {source: [Video]}\n", "utf-8")
+    assert [row[1:] for row in rows(cli, robot) if row[0] == "/foxglove_bridge"] == [("leak", "PersonalData", "may")]
+
+
+def test_what_a_channel_is_not_made_for_is_a_never_and_never_sure(cli: Cli, robot: Path) -> None:
+    (robot / "l.yaml").write_text("labels: 1\nnodes:\n  /driver: {source: [Video]}\n", "utf-8")
+    (robot / "types.yaml").write_text(f"types: 1\ntopics:\n  /c: [{{type: {IDS}}}]\n", "utf-8")
+    found = rows(cli, robot, "--types", "types.yaml")
+    assert ("/c", "never", "Video", "may") in found
+    assert ("/c", "sensitive", "Video", "may") not in found  # one answer to a question
+    (robot / "l.yaml").write_text("labels: 1\nnodes:\n  /driver: {source: [Video]}\ntopics: {/c: mundane}\n", "utf-8")
+    assert not [row for row in rows(cli, robot, "--types", "types.yaml") if row[0] == "/c"]
+
+
+def test_users_rules_and_kinds_take_part(cli: Cli, robot: Path) -> None:
+    (robot / "own.ttl").write_text(
+        "@prefix : <urn:example:> . @prefix rp: <https://w3id.org/rosprivacy#> .\n"
+        "@prefix skos: <http://www.w3.org/2004/02/skos/core#> .\n"
+        ':Crate a skos:Concept ; rp:label "Crate" ; skos:broader rp:Video ; rp:dataType "video" ;\n'
+        '  skos:prefLabel "crate"@en ; skos:definition "Pictures of a crate."@en .\n',
+        "utf-8",
+    )
+    (robot / "own.yaml").write_text(
+        "name_rules: 1\ncarries:\n  - {words: [a], kinds: [Crate], confidence: likely, why: ours}\n", "utf-8"
+    )
+    found = rows(cli, robot, "--rules", "own.yaml", "--ontology", "own.ttl")
+    assert ("/driver", "source", "Crate", "likely") in found
+    wrong = cli("suggest", "p.xml", "--rules", "own.yaml", cwd=robot)
+    assert (wrong.returncode, wrong.stderr.partition(";")[0]) == (2, "own.yaml:3: unknown category 'Crate'")
+
+
+def test_nothing_is_applied(cli: Cli, robot: Path) -> None:
+    before = {file: file.read_bytes() for file in robot.iterdir()}
+    answer = cli("analyze", "p.xml", "-l", "l.yaml", cwd=robot).stdout
+    done = cli("suggest", "p.xml", "-l", "l.yaml", cwd=robot)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout == cli("suggest", "p.xml", "-l", "l.yaml", cwd=robot).stdout  # S14
+    assert {file: file.read_bytes() for file in robot.iterdir()} == before
+    assert cli("analyze", "p.xml", "-l", "l.yaml", cwd=robot).stdout == answer
+
+
+def test_the_document_has_the_keys_of_its_types() -> None:
+    entry = SCHEMA["properties"]["suggestions"]["items"]
+    evidence = entry["properties"]["evidence"]["items"]
+    for hint, schema in (
+        (suggested.SuggestionsDocument, SCHEMA),
+        (suggested.ProposalEntry, entry),
+        (suggested.EvidenceEntry, evidence),
+        (suggested.FileOfRun, SCHEMA["properties"]["files"]["items"]),
+    ):
+        assert hint.__required_keys__ == set(schema["required"]) == set(schema["properties"])
+
+
+def test_nothing_to_suggest_is_said(cli: Cli, tmp_path: Path) -> None:
+    (tmp_path / "p.xml").write_text(policy_of({"n": (["/x"], [])}), "utf-8")
+    done = cli("suggest", "p.xml", cwd=tmp_path)
+    assert (done.returncode, done.stdout) == (0, "nothing to suggest: no rule speaks of what nobody has labelled\n")
+
+
+# ---------------------------------------------------------------- written into a label file, and accepted
+
+
+def test_suggestions_are_comments_that_change_no_answer(cli: Cli, robot: Path) -> None:
+    text = "labels: 1  # mine\n# kept\ntopics:\n  /a: {types: [sensor_msgs/msg/Image]}\n"
+    (robot / "l.yaml").write_text(text, "utf-8")
+    before = cli("analyze", "p.xml", "-l", "l.yaml", cwd=robot).stdout.partition("labels l")[0]
+    for _ in range(2):  # those of an earlier run are replaced
+        done = cli("suggest", "p.xml", "-l", "l.yaml", "--into", "l.yaml", cwd=robot)
+        assert (done.returncode, done.stdout) == (0, "")
+        new = (robot / "l.yaml").read_text("utf-8")
+        assert new.startswith(text)
+        lines = new.removeprefix(text).splitlines()
+        assert all(line.startswith("# suggest: ") for line in lines)
+        assert done.stderr == f"l.yaml: {len(lines)} suggestions, as comments\n"
+    assert before
+    assert cli("analyze", "p.xml", "-l", "l.yaml", cwd=robot).stdout.startswith(before)
+
+
+def test_one_element_is_accepted_with_who_when_and_why(cli: Cli, robot: Path) -> None:
+    cli("suggest", "p.xml", "-l", "l.yaml", "--into", "l.yaml", cwd=robot)
+    text = (robot / "l.yaml").read_text("utf-8")
+    done = cli("labels", "--accept", "/driver", "--by", "Ada", "-l", "l.yaml", cwd=robot, SOURCE_DATE_EPOCH=DAY)
+    assert (done.returncode, done.stderr) == (0, "l.yaml: 1 suggestion accepted\n")
+    new = (robot / "l.yaml").read_text("utf-8")
+    labels = text.partition("# suggest")[0]
+    (line,) = [line for line in new.removeprefix(labels).splitlines() if line.startswith("  /driver:")]
+    assert line.startswith("  /driver: {")
+    assert "source: [Video]" in line
+    assert "accepted by Ada on 2026-01-01 (likely): type sensor_msgs/msg/Image of /a" in line
+    assert [one for one in new.splitlines() if one.startswith("# suggest")] == [
+        one
+        for one in text.splitlines()
+        if one.startswith("# suggest") and '{"/driver": {"source": ["Video"]' not in one
+    ]
+    assert new.startswith(labels)
+    roles = rosprivacy.analyze(str(robot / "p.xml"), str(robot / "l.yaml")).document()["roles"]
+    assert [(one["element"]["name"], *one["roles"], one["category"]) for one in roles] == [
+        ("/driver", "source", "Video")
+    ]
+
+
+def test_all_of_a_confidence_are_accepted_but_what_could_hide_a_leak(cli: Cli, robot: Path) -> None:
+    (robot / "l.yaml").write_text(typed(a=IMAGE, b=CLOUD, c=IDS, d=TWIST) + "author: Ada\n", "utf-8")
+    cli("suggest", "p.xml", "-l", "l.yaml", "--into", "l.yaml", cwd=robot)
+    likely = cli("labels", "--accept", "likely", "-l", "l.yaml", cwd=robot)
+    assert likely.returncode == 0
+    text = (robot / "l.yaml").read_text("utf-8")
+    assert "likely" not in "".join(line for line in text.splitlines() if line.startswith("# suggest"))
+    everything = cli("labels", "--accept", "may", "-l", "l.yaml", cwd=robot)
+    assert re.search(r"^l.yaml: \d+ suggestions could hide a leak or what nobody looked at", everything.stderr)
+    left = [line for line in (robot / "l.yaml").read_text("utf-8").splitlines() if line.startswith("# suggest")]
+    assert left
+    assert all(re.search(r'"(sanitizer|conduit|never)"', line) for line in left)
+    assert cli("labels", "--accept", "/finder", "-l", "l.yaml", cwd=robot).returncode == 0
+    assert "sanitizer: {Video: drop}" in (robot / "l.yaml").read_text("utf-8")
+
+
+BY_HAND = """labels: 1
+nodes:
+  # the camera
+  /camera: {leak: [Voice], note: mine}  # at the door
+  /relay:
+    source:
+      Video: [/x]
+
+  # what follows
+  /empty:
+topics:
+  /t: {never: [Voice]}
+"""
+
+
+def suggestion(section: str, name: str, said: dict[str, Any], sure: str = "likely") -> str:
+    return f"# suggest: {sure} {json.dumps({section: {name: said}})} because x\n"
+
+
+@pytest.mark.parametrize(
+    ("line", "expected", "remark"),
+    [
+        (suggestion("nodes", "/camera", {"source": ["Video"]}), "/camera: {source: [Video], leak: [Voice], note: ", ""),
+        (suggestion("nodes", "/camera", {"leak": ["Video"]}), "/camera: {leak: [Voice, Video], note: ", ""),
+        (suggestion("nodes", "/empty", {"source": ["Video"]}), "/empty: {source: [Video], note: ", ""),
+        (suggestion("topics", "/t", {"sensitive": ["Video"]}), "/t: {sensitive: [Video], never: [Voice], note: ", ""),
+        (suggestion("nodes", "/relay", {"source": ["Voice"]}), "", "says source in another form already"),
+        (suggestion("nodes", "/camera", {"conduit": ["Video"]}), "", "is a source or a leak already"),
+        (suggestion("nodes", "/camera", {"sanitizer": {"Voice": "drop"}}), "", "is a source or a leak already"),
+    ],
+)
+def test_a_suggestion_joins_what_an_entry_says(cli: Cli, tmp_path: Path, line: str, expected: str, remark: str) -> None:
+    file = tmp_path / "l.yaml"
+    file.write_text(BY_HAND + line, "utf-8")
+    name = json.loads(line.partition("likely ")[2].partition(" because")[0])
+    ((_, names),) = name.items()
+    done = cli(
+        "labels", "--accept", next(iter(names)), "--by", "Ada", "-l", "l.yaml", cwd=tmp_path, SOURCE_DATE_EPOCH=DAY
+    )
+    new = file.read_text("utf-8")
+    assert done.returncode == 0
+    if remark:
+        assert remark in done.stderr
+        assert new == BY_HAND + line
+        return
+    assert expected in new
+    before, after = BY_HAND.splitlines(), new.splitlines()
+    changed = [(a, b) for a, b in zip(before, after, strict=True) if a != b]
+    assert len(changed) == 1
+    assert "accepted by Ada on 2026-01-01 (likely): x" in changed[0][1]
+    assert ("mine; accepted" in changed[0][1]) == ("note: mine" in changed[0][0])
+    assert ("# at the door" in changed[0][1]) == ("# at the door" in changed[0][0])
+
+
+@pytest.mark.parametrize(
+    ("text", "arguments", "message"),
+    [
+        ("labels: 1\n", ["--accept", "/x", "--by", "A"], "l.yaml: nothing is suggested of /x; name an element"),
+        ("labels: 1\n", ["--accept", "may"], "l.yaml: nobody says who accepts; add --by NAME"),
+        ("labels: 1\n# suggest: x\n", ["--accept", "may", "--by", "A"],
+         "l.yaml:2: '# suggest: x' is no suggestion; write it as"),
+        ("labels: 1\n" + suggestion("nodes", "/x", {"source": ["Vidoe"]}), ["--accept", "/x", "--by", "A"],
+         "l.yaml: a suggestion makes no label: unknown category 'Vidoe'; write the labels by hand"),
+        ("labels: 1\n" + suggestion("nodes", "/x", {"surce": ["Video"]}), ["--accept", "/x", "--by", "A"],
+         "l.yaml: a suggestion makes no label: unknown key 'surce'; write the labels by hand"),
+        ('labels: 1\nauthor: "A\n' + suggestion("nodes", "/x", {"source": ["Video"]}).strip() + '"\n',
+         ["--accept", "/x"], "l.yaml"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_accepted_leaves_the_file_as_it_is(
+    cli: Cli, tmp_path: Path, text: str, arguments: list[str], message: str
+) -> None:
+    file = tmp_path / "l.yaml"
+    file.write_text(text, "utf-8")
+    done = cli("labels", *arguments, "-l", "l.yaml", cwd=tmp_path)
+    assert (done.returncode, file.read_text("utf-8")) == (2, text)
+    assert done.stderr.startswith(message)
+    assert all(LINE.match(line) for line in done.stderr.splitlines())
+
+
+def test_json_has_no_room_for_comments(cli: Cli, robot: Path) -> None:
+    (robot / "l.json").write_text('{"labels": 1}', "utf-8")
+    done = cli("suggest", "p.xml", "-l", "l.yaml", "--into", "l.json", cwd=robot)
+    assert (done.returncode, (robot / "l.json").read_text("utf-8")) == (2, '{"labels": 1}')
+
+
+# ---------------------------------------------------------------- hostile names
+
+
+HOSTILE = [
+    '/camera"}}} because x&#10;nodes: {/up: conduit}',
+    "/camera&#x2028;# x",
+    "/camera\u202e/image",
+    "/camera: {leak: none} #",
+    "/camera\\x1b[31m/image",
+    "/camera'; DROP/image",
+    "/камера/image",
+]
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_a_hostile_name_gets_into_neither_the_file_nor_the_terminal(cli: Cli, tmp_path: Path, name: str) -> None:
+    (tmp_path / "p.xml").write_text(policy_of({"n": ([name], []), "up": ([], [name])}), "utf-8")
+    if cli("analyze", "p.xml", cwd=tmp_path).returncode == 2:
+        pytest.skip("the policy's reader refuses such a name")
+    shown = cli("suggest", "p.xml", cwd=tmp_path).stdout
+    assert all(character.isprintable() or character == "\n" for character in shown)
+    done = cli("suggest", "p.xml", "--into", "l.yaml", cwd=tmp_path)
+    assert done.returncode == 0
+    text = (tmp_path / "l.yaml").read_text("utf-8")
+    assert all(line.startswith(("labels: 1", "# suggest: ")) for line in text.splitlines())
+    assert cli("labels", "--accept", "may", "--by", 'A"\n- x: y', "-l", "l.yaml", cwd=tmp_path).returncode == 0
+    said = rosprivacy.analyze(str(tmp_path / "p.xml"), str(tmp_path / "l.yaml")).document()
+    assert {one["element"]["name"] for one in said["roles"]} <= {"/n"}
+
+
+# ---------------------------------------------------------------- planted leaks
+
+
+NAMED = re.compile(r'^# suggest: \w+ \{"\w+": \{("(?:[^"\\]|\\.)*")', re.MULTILINE)
+
+
+def accept_everything(policy: str, file: Path) -> None:
+    """All of a confidence, and then each by its name: what a person would do who accepts whatever is asked."""
+    for _ in range(2):
+        text = with_suggestions((policy,), (str(file),), Settings(), str(file)).text
+        what = ["may"]
+        while what:
+            file.write_text(text, "utf-8")
+            text = with_accepted((str(file),), what, "anybody", Settings()).text
+            left = list(map(json.loads, dict.fromkeys(NAMED.findall(text))))
+            what = left if left != what else []
+        file.write_text(text, "utf-8")
+
+
+def planted(policy: str, folder: Path, every: int) -> Iterable[tuple[Path, str]]:
+    """A source and a leak at two nodes with a path between them, of each policy some."""
+    nodes = [one for one in rosprivacy.analyze(policy).analysis.graph.elements if one.is_node]
+    for source in nodes[::every]:
+        file = folder / "planted.yaml"
+        start = f'labels: 1\nnodes:\n  "{source.name}": {{source: [Video]}}\n'
+        file.write_text(start, "utf-8")
+        reached = rosprivacy.analyze(policy, str(file)).analysis.carried
+        ends = [one.element for one in reached if one.element.is_node and one.element != source]
+        for leak in ends[:: max(1, len(ends) - 1)][:2]:
+            file.write_text(f'{start}  "{leak.name}": {{leak: [Video]}}\n', "utf-8")
+            yield file, f"{source.name} -> {leak.name}"
+
+
+def test_accepting_every_suggestion_hides_no_planted_leak(tmp_path: Path) -> None:
+    """Of an example with types, so that sanitizers and nevers are suggested too."""
+    (tmp_path / "p.xml").write_text(policy_of(ROBOT), "utf-8")
+    (tmp_path / "l.yaml").write_text(
+        typed(a=IMAGE, b=CLOUD, c=IDS, d=TWIST)
+        + "nodes:\n  /driver: {source: [Video]}\n  /foxglove_bridge: {leak: [Video]}\n",
+        "utf-8",
+    )
+    policy = str(tmp_path / "p.xml")
+    assert rosprivacy.analyze(policy, str(tmp_path / "l.yaml"), type_limits=None).analysis.verdict == "leak"
+    accept_everything(policy, tmp_path / "l.yaml")
+    assert "sanitizer" not in (tmp_path / "l.yaml").read_text("utf-8")
+    assert rosprivacy.analyze(policy, str(tmp_path / "l.yaml"), type_limits=None).analysis.verdict == "leak"
+
+
+@pytest.mark.corpus
+def test_accepting_every_suggestion_hides_no_planted_leak_of_the_corpus(
+    corpus: Path, tmp_path: Path, *, thorough: bool
+) -> None:
+    tried = 0
+    for file in sorted((corpus / "policies").rglob("*.xml")):
+        try:
+            rosprivacy.analyze(str(file))
+        except InputErrors:
+            continue
+        for labels, path in planted(str(file), tmp_path, 2 if thorough else 1000):
+            assert rosprivacy.analyze(str(file), str(labels)).analysis.verdict == "leak"
+            accept_everything(str(file), labels)
+            verdict = rosprivacy.analyze(str(file), str(labels)).analysis.verdict
+            assert verdict != "no-leak-found", f"{file}: {path}"
+            tried += 1
+    assert tried > 10
