@@ -34,6 +34,7 @@ BENCHMARKS = (
     "bags",
     "ledger",
     "reliance",
+    "suggestions",
     "wildcards",
     "fleet_flows",
     "fleet_kernel",

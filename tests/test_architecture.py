@@ -61,7 +61,7 @@ OF_ITS_OWN = {  # modules that touch files in another way, and why none of these
     "ontology/vocabulary.py": "notes what it reads; and what is shipped",
     "report/compare/earlier.py": "notes what it reads",
     "report/atomic.py": "the one writer",
-    "ingest/observe/zenoh_door.py": "opens a session, no file",
+    "ingest/doors/zenoh_door.py": "opens a session, no file",
     "ingest/policies/policy_xml.py": "asks xinclude.py to open",
     "ingest/observe/earlier_files.py": "asks xinclude.py to open",
     "ingest/lint/include_rules.py": "asks xinclude.py to open what a policy was read from",

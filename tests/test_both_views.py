@@ -22,6 +22,7 @@ from rosprivacy.settings import Settings
 from tests.helpers.command import cli
 from tests.helpers.paths import ROOT
 from tests.helpers.sarif import checked
+from tests.helpers.shared_enclaves import EXAMPLE, EXAMPLE_LABELS, FLEET, THREE, Enclaves, apart, policy
 from tests.helpers.word import text_of
 
 if TYPE_CHECKING:
@@ -40,14 +41,6 @@ LABELS = (
     "{source: [Video]}", "{leak: [Video]}", "{sanitizer: {Video: anonymise}}", "conduit",
     "{source: [Voice], leak: [Video]}",
 )  # fmt: skip
-EXAMPLE = {"/robot": {"/camera": [("publish", "/video", "ALLOW")],
-                      "/blur": [("subscribe", "/video", "ALLOW"), ("publish", "/blurred", "ALLOW")]},
-           "/uplink": {"/uplink": [("subscribe", "/blurred", "ALLOW")]}}  # fmt: skip
-EXAMPLE_LABELS = """labels: 1
-nodes: {/camera: {source: [Video]}, /blur: {sanitizer: {Video: anonymise}}, /uplink: {leak: [Video]}}
-channels: {/video: sensitive, /blurred: sensitive}
-"""
-Enclaves = dict[str, dict[str, list[tuple[str, str, str]]]]
 
 systems = st.tuples(
     st.lists(
@@ -56,18 +49,6 @@ systems = st.tuples(
     ),
     st.lists(st.sampled_from(LABELS), min_size=len(NODES), max_size=len(NODES)),
 )  # fmt: skip
-
-
-def policy(enclaves: Enclaves) -> str:
-    lines = ['<policy version="0.2.0"><enclaves>']
-    for path, profiles in enclaves.items():
-        lines.append(f'<enclave path="{path}"><profiles>')
-        for node, rights in profiles.items():
-            lines.append(f'<profile ns="/" node="{node[1:]}">')
-            lines += [f'<topics {role}="{rule}"><topic>{topic}</topic></topics>' for role, topic, rule in rights]
-            lines.append("</profile>")
-        lines.append("</profiles></enclave>")
-    return "\n".join([*lines, "</enclaves></policy>\n"])
 
 
 def of_drawn(drawn: list[tuple[str, list[tuple[str, str, str]]]]) -> Enclaves:
@@ -83,17 +64,6 @@ def union(enclaves: Enclaves) -> Enclaves:
         path: {node: [right for rights in profiles.values() for right in rights] for node in profiles}
         for path, profiles in enclaves.items()
     }
-
-
-def apart(enclaves: Enclaves, chosen: list[str]) -> Enclaves:
-    """The policy that somebody writes who splits some enclaves: a DENY goes with each of their nodes."""
-    found: Enclaves = {}
-    for path, profiles in enclaves.items():
-        denied = [right for rights in profiles.values() for right in rights if right[2] == "DENY"]
-        for node, rights in profiles.items():
-            where = f"{path}{node}" if path in chosen else path
-            found.setdefault(where, {})[node] = [*rights, *denied] if path in chosen else rights
-    return found
 
 
 def moved(enclaves: Enclaves, move: Mapping[str, str]) -> Enclaves:
@@ -208,19 +178,6 @@ def test_formats_that_do_not_tell_it_are_refused(cli: Cli, more: tuple[str, ...]
     done = cli("analyze", "p.xml", "-l", "l.yaml", "--view", "both", *more)
     assert done.returncode == 2
     assert "--view both writes text, json and sarif" in done.stderr
-
-
-THREE = {
-    "/robot": {**EXAMPLE["/robot"], "/navigator": [("subscribe", "/scan", "ALLOW")]},
-    "/uplink": EXAMPLE["/uplink"],
-}
-FLEET = """fleet: 1
-models: {carrier: {policies: [p.xml], labels: [l.yaml]}}
-robots:
-  apart: {policies: [apart.xml], labels: [l.yaml]}
-  open: {policies: [open.xml], labels: [l.yaml]}
-groups: [{robots: 2, model: carrier}]
-"""
 
 
 @pytest.mark.usefixtures("example")

@@ -98,7 +98,9 @@ def test_where_permissions_are_not_asked_the_answer_is_undetermined_at_best(cli:
     again = cli("analyze", "--add", tmp_path / "graph.json", "-l", tmp_path / "labels.yaml")
     assert (again.returncode, again.stdout) == (4, declared.stdout)
     assert declared.stdout.startswith("undetermined: no leak reached, but not all is known of what is allowed")
-    enforced = cli(*arguments, "--view", "enforced", "--format", "json")
+    enforced = cli(*arguments, "--view", "enforced", "--format", "json", "--save-graph", tmp_path / "open.json")
+    saved = ("analyze", "--add", tmp_path / "open.json", "-l", tmp_path / "labels.yaml")
+    assert cli(*saved, "--view", "enforced", "--format", "json").stdout == enforced.stdout
     [finding] = json.loads(enforced.stdout)["findings"]
     assert [step["name"] for step in finding["witness"]][::2] == ["/camera", "/uplink"]
     [added] = json.loads(cli(*arguments, "--view", "both", "--format", "json").stdout)["enforced"]["added"]

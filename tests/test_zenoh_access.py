@@ -185,7 +185,7 @@ def test_the_enforced_view_has_what_a_session_without_a_list_can_do(cli: Cli, tm
 def test_a_single_process_gets_nothing_from_others(tmp_path: Path) -> None:
     """The enforced view is about processes that are known."""
     one, other = str(put(tmp_path / "camera.json5", SENDS)), str(put(tmp_path / "uplink.json5", TAKES))
-    assert [len(read_zenoh(files, None, view="enforced")[0]) for files in ([one], [one, other])] == [1, 3]
+    assert [len(read_zenoh(files, None, view="enforced")) for files in ([one], [one, other])] == [1, 3]
 
 
 @pytest.mark.parametrize(
@@ -263,3 +263,13 @@ def test_check_says_who_is_let_in(cli: Cli, tmp_path: Path) -> None:
     )
     done = cli("check", policy, put(tmp_path / "uplink.json5", TAKES))
     assert (done.returncode, "any session may send 1 name that this list lets in" in done.stdout) == (0, True)
+
+
+@pytest.mark.parametrize("view", ["declared", "enforced"])
+def test_a_saved_graph_says_the_same(cli: Cli, tmp_path: Path, view: str) -> None:
+    """Who is let in is told by what it was saved from too."""
+    files = put(tmp_path / "camera.json5", SENDS), put(tmp_path / "uplink.json5", TAKES)
+    graph = tmp_path / "graph.json"
+    code, ways, told = answered(cli, tmp_path, *files, "--view", view, "--save-graph", graph)
+    assert answered(cli, tmp_path, "--add", graph, "--view", view) == (code, ways, told)
+    assert [one for one in told if one.startswith("any session may")]

@@ -45,6 +45,8 @@ class Added(NamedTuple):
     ----------
     finding
         Of a fleet the first one of its pattern.
+    findings
+        Of a fleet those of the graph that differ from it only in the robot, itself first.
     beyond
         The steps of its witness, by number, that the profile of their node does not allow.
     enclaves
@@ -72,6 +74,7 @@ class Added(NamedTuple):
     loses: tuple[Right, ...] = ()
     robots: tuple[str, ...] = ()
     opened: tuple[Place, ...] = ()
+    findings: tuple[Finding, ...] = ()
 
 
 def rights(graph: FlowGraph) -> frozenset[Right]:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import LabelError, shown
 from rosprivacy.analysis.model import CANNOT, GLOB, STANDARD, Method
+from rosprivacy.analysis.text import printable
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -242,5 +243,7 @@ def _contradiction(name: str, category: str, a: Statement, b: Statement) -> Labe
     every = not first.categories and not second.categories
     every = every or {first.role, second.role} <= OF_EVERY_KIND
     about = "every category" if every else category
-    what = f"{shown(name)} is {in_words(second)} for {about} here and {in_words(first)} at {first.place}"
+    what = (
+        f"{shown(name)} is {in_words(second)} for {about} here and {in_words(first)} at {printable(str(first.place))}"
+    )
     return LabelError(second.place.file, second.place.line, what, "keep one of them, or make one more specific")

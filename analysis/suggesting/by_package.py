@@ -1,9 +1,11 @@
 """Evidence of packages: nodes that are called like those of a well-known package, and have its interfaces.
 
 In: a graph, the message types of its channels, packages. Out: evidence. The rule (docs/packages.md): the name and at
-least half of the interfaces are ``likely``, the name alone is ``may``; nothing is ever ``certain``, since anybody may
-call a node so. A channel confirms an interface by the end of its name, in the same use, unless its message types are
-known and the package's is not among them. What a policy grants by a wildcard confirms nothing.
+least half of the interfaces are ``likely``; less is ``may``, and evidence of a name; nothing is ever ``certain``, since
+anybody may call a node so. A channel confirms an interface by the end of its name, in the same use, unless its message
+types are known and the package's is not among them. What a policy grants by a wildcard confirms nothing. A node of
+which all types are known, and that has none of the interfaces, is another one: to be on the safe side what it lets out
+is told all the same, but for what it would bring in itself.
 """
 
 from __future__ import annotations
@@ -14,14 +16,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.many_flows import parted
 from rosprivacy.analysis.model import Confidence
-from rosprivacy.analysis.suggesting.evidence import PACKAGE, Evidence, Label, whole
+from rosprivacy.analysis.suggesting.evidence import LEAK, NAMED, PACKAGE, SOURCE, Evidence, Label, whole
 from rosprivacy.analysis.suggesting.ros_package import USES
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.model import FlowGraph, MessageType
-    from rosprivacy.analysis.suggesting.ros_package import Interface, Package, PackageNode
+    from rosprivacy.analysis.suggesting.ros_package import Claim, Interface, Package, PackageNode
 
 Use = tuple[str, str]  # kind of channel, role of a grant
 Channels = dict[Use, dict[str, frozenset[str]]]  # names of channels by use, each with the names of its types
@@ -103,12 +105,24 @@ def _evidence(graph: FlowGraph, match: _Match, channels: Channels) -> Iterator[E
     seen = sum(_confirmed(one, base, channels) for one in interfaces)
     matched = bool(interfaces) and 2 * seen >= len(interfaces)
     by = f"its name, {seen} of {len(interfaces)} of its interfaces" if seen else "its name alone"
-    for claim in match.node.claims:
+    for claim in _claims(match.node) if interfaces and not seen and _all_typed(channels) else match.node.claims:
         label = Label(element, claim.role, claim.kind, claim.method, claim.to)
         confidence = claim.confidence if matched else Confidence.MAY
         where = f", to a {claim.where}" if claim.where else ""
         reason = f"package {match.package.name} {match.package.version}: {claim.why}{where} ({by})"
-        yield Evidence(label, PACKAGE, confidence, reason, claim.place)
+        yield Evidence(label, PACKAGE if matched else NAMED, confidence, reason, claim.place)
+
+
+def _claims(node: PackageNode) -> list[Claim]:
+    """What is told of a node that is probably another one."""
+    own = {claim.kind for claim in node.claims if claim.role == SOURCE}
+    return [claim for claim in node.claims if claim.role == LEAK and claim.kind not in own]
+
+
+def _all_typed(channels: Channels) -> bool:
+    """Whether a node has channels, and the types of all of them are known."""
+    known = [types for named in channels.values() for types in named.values()]
+    return bool(known) and all(known)
 
 
 def _confirmed(interface: Interface, base: str, channels: Channels) -> bool:

@@ -81,7 +81,8 @@ def words(name: str) -> Phrase:
     >>> words("cameraInfo_2raw")
     ('camera', 'info', 'raw')
     """
-    return tuple(word for word in _NO_LETTERS.split(_HUMP.sub(r"\1_\2", name).lower()) if word)
+    apart = name if name.islower() else _HUMP.sub(r"\1_\2", name).lower()
+    return tuple(word for word in _NO_LETTERS.split(apart) if word)
 
 
 def of_topic(name: str, rules: NameRules) -> Spoken | None:

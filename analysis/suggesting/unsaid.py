@@ -75,7 +75,8 @@ def _outdone(one: Proposal, together: Sequence[Proposal], hierarchy: Hierarchy) 
     for each in others:
         roles[each.label.role].append(each)
     if label.role == CONDUIT:
-        return any(each.label.role in (LEAK, SANITIZER) for each in others)
+        same = any(each.label.kind == label.kind for each in roles[SOURCE])
+        return same or bool(roles[LEAK] or roles[SANITIZER])
     if label.role == SANITIZER:
         return bool(roles[SOURCE] or roles[LEAK])
     if label.role in (NEVER, MUNDANE):

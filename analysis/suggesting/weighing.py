@@ -12,7 +12,7 @@ The rules, in full (docs/suggestions.md):
 
 from __future__ import annotations
 
-from itertools import groupby
+from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import Confidence
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.suggesting.evidence import Evidence, Label
 
-_ORDER = {confidence: place for place, confidence in enumerate(Confidence)}  # the surest first
+_SURENESS = {confidence: place for place, confidence in enumerate(Confidence)}  # the surest first
 
 
 def proposals(evidence: Iterable[Evidence], found: Collection[str] = ()) -> tuple[Proposal, ...]:
@@ -49,8 +49,10 @@ def proposals(evidence: Iterable[Evidence], found: Collection[str] = ()) -> tupl
     >>> str(proposals([Evidence(relay, "data-flow", Confidence.LIKELY, "its types", rule)])[0].confidence)
     'may'
     """
-    ordered = sorted(set(evidence), key=lambda one: (_label_order(one.label), *_evidence_order(one)))
-    groups = ((label, tuple(group)) for label, group in groupby(ordered, key=lambda one: one.label))
+    of_labels: dict[Label, dict[Evidence, None]] = defaultdict(dict)
+    for one in evidence:
+        of_labels[one.label][one] = None
+    groups = ((label, tuple(sorted(of_labels[label], key=_evidence_order))) for label in sorted(of_labels, key=_order))
     return tuple(Proposal(label, _confidence(label, reasons, found), reasons) for label, reasons in groups)
 
 
@@ -60,7 +62,7 @@ def surer(one: Confidence, other: Confidence) -> bool:
     >>> surer(Confidence.LIKELY, Confidence.MAY), surer(Confidence.MAY, Confidence.MAY)
     (True, False)
     """
-    return _ORDER[one] < _ORDER[other]
+    return _SURENESS[one] < _SURENESS[other]
 
 
 def closes_finding(label: Label, found: Collection[str]) -> bool:
@@ -87,9 +89,9 @@ def _confidence(label: Label, reasons: Sequence[Evidence], found: Collection[str
     return surest
 
 
-def _label_order(label: Label) -> tuple[object, ...]:
+def _order(label: Label) -> tuple[object, ...]:
     return (label.element.sort_key(), ROLES.index(label.role), label.kind, label.method or "", label.to)
 
 
 def _evidence_order(one: Evidence) -> tuple[object, ...]:
-    return (_ORDER[one.confidence], GROUNDS.index(one.ground), one.reason, one.place)
+    return (_SURENESS[one.confidence], GROUNDS.index(one.ground), one.reason, one.place)

@@ -13,7 +13,7 @@ from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
 from rosprivacy.analysis.errors import LabelError, shown
 from rosprivacy.analysis.kernel.ranks import NONE_OF, decided
-from rosprivacy.analysis.text import blanked
+from rosprivacy.analysis.text import blanked, printable
 from rosprivacy.ingest.annotations.annotation_text import NONE
 from rosprivacy.ingest.labels.label_writer import NEW, NewLine, with_lines
 from rosprivacy.ontology.vocabulary import TOP
@@ -84,18 +84,20 @@ def _not_together(name: str, said: Sequence[Statement]) -> Iterator[LabelError]:
     other = next((one for one in said if bare and one.role != bare.role), None)
     other = other or next((one for one in said if bare and one.categories), None)
     if bare and other:
-        what = f"{shown(name)} is {bare.role} of every kind here and {other.role} at {other.place}"
+        what = f"{shown(name)} is {bare.role} of every kind here and {other.role} at {printable(str(other.place))}"
         yield LabelError(*bare.place, what, "keep one of them, or name its kinds of data")
     for role, none in NONE_OF.items():
         back, stated = (next((one for one in said if one.role == key), None) for key in (none, role))
         if back and stated:
-            what = f"{shown(name)} is {role} none here, and a {role} at {stated.place}"
+            what = f"{shown(name)} is {role} none here, and a {role} at {printable(str(stated.place))}"
             yield LabelError(*back.place, what, "keep one of them")
     sources = [one for one in said if one.role == "source"]
     free = next((one for one in sources if not one.through), None)
     through = next((one for one in sources if one.through), None)
     if free and through:
-        what = f"{shown(name)} is a source through all channels here, and through some at {through.place}"
+        what = (
+            f"{shown(name)} is a source through all channels here, and through some at {printable(str(through.place))}"
+        )
         yield LabelError(*free.place, what, "write source at the publishers alone, or at the class alone")
 
 
@@ -128,9 +130,8 @@ def _label(said: Sequence[Statement]) -> str | dict[str, Any]:
         elif one.role == "source" and one.through:
             label.setdefault("source", {})[one.categories[0]] = list(one.through)
         elif one.role == "sanitizer":
-            label.setdefault("sanitizer", {})[one.categories[0]] = (
-                str(one.method) if one.stated and one.method else None
-            )
+            methods = label.setdefault("sanitizer", {})
+            methods[one.categories[0]] = str(one.method) if one.stated else methods.get(one.categories[0])
         elif one.role == "derivation":
             label.setdefault("derives", []).append({"from": one.categories[0], "to": one.to})
         else:

@@ -129,6 +129,8 @@ def _no_annotation(text: str, place: Place) -> LabelError | None:
 
 
 def _name(given: str | None, name: str, place: Place) -> str:
+    if len(name) > LONGEST:
+        raise LabelError(*place, f"a name of more than {LONGEST} characters", "write a shorter one, or a glob")
     if given is not None and (is_non_ros(name) or any(c.isspace() or not c.isprintable() for c in name)):
         raise LabelError(*place, f"name {shown(name)!r} is not absolute", "begin it with /: privacy(/camera): …")
     return name

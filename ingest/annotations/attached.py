@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 SECTION = {NODE: "nodes", "topic": "topics", "service": "services", "action": "actions"}
 BESIDE = "put it on the line of a call or class of a node, or directly above it; or name the element: privacy(/name): …"
-BELOW = "/*"  # what image_transport adds to a name
+BELOW = "*"  # image_transport adds /compressed and others; not all of them are granted, so it is one glob
 Key = tuple[str, str]  # section of a label file, name
 
 
@@ -130,7 +130,7 @@ def _source(code: Code, names: CodeNames, site: Site, one: Annotation) -> Labell
     name, node = names.name(code, site), names.node(code, site.owner)
     if not name or not node:
         return _no_name(one, site, "/camera", "source Video through /image")
-    through = (name, name + BELOW) if site.more else (name,)
+    through = (name + BELOW,) if site.more else (name,)
     return Labelled("nodes", node, one.place, tuple(said._replace(through=through) for said in one.said))
 
 

@@ -10,9 +10,11 @@ from typing import TYPE_CHECKING
 
 from rosprivacy.ingest.database.schema import (
     ACROSS,
+    ADDED_FINDING,
     BAG,
     CARRIES,
     CATEGORY,
+    COULD_FLOW_TO,
     ELEMENT,
     ENCLAVE,
     FALLS_UNDER,
@@ -82,11 +84,14 @@ MERGE_FOREIGN = (
     f"UNWIND $rows AS row OPTIONAL MATCH {_node('n', ELEMENT, 'row.id')} WITH row WHERE n IS NULL "
     f"CREATE {_node('n', ELEMENT, 'row.id')} SET n += row.properties SET n:$(row.labels)"
 )
-CREATE_FINDINGS = (
+_CREATE_FINDINGS = (
     f"UNWIND $rows AS row MATCH {_node('a', ELEMENT, 'row.source')} MATCH {_node('b', ELEMENT, 'row.target')} "
     f"MATCH {_node('c', CATEGORY, 'row.category')} "
-    f"MERGE {_node('f', FINDING, 'row.id')} SET f += row.properties "
+    f"MERGE {{finding}} SET f += row.properties "
     "CREATE (f)-[:`FROM`]->(a) CREATE (f)-[:`TO`]->(b) CREATE (f)-[:`OF_CATEGORY`]->(c)"
+)
+CREATE_FINDINGS, CREATE_ADDED = (
+    _CREATE_FINDINGS.replace("{finding}", _node("f", kind, "row.id")) for kind in (FINDING, ADDED_FINDING)
 )
 # Both ends are looked up once for all kinds that go from one to the other.
 CREATE_CARRIES = (
@@ -148,6 +153,12 @@ DELETE_OURS = (
     f"AND (o.`robot` = n.`robot` OR {_IS_CARRIES.replace('(c)', '(o)')}) DELETE o"
 )
 DELETE_FINDINGS = "MATCH (f:`Finding`) WHERE f.`robot` IN $names DETACH DELETE f"
+# What the enforced view adds, and that somebody asked for it: it is true of what was loaded only.
+DELETE_BEYOND = (
+    f"MATCH (f:{quoted(ADDED_FINDING.label)}) WHERE f.`robot` IN $names DETACH DELETE f",
+    f"MATCH (:`Element`)-[c:{quoted(COULD_FLOW_TO.type)}]->() WHERE c.`robot` IN $names DELETE c",
+    "MATCH (r:`Robot`) WHERE r.`name` IN $names REMOVE r.`beyond`",
+)
 DELETE_EMPTY_ENCLAVES = (
     "MATCH (e:`Enclave`) WHERE e.`robot` IN $names AND NOT EXISTS { (e)<-[:`IN_ENCLAVE`]-() } DETACH DELETE e"
 )

@@ -15,6 +15,7 @@ from rosprivacy.analysis.answer import robot_verdicts
 from rosprivacy.analysis.contexts import Contexts
 from rosprivacy.analysis.findings.derived_from import origins
 from rosprivacy.analysis.fleet.likeness import pattern_id
+from rosprivacy.ingest.database.beyond_rows import BeyondRows, add_beyond
 from rosprivacy.ingest.database.carrying import Carrying
 from rosprivacy.ingest.database.element_properties import (
     Names,
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Analysis, Finding, Verdict
     from rosprivacy.analysis.fleet.likeness import Likeness
     from rosprivacy.analysis.model import Element, Flow
+    from rosprivacy.ingest.database.beyond_rows import Beyond
     from rosprivacy.ingest.database.carrying import End
     from rosprivacy.ingest.database.rows import RobotRows, Row
     from rosprivacy.ingest.fleet.fleet_graph import Placed
@@ -64,6 +66,8 @@ class FleetRows:
         See ``left_out``.
     not_read
         Robots of the graph of which grants were not read (rule S11).
+    beyond
+        What the enforced view adds; None where nobody asked for both views.
 
     Attributes
     ----------
@@ -80,9 +84,10 @@ class FleetRows:
         more: Mapping[str, Mapping[str, Any]],
         most_across: int | None = None,
         not_read: Iterable[str] = (),
+        beyond: Beyond | None = None,
     ) -> None:
         most_across = MOST_ACROSS if most_across is None else most_across
-        self._more = more
+        self._more, self._beyond = more, beyond
         self._not_read = frozenset(not_read)
         self._placed = placed
         self._analysis = analysis
@@ -147,6 +152,8 @@ class FleetRows:
             "across": across,
             "foreign": [],
         }
+        if self._beyond:
+            parts["beyond"] = self._added(owner, name, ids, self._beyond)
         parts["foreign"] = [
             element_row(robot, key, element, {}, (), None) for key, (element, robot) in sorted(ids.foreign.items())
         ]
@@ -161,6 +168,7 @@ class FleetRows:
             "shared": None if self._likeness.is_robot(owner) else True,
             **stated_of_robot(self._placed.bound, owner),
             **self._more.get(owner, {}),
+            **({"beyond": len(parts["beyond"].findings)} if self._beyond else {}),
         }
         return rows_of(name, {key: value for key, value in properties.items() if value is not None}, parts)
 
@@ -259,6 +267,24 @@ class FleetRows:
                 rows.append(row)
                 across += steps
         return rows, across
+
+    def _added(self, owner: str, name: str, ids: _Ids, beyond: Beyond) -> BeyondRows:
+        """What the enforced view adds on one robot; of findings from robot to robot one for each source."""
+        rows = BeyondRows([], [], [], [])
+        contexts = Contexts.of(self._graph, self._placed.bound, self._vocabulary.categories)
+        all_added = [(one, finding) for one in beyond.added for finding in one.findings]
+        for one, finding in all_added:
+            if finding.source.robot != owner:
+                continue
+            leaks = ids.expanded(finding.leak.robot)
+            for robot in leaks[:1] if self._likeness.across(finding) else leaks:
+                placed = _Moved(finding, name, robot, self._likeness)
+                keys = {element: ids.of(element, placed.robot(element)) for element in placed.elements}
+                robots = {element: placed.robot(element) for element in placed.elements}
+                pattern = pattern_id(finding, self._likeness)
+                row, _ = finding_row(finding, pattern, self._vocabulary, keys, robots, contexts)
+                add_beyond(rows, row, one, finding, keys, robots, beyond.declared)
+        return rows
 
     def _across_too_often(self, finding: Finding) -> bool:
         return bool(self._too_many) and pattern_id(finding, self._likeness) in self._too_many

@@ -16,11 +16,14 @@ from rosprivacy.ingest.database import cypher
 from rosprivacy.ingest.database.ids import category_labels
 from rosprivacy.ingest.database.robot_notices import loaded_with, unreadable
 from rosprivacy.ingest.database.schema import (
+    COULD_FLOW_TO,
     DERIVES_FROM,
+    ENDED_BY_SPLITTING,
     FALLS_UNDER,
     FLOWS_TO,
     IN_ENCLAVE,
     LOOK_AT,
+    MADE_POSSIBLE_BY,
     RELATIONSHIPS,
     ROLES,
     SUFFIXES,
@@ -32,6 +35,7 @@ if TYPE_CHECKING:
 
     from neo4j import Driver, ManagedTransaction
 
+    from rosprivacy.ingest.database.beyond_rows import BeyondRows
     from rosprivacy.ingest.database.rows import RobotRows, Row
     from rosprivacy.ontology.vocabulary import Vocabulary
 
@@ -122,6 +126,7 @@ def unload(driver: Driver, names: Sequence[str]) -> list[str]:
         known = [record["name"] for record in transaction.run(cypher.READ_ROBOTS, names=sorted(set(names)))]
         run(transaction, cypher.LOCK_ROBOTS, names=known)
         run(transaction, cypher.DELETE_FINDINGS, names=known)
+        delete_beyond(transaction, known)
         run(transaction, cypher.DELETE_OURS, names=known)
         _delete_elements(transaction, _element_ids(transaction, known))
         run(transaction, cypher.DELETE_EMPTY_ENCLAVES, names=known)
@@ -277,6 +282,7 @@ def _write_robots(transaction: ManagedTransaction, robots: list[RobotRows], labe
     known = [record["name"] for record in transaction.run(cypher.READ_ROBOTS, names=names) if record["known"]]
     if known:
         run(transaction, cypher.DELETE_FINDINGS, names=known)
+        delete_beyond(transaction, known)
         run(transaction, cypher.DELETE_OURS, names=known)
         new = {row["id"] for rows in robots for row in (*rows.elements, *rows.intakes)}
         _delete_elements(transaction, [key for key in _element_ids(transaction, known) if key not in new])
@@ -295,9 +301,18 @@ def _write_robots(transaction: ManagedTransaction, robots: list[RobotRows], labe
         write(transaction, statement, [row for rows in robots for row in rows.roles.get(role, ())])
     write(transaction, cypher.CREATE_FINDINGS, [row for rows in robots for row in rows.findings])
     write(transaction, cypher.CREATE_ACROSS, [row for rows in robots for row in rows.across])
+    _write_beyond(transaction, [rows.beyond for rows in robots])
     if known:
         run(transaction, cypher.DELETE_EMPTY_ENCLAVES, names=known)
     run(transaction, cypher.WRITE_ROBOTS, rows=[{"robot": r.robot, "properties": r.properties} for r in robots])
+
+
+def _write_beyond(transaction: ManagedTransaction, robots: list[BeyondRows]) -> None:
+    """Write what the enforced view adds, where somebody asked for both views."""
+    write(transaction, cypher.CREATE_ADDED, [row for rows in robots for row in rows.findings])
+    for kind, part in ((COULD_FLOW_TO, "flows"), (MADE_POSSIBLE_BY, "possible"), (ENDED_BY_SPLITTING, "split")):
+        statement = cypher.create_relationships(kind)
+        write(transaction, statement, [row for rows in robots for row in getattr(rows, part)])
 
 
 def _foreign(robots: list[RobotRows]) -> list[Row]:
@@ -312,6 +327,12 @@ def _element_ids(transaction: ManagedTransaction, names: list[str]) -> list[str]
 def _delete_elements(transaction: ManagedTransaction, ids: list[str]) -> None:
     for start in range(0, len(ids), BATCH):
         run(transaction, cypher.DELETE_ELEMENTS, rows=ids[start : start + BATCH])
+
+
+def delete_beyond(transaction: ManagedTransaction, names: list[str]) -> None:
+    """Remove what the enforced view adds to some robots: what is there now may be something else."""
+    for statement in cypher.DELETE_BEYOND:
+        run(transaction, statement, names=names)
 
 
 def write(transaction: ManagedTransaction, statement: str, rows: list[Row], **more: Any) -> None:

@@ -11,13 +11,16 @@ import json
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from rosprivacy.analysis.contexts import Contexts
 from rosprivacy.analysis.model import CANNOT, UNSTATED
 from rosprivacy.analysis.non_ros import BY_KIND
+from rosprivacy.ingest.database.beyond_rows import NOTHING, Beyond, BeyondRows, add_beyond
 from rosprivacy.ingest.database.carrying import Carrying
 from rosprivacy.ingest.database.element_properties import (
     Names,
     Roles,
     element_results,
+    finding_row,
     finding_rows,
     flow_results,
     origin_rows,
@@ -67,6 +70,8 @@ class RobotRows:
     foreign
         Elements of other robots at which flows and findings of this one end: as ``elements``, without what is said
         of them.
+    beyond
+        What the enforced view adds; nothing where nobody asked for both views.
     """
 
     robot: str
@@ -82,6 +87,7 @@ class RobotRows:
     findings: list[Row]
     across: list[Row]
     foreign: list[Row] = field(default_factory=list)
+    beyond: BeyondRows = NOTHING
 
     @property
     def digest(self) -> str:
@@ -96,7 +102,12 @@ class RobotRows:
 
 
 def robot_rows(
-    robot: str, analysis: Analysis, bound: Bound, vocabulary: Vocabulary, more: Mapping[str, Any] | None = None
+    robot: str,
+    analysis: Analysis,
+    bound: Bound,
+    vocabulary: Vocabulary,
+    more: Mapping[str, Any] | None = None,
+    beyond: Beyond | None = None,
 ) -> RobotRows:
     """Return the rows of one robot.
 
@@ -110,6 +121,8 @@ def robot_rows(
         The statements that it rests on.
     more
         Further properties of the ``Robot``.
+    beyond
+        What the enforced view adds; None where nobody asked for both views.
 
     Raises
     ------
@@ -147,7 +160,21 @@ def robot_rows(
         **stated_of_robot(bound, ""),
         **(more or {}),
     }
+    if beyond:
+        parts["beyond"] = _beyond(robot, beyond, analysis, bound, vocabulary)
+        properties["beyond"] = len(parts["beyond"].findings)
     return rows_of(robot, properties, parts)
+
+
+def _beyond(robot: str, beyond: Beyond, analysis: Analysis, bound: Bound, vocabulary: Vocabulary) -> BeyondRows:
+    rows = BeyondRows([], [], [], [])
+    contexts = Contexts.of(analysis.graph, bound, vocabulary.categories)
+    for one in beyond.added:
+        ids = {element: element_id(robot, element) for element in (*one.finding.witness, one.finding.source)}
+        robots = dict.fromkeys(ids, robot)
+        row, _ = finding_row(one.finding, one.finding.id, vocabulary, ids, robots, contexts)
+        add_beyond(rows, row, one, one.finding, ids, robots, beyond.declared)
+    return rows
 
 
 def stated_of_robot(bound: Bound, robot: str) -> Row:

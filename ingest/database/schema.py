@@ -169,6 +169,7 @@ ROBOT = NodeKind(
         Property("flows", INTEGER, "how many were loaded"),
         Property("roles", INTEGER, "how many relationships of labels were loaded"),
         Property("carried", INTEGER, "how many `CARRIES_…` were loaded"),
+        Property("beyond", INTEGER, "how many `AddedFinding` it has; absent where nobody loaded it with `--view both`"),
         Property("controller", STRING, "who is responsible, as stated"),
         Property("dpo", STRING, "the data-protection officer, as stated"),
         *_PROCESSING,
@@ -240,6 +241,24 @@ FINDING = NodeKind(
         Property("special_from", STRING, "element that makes a special category of other data; absent if none does"),
     ),
 )
+ADDED_FINDING = NodeKind(
+    "AddedFinding",
+    "id",
+    "What the enforced view adds to the findings: data gets there only if a node goes beyond its own profile. `load "
+    "--view both` writes it; it is no `Finding`, and verdicts are without it.",
+    (
+        *(field for field in FINDING.properties if field.name != "dismissed"),
+        Property("view", STRING, "enforced"),
+        Property("way", STRINGS, "names of the elements of its shortest way"),
+        Property("beyond", STRINGS, "its steps that no profile of their node allows, with the policy line of another"),
+        Property("enclaves", STRINGS, "whose nodes share their rights on it"),
+        Property("opened_by", STRINGS, "file:line of a governance that asks nobody for permissions there; else absent"),
+        Property("split", STRINGS, "enclaves of which splitting takes it away, proven by a new analysis"),
+        Property("move", STRING, "the profile of which an enclave of its own takes it away alone; absent if none does"),
+        Property("deny", STRINGS, "DENY lines that take it away, proven by a new analysis"),
+        Property("loses", STRINGS, "what nodes would lose by these lines that their own profiles allow"),
+    ),
+)
 _KINDS = Property("kinds", STRINGS, "kinds of data that can be in it, as labels and policies say")
 _SUGGESTED = Property("suggested", STRINGS, "kinds that types suggest, `Video (likely)`: questions, no facts")
 BAG = NodeKind(
@@ -282,7 +301,7 @@ RECORDED_TOPIC = NodeKind(
         Property("why", STRING, "what its kinds rest on"),
     ),
 )
-NODES = (ELEMENT, ROBOT, ENCLAVE, CATEGORY, PROVISION, FINDING, BAG, RECORDED_TOPIC)
+NODES = (ELEMENT, ROBOT, ENCLAVE, CATEGORY, PROVISION, FINDING, ADDED_FINDING, BAG, RECORDED_TOPIC)
 
 FLOWS_TO = RelationshipKind(
     "FLOWS_TO",
@@ -318,6 +337,30 @@ FLOWS_TO = RelationshipKind(
         Property("statements", STRINGS, "JSON: role, categories, rank, naming, file and line of each of these labels"),
         _OURS,
     ),
+)
+COULD_FLOW_TO = RelationshipKind(
+    "COULD_FLOW_TO",
+    "Element",
+    "Element",
+    "A step of the way of an `AddedFinding`: the enclave of its node allows it, no profile of the node does. It is no "
+    "flow of the declared view.",
+    (
+        Property("role", STRING, "as of `FLOWS_TO`"),
+        Property("file", STRING, "of the policy line of another profile"),
+        Property("line", INTEGER, "of the policy line of another profile"),
+        Property("enclave", STRING, "of the profile that the line stands in"),
+        Property("profile", STRING, "node of that profile"),
+        _OURS,
+    ),
+)
+MADE_POSSIBLE_BY = RelationshipKind(
+    "MADE_POSSIBLE_BY", "AddedFinding", "Enclave", "Its nodes share the rights that the finding needs."
+)
+ENDED_BY_SPLITTING = RelationshipKind(
+    "ENDED_BY_SPLITTING",
+    "AddedFinding",
+    "Enclave",
+    "With an enclave for each of its nodes, and of all others that it names so, the finding is gone.",
 )
 CARRIED = RelationshipKind(
     f"{CARRIES}BIOMETRIC",
@@ -425,6 +468,9 @@ RECORDS = RelationshipKind(
 )
 RELATIONSHIPS = (
     FLOWS_TO,
+    COULD_FLOW_TO,
+    MADE_POSSIBLE_BY,
+    ENDED_BY_SPLITTING,
     CARRIED,
     *ROLES.values(),
     DERIVES_FROM,
@@ -433,9 +479,9 @@ RELATIONSHIPS = (
     RelationshipKind("BROADER", "DataCategory", "DataCategory", "The second is broader (skos:broader)."),
     FALLS_UNDER,
     LOOK_AT,
-    RelationshipKind("OF_CATEGORY", "Finding", "DataCategory", "What arrives."),
-    RelationshipKind("FROM", "Finding", "Element", "The source."),
-    RelationshipKind("TO", "Finding", "Element", "The leak."),
+    RelationshipKind("OF_CATEGORY", "Finding", "DataCategory", "What arrives; of an `AddedFinding` too."),
+    RelationshipKind("FROM", "Finding", "Element", "The source; of an `AddedFinding` too."),
+    RelationshipKind("TO", "Finding", "Element", "The leak; of an `AddedFinding` too."),
     ACROSS,
     HAS_TOPIC,
     RECORDS,

@@ -23,7 +23,7 @@ from rosprivacy.ingest.database.element_properties import (
     origin_rows,
 )
 from rosprivacy.ingest.database.ids import category_labels, element_id
-from rosprivacy.ingest.database.loading import refusals, run, write
+from rosprivacy.ingest.database.loading import delete_beyond, refusals, run, write
 from rosprivacy.ingest.database.robot_notices import diagnostics_of
 from rosprivacy.ingest.database.rows import end_id, intake_row, kind_labels
 from rosprivacy.ingest.database.schema import DERIVES_FROM, ELEMENT, KIND_LABELS, SUFFIXES
@@ -151,6 +151,8 @@ class _Changes:
         write(transaction, WRITE_FLOWS, _rows(self._flows, robots))
         run(transaction, DELETE_ORIGINS, names=robots)
         run(transaction, cypher.DELETE_FINDINGS, names=robots)
+        if self.changed:  # what is there is not what was loaded: what the enforced view adds to it is not known
+            delete_beyond(transaction, robots)
         write(transaction, cypher.create_relationships(DERIVES_FROM), _rows(self._origins, robots))
         write(transaction, cypher.CREATE_FINDINGS, _rows(self._findings, robots))
         write(transaction, cypher.CREATE_ACROSS, _rows(self._across, robots))

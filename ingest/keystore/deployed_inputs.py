@@ -123,7 +123,7 @@ class _Reading(NamedTuple):
         yield replace(granted, protections=tuple(protection(one.rule) for one in found))
         if View(self.view) is View.enforced:
             for one in found:
-                yield open_topics(one.file, one.rule, granted.profiles)
+                yield open_topics(one.file, one.rule, granted.profiles, granted.sources)
 
     def _remarks(self, stated: Sequence[Permissions]) -> Iterator[Diagnostic]:
         yield from apart_remarks(stated, self.domain)

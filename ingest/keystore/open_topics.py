@@ -21,8 +21,16 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.keystore.governance_file import DomainRule, TopicRule
 
 
-def open_topics(file: str, rule: DomainRule, profiles: Sequence[Profile]) -> Policy:
-    """Return what a rule of a governance file leaves open to some enclaves; nothing where it asks of all topics."""
+def open_topics(
+    file: str, rule: DomainRule, profiles: Sequence[Profile], sources: tuple[tuple[str, str], ...]
+) -> Policy:
+    """Return what a rule of a governance file leaves open to some enclaves; nothing where it asks of all topics.
+
+    Parameters
+    ----------
+    sources
+        (file, SHA-256) of the governance, and of the permissions that state the enclaves.
+    """
     name = f"{file}:{rule.place.line}"  # of each rule its own: what one takes out, another may leave open
     grants = [
         Grant(not asked, direction, DDS, topic.expression, profile.enclave, profile.node, topic.place, name,
@@ -31,7 +39,7 @@ def open_topics(file: str, rule: DomainRule, profiles: Sequence[Profile]) -> Pol
         for rank, topic, asked in _in_order(rule.in_force(), direction)
         for profile in profiles
     ]  # fmt: skip
-    return Policy(name, (), tuple(profiles) if grants else (), tuple(grants), protections=(protection(rule),))
+    return Policy(name, sources, tuple(profiles) if grants else (), tuple(grants), protections=(protection(rule),))
 
 
 def _in_order(topics: Sequence[TopicRule], direction: str) -> Iterator[tuple[int, TopicRule, bool]]:

@@ -7,6 +7,7 @@ first prefix wins, as an overlay does in ROS: the way for a vendor to ship such 
 
 from __future__ import annotations
 
+import hashlib
 import os
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -41,7 +42,7 @@ def catalogue(vocabulary: Vocabulary) -> tuple[Package, ...]:
     return tuple(read_package(str(file), vocabulary, SHIPPED + file.name) for file in files)
 
 
-def packages(named: Iterable[str], vocabulary: Vocabulary, bounds: Bounds = BOUNDS) -> tuple[Package, ...]:
+def read_packages(named: Iterable[str], vocabulary: Vocabulary, bounds: Bounds = BOUNDS) -> tuple[Package, ...]:
     """Return the shipped packages with those of a user.
 
     Parameters
@@ -73,6 +74,19 @@ def packages(named: Iterable[str], vocabulary: Vocabulary, bounds: Bounds = BOUN
         raise InputErrors(problems)
     known = {package.name: package for package in catalogue(vocabulary)} | own
     return tuple(known[name] for name in sorted(known))
+
+
+def rests_on(packages: Iterable[Package]) -> tuple[tuple[str, str], ...]:
+    """Return (file, SHA-256) of packages: the shipped ones are one, by the hashes of all that were read.
+
+    >>> from rosprivacy.ontology.vocabulary import load
+    >>> [file for file, _ in rests_on(catalogue(load()))]
+    ['rosprivacy:packages']
+    """
+    read = [(package.place.file, package.sha256) for package in packages]
+    shipped = "".join(sha256 for file, sha256 in read if file.startswith(SHIPPED))
+    own = [(file, sha256) for file, sha256 in read if not file.startswith(SHIPPED)]
+    return ((SHIPPED.rstrip("/"), hashlib.sha256(shipped.encode()).hexdigest()), *own)
 
 
 def _files(named: Iterable[str], problems: list[InputError]) -> Iterable[tuple[str, str]]:

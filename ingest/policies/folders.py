@@ -10,10 +10,15 @@ import os
 from dataclasses import dataclass, field
 from glob import glob, has_magic
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputError, PolicyError, reason, shown
-from rosprivacy.analysis.model import NOT_READ, Diagnostic, Place, Severity
+from rosprivacy.analysis.model import ACCESS_GAP, NOT_READ, Diagnostic, Place, Severity
 
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+SIGNED = ".p7s"
 NAMED = 3  # of the files that are passed over
 
 
@@ -33,15 +38,30 @@ class Contents:
     others: set[str] = field(default_factory=set)
     problems: list[InputError] = field(default_factory=list)
 
-    def said(self, argument: str) -> Diagnostic | None:
-        """The notice about what is passed over."""
-        if not self.others:
-            return None
-        names = [shown(os.path.relpath(name, argument) if Path(argument).is_dir() else name) for name in self.others]
-        named = ", ".join([*sorted(names)[:NAMED], *(["…"] if len(names) > NAMED else [])])
-        count = "1 file is" if len(names) == 1 else f"{len(names):,} files are"
-        message = f"{count} not read, as the name does not end in .xml: {named}; name a policy among them by itself"
-        return Diagnostic(Place(argument, 0), Severity.NOTICE, message, NOT_READ)
+    def said(self, argument: str) -> Iterator[Diagnostic]:
+        """Yield what is to be said of what is passed over."""
+        signed = {name for name in self.others if name.endswith(SIGNED)}
+        if signed:
+            count = "1 signed file is" if len(signed) == 1 else f"{len(signed):,} signed files are"
+            yield not_read_here(Place(argument, 0), f"{count} ({_named(signed, argument)})")
+        if others := self.others - signed:
+            count = "1 file is" if len(others) == 1 else f"{len(others):,} files are"
+            message = f"{count} not read, as the name does not end in .xml: {_named(others, argument)}"
+            hint = "name a policy among them by itself"
+            yield Diagnostic(Place(argument, 0), Severity.NOTICE, f"{message}; {hint}", NOT_READ)
+
+
+def _named(files: Iterable[str], argument: str) -> str:
+    names = sorted(shown(os.path.relpath(name, argument) if Path(argument).is_dir() else name) for name in files)
+    return ", ".join([*names[:NAMED], *(["…"] if len(names) > NAMED else [])])
+
+
+def not_read_here(place: Place, what: str) -> Diagnostic:
+    """Return the gap that permissions or governance in a folder of policies are: what is deployed is not read."""
+    message = f"not read: {what} permissions or governance, and what that grants is not known"
+    return Diagnostic(
+        place, Severity.WARNING, f"{message}; name it by itself, or move it out of the folder", ACCESS_GAP
+    )
 
 
 def contents(argument: str) -> Contents | None:

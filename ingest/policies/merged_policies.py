@@ -33,7 +33,7 @@ def merging_notices(policies: Iterable[Policy], instead: str = ALONE) -> tuple[D
     instead
         What to do if they were not meant to make one graph.
     """
-    of_files = (policy for policy in deployed(policies) if policy.profiles and policy.sources)
+    of_files = (policy for policy in deployed(policies) if policy.profiles and policy.file in dict(policy.sources))
     policies = sorted(of_files, key=lambda policy: policy.file)
     if len(policies) < 2:  # noqa: PLR2004 - two make one
         return ()

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.bounds import BOUNDS
 from rosprivacy.analysis.errors import InputError, InputErrors, PolicyError, reason
 from rosprivacy.analysis.model import NOT_READ, UNREAD_FILE, Diagnostic, Place, Policy, Severity
-from rosprivacy.ingest.policies.folders import contents
+from rosprivacy.ingest.policies.folders import contents, not_read_here
 from rosprivacy.ingest.policies.policy_xml import NotAPolicyError, read_policy
 from rosprivacy.ingest.policies.xinclude import MAX_BYTES
 from rosprivacy.ingest.reading.confined import WIDEN, leaves, what_leaves
@@ -115,6 +115,8 @@ def _included(policies: Iterable[Policy]) -> dict[str, set[tuple[int, str, str]]
 def _not_read(error: NotAPolicyError, included: Mapping[str, Collection[tuple[int, str, str]]]) -> Diagnostic:
     """What is to be said of XML that is no policy: grants that nothing brings in are a gap (rule S11)."""
     place = Place(error.file, error.line)
+    if error.deployed:
+        return not_read_here(place, "it is")
     taken = included.get(os.path.realpath(error.file))
     if taken is None and (error.grants or error.includes):
         what = f"not read: {error.problem}, and no policy read here includes it, so what it grants is not known"
@@ -143,8 +145,7 @@ def _expand(arguments: Iterable[str]) -> _Expanded:
             expanded.named.add(spelt.setdefault(os.path.abspath(argument), argument))  # noqa: PTH100 - by its text
             continue
         expanded.problems += held.problems
-        if said := held.said(argument):
-            expanded.notices.append(said)
+        expanded.notices += held.said(argument)
         if held.files:
             expanded.found[argument] = {
                 spelt.setdefault(os.path.abspath(file), file)  # noqa: PTH100

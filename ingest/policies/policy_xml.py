@@ -68,10 +68,13 @@ class NotAPolicyError(PolicyError):
         (line, kind, role) of what it would grant or deny if a policy included it.
     includes
         Whether it is a fragment with includes, which can bring more.
+    deployed
+        Whether it is permissions or governance of DDS-Security.
     """
 
     grants: frozenset[tuple[int, str, str]] = frozenset()
     includes: bool = False
+    deployed: bool = False
 
 
 def read_policy(
@@ -363,6 +366,7 @@ def _not_a_policy(root: Item) -> NotAPolicyError:
     fragment = root.tag in FRAGMENTS
     hint = "name the policy that includes it" if fragment else "name an SROS 2 policy"
     error = NotAPolicyError(root.file, root.place.line, what, hint)
+    error.deployed = root.tag == "dds"
     error.grants = frozenset(_granted(root))
     tags = {str(element.tag).rpartition("}")[2] for element in root.element.iter()} if fragment else set()
     error.includes = "include" in tags

@@ -83,7 +83,7 @@ def as_dict(
     observed = [types_file.as_dict(one) for one in types]
     policies = tuple(policies)
     own = {d for policy in policies for d in policy.diagnostics}
-    left = dict.fromkeys(d for d in diagnostics if d.code in (NOT_READ, UNREAD_FILE) and d not in own)
+    left = dict.fromkeys(d for d in diagnostics if d.code in (NOT_READ, UNREAD_FILE, ACCESS_GAP) and d not in own)
     return {
         "format": FORMAT,
         "policies": [_policy(policy) for policy in sorted(policies, key=lambda p: p.file)],

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.suggestions.comments import Comment
     from rosprivacy.ontology.vocabulary import Vocabulary
 
-BRINGS_OR_LETS_OUT = ("source", "leak")
+BRINGS_OR_LETS_OUT, PASSES_OR_ENDS = ("source", "leak"), ("conduit", "sanitizer")
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +73,7 @@ def accept(file: str, text: str, named: Sequence[str], who: str, day: str, vocab
 
     def change(top: Any) -> None:
         for comment in chosen:
-            refused = _put(top, comment, f"accepted by {who} on {day}")
+            refused = _put(top, comment, f"accepted by {who} on {day}", vocabulary)
             if refused:
                 remarks.append(f"{file}:{comment.line}: {shown(comment.name)} {refused}; change it by hand")
             else:
@@ -118,7 +118,7 @@ def _needs_name(comment: Comment) -> bool:
     return comment.hides and comment.confidence is Confidence.MAY
 
 
-def _put(top: Any, comment: Comment, how: str) -> str:
+def _put(top: Any, comment: Comment, how: str, vocabulary: Vocabulary) -> str:
     """Write one label; return why not, if it cannot be joined to what the entry says."""
     note = DoubleQuotedScalarString(blanked(f"{how} ({comment.confidence}): {comment.why}", "?"))
     ((role, value),) = comment.said.items()
@@ -134,13 +134,22 @@ def _put(top: Any, comment: Comment, how: str) -> str:
         return "is a conduit already"
     if not isinstance(entry, CommentedMap) or "absent" in entry:
         return f"is {shown(str(entry))} already"
-    if comment.hides and any(one in entry for one in BRINGS_OR_LETS_OUT):
-        return "is a source or a leak already"
+    against = BRINGS_OR_LETS_OUT if comment.hides else PASSES_OR_ENDS if role in BRINGS_OR_LETS_OUT else ()
+    other = next((one for one in against if one in entry and _overlap(value, entry[one], vocabulary)), "")
+    if other:
+        return f"is a {other} of such data already"
     refused = _join(entry, role, value)
     if not refused:
         said = entry.get("note")
         entry["note"] = DoubleQuotedScalarString(f"{said}; {note}") if said else note
     return refused
+
+
+def _overlap(value: Any, other: Any, vocabulary: Vocabulary) -> bool:
+    """Whether two roles can be about the same data; where a name is not known, they can."""
+    kinds = [[vocabulary.find(str(one)) for one in ([v] if isinstance(v, str) else v)] for v in (value, other)]
+    pairs = ((a, b) for a in kinds[0] for b in kinds[1])
+    return any(not a or not b or vocabulary.hierarchy.overlap(a.name, b.name) is not None for a, b in pairs)
 
 
 def _section_of(top: Any, comment: Comment) -> Any:

@@ -32,13 +32,15 @@ ANY_SESSION = "zenoh:any-session"
 _NAMES = tuple(PROPERTIES.index(name) for name in ("cert_common_names", "usernames"))
 
 
-def open_sessions(files: Mapping[AccessFile, Keys]) -> Policy:
+def open_sessions(files: Mapping[AccessFile, Keys], sources: tuple[tuple[str, str], ...]) -> Policy:
     """Return what processes may do where the lists of others do not tell them apart; nothing of a single process.
 
     Parameters
     ----------
     files
         Each with the keys of its session.
+    sources
+        (file, SHA-256) of each.
     """
     known = {process_of(access): access.place for access in files}
     grants = [
@@ -49,11 +51,11 @@ def open_sessions(files: Mapping[AccessFile, Keys]) -> Policy:
         for right in _left_to(who, access, keys, known)
     ]  # fmt: skip
     profiles = [Profile(ANY_SESSION, process, place) for process, place in sorted(known.items()) if grants]
-    return Policy(ANY_SESSION, (), tuple(profiles), tuple(dict.fromkeys(grants)))
+    return Policy(ANY_SESSION, sources, tuple(profiles), tuple(dict.fromkeys(grants)))
 
 
 def open_remarks(files: Mapping[AccessFile, Keys]) -> Iterator[Diagnostic]:
-    """Yield a warning for each list that lets through what nobody knows of."""
+    """Yield a warning for each list that lets through what nobody knows of; its place is that of the list."""
     known = {process_of(access) for access in files}
     for access, keys in files.items():
         left = [right for right in _left_to("", access, keys, known) if right.allow]

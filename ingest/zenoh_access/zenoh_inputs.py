@@ -5,6 +5,7 @@ In: their paths. Out: ``Policy`` facts, with what a reader has to know of them.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputErrors, shown
@@ -23,10 +24,8 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.zenoh_access.access_file import AccessFile
     from rosprivacy.ingest.zenoh_access.ros_keys import Keys
 
-Read = tuple[tuple["Policy", ...], tuple["Diagnostic", ...]]
 
-
-def read_zenoh(files: Iterable[str], domain: int | None, *, view: str = View.declared) -> Read:
+def read_zenoh(files: Iterable[str], domain: int | None, *, view: str = View.declared) -> tuple[Policy, ...]:
     """Read configurations of Zenoh.
 
     Parameters
@@ -57,10 +56,18 @@ def read_zenoh(files: Iterable[str], domain: int | None, *, view: str = View.dec
             problems += error.errors
     if problems:
         raise InputErrors(problems)
-    policies = [policy_of(access, of_it) for access, of_it in keys.items()]
-    if View(view) is View.enforced and (left := open_sessions(keys)).grants:
+    said = (*open_remarks(keys), *_joined(spaces))
+    policies = [_with(policy_of(access, of_it), said) for access, of_it in keys.items()]
+    sources = tuple(sorted({source for policy in policies for source in policy.sources}))
+    if View(view) is View.enforced and (left := open_sessions(keys, sources)).grants:
         policies.append(left)
-    return tuple(policies), (*open_remarks(keys), *_joined(spaces))
+    return tuple(policies)
+
+
+def _with(policy: Policy, said: Iterable[Diagnostic]) -> Policy:
+    """A policy with what is said of its file too: a saved graph keeps it there."""
+    own = (one for one in said if one.place.file == policy.file)
+    return replace(policy, diagnostics=(*policy.diagnostics, *own))
 
 
 def _written_for(read: Iterable[AccessFile]) -> dict[str, Place]:

@@ -141,9 +141,13 @@ ACCESS_GAPS = Rule(
     "access-gaps",
     "WhatIsAllowedIsNotKnown",
     "Not all is known of what is allowed: that nothing is found does not say that there is nothing.",
-    "The governance asks no permissions for some topics, or an access list of Zenoh does not tell who is at the other "
-    "end of a link: what a program does there is not known.",
-    ("Let the governance ask permissions, or name certificates in access lists; analyse the enforced view.",),
+    "The governance asks no permissions for some topics or was not read, permissions lie in a folder of policies, or "
+    "an access list of Zenoh does not tell who is at the other end of a link: what a program does there is not known.",
+    (
+        "Name the governance of each domain, and let it ask permissions.",
+        "Name certificates in access lists.",
+        "Analyse the enforced view.",
+    ),
 )
 FILES_NOT_READ = Rule(
     "files-not-read",

@@ -10,7 +10,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.errors import InputError, InputErrors, shown
-from rosprivacy.analysis.text import counted
+from rosprivacy.analysis.text import counted, printable
 from rosprivacy.ingest.annotations.annotated_labels import HEAD, conflicts, label_text
 from rosprivacy.ingest.annotations.attached import attach
 from rosprivacy.ingest.annotations.code_names import ROOT, is_ros_name
@@ -92,7 +92,7 @@ def differences(made: Annotated, file: str, vocabulary: Vocabulary) -> tuple[str
             lines.append(f"{entry.place}: {_called(key)} is not what {places[key]} says")
     if not lines and _rest(there) != _rest(wanted):
         lines.append(f"{file}: it says more than annotations can say")
-    return tuple(shown(line) for line in sorted(lines))
+    return tuple(map(printable, sorted(lines)))
 
 
 def is_ours(file: str) -> bool:

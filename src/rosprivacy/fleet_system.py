@@ -31,7 +31,7 @@ from rosprivacy.ingest.policies.merged_policies import OF_ONE_ROBOT, merging_not
 from rosprivacy.ingest.policies.namespaces import pushed, told
 from rosprivacy.ingest.types.channel_types import matching_nothing
 from rosprivacy.question import question_of
-from rosprivacy.robot_system import read_types_files, with_types
+from rosprivacy.robot_system import beyond_of, read_types_files, with_types
 from rosprivacy.system import System
 
 if TYPE_CHECKING:
@@ -142,7 +142,9 @@ def rows_of_fleet(system: FleetSystem, question: Question, result: Result) -> Fl
     everything = {**result.assumptions, "policies": [], "labels": [], "types": []}
     more[system.fleet.name] = remembered(everything, system.joins)
     not_read = [name for name, member in system.members.items() if unread(member.diagnostics)]
-    return FleetRows(system.placed, result.analysis, system.vocabulary, more, not_read=not_read)
+    return FleetRows(
+        system.placed, result.analysis, system.vocabulary, more, not_read=not_read, beyond=beyond_of(result)
+    )
 
 
 class Reader:

@@ -57,8 +57,7 @@ def read_granted(names: Iterable[str], settings: Settings, within: str | None = 
     if granted:
         policies = (*policies, *_deployed(granted, settings, within))
     if access:
-        more, told = _zenoh(access, settings, within)
-        policies, said = (*policies, *more), (*said, *told)
+        policies = (*policies, *_zenoh(access, settings, within))
     return policies, said
 
 
@@ -72,7 +71,7 @@ def with_exposed(graph: FlowGraph, bound: Bound, policies: Iterable[Policy]) -> 
     return replace(bound, exposed=exposed_channels(graph, policies))
 
 
-def _zenoh(names: list[str], settings: Settings, within: str | None) -> Read:
+def _zenoh(names: list[str], settings: Settings, within: str | None) -> tuple[Policy, ...]:
     from rosprivacy.ingest.zenoh_access.zenoh_inputs import read_zenoh  # noqa: PLC0415 - light start
 
     _confined(names, within)

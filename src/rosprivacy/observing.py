@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import InputError, InputErrors, shown
 from rosprivacy.analysis.text import counted
 from rosprivacy.clock import source_date
+from rosprivacy.ingest.doors.doors import seen_by
 from rosprivacy.ingest.observe.declared import TYPE
 from rosprivacy.ingest.observe.declared_labels import declared_labels
-from rosprivacy.ingest.observe.doors import seen_by
 from rosprivacy.ingest.observe.observation import Observation, added_up, moment
 from rosprivacy.ingest.observe.observed_policy import policy_xml, prepared
 from rosprivacy.ingest.observe.observed_types import types_yaml
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
     from pathlib import Path
 
-    from rosprivacy.ingest.observe.doors import Door
+    from rosprivacy.ingest.doors.doors import Door
     from rosprivacy.ingest.observe.observed_policy import Prepared
 
 SECONDS = {"": 1, "s": 1, "m": 60, "h": 3600, "d": 86400}

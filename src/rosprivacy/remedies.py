@@ -56,18 +56,20 @@ class Remedies:
         """Return what ends some findings that differ only in the robot, of which the first is told."""
         steps = beyond(findings[0], self.known)
         shared = self._shared(findings[0])
+        enclaves = {path for one in findings for path in enclaves_of(one, self._shared(one))}
         deny = self._deny(findings)
         loses = self._rights(NO_CHANGE) - self._rights(Change(deny=frozenset(deny))) if deny else frozenset()
         return Added(
             findings[0],
             steps,
-            enclaves_of(findings[0], shared),
+            tuple(sorted(enclaves)),
             self._split(findings),
             self._move(findings[0], findings),
             deny,
             tuple(sorted(right for right in loses if right[0][0] not in self.second)),
             robots,
             _places(findings[0], set(steps) - set(shared)),
+            tuple(findings),
         )
 
     def _shared(self, finding: Finding) -> tuple[int, ...]:

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
     from rosprivacy.analysis.model import Bound, Diagnostic, FlowGraph, Policy
+    from rosprivacy.ingest.database.beyond_rows import Beyond
     from rosprivacy.ingest.database.rows import RobotRows
     from rosprivacy.ingest.policies.saved_graph import Saved
     from rosprivacy.ingest.types.channel_types import Written
@@ -171,7 +172,17 @@ def robot_of(name: str, result: Result) -> RobotRows:
     from rosprivacy.ingest.database.rows import robot_rows  # noqa: PLC0415
 
     more = remembered(result.assumptions, result.diagnostics)
-    return robot_rows(name, result.analysis, result.bound, result.vocabulary, more)
+    return robot_rows(name, result.analysis, result.bound, result.vocabulary, more, beyond_of(result))
+
+
+def beyond_of(result: Result) -> Beyond | None:
+    """Return what the enforced view adds to a result, for the database; None where nobody asked for both views."""
+    if result.enforced is None:
+        return None
+    from rosprivacy.analysis.findings.beyond import granted  # noqa: PLC0415
+    from rosprivacy.ingest.database.beyond_rows import Beyond  # noqa: PLC0415
+
+    return Beyond(result.enforced.added, granted(result.analysis.graph))
 
 
 def read_graphs(settings: Settings) -> list[Saved]:

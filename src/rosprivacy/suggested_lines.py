@@ -20,17 +20,15 @@ from rosprivacy.ingest.suggestions.accepting import accept
 from rosprivacy.ingest.suggestions.comments import comment_of, taken_apart, with_comments
 from rosprivacy.label_lines import Written, own_file
 from rosprivacy.ontology.vocabulary import load
-from rosprivacy.suggesting import suggest_labels
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from rosprivacy.settings import Settings
+    from rosprivacy.suggesting import Suggested
 
 
-def with_suggestions(
-    policies: tuple[str, ...], labels: tuple[str, ...], settings: Settings, file: str, rules: Sequence[str] = ()
-) -> Written:
+def with_suggestions(file: str, told: Suggested) -> Written:
     """Return a label file with what is suggested, in place of what was suggested before.
 
     Raises
@@ -40,7 +38,6 @@ def with_suggestions(
     LabelError
         If the file has no room for comments, as JSON has none.
     """
-    told = suggest_labels(policies, labels, settings, rules)
     vocabulary = told.result.vocabulary
     text = _text(file)
     comments = [comment_of(one) for one in told.proposals if one.label not in told.by_hand]

@@ -6,8 +6,10 @@ In: names of files. Out: ``Suggested``. Every provider of evidence is asked here
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.findings.review_order import Behind, review_order
+from rosprivacy.analysis.suggesting.by_package import package_evidence
 from rosprivacy.analysis.suggesting.carried_kinds import Rules, carried_kinds
 from rosprivacy.analysis.suggesting.evidence import LEAK, SOURCE
 from rosprivacy.analysis.suggesting.nodes import of_nodes
@@ -15,23 +17,25 @@ from rosprivacy.analysis.suggesting.open_elements import of_channels, of_open
 from rosprivacy.analysis.suggesting.traffic import traffic
 from rosprivacy.analysis.suggesting.unsaid import unsaid
 from rosprivacy.analysis.suggesting.weighing import closes_finding, proposals
+from rosprivacy.ingest.packages.package_folders import read_packages, rests_on
 from rosprivacy.ingest.suggestions.name_file import read_name_rules
 from rosprivacy.ingest.types import TABLE
 from rosprivacy.ingest.types.type_table import read_table
-from rosprivacy.report.review_groups import review_groups
 from rosprivacy.robot_system import answer_robot
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from rosprivacy.analysis.answer import Analysis
+    from rosprivacy.analysis.answer import Analysis, OpenQuestion
     from rosprivacy.analysis.model import Bound
     from rosprivacy.analysis.suggesting.evidence import Evidence, Label, Proposal
+    from rosprivacy.analysis.suggesting.ros_package import Package
     from rosprivacy.ontology.vocabulary import Vocabulary
     from rosprivacy.result import Result
     from rosprivacy.settings import Settings
 
 Place = tuple[str, str, str]  # identity of an element
+NOTHING_BEHIND = Behind()  # of what is open by a type only
 NOT_OPEN = 2**31  # behind every open element
 
 
@@ -61,7 +65,11 @@ class Suggested:
 
 
 def suggest_labels(
-    policies: tuple[str, ...], labels: tuple[str, ...], settings: Settings, rules: Sequence[str] = ()
+    policies: tuple[str, ...],
+    labels: tuple[str, ...],
+    settings: Settings,
+    rules: Sequence[str] = (),
+    packages: Sequence[str] = (),
 ) -> Suggested:
     """Read a robot's system and say what its elements could be labelled as.
 
@@ -69,29 +77,43 @@ def suggest_labels(
     ----------
     rules
         A user's files of rules about names.
+    packages
+        A user's files of packages, folders of them, or ``ament``.
 
     Raises
     ------
     InputErrors
         With every problem of the input, one line each.
     """
-    result = answer_robot(policies, labels, settings)
+    return suggested(answer_robot(policies, labels, settings), settings, rules, packages)
+
+
+def suggested(result: Result, settings: Settings, rules: Sequence[str] = (), packages: Sequence[str] = ()) -> Suggested:
+    """Return what could be said of the elements of an answer; parameters as of ``suggest_labels``.
+
+    Raises
+    ------
+    InputErrors
+        With every problem of the rules and packages.
+    """
     known, files = _rules(result.vocabulary, settings, rules)
+    catalogue = read_packages(packages, result.vocabulary, settings.bounds)
     found = _with_findings(result)
-    made = proposals(evidence(result.analysis, result.bound, known), found)
+    made = proposals(evidence(result.analysis, result.bound, known, catalogue), found)
     asked = unsaid(made, result.analysis.graph, result.bound, result.vocabulary.hierarchy)
-    places = _review_places(result.document())
+    places = _review_places(result.analysis)
     by_hand = frozenset(one.label for one in asked if closes_finding(one.label, found))
-    return Suggested(in_review_order(asked, places), frozenset(places), by_hand, result, files)
+    return Suggested(in_review_order(asked, places), frozenset(places), by_hand, result, (*files, *rests_on(catalogue)))
 
 
-def evidence(analysis: Analysis, bound: Bound, rules: Rules) -> Iterator[Evidence]:
+def evidence(analysis: Analysis, bound: Bound, rules: Rules, packages: Sequence[Package]) -> Iterator[Evidence]:
     """Yield what every provider finds; the order does not matter."""
     graph = analysis.graph
     told, clues = traffic(graph, bound), carried_kinds(graph, bound, rules)
     yield from of_nodes(graph, bound, told, clues, rules)
     yield from of_channels(graph, clues)
     yield from of_open(analysis.open, graph, bound, told, rules)
+    yield from package_evidence(graph, bound.types, packages)
 
 
 def in_review_order(asked: Sequence[Proposal], places: Mapping[Place, int]) -> tuple[Proposal, ...]:
@@ -119,11 +141,14 @@ def _with_findings(result: Result) -> frozenset[str]:
     return frozenset(kind for one in result.analysis.findings for kind in hierarchy.overlaps[one.category])
 
 
-def _review_places(document: Mapping[str, Any]) -> dict[Place, int]:
-    """The place of each open element in the order of review."""
-    places: dict[Place, int] = {}
-    for group in review_groups(document):
-        for question in (*group.now, *group.waiting, *group.proposed):
-            element = question["element"]
-            places.setdefault((element.get("robot", ""), element["kind"], element["name"]), len(places))
-    return places
+def _review_places(analysis: Analysis) -> dict[Place, int]:
+    """The place of each open element in the order of review: that of ``review_groups``, what can wait last."""
+    behind = review_order(analysis)
+
+    def place(question: OpenQuestion) -> tuple[int, bool, int, int, int]:
+        said = behind.get(question.element.shown_as, NOTHING_BEHIND)
+        group = 1 if question.element.is_channel else 0 if question.frontier else 2
+        return group, said.waits, -said.leaks, -said.closes, question.distance
+
+    identities = dict.fromkeys(question.element.identity for question in sorted(analysis.open, key=place))
+    return {identity: number for number, identity in enumerate(identities)}

@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+import os
+import re
+import shlex
 from shutil import copytree
 from typing import TYPE_CHECKING
 
 import pytest
 
+from rosprivacy.analysis.model import Place
+from rosprivacy.ingest.annotations.annotation_text import WORDS, Annotation, read_annotation
 from rosprivacy.ingest.annotations.code_evidence import CodeEvidence, code_evidence
 from rosprivacy.ingest.annotations.source_files import read_sources
+from rosprivacy.ontology.vocabulary import load
 from tests.helpers.command import cli
+from tests.helpers.docs import CATEGORIES, blocks
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
@@ -226,10 +233,54 @@ def test_types_and_literal_names_are_evidence() -> None:
 
 
 def test_own_kinds_take_part(tmp_path: Path, cli: Cli) -> None:
-    from tests.helpers.docs import CATEGORIES, blocks
-
     (tmp_path / "o.ttl").write_text(blocks(CATEGORIES, "turtle")[0])
     (tmp_path / "a.py").write_text("# privacy(/n): source PulseCurve\n")
     assert cli("annotations", "a.py", cwd=tmp_path).returncode == 2
     done = cli("annotations", "a.py", "--ontology", "o.ttl", cwd=tmp_path)
     assert "  /n: {source: [PulseCurve]} # a.py:1" in done.stdout.splitlines()
+
+
+def test_hostile_names_of_files_reach_no_terminal(tmp_path: Path, cli: Cli) -> None:
+    """What stands in a folder was named by anybody; conflicts and differences tell it too."""
+    for number, name in enumerate((b"\x1b[31m\n.py", b"\xff\xe2\x80\xae.py")):
+        words = ("leak Voice", "conduit Voice")[number]
+        (tmp_path / os.fsdecode(name)).write_text(f"# privacy(/n): {words}\n# privacy(/only{number}): mundane\n")
+    done = cli("annotations", str(tmp_path), cwd=tmp_path)
+    assert (done.returncode, len(done.stderr.splitlines())) == (2, 1)
+    assert "/n is" in done.stderr
+    assert all(line.isprintable() for line in done.stderr.splitlines())
+    (tmp_path / os.fsdecode(b"\xff\xe2\x80\xae.py")).write_text("# privacy(/only1): mundane\n")
+    done = cli("annotations", str(tmp_path), "-o", "l.yaml", cwd=tmp_path)
+    assert done.returncode == 0
+    assert all(line.isprintable() for line in (tmp_path / "l.yaml").read_text().splitlines())
+    (tmp_path / "l.yaml").write_text("labels: 1\nchannels: {/only1: sensitive}\n")
+    done = cli("annotations", str(tmp_path), "--check", "l.yaml", cwd=tmp_path)
+    assert (done.returncode, len(done.stdout.splitlines())) == (1, 3)
+    assert all(line.isprintable() for line in done.stdout.splitlines())
+
+
+def test_one_that_states_its_method_beside_one_that_does_not(tmp_path: Path, cli: Cli) -> None:
+    said = ["sanitizer Video", "sanitizer Video pseudonymise"]
+    for some in (said, said[::-1]):
+        (tmp_path / "a.py").write_text("".join(f"# privacy(/x): {one}\n" for one in some))
+        assert "{sanitizer: {Video: pseudonymise}}" in cli("annotations", "a.py", cwd=tmp_path).stdout
+
+
+def test_long_names_are_told_at_their_line(tmp_path: Path, cli: Cli) -> None:
+    (tmp_path / "a.py").write_text(f"# privacy(/{'x' * 1500}): mundane\n")
+    assert cli("annotations", "a.py", "-o", "l.yaml", cwd=tmp_path).returncode == 0
+    assert cli("annotations", "a.py", "--check", "l.yaml", cwd=tmp_path).returncode == 0
+    (tmp_path / "a.py").write_text(f"# privacy(/{'x' * 20_000}): mundane\n")
+    assert cli("annotations", "a.py", cwd=tmp_path).stderr.startswith("a.py:1: a name of more than 2000 characters")
+
+
+def test_the_page_shows_what_is_so(tmp_path: Path, cli: Cli) -> None:
+    """Its commands run, and its table has every word, in examples that are read."""
+    page = ROOT / "docs" / "annotations.md"
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
+    for line in (line for block in blocks(page, "console") for line in block.splitlines()):
+        assert cli(*shlex.split(line)[1:], cwd=tmp_path).returncode == 0, line
+    shown = re.findall(r"`(privacy(?:\(/\w+\))?: [^`]+)`", page.read_text("utf-8").partition("## What it is about")[0])
+    read = [read_annotation(text, Place("a.py", 1), load()) for text in shown]
+    assert {one.word for one in read if isinstance(one, Annotation)} == set(WORDS)
+    assert all(isinstance(one, Annotation) for one in read)

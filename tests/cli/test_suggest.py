@@ -14,6 +14,7 @@ from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.report.contract import suggested
 from rosprivacy.settings import Settings
 from rosprivacy.suggested_lines import with_accepted, with_suggestions
+from rosprivacy.suggesting import suggest_labels
 from tests.helpers.command import LINE, cli
 from tests.helpers.paths import ROOT
 
@@ -35,7 +36,7 @@ ROBOT: Nodes = {
     "driver": (["/a", "/b"], []),
     "finder": (["/c"], ["/a"]),
     "mover": (["/d"], ["/c"]),
-    "foxglove_bridge": ([], ["/c", "/d"]),
+    "customer_bridge": ([], ["/c", "/d"]),
 }
 
 
@@ -85,7 +86,7 @@ def test_types_tell_sources_derivations_and_what_drops_data(cli: Cli, robot: Pat
     assert ("/finder", "derivation", "Video PersonIdentifier", "likely") in found
     assert ("/finder", "sanitizer", "Video", "may") in found
     assert ("/mover", "sanitizer", "PersonIdentifier", "may") in found
-    assert ("/foxglove_bridge", "leak", "PersonalData", "may") in found
+    assert ("/customer_bridge", "leak", "PersonalData", "may") in found
     assert not [row for row in found if row[:2] == ("/finder", "source")]  # it reads images
 
 
@@ -118,7 +119,7 @@ def test_a_name_and_a_type_that_agree_are_surer(
 
 @pytest.mark.parametrize("type_", [TWIST, "std_msgs/msg/Bool"])
 def test_a_type_that_carries_nothing_outweighs_a_name(cli: Cli, tmp_path: Path, type_: str) -> None:
-    (tmp_path / "p.xml").write_text(policy_of({"camera": (["/camera/image"], [])}), "utf-8")
+    (tmp_path / "p.xml").write_text(policy_of({"door_camera": (["/camera/image"], [])}), "utf-8")
     (tmp_path / "l.yaml").write_text(typed(**{"camera/image": type_}), "utf-8")
     assert rows(cli, tmp_path) == []
 
@@ -140,7 +141,7 @@ def test_open_elements_come_first_with_their_neighbours(cli: Cli, robot: Path) -
 def test_of_an_open_node_that_lets_data_out_no_conduit_is_suggested(cli: Cli, robot: Path) -> None:
     """A conduit of a narrower kind would outrank the leak (rule S7)."""
     (robot / "l.yaml").write_text("labels: 1\nnodes:\n  /driver: {source: [Video]}\n", "utf-8")
-    assert [row[1:] for row in rows(cli, robot) if row[0] == "/foxglove_bridge"] == [("leak", "PersonalData", "may")]
+    assert [row[1:] for row in rows(cli, robot) if row[0] == "/customer_bridge"] == [("leak", "PersonalData", "may")]
 
 
 def test_what_a_channel_is_not_made_for_is_a_never_and_never_sure(cli: Cli, robot: Path) -> None:
@@ -168,6 +169,33 @@ def test_users_rules_and_kinds_take_part(cli: Cli, robot: Path) -> None:
     assert ("/driver", "source", "Crate", "likely") in found
     wrong = cli("suggest", "p.xml", "--rules", "own.yaml", cwd=robot)
     assert (wrong.returncode, wrong.stderr.partition(";")[0]) == (2, "own.yaml:3: unknown category 'Crate'")
+
+
+def test_packages_take_part_and_a_users_own(cli: Cli, tmp_path: Path) -> None:
+    nodes: Nodes = {"usb_cam": (["/image_raw", "/camera_info"], []), "badge": (["/b"], [])}
+    (tmp_path / "p.xml").write_text(policy_of(nodes), "utf-8")
+    (tmp_path / "l.yaml").write_text("labels: 1\n", "utf-8")
+    assert ("/usb_cam", "source", "Video", "likely") in rows(cli, tmp_path)
+    (tmp_path / "own.yaml").write_text(PACKAGE, "utf-8")
+    assert ("/badge", "source", "StaffBadge", "likely") in rows(cli, tmp_path, "--packages", "own.yaml")
+    text = cli("suggest", "p.xml", "--packages", "own.yaml", cwd=tmp_path).stdout
+    assert "package badges" in text
+    assert cli("suggest", "p.xml", "--packages", "nope.yaml", cwd=tmp_path).returncode == 2
+
+
+PACKAGE = """package: 1
+name: badges
+about: Reads badges.
+sources:
+  - {at: "https://example.org/badges", version: "1.0", commit: 772b25f, files: [README.md], read: 2026-11-23}
+nodes:
+  - names: [badge]
+    executables: [badge]
+    publishes: {b: std_msgs/msg/String}
+    says:
+      - source: [StaffBadge]
+        why: it reads badges
+"""
 
 
 def test_nothing_is_applied(cli: Cli, robot: Path) -> None:
@@ -265,6 +293,7 @@ nodes:
       Video: [/x]
 
   # what follows
+  /passes: {conduit: [Video]}
   /empty:
 topics:
   /t: {never: [Voice]}
@@ -283,8 +312,16 @@ def suggestion(section: str, name: str, said: dict[str, Any], sure: str = "likel
         (suggestion("nodes", "/empty", {"source": ["Video"]}), "/empty: {source: [Video], note: ", ""),
         (suggestion("topics", "/t", {"sensitive": ["Video"]}), "/t: {sensitive: [Video], never: [Voice], note: ", ""),
         (suggestion("nodes", "/relay", {"source": ["Voice"]}), "", "says source in another form already"),
-        (suggestion("nodes", "/camera", {"conduit": ["Video"]}), "", "is a source or a leak already"),
-        (suggestion("nodes", "/camera", {"sanitizer": {"Voice": "drop"}}), "", "is a source or a leak already"),
+        (suggestion("nodes", "/camera", {"conduit": ["Voice"]}), "", "is a leak of such data already"),
+        (suggestion("nodes", "/camera", {"conduit": ["PersonalData"]}), "", "is a leak of such data already"),
+        (suggestion("nodes", "/camera", {"sanitizer": {"Voice": "drop"}}), "", "is a leak of such data already"),
+        (suggestion("nodes", "/relay", {"sanitizer": {"Video": "drop"}}), "", "is a source of such data already"),
+        (suggestion("nodes", "/passes", {"leak": ["PersonalData"]}), "", "is a conduit of such data already"),
+        (
+            suggestion("nodes", "/camera", {"conduit": ["Video"]}),
+            "/camera: {conduit: [Video], leak: [Voice], note: ",
+            "",
+        ),
     ],
 )
 def test_a_suggestion_joins_what_an_entry_says(cli: Cli, tmp_path: Path, line: str, expected: str, remark: str) -> None:
@@ -381,7 +418,7 @@ NAMED = re.compile(r'^# suggest: \w+ \{"\w+": \{("(?:[^"\\]|\\.)*")', re.MULTILI
 def accept_everything(policy: str, file: Path) -> None:
     """All of a confidence, and then each by its name: what a person would do who accepts whatever is asked."""
     for _ in range(2):
-        text = with_suggestions((policy,), (str(file),), Settings(), str(file)).text
+        text = with_suggestions(str(file), suggest_labels((policy,), (str(file),), Settings())).text
         what = ["may"]
         while what:
             file.write_text(text, "utf-8")
@@ -391,7 +428,7 @@ def accept_everything(policy: str, file: Path) -> None:
         file.write_text(text, "utf-8")
 
 
-def planted(policy: str, folder: Path, every: int) -> Iterable[tuple[Path, str]]:
+def planted(policy: str, folder: Path, every: int, ends: int) -> Iterable[tuple[Path, str]]:
     """A source and a leak at two nodes with a path between them, of each policy some."""
     nodes = [one for one in rosprivacy.analyze(policy).analysis.graph.elements if one.is_node]
     for source in nodes[::every]:
@@ -399,8 +436,8 @@ def planted(policy: str, folder: Path, every: int) -> Iterable[tuple[Path, str]]
         start = f'labels: 1\nnodes:\n  "{source.name}": {{source: [Video]}}\n'
         file.write_text(start, "utf-8")
         reached = rosprivacy.analyze(policy, str(file)).analysis.carried
-        ends = [one.element for one in reached if one.element.is_node and one.element != source]
-        for leak in ends[:: max(1, len(ends) - 1)][:2]:
+        arrived = [one.element for one in reached if one.element.is_node and one.element != source]
+        for leak in arrived[:: max(1, len(arrived) - 1)][-ends:]:
             file.write_text(f'{start}  "{leak.name}": {{leak: [Video]}}\n', "utf-8")
             yield file, f"{source.name} -> {leak.name}"
 
@@ -410,7 +447,7 @@ def test_accepting_every_suggestion_hides_no_planted_leak(tmp_path: Path) -> Non
     (tmp_path / "p.xml").write_text(policy_of(ROBOT), "utf-8")
     (tmp_path / "l.yaml").write_text(
         typed(a=IMAGE, b=CLOUD, c=IDS, d=TWIST)
-        + "nodes:\n  /driver: {source: [Video]}\n  /foxglove_bridge: {leak: [Video]}\n",
+        + "nodes:\n  /driver: {source: [Video]}\n  /customer_bridge: {leak: [Video]}\n",
         "utf-8",
     )
     policy = str(tmp_path / "p.xml")
@@ -430,10 +467,10 @@ def test_accepting_every_suggestion_hides_no_planted_leak_of_the_corpus(
             rosprivacy.analyze(str(file))
         except InputErrors:
             continue
-        for labels, path in planted(str(file), tmp_path, 2 if thorough else 1000):
+        for labels, path in planted(str(file), tmp_path, *((2, 2) if thorough else (1000, 1))):
             assert rosprivacy.analyze(str(file), str(labels)).analysis.verdict == "leak"
             accept_everything(str(file), labels)
             verdict = rosprivacy.analyze(str(file), str(labels)).analysis.verdict
             assert verdict != "no-leak-found", f"{file}: {path}"
             tried += 1
-    assert tried > 10
+    assert tried > 5

@@ -18,6 +18,7 @@ from rosprivacy.analysis.suggesting.by_package import package_evidence
 from rosprivacy.annotating import annotated, differences
 from rosprivacy.ingest.bags.bag_folders import read_bags
 from rosprivacy.ingest.decisions.decisions_file import read_decisions
+from rosprivacy.ingest.doors.text_files import TextFiles
 from rosprivacy.ingest.fleet.fleet_file import read_fleet
 from rosprivacy.ingest.keystore.governance_file import read_governance
 from rosprivacy.ingest.keystore.grants import policy_of
@@ -25,7 +26,6 @@ from rosprivacy.ingest.keystore.open_topics import open_topics
 from rosprivacy.ingest.keystore.permissions_file import read_permissions
 from rosprivacy.ingest.labels.label_file import read_labels
 from rosprivacy.ingest.mitigation.limits_file import read_limits
-from rosprivacy.ingest.observe.text_files import TextFiles
 from rosprivacy.ingest.packages.package_file import read_package
 from rosprivacy.ingest.policies import common_names, names
 from rosprivacy.ingest.policies.policy_xml import read_policy
@@ -165,7 +165,7 @@ def _governance() -> None:
     """What is left open is granted to every enclave."""
     read = read_governance(Path("governance.xml").read_bytes(), "governance.xml")
     for rule in read.rules:
-        assert all(grant.enclave == "/a" for grant in open_topics("governance.xml", rule, [ANYBODY]).grants)
+        assert all(grant.enclave == "/a" for grant in open_topics("governance.xml", rule, [ANYBODY], ()).grants)
 
 
 def _results() -> None:

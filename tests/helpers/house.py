@@ -57,6 +57,7 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "zenoh_access": READING,
         "lint": READING,
         "observe": READING | {"labels", "bags", "types"},
+        "doors": READING | {"observe"},
         "fleet": READING | {"labels", "types"},
         "database": READING | {"labels", "fleet"},
     },

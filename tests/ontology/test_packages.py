@@ -11,6 +11,8 @@ import pytest
 from rosprivacy.analysis.model import Confidence
 from rosprivacy.ingest.packages.package_file import read_package
 from rosprivacy.ingest.packages.package_folders import catalogue
+from rosprivacy.ingest.types import TABLE
+from rosprivacy.ingest.types.type_table import read_table
 from rosprivacy.ontology.vocabulary import FOLDER, load
 
 if TYPE_CHECKING:
@@ -47,10 +49,20 @@ def test_an_entry_says_no_more_than_it_can_know(file: Path) -> None:
             assert len(claim.why.split()) >= 4
         ended = [claim for claim in node.claims if claim.role == "sanitizer"]
         assert not ended, "no documentation that was read is plain enough about a sanitizer"
-        if any(claim.role == "conduit" and not claim.kind for claim in node.claims):
-            assert not [
-                claim for claim in node.claims if claim.role == "leak" and claim.confidence is Confidence.LIKELY
-            ]
+        leaks = [claim for claim in node.claims if claim.role == "leak"]
+        for claim in node.claims:
+            if claim.role == "conduit":  # of a narrower kind it would outrank the leak (rule S7)
+                above = {claim.kind, *load().hierarchy.broader(claim.kind)} if claim.kind else set()
+                assert not [leak for leak in leaks if leak.kind in above or leak.confidence is Confidence.LIKELY]
+
+
+def test_the_types_of_common_packages_are_spelled_as_the_table_of_types_has_them() -> None:
+    table = read_table(TABLE, load())
+    known = {name.rpartition("/")[0] for name, _ in table.suggestions}  # sensor_msgs/msg
+    named = {one.type for package in catalogue(load()) for node in package.nodes for one in node.interfaces} - {""}
+    common = sorted(name for name in named if name.rpartition("/")[0] in known)
+    assert len(common) > 50
+    assert [name for name in common if not table.knows(name)] == []
 
 
 def test_there_are_many_and_each_is_of_one_package() -> None:

@@ -16,6 +16,7 @@ import pytest
 from rosprivacy.analysis.findings.findings import analyse
 from rosprivacy.analysis.model import Category, Confidence, Element, Flow, FlowGraph, Legal, Place, Suggestion
 from rosprivacy.analysis.model.recording import Bag, BagTopic, JudgedBag, TopicKinds
+from rosprivacy.both_views import both_views
 from rosprivacy.ingest.database.bag_loading import load_bags
 from rosprivacy.ingest.database.bag_rows import bag_rows
 from rosprivacy.ingest.database.loading import load
@@ -31,7 +32,7 @@ from rosprivacy.queries.library import COLUMN_TYPES, find, pack
 from rosprivacy.queries.run import run
 from rosprivacy.report.stored import StoredNames
 from rosprivacy.report.terminal.graph_words import GraphWords
-from rosprivacy.robot_system import read_system
+from rosprivacy.robot_system import beyond_of, read_system
 from rosprivacy.settings import Settings
 from tests.helpers.daily import one_in
 from tests.helpers.paths import ROOT
@@ -97,7 +98,10 @@ def system(robot: str, name: str) -> RobotRows:
     graph = with_storages(graph, given.get("storages", {}))
     labels = [read_labels(STANDARD, VOCABULARY), *(read_labels(file, VOCABULARY) for file in given["labels"])]
     bound = bind(graph, labels)
-    return robot_rows(robot, analyse(graph, bound, VOCABULARY.hierarchy), bound, VOCABULARY)
+    beyond = None
+    if given.get("view") == "both":
+        beyond = beyond_of(both_views(tuple(given["policies"]), tuple(given["labels"]), Settings()))
+    return robot_rows(robot, analyse(graph, bound, VOCABULARY.hierarchy), bound, VOCABULARY, beyond=beyond)
 
 
 def with_storages(graph: FlowGraph, storages: Mapping[str, Any]) -> FlowGraph:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import sys
 from contextlib import contextmanager
+from dataclasses import replace
 from glob import has_magic
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -15,6 +16,7 @@ from rosprivacy.analysis.errors import InputError, shown
 from rosprivacy.analysis.text import counted
 from rosprivacy.cli.driver import driver_of
 from rosprivacy.cli.inputs import Inputs, reads_system, refuse
+from rosprivacy.cli.options import ViewOrBoth, ViewOrBothChosen
 from rosprivacy.cli.output import emit
 from rosprivacy.report.element_counts import count_elements
 
@@ -34,6 +36,7 @@ NO_NAMES = ("", "policy", "policies", "robot", "ros", "sros", "sros2", "permissi
 @reads_system("all that is read, as nobody has decided about it", without=("from_database", "categories", "decisions"))
 def load(
     inputs: Inputs,
+    view: ViewOrBothChosen = ViewOrBoth.declared,
     robot: Annotated[
         str | None,
         typer.Option(
@@ -50,20 +53,22 @@ def load(
     """Analyse policies and write the robot into Neo4j, or all robots of a fleet, in place of what was there before."""
     from rosprivacy.ingest.database import loading as database
 
+    inputs, both = inputs.viewed(view), view is ViewOrBoth.both
     settings = inputs.settings
     if results:
         other = inputs.given("policies", "labels", "fleet", "add")
-        refuse("--results", "what is in the folder", [*other, *(["--robot"] if robot is not None else [])])
+        more = [*(["--robot"] if robot is not None else []), *(["--view"] if both else [])]
+        refuse("--results", "what is in the folder", [*other, *more])
         _load_results(results, settings.ontologies, inputs.neo4j)
         return
     if inputs.fleet:
         refuse("--fleet", "the names of the fleet file", ["--robot"] if robot is not None else [])
-        _load_fleet(inputs.fleet, settings, inputs.neo4j)
+        _load_fleet(inputs.fleet, settings, inputs.neo4j, both=both)
         return
     from rosprivacy.robot_system import robot_of
 
     name = database.check_robot_name(name_of(inputs) if robot is None else robot)
-    result = inputs.result(settings)
+    result = inputs.result(settings, both=both)
     rows = robot_of(name, result)
     with driver_of(inputs.neo4j) as driver:
         if robot is None and (others := database.others_there(driver, rows)):
@@ -88,6 +93,8 @@ def _counts(result: Result, rows: RobotRows) -> str:
     stands = sum(not finding.dismissed for finding in result.analysis.findings)
     dismissed = len(result.analysis.findings) - stands
     more = f", {dismissed:,} more only through another leak" if dismissed else ""
+    if result.enforced:
+        more += f", {len(result.enforced.added):,} more only in the enforced view"
     return f"{elements} and {flows} ({stored} denied flows), {counted(stands, 'finding')}{more}"
 
 
@@ -110,7 +117,7 @@ def _tell_replaced(done: Loaded) -> None:
         print(f"warning: {what}: {', '.join(names[:NAMED])}{more}", file=sys.stderr)
 
 
-def _load_fleet(file: str, settings: Settings, neo4j: str | None) -> None:
+def _load_fleet(file: str, settings: Settings, neo4j: str | None, *, both: bool) -> None:
 
     from rosprivacy.answering import answer
     from rosprivacy.fleet_system import fleet_system, rows_of_fleet
@@ -121,6 +128,10 @@ def _load_fleet(file: str, settings: Settings, neo4j: str | None) -> None:
     question = question_of(settings)._replace(every=True)
     system = fleet_system(file, question)
     result = answer(system, question)
+    if both:
+        from rosprivacy.both_views import both_views_of_fleet
+
+        result = replace(result, enforced=both_views_of_fleet(file, settings).enforced)
     rows = rows_of_fleet(system, question, result)
     with driver_of(neo4j) as driver, _bar(None) as advance:
         done = database.load(driver, rows, system.vocabulary, advance)

@@ -17,9 +17,9 @@ from rosprivacy.cli.output import emit
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from rosprivacy.ingest.observe.doors import Door
+    from rosprivacy.ingest.doors.doors import Door
+    from rosprivacy.ingest.doors.polling import Wait
     from rosprivacy.ingest.observe.observation import Observation
-    from rosprivacy.ingest.observe.polling import Wait
 
 THROUGH = "Through which door"  # panel of help
 SHORTEST = "10s"  # what most middlewares need until all is found
@@ -149,7 +149,7 @@ def observe(
 
     What was not seen proves nothing: the policy says from when to when somebody looked, and which gaps are known.
     """
-    from rosprivacy.ingest.observe.stopping import Stop
+    from rosprivacy.ingest.doors.stopping import Stop
     from rosprivacy.observing import keeps_what_is_there, seconds_of
     from rosprivacy.observing import observe as looked
 
@@ -185,9 +185,9 @@ def observe(
 
 def _doors(text: list[str] | None, earlier: list[str] | None, at: str | None, wait: Wait, *, ros2: bool) -> list[Door]:
     """The doors that a user named, those that have looked already first."""
+    from rosprivacy.ingest.doors.ros2_program import Ros2Program
+    from rosprivacy.ingest.doors.text_files import TextFiles
     from rosprivacy.ingest.observe.earlier_files import EarlierFiles
-    from rosprivacy.ingest.observe.ros2_program import Ros2Program
-    from rosprivacy.ingest.observe.text_files import TextFiles
     from rosprivacy.observing import now, time_of, types_file
 
     doors: list[Door] = []
@@ -201,14 +201,14 @@ def _doors(text: list[str] | None, earlier: list[str] | None, at: str | None, wa
 
 
 def _zenoh_door(domain: int, router: str, session_file: Path | None, wait: Wait) -> Door:
-    from rosprivacy.ingest.observe.zenoh_door import ZenohDoor
+    from rosprivacy.ingest.doors.zenoh_door import ZenohDoor
     from rosprivacy.observing import now
 
     return ZenohDoor(now, domain, router, session_file, wait)
 
 
 def _dds_door(domain: int, peers: tuple[str, ...], interface: str, wait: Wait) -> Door:
-    from rosprivacy.ingest.observe.dds_door import DdsDoor
+    from rosprivacy.ingest.doors.dds_door import DdsDoor
     from rosprivacy.observing import now
 
     return DdsDoor(now, domain, peers, interface, wait)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -11,6 +11,9 @@ from rosprivacy.analysis.text import counted
 from rosprivacy.cli.inputs import Inputs, reads_system
 from rosprivacy.cli.options import Output, TextOrJson
 from rosprivacy.cli.output import emit
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 
 @reads_system(
@@ -24,6 +27,15 @@ def suggest(
         typer.Option(
             metavar="FILE",
             help="More rules about names, in the format of ontology/names.yaml; may be repeated.",
+            show_default=False,
+        ),
+    ] = None,
+    packages: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="FILE|DIR|ament",
+            help="More packages, in the format of ontology/packages; 'ament' for those that installed packages ship; "
+            "may be repeated.",
             show_default=False,
         ),
     ] = None,
@@ -49,20 +61,22 @@ def suggest(
 
     labels = tuple(inputs.labels or ())
     if into:
-        _write(inputs, into, rules or ())
+        _write(inputs, into, rules or (), packages or ())
         return
-    told = suggest_labels(inputs.named, labels, inputs.settings, rules or ())
+    told = suggest_labels(inputs.named, labels, inputs.settings, rules or (), packages or ())
     document = suggestions_document(told.proposals, told.open, told.by_hand, told.result, told.rules)
     lines = "".join(f"{line}\n" for line in suggestion_lines(document))
     emit(as_text(document) if format is TextOrJson.json else lines, output)
 
 
-def _write(inputs: Inputs, file: Path, rules: list[str] | tuple[str, ...]) -> None:
+def _write(inputs: Inputs, file: Path, rules: Sequence[str], packages: Sequence[str]) -> None:
     """The suggestions into a label file, in place of those that an earlier run has written there."""
     from rosprivacy.report.editing import editing
     from rosprivacy.suggested_lines import with_suggestions
+    from rosprivacy.suggesting import suggest_labels
 
     with editing(file):
-        written = with_suggestions(inputs.named, tuple(inputs.labels or ()), inputs.settings, str(file), rules)
+        told = suggest_labels(inputs.named, tuple(inputs.labels or ()), inputs.settings, rules, packages)
+        written = with_suggestions(str(file), told)
         emit(written.text, file, edited=file)
     typer.echo(f"{file}: {counted(written.added, 'suggestion')}, as comments", err=True)

@@ -31,7 +31,11 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 def evidence(text: str, labels: str = "labels: 1\n") -> tuple[Evidence, ...]:
     Path("p.xml").write_text(text, "utf-8")
     Path("l.yaml").write_text(labels, "utf-8")
-    system = robot_system(("p.xml",), ("l.yaml",), question_of(Settings()))
+    return evidence_of("p.xml", "l.yaml")
+
+
+def evidence_of(policy_file: str, *labels: str) -> tuple[Evidence, ...]:
+    system = robot_system((policy_file,), labels, question_of(Settings()))
     return package_evidence(system.graph, system.bound.types, catalogue(load()))
 
 
@@ -77,6 +81,23 @@ def test_a_topic_of_another_type_confirms_nothing() -> None:
     typed = "labels: 1\nchannels:\n  /image_raw: {types: [%s]}\n"
     assert told(evidence(text, typed % "sensor_msgs/msg/Image"), "source", "Video")[0][1] is LIKELY
     assert told(evidence(text, typed % "std_msgs/msg/Bool"), "source", "Video")[0][1] is MAY
+
+
+def test_a_node_of_known_types_without_the_interfaces_is_another_one_but_for_its_leaks() -> None:
+    typed = "labels: 1\nchannels:\n  /move: {types: [geometry_msgs/msg/Twist]}\n"
+    found = evidence(policy("/usb_cam>/move", "/rviz2</move"), typed)
+    assert told(found, "source", "Video") == []
+    assert told(found, "leak", "PersonalData") == [("/rviz2", MAY, "its name alone")]
+    assert told(evidence(policy("/usb_cam>/move,/more"), typed), "source", "Video")[0][1] is MAY, (
+        "one type is not known"
+    )
+
+
+def test_the_name_alone_is_evidence_of_a_name() -> None:
+    grounds = {
+        one.confidence: one.ground for one in evidence(policy("/usb_cam>/x", "/n/usb_cam>/image_raw,/camera_info"))
+    }
+    assert grounds == {MAY: "name", LIKELY: "package"}
 
 
 def test_the_direction_counts_and_a_wildcard_confirms_nothing() -> None:
@@ -142,3 +163,21 @@ def test_accepting_all_of_it_hides_no_planted_leak() -> None:
     for source, node, thief in chains:
         for kind in kinds:
             assert {(kind, source, thief), (kind, source, node)} & found, (node, kind)
+
+
+@pytest.mark.parametrize(
+    ("file", "source", "leak"),
+    [
+        ("ros-swg__turtlebot3_demo/policies/tb3_gazebo_policy.xml", "/turtlebot3_laserscan", "/rviz2"),
+        ("open-rmf__rmf_demos/rmf_demos/sros2/policies/office.policy.xml", "/slotcar", "/rviz"),
+    ],
+)
+def test_in_public_policies_a_planted_leak_stays_one(corpus: Path, file: str, source: str, leak: str) -> None:
+    there = str(corpus / "policies" / file)
+    found = evidence_of(there)
+    accepted = labels_of(tuple(one for one in found if one.label.element.name not in (source, leak)))
+    planted = f"  {source}: {{source: [LaserScan, Video]}}\n  {leak}: {{leak: [LaserScan, Video]}}\n"
+    for labels in (planted, f"{planted}{accepted}\n"):
+        Path("all.yaml").write_text(f"labels: 1\nnodes:\n{labels}", "utf-8")
+        assert rosprivacy.analyze(there, "all.yaml").analysis.verdict == "leak"
+    assert len(found) > 5

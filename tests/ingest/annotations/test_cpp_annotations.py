@@ -2,12 +2,28 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import pytest
 
+from rosprivacy import analyze
+from rosprivacy.ingest.annotations.annotated_labels import label_text
+from rosprivacy.ingest.annotations.attached import attach
+from rosprivacy.ingest.annotations.cpp_code import read_cpp
+from rosprivacy.ontology.vocabulary import load
 from tests.helpers.annotated import said_by
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 pytest.importorskip("tree_sitter_cpp", reason="without the [code] extra")
 
+POLICY = """<policy version="0.2.0"><enclaves>
+<enclave path="/a"><profiles><profile ns="/" node="a"><topics publish="ALLOW">{}</topics></profile></profiles></enclave>
+<enclave path="/o"><profiles>
+<profile ns="/" node="out"><topics subscribe="ALLOW">{}</topics></profile></profiles></enclave>
+</enclaves></policy>
+"""
 HEADER = """\
 // privacy: leak Voice
 template<typename T>
@@ -69,6 +85,7 @@ def test_a_class_over_two_files() -> None:
         ('// privacy: mundane\n\nvoid f() { n->create_publisher<I>("a", 1); }', "attached to nothing"),
         ("void f() { n->create_publisher<I>(name, 1); }  // privacy: mundane", "the name here is no literal"),
         ('void f() { n->create_publisher<I>("a\\x62", 1); }  // privacy: mundane', "no literal"),
+        ('void f() { n->create_publisher<I>("a" "\\x62", 1); }  // privacy: mundane', "no literal"),
         ('void f() { n->create_publisher<I>("a" + b, 1); }  // privacy: mundane', "no literal"),
         ('void f() { n->create_publisher<I>("a", 1); m->create_client<J>("b"); }// privacy: mundane', "beside 2 calls"),
         ('void f() { n->create_publisher<I>("a", 1); }  // privacy: source Video', "the node here has no name"),
@@ -113,7 +130,19 @@ def test_a_comment_goes_on_behind_a_backslash() -> None:
 
 @pytest.mark.parametrize("data", [b"", b"\xff\xfe\0\0", b"{" * 50_000, b"#if 0\n" * 2000, b"a<" * 20_000, b"/*" * 9])
 def test_what_is_no_cpp_says_nothing_and_ends(data: bytes) -> None:
-    from rosprivacy.ingest.annotations.cpp_code import read_cpp
-
     code = read_cpp("a.cpp", data)
     assert code.problems == ()
+
+
+def test_image_transport_writes_below_its_topic_too(tmp_path: Path) -> None:
+    """A source through the topic alone would lose what is sent compressed (rule S8: through the channels named)."""
+    text = (
+        'A::A() : rclcpp::Node("a") {\n// privacy: source Video\nit_ = image_transport::create_publisher(this, "i");\n}'
+    )
+    labelled, problems = attach([read_cpp("a.cpp", text.encode())], load(), "/")
+    assert not problems
+    (tmp_path / "l.yaml").write_text(label_text(labelled, load(), "l.yaml") + "  /out: {leak: [Video]}\n")
+    for topics in (["/i"], ["/i/compressed"], ["/i", "/i/compressed", "/i/theora"]):
+        written, read = ("".join(f"<topic>{one}</topic>" for one in some) for some in (topics, topics[-1:]))
+        (tmp_path / "p.xml").write_text(POLICY.format(written, read))
+        assert analyze(tmp_path / "p.xml", tmp_path / "l.yaml").analysis.verdict == "leak"

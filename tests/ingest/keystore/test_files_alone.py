@@ -137,7 +137,7 @@ def test_each_governance_governs_the_domains_of_its_rules(tmp_path: Path) -> Non
     for domain, is_open in ((None, True), (7, True), (8, False)):
         policies, said = read(tmp_path, *texts, domain=domain, view="enforced")
         assert any("rt/video: permissions are not asked" in one.message for one in said) == is_open
-        [granted] = [policy for policy in policies if policy.sources]
+        [granted] = [policy for policy in policies if policy.file in dict(policy.sources)]
         assert any(name.endswith("f2.xml") for name, _ in granted.sources) == is_open
         assert any(grant.place.file.endswith("f2.xml") for policy in policies for grant in policy.grants) == is_open
 
@@ -194,6 +194,26 @@ def test_the_library_a_fleet_and_check_take_them(cli: Cli, folder: Path) -> None
         ("/uplink", "deployed"),
         ("/uplink", "deployed"),
     ]
+
+
+@pytest.mark.parametrize(("name", "what"), [("x.xml", "it is"), ("x.p7s", "1 signed file is (x.p7s)")])
+def test_such_a_file_in_a_folder_of_policies_is_a_gap(cli: Cli, folder: Path, name: str, what: str) -> None:
+    mixed = folder / "mixed"
+    mixed.mkdir()
+    (mixed / "p.xml").write_text(POLICY)
+    (mixed / name).write_text(uplink())
+    (folder / "camera.yaml").write_text(
+        "labels: 1\nnodes: {/camera: {source: [Video], leak: none}}\nchannels: {/video: sensitive}\n"
+    )
+    done = cli("analyze", "mixed", "-l", "camera.yaml", "--save-graph", "g.json", cwd=folder)
+    assert done.returncode == 4
+    where = "mixed/x.xml:2" if name == "x.xml" else "mixed"
+    said = f"warning: {where}: not read: {what} permissions or governance, and what that grants is not known; name it"
+    assert said in done.stdout
+    (mixed / name).unlink()
+    assert said in cli("analyze", "--add", "g.json", "-l", "camera.yaml", cwd=folder).stdout
+    alone = cli("analyze", "mixed", "-l", "camera.yaml", cwd=folder)
+    assert (alone.returncode, said in alone.stdout) == (0, False)
 
 
 @pytest.mark.corpus

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from rosprivacy.ingest.observe.dds_door import DdsDoor
-from rosprivacy.ingest.observe.zenoh_door import ZenohDoor
+from rosprivacy.ingest.doors.dds_door import DdsDoor
+from rosprivacy.ingest.doors.zenoh_door import ZenohDoor
 from rosprivacy.ingest.policies.observed_metadata import NO_NODE
 from rosprivacy.observing import now
 from tests.helpers import zenoh_tokens

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from rosprivacy.analysis.errors import InputErrors
-from rosprivacy.ingest.packages.package_folders import AMENT, PREFIXES, catalogue, packages
+from rosprivacy.ingest.packages.package_folders import AMENT, PREFIXES, catalogue, read_packages, rests_on
 from rosprivacy.ontology.vocabulary import load
 
 TEXT = """package: 1
@@ -36,17 +36,17 @@ def write(file: str, name: str = "own", node: str = "own_node") -> str:
 def names_of(*named: str) -> list[str]:
     """Names of the packages that are read beside, or in place of, those that are shipped."""
     shipped = catalogue(load())
-    return [package.name for package in packages(named, load()) if package not in shipped]
+    return [package.name for package in read_packages(named, load()) if package not in shipped]
 
 
 def refused(*named: str) -> list[str]:
     with pytest.raises(InputErrors) as error:
-        packages(named, load())
+        read_packages(named, load())
     return str(error.value).splitlines()
 
 
 def test_without_a_name_the_catalogue_is_read() -> None:
-    assert packages((), load()) == catalogue(load())
+    assert read_packages((), load()) == catalogue(load())
     assert names_of() == []
 
 
@@ -60,11 +60,12 @@ def test_files_and_folders_are_read() -> None:
 
 def test_a_file_of_a_user_stands_in_place_of_a_shipped_one_of_the_same_name() -> None:
     own = write("usb_cam.yaml", "usb_cam", "my_camera")
-    assert len(packages((own,), load())) == len(catalogue(load()))
+    assert len(read_packages((own,), load())) == len(catalogue(load()))
     assert names_of(own) == ["usb_cam"]
-    (package,) = (one for one in packages((own,), load()) if one.name == "usb_cam")
+    (package,) = (one for one in read_packages((own,), load()) if one.name == "usb_cam")
     assert package.nodes[0].names == ("my_camera",)
     assert package.place.file == own
+    assert [file for file, _ in rests_on(read_packages((own,), load()))] == ["rosprivacy:packages", own]
 
 
 def test_installed_packages_ship_theirs_and_an_overlay_comes_first(
@@ -77,7 +78,7 @@ def test_installed_packages_ship_theirs_and_an_overlay_comes_first(
     monkeypatch.setenv(PREFIXES, os.pathsep.join(str(tmp_path / one) for one in ("overlay", "underlay", "missing")))
     assert names_of() == [], "only when asked for"
     assert names_of(AMENT) == ["blur", "uplink"]
-    (blur,) = (one for one in packages((AMENT,), load()) if one.name == "blur")
+    (blur,) = (one for one in read_packages((AMENT,), load()) if one.name == "blur")
     assert blur.nodes[0].names == ("new_name",)
 
 

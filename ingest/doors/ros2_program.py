@@ -25,7 +25,7 @@ from rosprivacy.ingest.policies.observed_metadata import SAME_NAME, STILL_CHANGI
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from rosprivacy.ingest.observe.polling import Wait
+    from rosprivacy.ingest.doors.polling import Wait
 
 LIST, INFO = ("node", "list", "--all"), ("node", "info", "--include-hidden")
 PATIENCE = 30.0  # seconds for one call

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from rosprivacy.ingest.observe.dds_names import ros_channel, ros_type
+from rosprivacy.ingest.doors.dds_names import ros_channel, ros_type
 from rosprivacy.ingest.policies.names import endpoints
 
 PARTS = {"publish": "topic", "subscribe": "topic", "request": "service", "reply": "service"}

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from rosprivacy.ingest.observe.polling import Pace, polled
+from rosprivacy.ingest.doors.polling import Pace, polled
 from rosprivacy.ingest.policies.observed_metadata import STILL_CHANGING
 from tests.helpers.observed import looked
 

@@ -13,15 +13,15 @@ from typing import TYPE_CHECKING
 from xml.sax.saxutils import quoteattr
 
 from rosprivacy.analysis.errors import ObservationError
-from rosprivacy.ingest.observe.dds_graph import DOOR, DdsGraph, observation
+from rosprivacy.ingest.doors.dds_graph import DOOR, DdsGraph, observation
+from rosprivacy.ingest.doors.polling import Pace, polled
 from rosprivacy.ingest.observe.observation import moment
-from rosprivacy.ingest.observe.polling import Pace, polled
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
+    from rosprivacy.ingest.doors.polling import Wait
     from rosprivacy.ingest.observe.observation import Observation
-    from rosprivacy.ingest.observe.polling import Wait
 
 PATIENCE = 5
 """Seconds in which an endpoint may wait for its node."""
@@ -68,7 +68,7 @@ class DdsDoor:
             If the package that joins it is not installed.
         """
         try:
-            from rosprivacy.ingest.observe.dds_participant import joined
+            from rosprivacy.ingest.doors.dds_participant import joined
         except ImportError as error:
             raise ObservationError(f"--{DOOR}", 0, f"the package cyclonedds is not there ({error})", MISSING) from error
         with joined(self.domain, configuration(self.domain, self.peers, self.interface)) as readers:

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.ingest.observe.dds_names import NODES_TOPIC, ros_channel, ros_type
+from rosprivacy.ingest.doors.dds_names import NODES_TOPIC, ros_channel, ros_type
 from rosprivacy.ingest.observe.observation import Observation, ObservedEndpoint, ObservedNode, Span
 from rosprivacy.ingest.policies.observed_metadata import HIDDEN, REFUSED
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import shown
-from rosprivacy.ingest.observe.dds_names import ros_type
+from rosprivacy.ingest.doors.dds_names import ros_type
 from rosprivacy.ingest.observe.observation import Observation, ObservedEndpoint, ObservedNode, Span
 from rosprivacy.ingest.policies.observed_metadata import HIDDEN, REFUSED
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from rosprivacy.ingest.observe.dds_door import DdsDoor
+from rosprivacy.ingest.doors.dds_door import DdsDoor
 from rosprivacy.ingest.observe.declared import DDS_TYPE, Declared
 from rosprivacy.ingest.policies.observed_metadata import HIDDEN, NO_NODE, REFUSED, STILL_CHANGING
 from rosprivacy.observing import now

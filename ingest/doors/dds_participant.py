@@ -27,9 +27,9 @@ from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
 from rosprivacy.analysis.errors import MiddlewareError
-from rosprivacy.ingest.observe.dds_graph import PREFIX, DdsEndpoint, DdsGraph, DdsNode, DdsParticipant
-from rosprivacy.ingest.observe.dds_names import NODES_TOPIC, ros_channel, user_data
-from rosprivacy.ingest.observe.dds_types import PersonalDataProcessor, participant_entities
+from rosprivacy.ingest.doors.dds_graph import PREFIX, DdsEndpoint, DdsGraph, DdsNode, DdsParticipant
+from rosprivacy.ingest.doors.dds_names import NODES_TOPIC, ros_channel, user_data
+from rosprivacy.ingest.doors.dds_types import PersonalDataProcessor, participant_entities
 from rosprivacy.ingest.observe.declared import DDS_TYPE, Declared
 
 if TYPE_CHECKING:

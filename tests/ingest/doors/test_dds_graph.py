@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rosprivacy.ingest.observe.dds_graph import DdsEndpoint, DdsGraph, DdsNode, DdsParticipant, observation
+from rosprivacy.ingest.doors.dds_graph import DdsEndpoint, DdsGraph, DdsNode, DdsParticipant, observation
 from rosprivacy.ingest.policies.observed_metadata import HIDDEN, NO_NODE, REFUSED
 
 IMAGE = "sensor_msgs::msg::dds_::Image_"

@@ -13,17 +13,17 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rosprivacy.analysis.errors import MiddlewareError, ObservationError, shown
+from rosprivacy.ingest.doors.polling import Pace, polled
+from rosprivacy.ingest.doors.zenoh_tokens import DOOR, observation, tokens_of
 from rosprivacy.ingest.observe.declared import DDS_TYPE, Declared, declared
-from rosprivacy.ingest.observe.polling import Pace, polled
-from rosprivacy.ingest.observe.zenoh_tokens import DOOR, observation, tokens_of
 from rosprivacy.ingest.reading.bounded_file import read_regular
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
+    from rosprivacy.ingest.doors.polling import Wait
     from rosprivacy.ingest.observe.observation import Observation
-    from rosprivacy.ingest.observe.polling import Wait
 
 ROUTER = "tcp/localhost:7447"
 """Where the sessions of rmw_zenoh look for theirs."""

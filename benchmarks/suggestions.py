@@ -1,0 +1,80 @@
+"""What suggesting labels costs beside analysing the same system, in one run: less than reading and analysing it.
+
+A robot of 10,000 elements: drivers, detectors, planners and bridges by turns, with and without message types, every
+tenth driver a source. Suggesting is what comes after the analysis: rules are read, evidence of packages, types, names,
+data flow and neighbours is joined and put in order.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING
+
+from measure import Row, timed
+
+from rosprivacy.robot_system import answer_robot
+from rosprivacy.settings import Settings
+from rosprivacy.suggesting import suggested
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from measure import Measured
+
+BOUND = 1.0
+ELEMENTS = 10_000
+PARTS = (  # of a chain: the node, what it publishes, its type; each reads what the one before it publishes
+    ("camera_driver", "camera/image_raw", "sensor_msgs/msg/Image"),
+    ("face_detector", "faces", "hri_msgs/msg/IdsList"),
+    ("person_tracker", "people", "people_msgs/msg/People"),
+    ("planner", "cmd_vel", "geometry_msgs/msg/Twist"),
+    ("cloud_bridge", "status", "std_msgs/msg/String"),
+)
+PER_CHAIN = 2 * len(PARTS)  # elements
+
+
+def robot(elements: int, folder: Path, *, typed: bool) -> tuple[str, str]:
+    """Write a policy of so many elements and its labels."""
+    profiles, types, sources = [], [], []
+    for chain in range(elements // PER_CHAIN):
+        before = ""
+        for node, topic, type_ in PARTS:
+            name = f"/r{chain}/{topic}"
+            reads = f'<topics subscribe="ALLOW"><topic>{before}</topic></topics>' if before else ""
+            writes = f'<topics publish="ALLOW"><topic>{name}</topic></topics>'
+            profiles.append(f'<profile ns="/r{chain}" node="{node}">{writes}{reads}</profile>')
+            types.append(f"  {name}: {{types: [{type_}]}}\n")
+            before = name
+        if chain % 10 == 0:
+            sources.append(f"  /r{chain}/camera_driver: {{source: [Video]}}\n")
+    policy, labels = folder / "p.xml", folder / "l.yaml"
+    opening = '<policy version="0.2.0"><enclaves><enclave path="/e"><profiles>'
+    policy.write_text(f"{opening}{''.join(profiles)}</profiles></enclave></enclaves></policy>", "utf-8")
+    said = "topics:\n" + "".join(types) if typed else ""
+    labels.write_text("labels: 1\nnodes:\n" + "".join(sources) + said, "utf-8")
+    return str(policy), str(labels)
+
+
+def rows(*, quick: bool) -> Iterator[Row]:
+    """Declare what is measured."""
+    rounds = 3 if quick else 7
+    with TemporaryDirectory() as folder:
+        for typed in (False, True):
+            policy, labels = robot(ELEMENTS, Path(folder), typed=typed)
+            what = f"suggest, {ELEMENTS:,} elements, {'types known' if typed else 'names only'}"
+            yield Row(what, "reading and analysing", partial(measured, policy, labels, rounds), bound=BOUND)
+
+
+def measured(policy: str, labels: str, rounds: int) -> Measured:
+    """Time suggesting against the analysis that comes before it."""
+    settings = Settings()
+    result = answer_robot((policy,), (labels,), settings)
+    note = f"{len(suggested(result, settings).proposals):,} suggestions"
+    return timed(
+        rounds,
+        lambda: suggested(result, settings),
+        lambda: answer_robot((policy,), (labels,), settings),
+        note=note,
+    )
