@@ -16,7 +16,7 @@ from rosprivacy.analysis.suggesting.evidence import NAMED, TYPE
 from rosprivacy.analysis.suggesting.name_rules import of_topic
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.kernel.type_limits import TypeLimit
@@ -72,7 +72,7 @@ def carried_kinds(graph: FlowGraph, bound: Bound, rules: Rules) -> dict[int, tup
     found = {}
     for vertex, element in enumerate(graph.elements):
         if element.is_channel:
-            clues = _clues(element, [one.name for one in bound.types.get(vertex, ())], rules)
+            clues = _clues(element, {one.name: one.place for one in reversed(bound.types.get(vertex, ()))}, rules)
             if clues:
                 found[vertex] = clues
     return found
@@ -100,8 +100,8 @@ def _excludes(kind: str, key: Key, rules: Rules) -> bool:
     return said is not None and not any(rules.related(kind, one) for rule in said for one in rule.kinds)
 
 
-def _clues(element: Element, types: list[str], rules: Rules) -> tuple[Clue, ...]:
-    by_type = [clue for name in types for clue in _by_type(name, element, rules)]
+def _clues(element: Element, types: Mapping[str, Place], rules: Rules) -> tuple[Clue, ...]:
+    by_type = [clue for name, place in sorted(types.items()) for clue in _by_type(name, place, element, rules)]
     spoken = of_topic(element.name, rules.names) if element.kind == "topic" else None
     if spoken is None or (types and not by_type and all((interface_of(n), "") in rules.suggestions for n in types)):
         return tuple(dict.fromkeys(by_type))
@@ -111,10 +111,10 @@ def _clues(element: Element, types: list[str], rules: Rules) -> tuple[Clue, ...]
     return tuple(dict.fromkeys([*joined, *by_name]))
 
 
-def _by_type(name: str, element: Element, rules: Rules) -> Iterator[Clue]:
+def _by_type(name: str, place: Place, element: Element, rules: Rules) -> Iterator[Clue]:
     for rule in rules.suggestions.get((interface_of(name), element.leg), ()):
         for kind in rule.kinds:
-            yield Clue(kind, TYPE, rule.confidence, f"type {name} of {element.name}: {rule.why}", rule.place)
+            yield Clue(kind, TYPE, rule.confidence, f"type {name} of {element.name} ({place}): {rule.why}", rule.place)
 
 
 def _by_name(spoken: Spoken, element: Element) -> Iterator[Clue]:
@@ -123,7 +123,7 @@ def _by_name(spoken: Spoken, element: Element) -> Iterator[Clue]:
         yield Clue(kind, NAMED, rule.confidence, f"'{quoted}' in the name {element.name}", rule.place)
 
 
-def _limited(kind: str, types: list[str], rules: Rules) -> bool:
+def _limited(kind: str, types: Iterable[str], rules: Rules) -> bool:
     limits = [rules.limits.get((interface_of(name), "")) for name in types]
     return bool(limits) and all(limit and kind in limit.kinds for limit in limits)
 

@@ -67,7 +67,7 @@ def accept(file: str, text: str, named: Sequence[str], who: str, day: str, vocab
     rest, comments = taken_apart(file, text)
     before = parse_labels(text, vocabulary, name=file).entries
     if facts_of(parse_labels(rest, vocabulary, name=file).entries) != facts_of(before):
-        raise _by_hand(file, f"a line that begins with {comments[0].line} is part of a text")
+        raise _by_hand(file, f"the suggestion of line {comments[0].line} is part of a text")
     chosen, remarks = _chosen(file, comments, named)
     taken: list[Comment] = []
 

@@ -5,10 +5,12 @@ In: names of files. Out: ``Suggested``. Every provider of evidence is asked here
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections import defaultdict
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.findings.review_order import Behind, review_order
+from rosprivacy.analysis.model import MessageType
 from rosprivacy.analysis.suggesting.by_package import package_evidence
 from rosprivacy.analysis.suggesting.carried_kinds import Rules, carried_kinds
 from rosprivacy.analysis.suggesting.evidence import LEAK, SOURCE
@@ -70,6 +72,7 @@ def suggest_labels(
     settings: Settings,
     rules: Sequence[str] = (),
     packages: Sequence[str] = (),
+    sources: Sequence[str] = (),
 ) -> Suggested:
     """Read a robot's system and say what its elements could be labelled as.
 
@@ -79,16 +82,24 @@ def suggest_labels(
         A user's files of rules about names.
     packages
         A user's files of packages, folders of them, or ``ament``.
+    sources
+        Source code of nodes: files, folders or globs, whose literal names and types are evidence.
 
     Raises
     ------
     InputErrors
         With every problem of the input, one line each.
     """
-    return suggested(answer_robot(policies, labels, settings), settings, rules, packages)
+    return suggested(answer_robot(policies, labels, settings), settings, rules, packages, sources)
 
 
-def suggested(result: Result, settings: Settings, rules: Sequence[str] = (), packages: Sequence[str] = ()) -> Suggested:
+def suggested(
+    result: Result,
+    settings: Settings,
+    rules: Sequence[str] = (),
+    packages: Sequence[str] = (),
+    sources: Sequence[str] = (),
+) -> Suggested:
     """Return what could be said of the elements of an answer; parameters as of ``suggest_labels``.
 
     Raises
@@ -99,7 +110,8 @@ def suggested(result: Result, settings: Settings, rules: Sequence[str] = (), pac
     known, files = _rules(result.vocabulary, settings, rules)
     catalogue = read_packages(packages, result.vocabulary, settings.bounds)
     found = _with_findings(result)
-    made = proposals(evidence(result.analysis, result.bound, known, catalogue), found)
+    bound = _with_code(result, sources) if sources else result.bound
+    made = proposals(evidence(result.analysis, bound, known, catalogue), found)
     asked = unsaid(made, result.analysis.graph, result.bound, result.vocabulary.hierarchy)
     places = _review_places(result.analysis)
     by_hand = frozenset(one.label for one in asked if closes_finding(one.label, found))
@@ -133,6 +145,20 @@ def _rules(
     names, read = read_name_rules(files, vocabulary, settings.bounds)
     rules = Rules(table.suggestions, table.limits.of, names, vocabulary.hierarchy)
     return rules, ((table.limits.file, table.limits.sha256), *read)
+
+
+def _with_code(result: Result, sources: Sequence[str]) -> Bound:
+    """What is bound to the graph, with the types that source code names for its channels: for suggestions only."""
+    from rosprivacy.ingest.annotations.code_evidence import code_evidence  # noqa: PLC0415 - light start
+    from rosprivacy.ingest.annotations.source_files import read_sources  # noqa: PLC0415
+
+    said: dict[tuple[str, str], list[MessageType]] = defaultdict(list)
+    for one in code_evidence(read_sources(sources)):
+        if one.name and one.type:
+            said[one.kind, one.name].append(MessageType(one.type, one.place))
+    elements, types = result.analysis.graph.elements, result.bound.types
+    more = {at: said[e.kind, e.name] for at, e in enumerate(elements) if e.is_channel and (e.kind, e.name) in said}
+    return replace(result.bound, types={at: (*types.get(at, ()), *more.get(at, ())) for at in {*types, *more}})
 
 
 def _with_findings(result: Result) -> frozenset[str]:

@@ -183,6 +183,22 @@ def test_packages_take_part_and_a_users_own(cli: Cli, tmp_path: Path) -> None:
     assert cli("suggest", "p.xml", "--packages", "nope.yaml", cwd=tmp_path).returncode == 2
 
 
+def test_code_tells_types_with_its_line(cli: Cli, robot: Path) -> None:
+    (robot / "l.yaml").write_text("labels: 1\n", "utf-8")
+    (robot / "driver.py").write_text(
+        "from rclpy.node import Node\nfrom sensor_msgs.msg import Image\n\n\nclass Driver(Node):\n"
+        "    def __init__(self):\n        super().__init__('driver')\n"
+        "        self.out = self.create_publisher(Image, '/a', 1)\n",
+        "utf-8",
+    )
+    assert not [row for row in rows(cli, robot) if row[:3] == ("/driver", "source", "Video")]
+    assert ("/driver", "source", "Video", "likely") in rows(cli, robot, "--source", "driver.py")
+    text = cli("suggest", "p.xml", "--source", "driver.py", cwd=robot).stdout
+    assert "type sensor_msgs/msg/Image of /a (driver.py:8): a picture of" in text
+    answer = cli("analyze", "p.xml", "-l", "l.yaml", cwd=robot).stdout
+    assert "Image" not in answer  # nothing follows from code
+
+
 PACKAGE = """package: 1
 name: badges
 about: Reads badges.

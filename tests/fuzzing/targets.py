@@ -15,6 +15,7 @@ from rosprivacy.analysis import durations
 from rosprivacy.analysis.errors import InputError
 from rosprivacy.analysis.model import Confidence, Place, Profile
 from rosprivacy.analysis.suggesting.by_package import package_evidence
+from rosprivacy.analysis.suggesting.name_rules import of_topic
 from rosprivacy.annotating import annotated, differences
 from rosprivacy.ingest.bags.bag_folders import read_bags
 from rosprivacy.ingest.decisions.decisions_file import read_decisions
@@ -24,12 +25,15 @@ from rosprivacy.ingest.keystore.governance_file import read_governance
 from rosprivacy.ingest.keystore.grants import policy_of
 from rosprivacy.ingest.keystore.open_topics import open_topics
 from rosprivacy.ingest.keystore.permissions_file import read_permissions
-from rosprivacy.ingest.labels.label_file import read_labels
+from rosprivacy.ingest.labels.label_file import parse_labels, read_labels
 from rosprivacy.ingest.mitigation.limits_file import read_limits
 from rosprivacy.ingest.packages.package_file import read_package
 from rosprivacy.ingest.policies import common_names, names
 from rosprivacy.ingest.policies.policy_xml import read_policy
 from rosprivacy.ingest.policies.saved_graph import read_saved
+from rosprivacy.ingest.suggestions.accepting import accept
+from rosprivacy.ingest.suggestions.comments import taken_apart
+from rosprivacy.ingest.suggestions.name_file import read_name_rules
 from rosprivacy.ingest.zenoh_access.zenoh_inputs import read_zenoh
 from rosprivacy.mitigation import run_mitigation
 from rosprivacy.observing import written
@@ -48,6 +52,7 @@ from tests.fuzzing import (
     package_texts,
     policy_texts,
     security_texts,
+    suggestion_texts,
 )
 from tests.helpers.paths import ROOT
 
@@ -115,6 +120,29 @@ def _matched() -> None:
     for said in package_evidence(graph, {}, [read_package("package.yaml", load())]):
         assert said.confidence is not Confidence.CERTAIN
         assert said.label.element in graph.elements
+
+
+def _named() -> None:
+    """No rule about a name is certain."""
+    rules, _ = read_name_rules(["names.yaml"], load())
+    for name in ("/a", "/c/image", "/robot/eye", "/n0"):
+        assert all(one is None or one.rule.confidence is not Confidence.CERTAIN for one in (of_topic(name, rules),))
+
+
+def _accepted() -> None:
+    """What is accepted by its confidence hides nothing, and what is left says what it said."""
+    text = Path("labels.yaml").read_bytes().decode()
+    _, before = taken_apart("labels.yaml", text)
+    done = accept("labels.yaml", text, [Confidence.MAY], "somebody", "2026-01-01", load())
+    rest, left = taken_apart("labels.yaml", done.text)
+    assert len(before) == len(left) + done.count
+    assert all(one in [other._replace(line=0) for other in before] for one in [each._replace(line=0) for each in left])
+    assert all(
+        one._replace(line=0) in [each._replace(line=0) for each in left]
+        for one in before
+        if one.hides and one.confidence is Confidence.MAY
+    )
+    parse_labels(rest, load(), name="labels.yaml")
 
 
 def _since() -> Result:
@@ -273,6 +301,8 @@ TARGETS = {target.name: target for target in (
         lambda: rosprivacy.analyze("node.json5", "star.yaml", today=TODAY),
         ("analyze", "node.json5", "-l", "star.yaml"),
     ),
+    Target("name-rules", 10, suggestion_texts.name_rules, _named),
+    Target("suggestions", 10, suggestion_texts.suggested, _accepted),
     Target("package", 10, package_texts.package, _matched),
     Target(
         "python-code", 10, code_texts.python, lambda: _annotated("a.py"), arguments=("annotations", "a.py"),

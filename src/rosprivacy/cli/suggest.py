@@ -13,7 +13,9 @@ from rosprivacy.cli.options import Output, TextOrJson
 from rosprivacy.cli.output import emit
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable
+
+    from rosprivacy.suggesting import Suggested
 
 
 @reads_system(
@@ -39,6 +41,14 @@ def suggest(
             show_default=False,
         ),
     ] = None,
+    source: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="SRC",
+            help="Python and C++ source code of nodes, whose literal names and types are evidence; may be repeated.",
+            show_default=False,
+        ),
+    ] = None,
     into: Annotated[
         Path | None,
         typer.Option(
@@ -59,24 +69,25 @@ def suggest(
     from rosprivacy.report.suggest.suggestion_lines import suggestion_lines
     from rosprivacy.suggesting import suggest_labels
 
-    labels = tuple(inputs.labels or ())
+    def told() -> Suggested:
+        labels = tuple(inputs.labels or ())
+        return suggest_labels(inputs.named, labels, inputs.settings, rules or (), packages or (), source or ())
+
     if into:
-        _write(inputs, into, rules or (), packages or ())
+        _write(into, told)
         return
-    told = suggest_labels(inputs.named, labels, inputs.settings, rules or (), packages or ())
-    document = suggestions_document(told.proposals, told.open, told.by_hand, told.result, told.rules)
+    found = told()
+    document = suggestions_document(found.proposals, found.open, found.by_hand, found.result, found.rules)
     lines = "".join(f"{line}\n" for line in suggestion_lines(document))
     emit(as_text(document) if format is TextOrJson.json else lines, output)
 
 
-def _write(inputs: Inputs, file: Path, rules: Sequence[str], packages: Sequence[str]) -> None:
+def _write(file: Path, told: Callable[[], Suggested]) -> None:
     """The suggestions into a label file, in place of those that an earlier run has written there."""
     from rosprivacy.report.editing import editing
     from rosprivacy.suggested_lines import with_suggestions
-    from rosprivacy.suggesting import suggest_labels
 
     with editing(file):
-        told = suggest_labels(inputs.named, tuple(inputs.labels or ()), inputs.settings, rules, packages)
-        written = with_suggestions(str(file), told)
+        written = with_suggestions(str(file), told())
         emit(written.text, file, edited=file)
     typer.echo(f"{file}: {counted(written.added, 'suggestion')}, as comments", err=True)
