@@ -142,22 +142,29 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
     )
 
 
-def chosen_findings(net: Net, bound: Bound, hierarchy: Hierarchy, options: Options) -> tuple[Finding, ...]:
-    """Return some findings of a net, those that the options choose; nothing else of the answer is worked out.
+def chosen_findings(
+    net: Net, bound: Bound, hierarchy: Hierarchy, options: Options, chosen: Mapping[int, AbstractSet[Chosen]]
+) -> tuple[Finding, ...]:
+    """Return some findings of a net, if they are there; their paths are not counted, and nothing else is worked out.
 
-    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.example import ARCHIVE, CAMERA, factory
     >>> graph, bound, hierarchy = factory()
     >>> net = Net.of(spreading.spread(graph, bound, hierarchy))
-    >>> [finding.leak.name for finding in chosen_findings(net, bound, hierarchy, Options())]
-    ['/archive', 'disk']
+    >>> chosen = {CAMERA: {(DISCLOSURE, ARCHIVE, net.spread.categories.index("FaceTemplate"), False)}}
+    >>> [finding.leak.name for finding in chosen_findings(net, bound, hierarchy, Options(), chosen)]
+    ['/archive']
     """
     spread = net.spread
     bound = replace(bound, outside=on_day(bound.outside, options.today))
-    return tuple(
-        _findings(
-            net, _mask(spread, options), tuple(concerns(spread, bound, hierarchy)), options, _Work(options.bounds)
-        )
+    options = options._replace(
+        choose=lambda *_: chosen, paths=Paths.witness, bounds=replace(options.bounds, path_steps=0)
     )
+    leaks = {leak for some in chosen.values() for _, leak, _, _ in some}
+    kinds = tuple(
+        concern._replace(bits={leak: concern.bits[leak] for leak in leaks & concern.bits.keys()})
+        for concern in concerns(spread, bound, hierarchy)
+    )
+    return tuple(_findings(net, _mask(spread, options), kinds, options, _Work(options.bounds)))
 
 
 def _mask(spread: Spread, options: Options) -> int:

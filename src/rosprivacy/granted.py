@@ -7,6 +7,7 @@ that lie in the open.
 from __future__ import annotations
 
 import os
+from collections import defaultdict
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -87,11 +88,25 @@ def _deployed(names: list[str], settings: Settings, within: str | None) -> Itera
         names, settings.domain, on, allow_unsigned=settings.allow_unsigned, view=settings.view
     )
     _confined([file for policy in policies for file, _ in policy.sources], within)
-    files = {file for policy in policies for file, _ in policy.sources}
-    for policy in policies:  # what is said of a file goes with all that rests on it, into a saved graph too
-        own = {file for file, _ in policy.sources}
-        more = (one for one in said if one.place.file in own or (own and one.place.file not in files))
-        yield replace(policy, diagnostics=(*policy.diagnostics, *more))
+    return _with_said(policies, said)
+
+
+def _with_said(policies: Iterable[Policy], said: Iterable[Diagnostic]) -> Iterator[Policy]:
+    """What is said of a file goes with each policy that rests on it, else with one beside it, into saved graphs too."""
+    policies = tuple(policies)
+    resting: dict[str, list[int]] = defaultdict(list)
+    beside: dict[str, int] = {}
+    for at, policy in enumerate(policies):
+        for file, _ in policy.sources:
+            resting[file].append(at)
+            beside.setdefault(os.path.dirname(file), at)  # noqa: PTH120 - by its text
+    more: dict[int, list[Diagnostic]] = defaultdict(list)
+    for one in said:
+        file = one.place.file
+        for at in resting.get(file) or (beside.get(os.path.dirname(file), 0),):  # noqa: PTH120 - by its text
+            more[at].append(one)
+    for at, policy in enumerate(policies):
+        yield replace(policy, diagnostics=(*policy.diagnostics, *more[at]))
 
 
 def _confined(files: Iterable[str], within: str | None) -> None:

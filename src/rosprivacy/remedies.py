@@ -108,6 +108,8 @@ class Remedies:
                 yield enclave, node
 
     def _deny(self, findings: Sequence[Finding]) -> tuple[DenyLine, ...]:
+        if self.trials.channels_between(findings[0]) > TRIED:  # each change is about one channel more
+            return ()
         lines: frozenset[DenyLine] = frozenset()
         left: Sequence[Finding] | None = findings
         while left:
