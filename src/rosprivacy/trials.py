@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.findings.findings import chosen_findings
 from rosprivacy.analysis.kernel.spreading import spread
 from rosprivacy.analysis.kernel.states import Net
@@ -100,15 +101,12 @@ class Trials:
         )
 
     def left(self, change: Change, findings: Iterable[Finding]) -> list[Finding]:
-        """Return those of some findings that still stand after a change.
-
-        Raises
-        ------
-        InputErrors
-            If labels do not fit what the change leaves.
-        """
+        """Return those of some findings that still stand after a change: all where labels do not fit what it leaves."""
         findings = tuple(findings)
-        there = self._whole(change) if self.system.is_fleet else self._only(change, findings)
+        try:
+            there = self._whole(change) if self.system.is_fleet else self._only(change, findings)
+        except InputErrors:  # such as a flow that a label names: nothing is proven then
+            return list(findings)
         return [there[one.id] for one in findings if one.id in there]
 
     def _whole(self, change: Change) -> Mapping[str, Finding]:
@@ -136,7 +134,8 @@ class Trials:
 
     def _net(self, change: Change) -> tuple[Net, Bound]:
         bound = self.result.bound
-        graph = None if bound.through else changed_graph(self.system.graph, self.system.policies, change)
+        named = bound.through or (bound.flows and change.deny)  # flows that labels name: are they still there?
+        graph = None if named else changed_graph(self.system.graph, self.system.policies, change)
         if graph is not None:
             return Net.of(self.result.analysis.spread.with_fewer_flows(graph)), bound
         system = self.read(change)
