@@ -241,7 +241,7 @@ def _findings_of(
 ) -> Iterator[tuple[int, int, Finding]]:  # fmt: skip
     """(leak, number of the category, finding) of one source and kind.
 
-    Only disclosures are dismissed: no leak on the path cures a retention or a transfer (rule S10).
+    Only disclosures are dismissed: no leak on the path cures a retention, a transfer or an open channel (rule S10).
     """
     spread = net.spread
     paths = PathsOfSource(net, source, memory, options.paths, options.max_paths, work.paths)
@@ -358,12 +358,14 @@ def _other_leaks(spread: Spread, path: list[tuple[int, int, int]], i: int, accep
 def finding_id(category: str, source: Element, leak: Element, kind: str = DISCLOSURE, *, beside: bool = False) -> str:
     """Return the stable id of a finding, made from category, source and leak, and the kind if several can be (S10).
 
-    Data as it is ``beside`` a pseudonymised finding has an id of its own, made with the word 'plain'.
+    Data as it is ``beside`` a pseudonymised finding has an id of its own, made with the word 'plain'. Only a
+    channel has a leg, or names that a DENY takes out.
 
     >>> finding_id("Video", Element("node", "/camera"), Element("node", "/uplink"))
     '72abf86b6fa9e2ae'
     """
     more = [*(["plain"] if beside else []), *([] if kind == DISCLOSURE else [kind])]
+    more += [*([leak.leg] if leak.leg else []), *leak.without]
     parts = [*more, category, *source.identity, *leak.identity]
     return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:16]
 

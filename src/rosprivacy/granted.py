@@ -1,6 +1,7 @@
 """What a user names -> policies: SROS 2 policies, permissions files, keystores and Zenoh files, each by its reader.
 
-In: paths, and the settings. Out: policies with what a reader has to know of them.
+In: paths, and the settings. Out: policies with what a reader has to know of them; and, of their graph, the channels
+that lie in the open.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from rosprivacy.ingest.reading.confined import WIDEN, leaves, what_leaves
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from rosprivacy.analysis.model import Diagnostic, Policy
+    from rosprivacy.analysis.model import Bound, Diagnostic, FlowGraph, Policy
     from rosprivacy.settings import Settings
 
 ZENOH = ".json5"
@@ -59,6 +60,16 @@ def read_granted(names: Iterable[str], settings: Settings, within: str | None = 
     if access:
         policies = (*policies, *_zenoh(access, settings, within))
     return policies, said
+
+
+def with_exposed(graph: FlowGraph, bound: Bound, policies: Iterable[Policy]) -> Bound:
+    """Return what is bound to a graph with the channels that a governance leaves in the open (rule S10)."""
+    policies = [policy for policy in policies if policy.protections]
+    if not policies:
+        return bound
+    from rosprivacy.ingest.keystore.protections import exposed_channels  # noqa: PLC0415 - light start
+
+    return replace(bound, exposed=exposed_channels(graph, policies))
 
 
 def _zenoh(names: list[str], settings: Settings, within: str | None) -> tuple[Policy, ...]:
