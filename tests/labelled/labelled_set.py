@@ -1,0 +1,117 @@
+"""The labelled set: systems as facts, what two readers said of their nodes, and the split (protocol.md).
+
+In: the YAML files beside this one. Out: ``System`` and ``Judged`` of each, and how far the readers agree.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from ruamel.yaml import YAML
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Mapping, Sequence
+
+HERE = Path(__file__).parent
+# KINDS: what the protocol lets a reader say.
+READERS = ("reader_a", "reader_b")
+SOURCE, DERIVES, LEAK = "source", "derives", "leak"
+KINDS = frozenset([
+    "PersonImage", "DepthImage", "PersonPointCloud", "ThermalImage", "Voice", "SpeechTranscript", "VoiceCommand",
+    "ConversationWithModel", "BodyPose", "Gesture", "FaceTemplate", "FacialExpression", "EmotionEstimate",
+    "PersonDetection", "PersonTrack", "PersonIdentifier", "PersonName", "GnssPosition", "HomeMap", "LaserScan",
+    "RobotPosition", "Trajectory", "OperatorInput", "LicencePlate", "VitalSign", "DocumentImage", "DeliveryOrder",
+    "DeviceIdentifier", "InteractionLog", "Presence", "HouseholdObject", "SmartHomeSensorData",
+])  # fmt: skip
+
+
+class Pair(NamedTuple):
+    """One statement about one node; ``kind`` is empty of a leak."""
+
+    system: str
+    node: str
+    role: str
+    kind: str
+
+
+class System(NamedTuple):
+    """One public system: what its nodes write and read, by name and type.
+
+    Attributes
+    ----------
+    nodes
+        Name -> ``publishes``, ``subscribes``, ``serves``, ``calls`` -> name -> type.
+    """
+
+    name: str
+    repository: str
+    nodes: Mapping[str, Mapping[str, Any]]
+
+
+class Judged(NamedTuple):
+    """What both readers say, and what one of them says alone; kinds that cover each other agree."""
+
+    agreed: frozenset[Pair]
+    disputed: frozenset[Pair]
+
+
+def systems() -> tuple[Sequence[System], Sequence[System]]:
+    """Return those that rules may be tuned on, and those held out: every other one by the hash of its repository."""
+    read = [_read(file) for file in (HERE / "systems").glob("*.yaml")]
+    every = [System(one["system"], one["repository"], one["nodes"]) for one in read]
+    every.sort(key=lambda one: hashlib.sha256(one.repository.encode()).hexdigest())
+    return every[::2], every[1::2]
+
+
+def said(reader: str, some: Iterable[System]) -> frozenset[Pair]:
+    """Return what a reader says of some systems."""
+    return frozenset(pair for one in some for pair in _pairs(one, _read(HERE / reader / f"{one.name}.yaml")))
+
+
+def judged(some: Iterable[System], overlaps: Mapping[str, Collection[str]]) -> Judged:
+    """Return what both readers say of some systems.
+
+    Parameters
+    ----------
+    overlaps
+        By kind: those that are the same, broader or narrower.
+    """
+    some = tuple(some)
+    one, other = (said(reader, some) for reader in READERS)
+    agreed = {pair for pair in one if met(pair, other, overlaps)} | {pair for pair in other if met(pair, one, overlaps)}
+    return Judged(frozenset(agreed), frozenset((one | other) - agreed))
+
+
+def met(pair: Pair, others: Iterable[Pair], overlaps: Mapping[str, Collection[str]]) -> bool:
+    """Return whether one of some statements says the same, a broader or a narrower kind."""
+    return any(
+        pair[:3] == other[:3] and (pair.kind == other.kind or other.kind in overlaps.get(pair.kind, ()))
+        for other in others
+    )
+
+
+def kappa(some: Iterable[System]) -> float:
+    """Return Cohen's kappa of the readers, over all nodes and all statements that occur anywhere."""
+    some = tuple(some)
+    one, other = (said(reader, some) for reader in READERS)
+    statements = {(pair.role, pair.kind) for pair in one | other}
+    cells = len(statements) * sum(len(system.nodes) for system in some)
+    equal = (cells - len(one ^ other)) / cells
+    by_chance = (len(one) * len(other) + (cells - len(one)) * (cells - len(other))) / cells**2
+    return (equal - by_chance) / (1 - by_chance)
+
+
+def _pairs(system: System, answers: Mapping[str, Any]) -> Iterable[Pair]:
+    assert set(answers["nodes"]) == set(system.nodes), system.name
+    for node, answer in answers["nodes"].items():
+        for role in (SOURCE, DERIVES):
+            assert set(answer[role]) <= KINDS, (system.name, node)
+            yield from (Pair(system.name, node, role, kind) for kind in answer[role])
+        if answer["leak"]:
+            yield Pair(system.name, node, LEAK, "")
+
+
+def _read(file: Path) -> Any:
+    return YAML(typ="safe", pure=True).load(file.read_text("utf-8"))

@@ -1,0 +1,187 @@
+"""What is suggested for the systems of the labelled set, held against the readers: precision and recall.
+
+In: systems. Out: ``Measured`` by what was looked at (everything, without types, names alone, types alone).
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import TYPE_CHECKING, NamedTuple
+
+from rosprivacy.analysis.model import Confidence
+from rosprivacy.analysis.suggesting.carried_kinds import Rules
+from rosprivacy.analysis.suggesting.evidence import DERIVATION
+from rosprivacy.analysis.suggesting.evidence import LEAK as LEAKS
+from rosprivacy.analysis.suggesting.evidence import SOURCE as SOURCES
+from rosprivacy.analysis.suggesting.name_rules import NameRules
+from rosprivacy.analysis.suggesting.unsaid import unsaid
+from rosprivacy.analysis.suggesting.weighing import proposals
+from rosprivacy.ingest.packages.package_folders import read_packages
+from rosprivacy.ingest.suggestions.name_file import read_name_rules
+from rosprivacy.ingest.types import TABLE
+from rosprivacy.ingest.types.type_table import read_table
+from rosprivacy.ontology.vocabulary import load
+from rosprivacy.robot_system import answer_robot
+from rosprivacy.settings import Settings
+from rosprivacy.suggesting import evidence
+from tests.labelled.labelled_set import DERIVES, LEAK, SOURCE, Pair, judged, met
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Mapping, Sequence
+    from pathlib import Path
+
+    from tests.labelled.labelled_set import Judged, System
+
+ROLES = {SOURCES: SOURCE, DERIVATION: DERIVES, LEAKS: LEAK}
+NO_NAMES = NameRules({}, {}, {}, {}, frozenset(), frozenset(), {})
+LEGS = {"publishes": "publish", "subscribes": "subscribe"}
+FOLDED = "/_action/"  # parts of actions, which are named themselves (rule S3)
+ENDS = {"serves": ("reply", "execute"), "calls": ("request", "call")}
+
+
+class Look(NamedTuple):
+    """What suggestions are made from."""
+
+    name: str
+    types: bool = True
+    names: bool = True
+    packages: bool = True
+
+
+LOOKS = (
+    Look("everything"),
+    Look("without types", types=False),
+    Look("types alone", names=False, packages=False),
+    Look("names alone", types=False, packages=False),
+)
+
+
+class Share(NamedTuple):
+    """So many of so many."""
+
+    part: int
+    of: int
+
+    @property
+    def value(self) -> float:
+        return self.part / self.of if self.of else 1.0
+
+    def interval(self) -> tuple[float, float]:
+        """Return Wilson's interval of 95 %."""
+        if not self.of:
+            return 0.0, 1.0
+        z, n, p = 1.96, self.of, self.value
+        middle, half = p + z * z / (2 * n), z * sqrt(p * (1 - p) / n + z * z / (4 * n * n))
+        return (middle - half) / (1 + z * z / n), (middle + half) / (1 + z * z / n)
+
+
+class Measured(NamedTuple):
+    """How suggestions do.
+
+    Attributes
+    ----------
+    precision
+        By confidence: of those that the readers do not dispute, how many both of them say.
+    recall
+        By role: of what both readers say, how much is suggested, as ``may`` or surer.
+    wrong
+        By confidence: what no reader says.
+    """
+
+    precision: Mapping[str, Share]
+    recall: Mapping[str, Share]
+    wrong: Mapping[str, Sequence[Pair]]
+
+
+def measured(some: Iterable[System], look: Look, folder: Path) -> Measured:
+    """Hold what is suggested for some systems against the readers."""
+    some = tuple(some)
+    overlaps = load().hierarchy.overlaps
+    truth = judged(some, overlaps)
+    asked = {pair: confidence for system in some for pair, confidence in suggested(system, look, folder).items()}
+    precision, wrong = {}, {}
+    for confidence in Confidence:
+        own = [pair for pair, found in asked.items() if found is confidence]
+        precision[str(confidence)], wrong[str(confidence)] = _precision(own, truth, overlaps)
+    recall = {}
+    for role in ROLES.values():
+        known = [pair for pair in truth.agreed if pair.role == role]
+        recall[role] = Share(sum(met(pair, asked, overlaps) for pair in known), len(known))
+    return Measured(precision, recall, wrong)
+
+
+def suggested(system: System, look: Look, folder: Path) -> Mapping[Pair, Confidence]:
+    """Return what is suggested for the nodes of a system, each with its confidence."""
+    policy, labels = folder / f"{system.name}.policy.xml", folder / f"{system.name}.labels.yaml"
+    policy.write_text(policy_text(system), "utf-8")
+    labels.write_text(types_text(system), "utf-8")
+    result = answer_robot((str(policy),), (str(labels),) if look.types else (), Settings())
+    vocabulary, bounds = result.vocabulary, Settings().bounds
+    table = read_table(TABLE, vocabulary, bounds)
+    names = read_name_rules((), vocabulary, bounds)[0] if look.names else NO_NAMES
+    rules = Rules(table.suggestions, table.limits.of, names, vocabulary.hierarchy)
+    packages = read_packages((), vocabulary, bounds) if look.packages else ()
+    made = proposals(evidence(result.analysis, result.bound, rules, packages))
+    asked = unsaid(made, result.analysis.graph, result.bound, vocabulary.hierarchy)
+    found: dict[Pair, Confidence] = {}
+    for one in asked:
+        if (role := ROLES.get(one.label.role)) is None:
+            continue
+        kind = {LEAK: "", DERIVES: one.label.to}.get(role, one.label.kind)
+        pair = Pair(system.name, one.label.element.name, role, kind)
+        found[pair] = min(one.confidence, found.get(pair, one.confidence), key=tuple(Confidence).index)
+    return found
+
+
+def policy_text(system: System) -> str:
+    """Write a system as a policy: an enclave for each node."""
+    return "".join(
+        [
+            '<policy version="0.2.0"><enclaves>\n',
+            *(_enclave(node, ends) for node, ends in sorted(system.nodes.items())),
+            "</enclaves></policy>\n",
+        ]
+    )
+
+
+def types_text(system: System) -> str:
+    """Write the types of a system's channels as a label file."""
+    said: dict[str, dict[str, set[str]]] = {"topics": {}, "services": {}, "actions": {}}
+    for ends in system.nodes.values():
+        for leg in (*LEGS, *ENDS):
+            for name, type_ in ends.get(leg, {}).items():
+                if type_ and FOLDED not in name:
+                    section = "topics" if leg in LEGS else "actions" if "/action/" in type_ else "services"
+                    said[section].setdefault(name, set()).add(type_)
+    lines = ["labels: 1\n"]
+    for section, names in said.items():
+        lines += [f"{section}:\n"] if names else []
+        lines += [f"  {name}: {{types: [{', '.join(sorted(types))}]}}\n" for name, types in sorted(names.items())]
+    return "".join(lines)
+
+
+def _enclave(node: str, ends: Mapping[str, Mapping[str, str]]) -> str:
+    lines = []
+    for leg, role in LEGS.items():
+        lines += [
+            f'<topics {role}="ALLOW"><topic>{name}</topic></topics>' for name in ends.get(leg, ()) if FOLDED not in name
+        ]
+    for leg, (service, action) in ENDS.items():
+        for name, type_ in ends.get(leg, {}).items():
+            kind, role = ("action", action) if "/action/" in type_ else ("service", service)
+            lines.append(f'<{kind}s {role}="ALLOW"><{kind}>{name}</{kind}></{kind}s>')
+    space, _, own = node.rpartition("/")
+    profile = f'<profile ns="{space or "/"}" node="{own}">{"".join(lines)}</profile>'
+    return f'<enclave path="{node}"><profiles>{profile}</profiles></enclave>\n'
+
+
+def _precision(
+    own: Iterable[Pair], truth: Judged, overlaps: Mapping[str, Collection[str]]
+) -> tuple[Share, Sequence[Pair]]:
+    right, wrong = 0, []
+    for pair in own:
+        if met(pair, truth.agreed, overlaps):
+            right += 1
+        elif not met(pair, truth.disputed, overlaps):
+            wrong.append(pair)
+    return Share(right, right + len(wrong)), sorted(wrong)
