@@ -36,8 +36,9 @@ class Finding:
     kind
         ``DISCLOSURE``: it reaches a leak. ``STORAGE_LIMITATION``: a storage that keeps it without a stated end or
         longer than allowed. ``THIRD_COUNTRY``: an element outside the EEA without a stated basis.
+        ``UNPROTECTED``: a channel that who is on the network can read.
     leak
-        The leak, the storage or the element abroad.
+        The leak, the storage, the element abroad or the channel.
     pseudonymised
         Whether the data arrives in pseudonymised form only; data that arrives as it is through another leak only is
         then a finding of its own, ``beside`` this one.

@@ -36,6 +36,7 @@ BENCHMARKS = (
     "reliance",
     "suggestions",
     "wildcards",
+    "views",
     "fleet_flows",
     "fleet_kernel",
     "fleet_robots",

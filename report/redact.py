@@ -18,7 +18,8 @@ OURS = "rosprivacy:"  # files that come with the program
 PATHS = ("node", "topic", "service", "action")
 AS_IT_IS = ("categories", "contexts", "look_at")  # of the ontology: kinds of data and the law
 KEPT = {
-    "because", "area", "article9", "backups", "beside", "by", "carries", "categories", "categories_asked", "category",
+    "because", "area", "article9", "backups", "beside", "by", "carries", "cause", "categories", "categories_asked",
+    "category",
     "condition", "context", "contexts", "countries_as_of", "country", "data_types_asked", "decision", "expires",
     "finding", "findings", "format", "from", "holds", "id", "identity_factors_asked", "kind", "law_as_of", "leaves",
     "leaves_pseudonymised", "legal_bases", "legal_basis", "method", "missing", "paths", "pattern", "provision",
@@ -27,8 +28,10 @@ KEPT = {
     "verdict", "verdict_then", "view", "what", "without_limit",
 }  # fmt: skip
 MAPS = ("because", "legal_bases", "purposes", "retention", "taken_away_by", "taken_by_kind")  # keys are no names
+FILES = ("file", "joining_file")  # also among the values of a reason
 NAMED = {
-    "robot": "robot", "robots": "robot", "model": "model", "file": "file", "enclave": "enclave",
+    "robot": "robot", "robots": "robot", "model": "model", "file": "file", "joining_file": "file",
+    "enclave": "enclave",
     "enclaves": "enclave", "split": "enclave",
     "operator": "operator", "controller": "controller", "controllers": "controller", "dpo": "officer",
     "officers": "officer", "profile": "node", "nodes": "node",
@@ -87,7 +90,11 @@ def _value(key: str, value: Any, change: Callable[[str, str], str]) -> Any:
             return _element(value, change)
         if key == "models":  # of a fleet: name -> number of robots
             return {change("model", model) if model else "": number for model, number in value.items()}
-        return {inner: _value(key if key in MAPS else inner, item, change) for inner, item in value.items()}
+        of_map = key in MAPS
+        return {
+            inner: _value(key if of_map and inner not in FILES else inner, item, change)
+            for inner, item in value.items()
+        }
     return _text(key, value, change) if isinstance(value, str) and value else value
 
 

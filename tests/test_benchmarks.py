@@ -22,6 +22,7 @@ PARTS = {  # scripts that declare no rows, and who has need of them
     "paper_method": "turtlebot",
     "more_categories": "turtlebot",
     "neo4j_fleet": "graph_database",
+    "vehicle": "views",
 }
 MADE_UP = """
 from measure import Measured, NotMeasured, Row

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import json
+import shutil
 from typing import TYPE_CHECKING
 
 import pytest
 
 import rosprivacy
+from rosprivacy.analysis.model import ACCESS_GAP
+from rosprivacy.granted import read_granted
+from rosprivacy.settings import Settings
 from tests.helpers.command import cli
 from tests.helpers.keystores import Keystore, governance, grant, permissions, rule, topic_rule
 
@@ -57,6 +61,22 @@ def test_a_saved_graph_keeps_what_was_deployed(cli: Cli, keystore: Path, tmp_pat
     saved = tmp_path / "graph.json"
     first = steps(cli, keystore / "keystore", "-l", keystore / "labels.yaml", "--save-graph", saved)
     assert steps(cli, "--add", saved, "-l", keystore / "labels.yaml") == first
+
+
+def test_what_is_said_of_a_file_goes_with_the_policies_that_rest_on_it(keystore: Path, tmp_path: Path) -> None:
+    """So a saved graph keeps it, and each policy alone has it; once, where it is about one enclave."""
+    shutil.copytree(keystore / "keystore", tmp_path / "k", symlinks=True)
+    Keystore(tmp_path / "k").governance(governance(topic_rule(reading="false")))
+    policies, said = read_granted([str(tmp_path / "k")], Settings(today="2070-01-01"))
+    told = [[one.message.partition(" is valid")[0] for one in policy.diagnostics] for policy in policies]
+    assert said == ()
+    assert [[text for text in texts if "certificate" in text] for texts in told] == [
+        ["the certificate of CN=/camera"], ["the certificate of CN=/uplink"]
+    ]  # fmt: skip
+    assert [[text for text in texts if text.startswith("grant of")] for texts in told] == [
+        ["grant of CN=/camera"], ["grant of CN=/uplink"]
+    ]  # fmt: skip
+    assert [sum(one.code == ACCESS_GAP for one in policy.diagnostics) for policy in policies] == [1, 1]
 
 
 def test_a_fleet_can_name_a_keystore(keystore: Path) -> None:

@@ -7,6 +7,7 @@ from dataclasses import replace
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
+import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
@@ -14,6 +15,7 @@ from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.findings.beyond import DenyLine
 from rosprivacy.analysis.modes import View
 from rosprivacy.answering import answer
+from rosprivacy.both_views import both_views
 from rosprivacy.ingest.policies.changed_graph import changed_graph
 from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, Change, changed
 from rosprivacy.ingest.policies.flow_graph import build
@@ -22,12 +24,13 @@ from rosprivacy.question import question_of
 from rosprivacy.robot_system import system_reader
 from rosprivacy.settings import Settings
 from rosprivacy.trials import Trials
-from tests.helpers.enclaves import PATHS, RIGHTS, systems, write
+from tests.helpers.enclaves import PATHS, RIGHTS, Enclaves, systems, write
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from rosprivacy.analysis.answer import Finding
     from rosprivacy.analysis.model import Flow
-    from tests.helpers.enclaves import Enclaves
 
 
 @st.composite
@@ -61,6 +64,28 @@ def test_the_graph_is_that_of_the_changed_policies(system: tuple[Enclaves, str],
         return
     assert graph.elements == anew.elements
     assert _told(list(graph.flows)) == _told(list(anew.flows))
+
+
+WRITERS: Enclaves = {
+    "/e": {"/s": [("publish", "topic", "/a", "ALLOW")], "/t": [("publish", "topic", "/z", "ALLOW")]},
+    "/f": {"/l": [("subscribe", "topic", "/a", "ALLOW")]},
+}
+NAMING = (
+    "{/s: {source: {Voice: [/a]}}, /t: {source: [Video]}, /l: {leak: [Video]}}",
+    "{/s: {source: [Voice]}, /t: {source: [Video]}, /l: {leak: [Video]}}\nflows: [{from: /s, to: /a, only: [Voice]}]",
+)
+
+
+@pytest.mark.parametrize("labels", NAMING)
+def test_a_deny_of_what_labels_name_is_no_remedy_and_no_error(
+    labels: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    write(WRITERS, f"labels: 1\nnodes: {labels}\n")
+    enforced = both_views(("p.xml",), ("l.yaml",), Settings()).enforced
+    assert enforced is not None
+    [added] = enforced.added
+    assert (added.split, added.deny) == (("/e",), ())
 
 
 def _shown(finding: Finding) -> tuple[object, ...]:

@@ -273,3 +273,27 @@ def test_a_saved_graph_says_the_same(cli: Cli, tmp_path: Path, view: str) -> Non
     code, ways, told = answered(cli, tmp_path, *files, "--view", view, "--save-graph", graph)
     assert answered(cli, tmp_path, "--add", graph, "--view", view) == (code, ways, told)
     assert [one for one in told if one.startswith("any session may")]
+
+
+def test_a_deny_of_put_does_not_stop_late_joiners(cli: Cli, tmp_path: Path) -> None:
+    """As measured: what was put comes as a reply (S5, S11)."""
+    for messages, through in ((["put"], True), (["put", "reply"], False)):
+        denied = {**rule("no", "deny", "put", "egress", "0/video/**"), "messages": messages}
+        sender = put(tmp_path / "camera.json5", denied, default="allow")
+        receiver = put(tmp_path / "uplink.json5", rule("in", "allow", "put", "ingress", "0/video/*/*"))
+        _, ways, told = answered(cli, tmp_path, sender, receiver)
+        assert bool(ways) == through
+        assert any("late joiners get the messages by reply all the same" in one for one in told) == through
+
+
+def test_a_session_with_a_namespace_is_heard_by_one_that_names_it(cli: Cli, tmp_path: Path) -> None:
+    """Its keys begin with the namespace, and the name of the channel does not (S1)."""
+    sender = put(tmp_path / "camera.json5", rule("out", "allow", "put", "egress", "robot/0/video/*/*"))
+    sender.write_text(
+        sender.read_text("utf-8").replace("{ // Zenoh", "{ namespace: 'robot', // of this robot"), "utf-8"
+    )
+    apart = "keys behind namespaces '', 'robot': Zenoh keeps them apart, here a name is one channel in all of them"
+    for key, through, is_told in (("robot/**", True, False), ("robot/0/x/*/*", False, False), ("0/x/*/*", False, True)):
+        receiver = put(tmp_path / "uplink.json5", rule("in", "allow", "put", "ingress", key))
+        _, ways, told = answered(cli, tmp_path, sender, receiver)
+        assert (bool(ways), apart in told) == (through, is_told)

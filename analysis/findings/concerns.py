@@ -1,18 +1,19 @@
-"""Where a category is kept too long or leaves the EEA, and why (rules S9, S10)."""
+"""Where a category is kept too long, leaves the EEA or can be read on the network, and why (rules S9, S10)."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from rosprivacy.analysis.model import DISCLOSURE, STORAGE_LIMITATION, THIRD_COUNTRY
+from rosprivacy.analysis.model import DISCLOSURE, STORAGE_LIMITATION, THIRD_COUNTRY, UNPROTECTED, Reason
+from rosprivacy.analysis.model.reason import NOT_ENCRYPTED, NOT_ENCRYPTED_NOR_CLOSED, STRANGERS
 from rosprivacy.analysis.non_ros import kept_too_long, transferred
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     from rosprivacy.analysis.hierarchy import Hierarchy
     from rosprivacy.analysis.kernel.spread import Spread
-    from rosprivacy.analysis.model import Bound, Reason
+    from rosprivacy.analysis.model import Bound, Exposure
 
 
 class Concern(NamedTuple):
@@ -21,6 +22,12 @@ class Concern(NamedTuple):
     kind: str
     bits: Mapping[int, int]
     reasons: Mapping[tuple[int, str], Reason]
+
+    def taken_up(self, spread: Spread) -> Mapping[int, int]:
+        """Return the bits without those that a channel does not carry, if they come."""
+        if self.kind != UNPROTECTED:
+            return self.bits
+        return {v: bits & spread.keeps.get(v, spread.all_bits) for v, bits in self.bits.items()}
 
 
 def concerns(spread: Spread, bound: Bound, hierarchy: Hierarchy) -> Iterator[Concern]:
@@ -31,17 +38,35 @@ def concerns(spread: Spread, bound: Bound, hierarchy: Hierarchy) -> Iterator[Con
     >>> graph, bound, hierarchy = factory()
     >>> kinds = list(concerns(spread(graph, bound, hierarchy), bound, hierarchy))
     >>> [(concern.kind, str(concern.reasons.get((DISK, "Video"), ""))) for concern in kinds]
-    [('disclosure', ''), ('storage-limitation', 'no retention is stated'), ('third-country-transfer', '')]
+    [('disclosure', ''), ('storage-limitation', 'no retention is stated'), ('third-country-transfer', ''),
+     ('unprotected-channel', '')]
     """
     yield Concern(DISCLOSURE, spread.leaks, {})
     elements = spread.graph.elements
     storages = {v: facts for v, facts in bound.outside.items() if elements[v].kind == "storage"}
     too_long = {(v, c): kept_too_long(facts, c, hierarchy) for v, facts in storages.items() for c in spread.categories}
     abroad = {(v, c): transferred(facts) for v, facts in bound.outside.items() for c in spread.categories}
-    for kind, reasons in ((STORAGE_LIMITATION, too_long), (THIRD_COUNTRY, abroad)):
+    in_the_open = {(v, c): unprotected(some) for v, some in bound.exposed.items() for c in spread.categories}
+    for kind, reasons in ((STORAGE_LIMITATION, too_long), (THIRD_COUNTRY, abroad), (UNPROTECTED, in_the_open)):
         bits: dict[int, int] = {}
         for (vertex, category), why in reasons.items():
             if why:
                 here = spread.both(category) & ~spread.gone.get(vertex, 0)  # nothing gets to what is not on the robot
                 bits[vertex] = bits.get(vertex, 0) | here
         yield Concern(kind, bits, {key: why for key, why in reasons.items() if why})
+
+
+def unprotected(exposures: Iterable[Exposure]) -> Reason | None:
+    """Return why who is on the network can read what flows on a channel; the first line of each cause is named.
+
+    >>> from rosprivacy.analysis.model import Exposure, Place
+    >>> by = Exposure("not-encrypted", Place("governance.p7s", 24)), Exposure("strangers", Place("governance.p7s", 5))
+    >>> str(unprotected(by[:1])), unprotected(by).key, unprotected([])
+    ('nothing encrypts what is sent there, by governance.p7s:24', 'not-encrypted-nor-closed', None)
+    """
+    first = {one.cause: one.place for one in sorted(exposures, reverse=True)}
+    if len(first) == 2:  # noqa: PLR2004 - both causes
+        open_at, joined_at = first[NOT_ENCRYPTED], first[STRANGERS]
+        joining = {"joining_file": joined_at.file, "joining_line": joined_at.line}
+        return Reason.of(NOT_ENCRYPTED_NOR_CLOSED, file=open_at.file, line=open_at.line, **joining)
+    return next((Reason.of(cause, file=at.file, line=at.line) for cause, at in first.items()), None)

@@ -142,22 +142,29 @@ def analyse(graph: FlowGraph, bound: Bound, hierarchy: Hierarchy, options: Optio
     )
 
 
-def chosen_findings(net: Net, bound: Bound, hierarchy: Hierarchy, options: Options) -> tuple[Finding, ...]:
-    """Return some findings of a net, those that the options choose; nothing else of the answer is worked out.
+def chosen_findings(
+    net: Net, bound: Bound, hierarchy: Hierarchy, options: Options, chosen: Mapping[int, AbstractSet[Chosen]]
+) -> tuple[Finding, ...]:
+    """Return some findings of a net, if they are there; their paths are not counted, and nothing else is worked out.
 
-    >>> from rosprivacy.analysis.example import factory
+    >>> from rosprivacy.analysis.example import ARCHIVE, CAMERA, factory
     >>> graph, bound, hierarchy = factory()
     >>> net = Net.of(spreading.spread(graph, bound, hierarchy))
-    >>> [finding.leak.name for finding in chosen_findings(net, bound, hierarchy, Options())]
-    ['/archive', 'disk']
+    >>> chosen = {CAMERA: {(DISCLOSURE, ARCHIVE, net.spread.categories.index("FaceTemplate"), False)}}
+    >>> [finding.leak.name for finding in chosen_findings(net, bound, hierarchy, Options(), chosen)]
+    ['/archive']
     """
     spread = net.spread
     bound = replace(bound, outside=on_day(bound.outside, options.today))
-    return tuple(
-        _findings(
-            net, _mask(spread, options), tuple(concerns(spread, bound, hierarchy)), options, _Work(options.bounds)
-        )
+    options = options._replace(
+        choose=lambda *_: chosen, paths=Paths.witness, bounds=replace(options.bounds, path_steps=0)
     )
+    leaks = {leak for some in chosen.values() for _, leak, _, _ in some}
+    kinds = tuple(
+        concern._replace(bits={leak: concern.bits[leak] for leak in leaks & concern.bits.keys()})
+        for concern in concerns(spread, bound, hierarchy)
+    )
+    return tuple(_findings(net, _mask(spread, options), kinds, options, _Work(options.bounds)))
 
 
 def _mask(spread: Spread, options: Options) -> int:
@@ -234,7 +241,7 @@ def _findings_of(
 ) -> Iterator[tuple[int, int, Finding]]:  # fmt: skip
     """(leak, number of the category, finding) of one source and kind.
 
-    Only disclosures are dismissed: no leak on the path cures a retention or a transfer (rule S10).
+    Only disclosures are dismissed: no leak on the path cures a retention, a transfer or an open channel (rule S10).
     """
     spread = net.spread
     paths = PathsOfSource(net, source, memory, options.paths, options.max_paths, work.paths)
@@ -351,12 +358,14 @@ def _other_leaks(spread: Spread, path: list[tuple[int, int, int]], i: int, accep
 def finding_id(category: str, source: Element, leak: Element, kind: str = DISCLOSURE, *, beside: bool = False) -> str:
     """Return the stable id of a finding, made from category, source and leak, and the kind if several can be (S10).
 
-    Data as it is ``beside`` a pseudonymised finding has an id of its own, made with the word 'plain'.
+    Data as it is ``beside`` a pseudonymised finding has an id of its own, made with the word 'plain'. Only a
+    channel has a leg, or names that a DENY takes out.
 
     >>> finding_id("Video", Element("node", "/camera"), Element("node", "/uplink"))
     '72abf86b6fa9e2ae'
     """
     more = [*(["plain"] if beside else []), *([] if kind == DISCLOSURE else [kind])]
+    more += [*([leak.leg] if leak.leg else []), *leak.without]
     parts = [*more, category, *source.identity, *leak.identity]
     return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:16]
 

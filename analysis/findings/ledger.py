@@ -143,6 +143,8 @@ def _closed(spread: Spread, leaks: Mapping[int, int], unlabelled: Mapping[int, i
     for number, closure in enumerate(closed):
         ends = {to_leak.get(number), to_open.get(number)}
         leak, question = (ends_at.get(number) for ends_at in (to_leak, to_open))
+        if closure.to < 0 and elements[closure.vertex].is_channel and leaks.get(closure.vertex, 0) & closure.bits:
+            leak = closure.vertex  # others could read it there (rule S10)
         yield TakenAway(
             closure.by,
             elements[closure.vertex],

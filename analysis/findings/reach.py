@@ -126,7 +126,9 @@ class Reach(NamedTuple):
             bits = concern.bits.get(vertex, 0) & self.places.asked & ~spread.gone.get(vertex, 0)
             if not bits:
                 continue
-            there = self.whole.present(vertex, begun) & lanes.every(bits)
+            is_channel = spread.graph.elements[vertex].is_channel  # it takes up only what it carries
+            present = self.whole.left(vertex) if is_channel else self.whole.present(vertex, begun)
+            there = present & lanes.every(bits)
             past = self._past(vertex, begun, there) if concern.kind == DISCLOSURE else there
             for source, arriving in lanes.apart(there):
                 standing = past >> lanes.width * lanes.number[source]

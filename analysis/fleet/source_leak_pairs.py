@@ -83,7 +83,7 @@ def pairs(spread: Spread, kinds: Sequence[Concern], mask: int) -> Iterator[Pairs
     >>> [(carried.categories[row.category], NAMES[row.leaks[0]], bool(row.pseudonymised[0])) for row in rows][1:3]
     [('FaceTemplate', 'disk', False), ('Video', '/archive', True)]
     """
-    ends = [as_bits(spread, len(spread.graph.elements), concern.bits, 0) for concern in kinds]
+    ends = [as_bits(spread, len(spread.graph.elements), concern.taken_up(spread), 0) for concern in kinds]
     network: GraphArrays | None = None
     for i, _ in enumerate(spread.categories):
         leaks = [np.flatnonzero(_has(bits, spread.bits.plain(i))) for bits in ends]

@@ -53,7 +53,7 @@ def with_changes(
         for vertex, element in enumerate(graph.elements if step.channel else ()):
             if step.channel and element.identity == step.channel.identity:
                 elements[vertex] = (*elements.get(vertex, ()), never)
-    changed = Bound(dict(sorted(elements.items())), dict(sorted(flows.items())), bound.through)
+    changed = replace(bound, elements=dict(sorted(elements.items())), flows=dict(sorted(flows.items())))
     return opened(graph, bound, filtered, wild, changed)
 
 
@@ -117,4 +117,4 @@ def opened(
     if not more:
         return graph, changed
     grown = replace(graph, flows=(*graph.flows, *more))
-    return grown, Bound(changed.elements, flows, {key: tuple(indices) for key, indices in through.items()})
+    return grown, replace(changed, flows=flows, through={key: tuple(indices) for key, indices in through.items()})

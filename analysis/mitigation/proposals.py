@@ -6,12 +6,12 @@ Made by ``propose.py``; nothing here decides anything.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Finding, Verdict
     from rosprivacy.analysis.mitigation.affected import Affected
-    from rosprivacy.analysis.model import Element, Grant
+    from rosprivacy.analysis.model import Element, Exposure, Grant
 
 ITSELF, NOT_ALLOWED = "itself", "not-allowed"
 
@@ -48,6 +48,24 @@ class ProposedStep:
     grants: tuple[Grant, ...] = ()
     readers: tuple[Element, ...] = ()
     spared: tuple[Element, ...] = ()
+
+
+class Protect(NamedTuple):
+    """A line of a governance by which others on the network can read channels, and what changes with it.
+
+    Attributes
+    ----------
+    exposure
+        What the line leaves open: to be encrypted, or to be closed to those without a certificate.
+    channels
+        That findings are about, as shown, in the order of the graph.
+    findings
+        That end when all lines of the proposal are changed.
+    """
+
+    exposure: Exposure
+    channels: tuple[Element, ...]
+    findings: tuple[Finding, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,6 +107,8 @@ class Proposal:
         Of that analysis, which is about all categories that were asked for.
     affected
         Who gets less than before, once the reviews are done.
+    protect
+        The lines of governances to change: findings of unprotected channels end with them, and with no change of flows.
     """
 
     categories: tuple[str, ...]
@@ -99,6 +119,7 @@ class Proposal:
     proven: bool
     verdict: Verdict
     affected: tuple[Affected, ...] = ()
+    protect: tuple[Protect, ...] = ()
 
     @property
     def cost(self) -> int:

@@ -24,8 +24,8 @@ from rosprivacy.analysis.mitigation.changed_system import opened, with_changes
 from rosprivacy.analysis.mitigation.cut_network import Group, a_path, cut_network, open_ends
 from rosprivacy.analysis.mitigation.limits import DENY, FILTER, REVIEW, Limits
 from rosprivacy.analysis.mitigation.min_cut import BUDGET, cheapest
-from rosprivacy.analysis.mitigation.proposals import ITSELF, NOT_ALLOWED, Kept, Proposal, ProposedStep
-from rosprivacy.analysis.model import DISCLOSURE
+from rosprivacy.analysis.mitigation.proposals import ITSELF, NOT_ALLOWED, Kept, Proposal, ProposedStep, Protect
+from rosprivacy.analysis.model import DISCLOSURE, UNPROTECTED
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.mitigation.candidates import Candidate, Denial
     from rosprivacy.analysis.mitigation.cut_network import Arc, At, CutNetwork
     from rosprivacy.analysis.mitigation.min_cut import ChangeSet
-    from rosprivacy.analysis.model import Bound, Element, FlowGraph, Grant
+    from rosprivacy.analysis.model import Bound, Element, Exposure, FlowGraph, Grant
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,12 +113,14 @@ class _Work:
         self.number = {name: i for i, name in enumerate(analysis.spread.categories)}
         self.wanted = frozenset(self.number[name] for name in names)
         self.vertex = {element: v for v, element in enumerate(self.elements)}
-        self.findings = [f for f in open_findings(analysis) if f.category in names]
+        mine = [f for f in open_findings(analysis) if f.category in names]
+        self.findings = [f for f in mine if f.kind != UNPROTECTED]
+        self.protect = _protect(system.bound, self.vertex, [f for f in mine if f.kind == UNPROTECTED])
         self.wild = system.open_ended(analysis.graph)
         self.places = ChangeSites(analysis, limits, {self.vertex[f.leak] for f in self.findings}, self.wild)
 
     def proposal(self, budget: int) -> Proposal:
-        """Find what to cut, cut it, and prove it."""
+        """Find what to cut, cut it, and prove it; what a governance leaves in the open is no matter of cuts."""
         sources = sorted({self.vertex[finding.source] for finding in self.findings})
         groups = [self._group(source) for source in sources]
         everything = cut_network(self.net, groups, self.wanted)
@@ -127,9 +129,12 @@ class _Work:
         stays = {kept.finding.id for kept in kept}
         removed = tuple(finding for finding in self.findings if finding.id not in stays)
         left = cut_network(self.net, self._grouped(groups, kept), self.wanted)
-        plain = Proposal(self.names, removed, tuple(kept), (), 0, proven=not removed, verdict=self.analysis.verdict)
+        plain = Proposal(
+            self.names, removed, tuple(kept), (), 0, proven=not removed, verdict=self.analysis.verdict,
+            protect=self.protect,
+        )  # fmt: skip
         if not removed:
-            return plain
+            return replace(plain, verdict=self._analysed(()).verdict) if self.protect else plain
         lower = 0
         for cut, network in self._cuts(left, options, groups, kept, budget):
             lower = lower or cut.lower  # that of the first, in which no wildcard gets past a filter
@@ -170,7 +175,8 @@ class _Work:
         others: set[At] = set()
         for finding in self.analysis.findings:
             at = self._at(finding)
-            if self.vertex[finding.source] != source or at[1] not in self.wanted:
+            elsewhere = self.vertex[finding.source] != source or at[1] not in self.wanted
+            if elsewhere or finding.kind == UNPROTECTED:
                 continue
             if finding.kind != DISCLOSURE:
                 others |= {at} if not finding.accepted and len(finding.witness) > 1 else set()
@@ -258,8 +264,24 @@ class _Work:
         steps = list(steps)
         grants = [grant for step in steps if step.kind == DENY for grant in step.grants]
         graph, bound = self.system.deny(grants) if grants else (self.system.graph, self.system.bound)
+        changed_lines = {one.exposure for one in self.protect}
+        exposed = {v: tuple(one for one in some if one not in changed_lines) for v, some in bound.exposed.items()}
+        bound = replace(bound, exposed=exposed)
         changed = with_changes(graph, bound, steps, self.system.open_ended(graph))
         return analyse(*changed, self.system.hierarchy, self.system.options)
+
+
+def _protect(bound: Bound, vertex: Mapping[Element, int], findings: Iterable[Finding]) -> tuple[Protect, ...]:
+    """The lines of governances behind some findings, in the order of their files."""
+    by_line: dict[Exposure, list[Finding]] = defaultdict(list)
+    for finding in findings:
+        for exposure in bound.exposed[vertex[finding.leak]]:
+            by_line[exposure].append(finding)
+    rows = []
+    for exposure, some in sorted(by_line.items(), key=lambda row: (row[0].place, row[0].cause)):
+        channels = {vertex[f.leak]: f.leak for f in some}
+        rows.append(Protect(exposure, tuple(channels[v] for v in sorted(channels)), tuple(some)))
+    return tuple(rows)
 
 
 def _lean(

@@ -13,6 +13,7 @@ from rosprivacy.analysis.model.category import (
     SPECIAL,
     STORAGE_LIMITATION,
     THIRD_COUNTRY,
+    UNPROTECTED,
     Category,
     Legal,
     Pointer,
@@ -69,6 +70,7 @@ from rosprivacy.analysis.model.flow import Flow, FlowGraph
 from rosprivacy.analysis.model.lint_rule import Breach, LintRule
 from rosprivacy.analysis.model.message_type import OF_KIND, MessageType, kind_of_type
 from rosprivacy.analysis.model.policy import Grant, Policy, Profile, Seen
+from rosprivacy.analysis.model.protection import Exposure, Protection, TopicProtection
 from rosprivacy.analysis.model.reason import REASONS, Reason
 from rosprivacy.analysis.model.statement import (
     CANNOT,
@@ -152,6 +154,7 @@ __all__ = [
     "STATED",
     "STORAGE_LIMITATION",
     "THIRD_COUNTRY",
+    "UNPROTECTED",
     "UNREAD_FILE",
     "UNSTATED",
     "Bound",
@@ -161,6 +164,7 @@ __all__ = [
     "Confidence",
     "Diagnostic",
     "Element",
+    "Exposure",
     "Flow",
     "FlowGraph",
     "Grant",
@@ -174,6 +178,7 @@ __all__ = [
     "Policy",
     "Processing",
     "Profile",
+    "Protection",
     "Reason",
     "Seen",
     "Severity",
@@ -181,6 +186,7 @@ __all__ = [
     "Statement",
     "Suggestion",
     "Surroundings",
+    "TopicProtection",
     "UnknownEnd",
     "by_confidence",
     "interface_of",

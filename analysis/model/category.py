@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 DISCLOSURE, STORAGE_LIMITATION, THIRD_COUNTRY = "disclosure", "storage-limitation", "third-country-transfer"
+UNPROTECTED = "unprotected-channel"  # who is on the network can read what flows there
 ARTICLE_9, ARTICLE_10 = "GDPR Art. 9(1)", "GDPR Art. 10"
 SPECIAL, MAY_REVEAL = ("always", "conditional"), "may-reveal"
 ARTICLE_9_VERDICTS = (*SPECIAL, MAY_REVEAL, "no", "unknown")

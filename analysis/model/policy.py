@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.model.diagnostic import Diagnostic, Place
+    from rosprivacy.analysis.model.protection import Protection
 
 
 class Profile(NamedTuple):
@@ -93,6 +94,8 @@ class Policy:
         (file, SHA-256) of the policy and of all that it includes, sorted.
     saved
         Whether it was read from a saved graph: then its files are names that anybody may have written.
+    protections
+        Of permissions with a governance beside them: what holds in each domain that they are about.
     """
 
     file: str
@@ -101,3 +104,4 @@ class Policy:
     grants: tuple[Grant, ...]
     diagnostics: tuple[Diagnostic, ...] = ()
     saved: bool = field(default=False, compare=False)
+    protections: tuple[Protection, ...] = ()

@@ -12,6 +12,8 @@ KEPT_LONGER, KEPT_LONGER_IN_BACKUPS = "kept-longer", "kept-longer-in-backups"
 KEPT_PAST = "kept-past"
 NOT_ADEQUATE, NO_LONGER_ADEQUATE, PARTLY_ADEQUATE = "not-adequate", "no-longer-adequate", "partly-adequate"
 STATED_NOT_ADEQUATE, STATED_NO_LONGER_ADEQUATE = "stated-not-adequate", "stated-no-longer-adequate"
+NOT_ENCRYPTED, STRANGERS = "not-encrypted", "strangers"
+NOT_ENCRYPTED_NOR_CLOSED = "not-encrypted-nor-closed"
 _UNBASED = "; no basis for the transfer is stated"
 REASONS: Mapping[str, str] = {  # key -> the sentence in English, with places for values
     NO_RETENTION: "no retention is stated",
@@ -26,6 +28,10 @@ REASONS: Mapping[str, str] = {  # key -> the sentence in English, with places fo
     PARTLY_ADEQUATE: "in {country}, whose adequacy decision covers {recipients}" + _UNBASED,
     STATED_NOT_ADEQUATE: "in {country}; the basis stated is adequacy, and no such decision is known",
     STATED_NO_LONGER_ADEQUATE: "in {country}; the basis stated is adequacy, and the adequacy decision ended on {until}",
+    NOT_ENCRYPTED: "nothing encrypts what is sent there, by {file}:{line}",
+    STRANGERS: "a participant without a certificate may join, by {file}:{line}",
+    NOT_ENCRYPTED_NOR_CLOSED: "nothing encrypts what is sent there, by {file}:{line}, and a participant without a "
+    "certificate may join, by {joining_file}:{joining_line}",
 }
 
 
@@ -37,7 +43,8 @@ class Reason(NamedTuple):
     key
         One of ``REASONS``.
     values
-        (place in the sentence, what stands there): names of categories, durations as stated, codes of countries, dates.
+        (place in the sentence, what stands there): names of categories, durations as stated, codes of countries, dates,
+        files and lines.
     """
 
     key: str

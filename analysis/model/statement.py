@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.durations import Duration
     from rosprivacy.analysis.model.element import Element
     from rosprivacy.analysis.model.message_type import MessageType
+    from rosprivacy.analysis.model.protection import Exposure
     from rosprivacy.analysis.model.recording import Recording
 
 
@@ -248,6 +249,8 @@ class Bound:
         By robot: the same of all that is on it; with who is responsible.
     types
         By vertex: the message types of a channel (rule S15), sorted.
+    exposed
+        By vertex: why who is on the network can read what flows on a channel, sorted.
     """
 
     elements: Mapping[int, tuple[Statement, ...]]
@@ -260,6 +263,7 @@ class Bound:
     of_robots: Mapping[str, Processing] = field(default_factory=dict)
     elsewhere: Mapping[tuple[str, str], frozenset[str]] = field(default_factory=dict)
     types: Mapping[int, tuple[MessageType, ...]] = field(default_factory=dict)
+    exposed: Mapping[int, tuple[Exposure, ...]] = field(default_factory=dict)
 
 
 class UnknownEnd(NamedTuple):

@@ -164,10 +164,12 @@ def ends_of(spread: Spread, number: int, kinds: Sequence[Concern]) -> dict[str, 
     >>> carried = spread(graph, bound, hierarchy)
     >>> ends = ends_of(carried, carried.categories.index("Video"), tuple(concerns(carried, bound, hierarchy)))
     >>> {kind: [NAMES[vertex] for vertex in vertices] for kind, vertices in ends.items()}
-    {'disclosure': ['/archive'], 'storage-limitation': ['disk'], 'third-country-transfer': []}
+    {'disclosure': ['/archive'], 'storage-limitation': ['disk'], 'third-country-transfer': [],
+     'unprotected-channel': []}
     """
     both = spread.both(spread.categories[number])
-    return {c.kind: np.array(sorted(v for v, bits in c.bits.items() if bits & both), np.int64) for c in kinds}
+    ends = {concern.kind: concern.taken_up(spread).items() for concern in kinds}
+    return {kind: np.array(sorted(v for v, bits in some if bits & both), np.int64) for kind, some in ends.items()}
 
 
 def how(

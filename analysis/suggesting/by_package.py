@@ -109,7 +109,7 @@ def _evidence(graph: FlowGraph, match: _Match, channels: Channels) -> Iterator[E
         label = Label(element, claim.role, claim.kind, claim.method, claim.to)
         confidence = claim.confidence if matched else Confidence.MAY
         where = f", to a {claim.where}" if claim.where else ""
-        reason = f"package {match.package.name} {match.package.version}: {claim.why}{where} ({by})"
+        reason = f"package {match.package.name} {match.package.version}{where}: {claim.why} ({by})"
         yield Evidence(label, PACKAGE if matched else NAMED, confidence, reason, claim.place)
 
 

@@ -7,6 +7,7 @@ last part speaks; a part with nothing but neutral words hands over to the one be
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
@@ -75,6 +76,7 @@ class Spoken(NamedTuple):
     words: Phrase
 
 
+@lru_cache(maxsize=2**16)
 def words(name: str) -> Phrase:
     """Return the words of one part of a name, in small letters.
 

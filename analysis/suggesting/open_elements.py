@@ -69,13 +69,11 @@ def of_open(
     >>> said.label.role, said.reason
     ('sensitive', 'neighbour of /filter, which Video reaches')
     """
-    at: dict[tuple[str, str, str], list[int]] = {}
+    at: dict[tuple[str, str, str, str], list[int]] = {}
     for vertex, element in enumerate(graph.elements):
-        at.setdefault(element.identity, []).append(vertex)
+        at.setdefault(element.shown_as, []).append(vertex)
     for question in questions:
-        vertices = [
-            one for one in at[question.element.identity] if graph.elements[one].shown_as == question.element.shown_as
-        ]
+        vertices = at[question.element.shown_as]
         if question.element.is_node:
             yield from _passed_on(question, vertices, graph, told)
         elif question.element.is_channel:

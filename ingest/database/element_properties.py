@@ -16,6 +16,7 @@ from rosprivacy.analysis.kernel.roles import facts
 from rosprivacy.analysis.legal import turned_special
 from rosprivacy.analysis.model import UNSTATED
 from rosprivacy.ingest.database.carrying import moving
+from rosprivacy.ingest.database.exposure_properties import exposure_properties
 from rosprivacy.ingest.database.processing_properties import processing_properties
 from rosprivacy.ingest.database.type_properties import type_properties
 
@@ -128,6 +129,7 @@ def element_results(analysis: Analysis, bound: Bound, names: Names, roles: Roles
             "stops": names.exact(_stopped(found, found.keeps.get(vertex, found.all_bits))),
             "subjects": list(bound.subjects.get(vertex, ())),
             **type_properties(bound.types.get(vertex, ()), element.robot),
+            **exposure_properties(bound.exposed.get(vertex, ())),
             **_surroundings(bound.surroundings.get(vertex), element),
             **_of_element(bound.processing.get(vertex, UNSTATED)),
             "open": list(question.categories) if question else [],

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.errors import GraphError, InputError, InputErrors, shown
 from rosprivacy.analysis.fleet.likeness import NO_ROBOTS, Likeness
 from rosprivacy.analysis.model import (
+    CHANNELS,
     NON_ROS,
     STANDARD,
     Bound,
@@ -24,6 +25,7 @@ from rosprivacy.analysis.model import (
     Statement,
 )
 from rosprivacy.analysis.non_ros import by_kind
+from rosprivacy.ingest.database.exposure_properties import exposures_of
 from rosprivacy.ingest.database.flow_statements import DATABASE, names_of, statements_of
 from rosprivacy.ingest.database.non_ros_properties import facts_of
 from rosprivacy.ingest.database.other_schemas import HINT, of_other_schemas
@@ -49,7 +51,7 @@ if TYPE_CHECKING:
 
     from neo4j import Driver, ManagedTransaction, Record
 
-    from rosprivacy.analysis.model import MessageType, NonRosFacts, Processing
+    from rosprivacy.analysis.model import Exposure, MessageType, NonRosFacts, Processing
     from rosprivacy.ontology.vocabulary import Vocabulary
 
 _FLOW_ROLES = {"publish", "subscribe", "request", "reply", "call", "execute", MATCHES}
@@ -180,6 +182,7 @@ class _Reader:
         self._processing: dict[str, Processing] = {}
         self._of_robots: dict[str, Processing] = {}
         self._types: dict[str, tuple[MessageType, ...]] = {}
+        self._exposed: dict[str, tuple[Exposure, ...]] = {}
 
     def elements(self, records: Iterable[Record]) -> None:
         for record in records:
@@ -208,6 +211,8 @@ class _Reader:
             try:
                 if "node" not in kinds and (types := types_of(properties, "" if self._alone else robot)):
                     self._types[record["key"]] = types
+                if kinds <= {*CHANNELS} and (exposed := exposures_of(properties)):
+                    self._exposed[record["key"]] = exposed
                 self._processing[record["key"]] = processing_of(properties, self._vocabulary.categories)
             except ValueError as error:
                 what = f"{shown(name)!r} cannot be understood: {shown(str(error))}"
@@ -318,6 +323,7 @@ class _Reader:
                 processing={v: one for v, vertex in enumerate(vertices) if (one := self._processing[vertex.key])},
                 of_robots=self._of_robots,
                 types=in_order({v: self._types.get(vertex.key, ()) for v, vertex in enumerate(vertices)}),
+                exposed={v: some for v, vertex in enumerate(vertices) if (some := self._exposed.get(vertex.key))},
             ),
             robots,
             tuple(vertex.key for vertex in vertices),

@@ -115,6 +115,9 @@ ELEMENT = NodeKind(
         Property("subjects", STRINGS, "of a source: whom its data are about"),
         Property("types", STRINGS, "of a channel: message types, as they were observed or stated"),
         Property("type_facts", STRINGS, "JSON: each of these with who states it, or which nodes were seen with it"),
+        Property(
+            "unprotected", STRINGS, "of a channel: why others on the network can read it, `not-encrypted: file:line`"
+        ),
         Property("context", STRINGS, f"where it works, with its system: some of {', '.join(CONTEXTS)}"),
         *_PROCESSING,
         Property("leaks", STRINGS, "kinds that it lets out, if they come"),
@@ -216,7 +219,7 @@ PROVISION = NodeKind(
 FINDING = NodeKind(
     "Finding",
     "id",
-    "A kind of data reaches a leak, or a place where it is kept too long or has left the EEA.",
+    "A kind of data reaches a leak, or a place where it is kept too long, has left the EEA or can be read by others.",
     (
         Property("id", STRING, "unique: robot and pattern"),
         Property(
@@ -225,7 +228,7 @@ FINDING = NodeKind(
             "made from kind, category, source, leak, and across robots or not: the same on each",
         ),
         Property("robot", STRING, "name of its robot"),
-        Property("kind", STRING, "disclosure, storage-limitation or third-country-transfer"),
+        Property("kind", STRING, "disclosure, storage-limitation, third-country-transfer or unprotected-channel"),
         Property("reason", STRING, "of other kinds than disclosure: what is wrong there"),
         Property("category", STRING, "name of the category that arrives"),
         Property("source", STRING, "name of the source"),

@@ -18,7 +18,16 @@ from rosprivacy.ingest.labels.stated_types import in_order
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
-    from rosprivacy.analysis.model import Grant, MessageType, NonRosFacts, Processing, Profile, Statement, Surroundings
+    from rosprivacy.analysis.model import (
+        Exposure,
+        Grant,
+        MessageType,
+        NonRosFacts,
+        Processing,
+        Profile,
+        Statement,
+        Surroundings,
+    )
 
 K = TypeVar("K")
 V = TypeVar("V")
@@ -49,6 +58,8 @@ class Part:
         By robot: who is responsible, what for, on which basis.
     types
         Message types of channels.
+    exposed
+        Why who is on the network can read what flows on channels.
     """
 
     elements: dict[Element, tuple[Statement, ...]] = field(default_factory=dict)
@@ -62,6 +73,7 @@ class Part:
     processing: dict[Element, Processing] = field(default_factory=dict)
     of_robots: dict[str, Processing] = field(default_factory=dict)
     types: dict[Element, tuple[MessageType, ...]] = field(default_factory=dict)
+    exposed: dict[Element, tuple[Exposure, ...]] = field(default_factory=dict)
 
     @classmethod
     def of(cls, graph: FlowGraph, bound: Bound, name: Callable[[Element], Element]) -> Part:
@@ -85,6 +97,7 @@ class Part:
             {elements[vertex]: where for vertex, where in bound.surroundings.items()},
             {elements[vertex]: said for vertex, said in bound.processing.items()},
             types=_joined([(elements[vertex], types) for vertex, types in bound.types.items()]),
+            exposed=_joined([(elements[vertex], some) for vertex, some in bound.exposed.items()]),
         )
 
 
@@ -103,6 +116,7 @@ def together(parts: Iterable[Part]) -> Part:
         {element: said for part in parts for element, said in part.processing.items()},
         {robot: said for part in parts for robot, said in part.of_robots.items()},
         _merged([part.types for part in parts]),
+        _merged([part.exposed for part in parts]),
     )
 
 
@@ -150,6 +164,7 @@ def numbered(part: Part, profiles: Mapping[str, tuple[Profile, ...]], view: str)
         _by_number(number, part.processing),
         dict(sorted(part.of_robots.items())),
         types=in_order(_by_number(number, part.types)),
+        exposed=_by_number(number, {element: tuple(sorted(some)) for element, some in part.exposed.items()}),
     )
     return graph, replace(bound, elements=dict(sorted(bound.elements.items())), flows=dict(sorted(bound.flows.items())))
 

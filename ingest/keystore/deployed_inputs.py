@@ -5,6 +5,7 @@ In: their paths. Out: ``Policy`` facts, with what a reader has to know of govern
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -17,6 +18,7 @@ from rosprivacy.ingest.keystore.grants import expired, policy_of
 from rosprivacy.ingest.keystore.joint_remarks import apart_remarks, joint_remarks
 from rosprivacy.ingest.keystore.keystore_folder import read_keystore
 from rosprivacy.ingest.keystore.open_topics import open_topics
+from rosprivacy.ingest.keystore.protections import protection
 from rosprivacy.ingest.keystore.told_apart import is_keystore
 
 if TYPE_CHECKING:
@@ -116,8 +118,9 @@ class _Reading(NamedTuple):
         self, permissions: Permissions, sources: tuple[tuple[str, str], ...], found: Iterable[Governed]
     ) -> Iterator[Policy]:
         """What permissions grant, and in the enforced view what governance leaves open beside it."""
+        found = tuple(found)
         granted = policy_of(permissions, self.domain, sources)
-        yield granted
+        yield replace(granted, protections=tuple(protection(one.rule) for one in found))
         if View(self.view) is View.enforced:
             for one in found:
                 yield open_topics(one.file, one.rule, granted.profiles, granted.sources)

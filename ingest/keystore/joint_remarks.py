@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.keystore.governance_file import Governance
     from rosprivacy.ingest.keystore.permissions_file import Permissions
 
-NOT_KNOWN = "so whether permissions are asked there is not known; name its governance"
+NOT_KNOWN = "so whether permissions are asked there is not known, nor what is encrypted; name its governance"
 
 
 def joint_remarks(

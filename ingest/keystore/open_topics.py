@@ -11,6 +11,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import Grant, Policy
+from rosprivacy.ingest.keystore.protections import protection
 from rosprivacy.ingest.policies.names import DDS
 
 if TYPE_CHECKING:
@@ -38,7 +39,7 @@ def open_topics(
         for rank, topic, asked in _in_order(rule.in_force(), direction)
         for profile in profiles
     ]  # fmt: skip
-    return Policy(name, sources, tuple(profiles) if grants else (), tuple(grants))
+    return Policy(name, sources, tuple(profiles) if grants else (), tuple(grants), protections=(protection(rule),))
 
 
 def _in_order(topics: Sequence[TopicRule], direction: str) -> Iterator[tuple[int, TopicRule, bool]]:

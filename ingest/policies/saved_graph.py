@@ -27,8 +27,10 @@ from rosprivacy.analysis.model import (
     Place,
     Policy,
     Profile,
+    Protection,
     Seen,
     Severity,
+    TopicProtection,
 )
 from rosprivacy.ingest.policies.names import DDS
 from rosprivacy.ingest.policies.policy_xml import ROLES
@@ -49,6 +51,10 @@ _AGAIN = re.compile(r"enclave (.+) again \(first at |several <profiles> in encla
 UNKNOWN = (
     "saved by an earlier version, which did not keep which names a policy writes absolute: all are taken so, as they "
     "stand here; save it again from the policies"
+)
+UNPROTECTED = (
+    "saved by an earlier version, which did not keep what the governance says of encryption: whether others on the "
+    "network can read what is sent is not known; save it again from the keystore"
 )
 _ROLES = {role: kind for kind, roles in ROLES.values() for role in roles}
 
@@ -120,6 +126,8 @@ def _read(file: str, fail: Callable[[int, str, str], GraphError]) -> Saved:
         told = (*first.diagnostics, Diagnostic(Place(file, 1), Severity.WARNING, UNKNOWN))
         policies = (replace(first, diagnostics=told), *policies[1:])
     left = tuple(map(_read_diagnostic, data.get("not_read", ())))
+    if any("protections" not in p and any(g.get("kind") == DDS for g in p["grants"]) for p in data["policies"]):
+        left = (*left, Diagnostic(Place(file, 1), Severity.WARNING, UNPROTECTED, ACCESS_GAP))
     return Saved(policies, left, tuple(map(types_file.from_dict, data.get("types", ()))))
 
 
@@ -171,8 +179,28 @@ def _policy(policy: Policy) -> dict[str, Any]:
             }
             for grant in policy.grants
         ],
+        **({"protections": [_protection(one) for one in policy.protections]} if _is_deployed(policy) else {}),
         "diagnostics": [_diagnostic(d) for d in policy.diagnostics],
     }
+
+
+def _is_deployed(policy: Policy) -> bool:
+    """Whether it is made of permissions."""
+    return bool(policy.protections) or any(grant.kind == DDS for grant in policy.grants)
+
+
+def _protection(one: Protection) -> dict[str, Any]:
+    topics = [
+        {"expression": t.expression, "encrypted": t.encrypted, "file": t.place.file, "line": t.place.line}
+        for t in one.topics
+    ]
+    strangers = {"strangers": {"file": one.strangers.file, "line": one.strangers.line}} if one.strangers else {}
+    return {"topics": topics, **strangers}
+
+
+def _read_protection(saved: dict[str, Any]) -> Protection:
+    topics = (TopicProtection(t["expression"], t["encrypted"], _place(t)) for t in saved["topics"])
+    return Protection(tuple(topics), _place(saved["strangers"]) if "strangers" in saved else None)
 
 
 def _seen(seen: Seen) -> dict[str, Any]:
@@ -221,7 +249,8 @@ def _read_policy(saved: dict[str, Any]) -> Policy:
         grants, more = _of_earlier_version(grants, said)
         said += more
     sources = tuple(sorted(saved["sources"].items()))
-    return Policy(saved["file"], sources, profiles, tuple(grants), tuple(said), saved=True)
+    protections = tuple(map(_read_protection, saved.get("protections", ())))
+    return Policy(saved["file"], sources, profiles, tuple(grants), tuple(said), saved=True, protections=protections)
 
 
 def _of_earlier_version(grants: list[Grant], said: Iterable[Diagnostic]) -> tuple[list[Grant], list[Diagnostic]]:

@@ -155,7 +155,7 @@ def _of_deny(rule: AccessRule, keys: Keys, said: list[Diagnostic], late: frozens
             if some.whole and late is None:
                 why = "it does not hold for everybody"
             elif some.what in (OTHERS, TOKENS) and not DATA.issubset(rule.messages):
-                why = why or "it does not name put, query and reply"
+                why = why or "of keys that are no ROS channel it does not name put, query and reply"
             for flow, message in product(rule.flows, rule.messages):
                 role = ROLES[flow]
                 served = some.what == MESSAGES and message == "put" and role in (late or ())

@@ -47,7 +47,7 @@ def read_zenoh(files: Iterable[str], domain: int | None, *, view: str = View.dec
             read.append(read_access(file))
         except InputErrors as error:
             problems += error.errors
-    spaces = {access.namespace: access.place for access in read} | _written_for(read)
+    spaces = {access.namespace: access.place for access in read if access.namespace} | _written_for(read)
     keys: dict[AccessFile, Keys] = {}
     for access in read:
         try:

@@ -26,7 +26,7 @@ ASKED = (
     "standard_channels", "type_limits", "ontologies", "law_as_of", "rosprivacy",
 )  # fmt: skip
 READ = ("fleet", "policies", "labels")
-COMPARED = ("pseudonymised", "dismissed", "accepted", "disjoint_paths", "article9", "reason")
+COMPARED = ("pseudonymised", "dismissed", "accepted", "disjoint_paths", "article9")
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,12 +114,20 @@ def _different(old: Mapping[str, Any], new: Mapping[str, Any], were: Identity, a
     if same(list(map(were.element, old["witness"]))) != same(list(map(are.element, new["witness"]))):
         yield "witness"
     yield from (what for what in COMPARED if (old.get(what) or False) != (new.get(what) or False))
+    if _reason(old) != _reason(new):
+        yield "reason"
     if _robots(old, were) != _robots(new, are):
         yield "robots"
     if [law["provision"] for law in old.get("law", ())] != [law["provision"] for law in new.get("law", ())]:
         yield "law"
     if _at(old.get("special_from"), were) != _at(new.get("special_from"), are):
         yield "special_from"
+
+
+def _reason(finding: Mapping[str, Any]) -> str:
+    """Why it is one, without a line by which it is so."""
+    because = finding.get("because")
+    return str(because["key"] if because and "line" in because["values"] else finding.get("reason", ""))
 
 
 def _robots(finding: Mapping[str, Any], identity: Identity) -> Any:

@@ -18,7 +18,10 @@ SHOWN = 20  # of a list; a comment has a limit
 LONGEST = 120  # characters of a name
 LISTS = (("New paths to assess", "new", "after"), ("Gone", "gone", "before"), ("Changed", "changed", "after"))
 COUNTED = ("robots", "grants", "elements")
-KINDS = {"storage-limitation": "kept too long: ", "third-country-transfer": "leaves the EEA: "}
+KINDS = {
+    "storage-limitation": "kept too long: ", "third-country-transfer": "leaves the EEA: ",
+    "unprotected-channel": "can be read on the network: ",
+}  # fmt: skip
 FORMS = (("dismissed", "only through another recipient"), ("accepted", "accepted"), ("pseudonymised", "pseudonymised"))
 
 

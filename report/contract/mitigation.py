@@ -77,6 +77,16 @@ class StatementEntry(TypedDict):
     reason: str
 
 
+class ProtectEntry(TypedDict):
+    """A line of a governance to change."""
+
+    file: str
+    line: int
+    cause: str
+    channels: list[ElementEntry]
+    findings: list[str]
+
+
 class AffectedEntry(TypedDict):
     """An element that gets less."""
 
@@ -95,6 +105,7 @@ class ProposalEntry(TypedDict):
     keeps: list[KeptEntry]
     steps: list[ProposedStepEntry]
     statements: list[StatementEntry]
+    protect: list[ProtectEntry]
     cost: int
     no_cheaper_than: int
     cheapest: bool

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Analysis, Finding
     from rosprivacy.analysis.mitigation.affected import Affected, Shown
     from rosprivacy.analysis.mitigation.limits import Limits
-    from rosprivacy.analysis.mitigation.proposals import Proposal, ProposedStep
+    from rosprivacy.analysis.mitigation.proposals import Proposal, ProposedStep, Protect
     from rosprivacy.analysis.model import Element, Grant
     from rosprivacy.report.contract.analysis import AnalysisDocument
     from rosprivacy.report.contract.mitigation import (
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
         NamedElement,
         ProposalEntry,
         ProposedStepEntry,
+        ProtectEntry,
         StatementEntry,
     )
 
@@ -103,6 +104,7 @@ def _proposal(proposal: Proposal, critical: set[Element]) -> ProposalEntry:
         ],
         "steps": [_step(step, element) for step in proposal.steps],
         "statements": [_statement(f) for f in _findings(proposal) if f.kind != DISCLOSURE],
+        "protect": [_protect(one) for one in proposal.protect],
         "cost": proposal.cost,
         "no_cheaper_than": proposal.lower,
         "cheapest": bool(proposal.steps) and proposal.cost == proposal.lower,
@@ -124,6 +126,18 @@ def _statement(finding: Finding) -> StatementEntry:
         "element": element_dict(finding.leak),
         "category": finding.category,
         "reason": finding.reason,
+    }
+
+
+def _protect(one: Protect) -> ProtectEntry:
+    """A line of a governance to change; the legs of a service are told apart."""
+    cause, place = one.exposure
+    return {
+        "file": place.file,
+        "line": place.line,
+        "cause": cause,
+        "channels": [element_dict(channel) for channel in one.channels],
+        "findings": [finding.id for finding in one.findings],
     }
 
 

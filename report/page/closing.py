@@ -92,8 +92,9 @@ def closing(index: Index, entries: Iterable[Entry], proposals: Mapping[str, Any]
 
 def _said(last: Mapping[str, Any], steps: list[Any], index: Index) -> Iterator[str]:
     words = index.words
+    yield from _protect(last, index)
     if not steps:
-        yield words("z.nothing")
+        yield from () if last.get("protect") else (words("z.nothing"),)
         return
     removed = words.count(len(last["removes"]), "way")
     yield words("z.intro", changes=words.count(len(steps), "z.change"), removed=removed)
@@ -101,6 +102,15 @@ def _said(last: Mapping[str, Any], steps: list[Any], index: Index) -> Iterator[s
     less = list(dict.fromkeys(name(row["element"]) for row in last["affected"]))
     if less:
         yield words("z.less", names=words.row(words.first(less, NAMED)))
+
+
+def _protect(last: Mapping[str, Any], index: Index) -> Iterator[str]:
+    """The lines of governances to change: no flow changes with them."""
+    for row in last.get("protect", ()):
+        channels = list(dict.fromkeys(map(name, row["channels"])))
+        ended = index.words.count(len(row["findings"]), "way")
+        named = index.words.row(index.words.first(channels, NAMED))
+        yield index.words(f"z.protect.{row['cause']}", place=line(row), channels=named, removed=ended)
 
 
 def _change(step: Mapping[str, Any], index: Index) -> Proposed:

@@ -18,6 +18,7 @@ TEXTS = {
     "leak": "leak of {names}",
     "storage-limitation": "kept without an end, or too long: {names}",
     "third-country-transfer": "outside the EEA, no basis stated: {names}",
+    "unprotected-channel": "can be read on the network: {names}",
     "makes": "makes {to} of {names}",
     "pseudonymises": "pseudonymises {names}",
     "cleans": "ends {names}",

@@ -32,7 +32,11 @@ if TYPE_CHECKING:
 
 ALWAYS = "always"
 STORED = "storage-limitation"
-OF_KIND = {"disclosure": DPV.Disclose, STORED: DPV.Store, "third-country-transfer": DPV.CrossBorderTransfer}
+OPEN = "unprotected-channel"
+OF_KIND = {
+    "disclosure": DPV.Disclose, STORED: DPV.Store, "third-country-transfer": DPV.CrossBorderTransfer,
+    OPEN: DPV.Disclose,
+}  # fmt: skip
 PARTIES = {
     "controller": DPV.DataController, "joint-controller": DPV.JointDataControllers, "processor": DPV.DataProcessor,
     "third-party": DPV.ThirdParty,
@@ -158,7 +162,12 @@ class Processes:
         known, name, at = self.stated.get(leak.identity, {}), shown(leak.name), self.things.element(leak)
         if finding.kind != STORED:
             recipient = self.names.of("recipient", *leak.identity)
-            label = shown(known["operator"]) if "operator" in known else f"whoever receives what {name} lets out"
+            anybody = (
+                f"whoever reads {name} on the network"
+                if finding.kind == OPEN
+                else f"whoever receives what {name} lets out"
+            )
+            label = shown(known["operator"]) if "operator" in known else anybody
             yield iri, DPV.hasRecipient, recipient
             role = PARTIES.get(known.get("role", ""))
             yield from about(recipient, (RDF.type, [DPV.Recipient, *([role] if role else [])]))

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from rosprivacy.analysis.answer import Verdict
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.legal import turned_special
-from rosprivacy.analysis.model import MAY_REVEAL, NO_LEAK_NAMED
+from rosprivacy.analysis.model import MAY_REVEAL, NO_LEAK_NAMED, Place
 from rosprivacy.report.made_of import making
 from rosprivacy.report.places import NOWHERE, of_step, to_review
 from rosprivacy.report.sarif.artifacts import uri_of
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from rosprivacy.analysis.answer import Analysis, Finding, OpenQuestion
     from rosprivacy.analysis.contexts import Contexts
-    from rosprivacy.analysis.model import Category, Element, Flow, Legal, Place, Pointer
+    from rosprivacy.analysis.model import Category, Element, Flow, Legal, Pointer
     from rosprivacy.ontology.pointed import Pointed
     from rosprivacy.report.places import Places
 
@@ -197,6 +197,7 @@ class Results:
                 f"{named(finding.leak)} is labelled leak here.",
             ),
         ]
+        said += [(where, "The governance leaves the channel open here.") for where in _governed(finding)]
         last = [other for step in finding.steps[-1:] for other in of_step(step) if other != place]
         found = [(where, what) for where, what in said if where] + [
             (other, "Allows the last step, too.") for other in last
@@ -241,6 +242,14 @@ def _message(finding: Finding, law: Sequence[Legal], turned: Element | None, pla
     if place == NOWHERE:
         said.append("No file says so: it stands in the database.")
     return " ".join([*said, f"Finding {finding.id}."])
+
+
+def _governed(finding: Finding) -> Iterator[Place]:
+    """The lines of a governance by which others on the network can read a channel."""
+    values = dict(finding.why.values) if finding.why else {}
+    for of in ("", "joining_"):
+        if f"{of}line" in values:
+            yield Place(values[f"{of}file"], int(values[f"{of}line"]))
 
 
 def _to_check(law: Sequence[Legal]) -> list[str]:

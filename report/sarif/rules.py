@@ -83,6 +83,19 @@ RULES = (
         "the country is adequate nor a safeguard is stated for it.",
         ("State the basis of the transfer, or the country if it is another.", *ASSESS),
     ),
+    Rule(
+        "unprotected-channel",
+        "PersonalDataUnprotected",
+        "Personal data flows on a channel that others on the network can read.",
+        "The governance of DDS-Security does not have the channel encrypted, or lets a participant without a "
+        "certificate join. Data that is signed only can be read, too.",
+        (
+            "Set data_protection_kind or metadata_protection_kind there to ENCRYPT, and sign the governance anew.",
+            "Set allow_unauthenticated_participants to false.",
+            CLEAN,
+            DECIDE,
+        ),
+    ),
 )
 UNREVIEWED = Rule(
     "unreviewed-element",

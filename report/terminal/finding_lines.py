@@ -18,6 +18,7 @@ from rosprivacy.report.terminal.called_alike import kind_in
 from rosprivacy.report.terminal.context_lines import context_lines, further_lines, pointer_lines
 from rosprivacy.report.terminal.decision_lines import decision_lines
 from rosprivacy.report.terminal.fleet import on_robots, robots_of
+from rosprivacy.report.terminal.open_channels import by_line, group_line
 from rosprivacy.report.terminal.restriction import may_be_asked
 from rosprivacy.report.words.reasons import reason_told
 from rosprivacy.report.words.typography import spaced
@@ -49,13 +50,19 @@ def verb(role: str, *, into_channel: bool, words: Words) -> str:
 
 
 def overview(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
-    """Return one line for each finding where there are many."""
+    """Return one line for each finding where there are many, and for those that one line of a governance is behind."""
     if len(report["findings"]) <= MANY:
         return
     unreviewed = {element for element, _ in _unreviewed(report, report["findings"])}
     yield "", ""
     yield words("tty.findings", n=str(len(report["findings"]))), "bold"
-    for number, finding in enumerate(in_order(report["findings"], report.get("fleet")), 1):
+    ordered = in_order(report["findings"], report.get("fleet"))
+    numbers = {finding["id"]: number for number, finding in enumerate(ordered, 1)}
+    for finding, *others in by_line(ordered):
+        number = numbers[finding["id"]]
+        if others:
+            yield f"{number:>3}. {group_line([finding, *others], _reason(finding, words), words)}", _style(finding)
+            continue
         met = {key(e) for e in finding["witness"]} & unreviewed
         parts = [
             words.count(len(finding["steps"]), "tty.hop"),

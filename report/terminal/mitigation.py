@@ -15,6 +15,7 @@ from rosprivacy.analysis.mitigation.limits import DENY, FILTER, REVIEW
 from rosprivacy.analysis.mitigation.proposals import ITSELF
 from rosprivacy.analysis.model import STATED as STATED_FLOW
 from rosprivacy.analysis.model import STORAGE_LIMITATION, THIRD_COUNTRY
+from rosprivacy.analysis.model.reason import NOT_ENCRYPTED, STRANGERS
 from rosprivacy.analysis.text import counted
 from rosprivacy.report.document.analysis import SECTIONS
 from rosprivacy.report.naming import kind_of, shown_name
@@ -32,6 +33,10 @@ LESS = {
 STATED = {
     STORAGE_LIMITATION: "a retention within the limit",
     THIRD_COUNTRY: "another country, or the basis of the transfer",
+}
+PROTECT = {
+    NOT_ENCRYPTED: "set data_protection_kind to ENCRYPT",
+    STRANGERS: "set allow_unauthenticated_participants to false",
 }
 SHOWN, PARTS = 12, 4  # elements that get less, and what of each
 Line = tuple[str, str]  # text, style
@@ -75,11 +80,30 @@ def _of_proposal(proposal: Mapping[str, Any]) -> Iterator[Line]:
         reviews = any(step["kind"] == REVIEW for step in steps)
         this = "this, and if the review finds none" if reviews else "this"
         yield f"   Proven: analysed anew with {this}, {stays}; the verdict is then {proposal['verdict_then']}.", "green"
+    elif proposal["protect"]:
+        yield f"{title}: the governance has to change", "bold"
     else:
         yield f"{title}: no change can be proposed", "bold red"
+    yield from _protect(proposal)
     yield from _statements(proposal["statements"])
     for one in kept:
         yield f"   Stays: {_kept(one)}", "yellow"
+
+
+def _protect(proposal: Mapping[str, Any]) -> Iterator[Line]:
+    """The lines of governances to change: they are signed, so there is no patch."""
+    rows = proposal["protect"]
+    if not rows:
+        return
+    ended = {finding for row in rows for finding in row["findings"]}
+    yield f"   Change the governance, and sign it anew: that ends {counted(len(ended), 'finding')}", "bold"
+    for row in rows:
+        names = list(dict.fromkeys(_of(channel) for channel in row["channels"]))
+        more = f" and {len(names) - PARTS} more" if len(names) > PARTS else ""
+        yield f"      {shown(row['file'])}:{row['line']}  {PROTECT[row['cause']]}", ""
+        yield f"         {', '.join(names[:PARTS])}{more}", "dim"
+    if not proposal["removes"]:
+        yield f"   Proven: analysed anew with this, the verdict is then {proposal['verdict_then']}.", "green"
 
 
 def _statements(statements: Sequence[Mapping[str, Any]]) -> Iterator[Line]:

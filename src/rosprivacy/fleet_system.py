@@ -12,7 +12,7 @@ from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.analysis.model import unread
 from rosprivacy.answering import answer
 from rosprivacy.assumptions import assumptions_of, files_read, remembered, types_read
-from rosprivacy.granted import read_granted
+from rosprivacy.granted import read_granted, with_exposed
 from rosprivacy.ingest.database.fleet_rows import FleetRows
 from rosprivacy.ingest.fleet.alike_robots import Alike, alike
 from rosprivacy.ingest.fleet.dds_domains import Member, stripped
@@ -198,6 +198,7 @@ class Reader:
         written = full if robot.strip else {}
         diagnostics += matching_nothing(extended, types, written)
         bound = with_types(extended, bind(extended, files, settings.bounds, robot.surroundings), types, written)
+        bound = with_exposed(extended, bound, policies)
         return Member(
             robot, policies, extended, bound, full, graph.profiles, tuple(files), tuple(dict.fromkeys(diagnostics)),
             types, robot.add,

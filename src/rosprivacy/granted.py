@@ -1,11 +1,13 @@
 """What a user names -> policies: SROS 2 policies, permissions files, keystores and Zenoh files, each by its reader.
 
-In: paths, and the settings. Out: policies with what a reader has to know of them.
+In: paths, and the settings. Out: policies with what a reader has to know of them; and, of their graph, the channels
+that lie in the open.
 """
 
 from __future__ import annotations
 
 import os
+from collections import defaultdict
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -18,7 +20,7 @@ from rosprivacy.ingest.reading.confined import WIDEN, leaves, what_leaves
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from rosprivacy.analysis.model import Diagnostic, Policy
+    from rosprivacy.analysis.model import Bound, Diagnostic, FlowGraph, Policy
     from rosprivacy.settings import Settings
 
 ZENOH = ".json5"
@@ -60,6 +62,16 @@ def read_granted(names: Iterable[str], settings: Settings, within: str | None = 
     return policies, said
 
 
+def with_exposed(graph: FlowGraph, bound: Bound, policies: Iterable[Policy]) -> Bound:
+    """Return what is bound to a graph with the channels that a governance leaves in the open (rule S10)."""
+    policies = [policy for policy in policies if policy.protections]
+    if not policies:
+        return bound
+    from rosprivacy.ingest.keystore.protections import exposed_channels  # noqa: PLC0415 - light start
+
+    return replace(bound, exposed=exposed_channels(graph, policies))
+
+
 def _zenoh(names: list[str], settings: Settings, within: str | None) -> tuple[Policy, ...]:
     from rosprivacy.ingest.zenoh_access.zenoh_inputs import read_zenoh  # noqa: PLC0415 - light start
 
@@ -76,11 +88,25 @@ def _deployed(names: list[str], settings: Settings, within: str | None) -> Itera
         names, settings.domain, on, allow_unsigned=settings.allow_unsigned, view=settings.view
     )
     _confined([file for policy in policies for file, _ in policy.sources], within)
-    files = {file for policy in policies for file, _ in policy.sources}
-    for policy in policies:  # what is said of a file goes with all that rests on it, into a saved graph too
-        own = {file for file, _ in policy.sources}
-        more = (one for one in said if one.place.file in own or (own and one.place.file not in files))
-        yield replace(policy, diagnostics=(*policy.diagnostics, *more))
+    return _with_said(policies, said)
+
+
+def _with_said(policies: Iterable[Policy], said: Iterable[Diagnostic]) -> Iterator[Policy]:
+    """What is said of a file goes with each policy that rests on it, else with one beside it, into saved graphs too."""
+    policies = tuple(policies)
+    resting: dict[str, list[int]] = defaultdict(list)
+    beside: dict[str, int] = {}
+    for at, policy in enumerate(policies):
+        for file, _ in policy.sources:
+            resting[file].append(at)
+            beside.setdefault(os.path.dirname(file), at)  # noqa: PTH120 - by its text
+    more: dict[int, list[Diagnostic]] = defaultdict(list)
+    for one in said:
+        file = one.place.file
+        for at in resting.get(file) or (beside.get(os.path.dirname(file), 0),):  # noqa: PTH120 - by its text
+            more[at].append(one)
+    for at, policy in enumerate(policies):
+        yield replace(policy, diagnostics=(*policy.diagnostics, *more[at]))
 
 
 def _confined(files: Iterable[str], within: str | None) -> None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.findings.beyond import Added, DenyLine, beyond, enclaves_of, rights
 from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, Change
 
@@ -58,7 +59,12 @@ class Remedies:
         shared = self._shared(findings[0])
         enclaves = {path for one in findings for path in enclaves_of(one, self._shared(one))}
         deny = self._deny(findings)
-        loses = self._rights(NO_CHANGE) - self._rights(Change(deny=frozenset(deny))) if deny else frozenset()
+        loses: frozenset[Right] = frozenset()
+        if deny:
+            try:
+                loses = self._rights(NO_CHANGE) - self._rights(Change(deny=frozenset(deny)))
+            except InputErrors:  # labels name what would be denied
+                deny = ()
         return Added(
             findings[0],
             steps,
@@ -108,6 +114,8 @@ class Remedies:
                 yield enclave, node
 
     def _deny(self, findings: Sequence[Finding]) -> tuple[DenyLine, ...]:
+        if self.trials.channels_between(findings[0]) > TRIED:  # each change is about one channel more
+            return ()
         lines: frozenset[DenyLine] = frozenset()
         left: Sequence[Finding] | None = findings
         while left:

@@ -14,7 +14,7 @@ from rosprivacy.analysis.errors import InputError, InputErrors
 from rosprivacy.analysis.model import MERGED, REFUSED_NAME, SEEN_ALTHOUGH_DENIED, SHARED_ENCLAVE
 from rosprivacy.answering import answer
 from rosprivacy.assumptions import files_read, remembered, types_read
-from rosprivacy.granted import Read, read_granted
+from rosprivacy.granted import Read, read_granted, with_exposed
 from rosprivacy.ingest.labels.add_non_ros import extend, extended
 from rosprivacy.ingest.labels.bag_storages import told_of_bags
 from rosprivacy.ingest.labels.binding import bind, join, remarks
@@ -115,7 +115,7 @@ def _joined(
     )
     said += careful_notices(graph.careful)
     rests_on = {**files_read(policies, files, settings), **types_read(types)}
-    bound = with_types(graph, bound, types)
+    bound = with_exposed(graph, with_types(graph, bound, types), policies)
     said = tuple(dict.fromkeys(said))  # several enclaves share what is said of their governance
     return System(graph, bound, vocabulary, said, rests_on, policies, tuple(files), types=types)
 

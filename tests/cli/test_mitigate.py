@@ -94,6 +94,20 @@ def test_storages_and_transfers_can_be_cut_off_or_stated(cli: Cli, tmp_path: Pat
     assert "      of tapes (storage): a retention within the limit for Video  (" in text
 
 
+def test_the_proof_knows_of_storages(cli: Cli, tmp_path: Path) -> None:
+    """The proposal for one kind of data says what the verdict is while another is kept too long."""
+    labels = tmp_path / "l.yaml"
+    labels.write_text(
+        "labels: 1\nnodes: {/safety_camera: {source: [Video]}, /archive_server: {leak: [Video], source: [Voice]}}\n"
+        "elements:\n  tapes: {kind: storage, country: DE}\n"
+        "flows: [{from: /archive_server, to: tapes, never: [Video]}]\n",
+        "utf-8",
+    )
+    found = proposals(cli, BEFORE, "-l", labels)["proposals"]
+    assert {proposal["categories"][0]: proposal["verdict_then"] for proposal in found[:2]}["Video"] == "leak"
+    assert found[-1]["verdict_then"] != "leak"
+
+
 def test_what_the_review_and_the_filter_of_the_paper_leave_is_nothing(cli: Cli) -> None:
     """Run 5 is run 3 with both changes made."""
     done = cli("mitigate", FACTORY / "after.policy.xml", "-l", FACTORY / "run5.labels.yaml")

@@ -66,7 +66,7 @@ def test_a_file_of_a_user_adds_a_package(cli: Cli, robot: Path) -> None:
     found = said(cli, robot, "--packages", "acme.yaml")
     assert found["/acme_blur", "leak", "Video"] == (
         "likely",
-        "package acme_blur 2.1: it keeps the last pictures, to a file (its name, 2 of 2 of its interfaces)",
+        "package acme_blur 2.1, to a file: it keeps the last pictures (its name, 2 of 2 of its interfaces)",
     )
     assert found["/acme_blur", "sanitizer", "FaceImage"][0] == "likely"
 
@@ -96,4 +96,4 @@ def test_what_a_package_says_is_written_and_accepted_like_the_rest(cli: Cli, rob
     text = (robot / "l.yaml").read_text("utf-8")
     (line,) = (one for one in text.splitlines() if one.strip().startswith("/acme_blur:"))
     assert "leak: [Video]" in line
-    assert "package acme_blur 2.1: it keeps the last pictures, to a file" in text
+    assert "package acme_blur 2.1, to a file: it keeps the last pictures" in text

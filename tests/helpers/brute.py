@@ -92,6 +92,7 @@ class Brute:
     names: dict[int, str] = field(default_factory=dict)  # of channels
     stated: set[tuple[int, int]] = field(default_factory=set)  # flows that a person states
     sides: dict[int, int] = field(default_factory=dict)  # what is read from a wildcard -> what is written to it
+    exposed: Collection[int] = ()  # channels that who is on the network can read
     along: set[tuple[int, int, Data]] = field(default_factory=set)  # what the last spread sent along flows
 
     def nearness(self, statement: Statement, category: str) -> int | None:
@@ -392,6 +393,7 @@ class Brute:
                     "disclosure": self.has(leak, "leak", category),
                     "storage-limitation": self.kept_too_long(leak, category),
                     "third-country-transfer": self.abroad(leak),
+                    "unprotected-channel": leak in self.exposed,
                 }
                 plain, hidden = (leak, (category, False)), (leak, (category, True))
                 for kind in [kind for kind, holds in kinds.items() if holds]:

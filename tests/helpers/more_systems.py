@@ -58,4 +58,5 @@ def wildcards(draw: st.DrawFn) -> System:
         edges |= draw(st.sampled_from([set(), {(written, channel)}, {(channel, read)}]))
     system.said[read] = system.said[written]
     never = {at: some for at, some in system.never.items() if at < len(edges)}
-    return replace(system, edges=sorted(edges), never=never, wildcard=True)
+    exposed = system.exposed - {read}  # what is read from a wildcard is told where it is written
+    return replace(system, edges=sorted(edges), never=never, exposed=exposed, wildcard=True)

@@ -95,6 +95,7 @@ class Case:
             found.edges += [(start + a, start + b) for a, b in part.edges]
             found.said |= {start + vertex: said for vertex, said in part.said.items()}
             found.never |= {(start + a, start + b): set(names) for (a, b), names in part.never.items()}
+            found.exposed = {*found.exposed, *(start + vertex for vertex in part.exposed)}
             found.outside |= {start + vertex: facts for vertex, facts in part.outside.items()}
         for name, (kind, stated, said) in self.shared.items():
             vertex = number["", name] = len(elements)

@@ -19,6 +19,7 @@ from rosprivacy.analysis.model import (
     Bound,
     Category,
     Element,
+    Exposure,
     Flow,
     FlowGraph,
     Method,
@@ -43,6 +44,7 @@ HIERARCHY = Hierarchy.of(Category(n, f"urn:{n}", n, n, n, up) for n, up in PAREN
 WIDE = [f"K{i:02}" for i in range(70)]
 WIDE_HIERARCHY = Hierarchy.of(Category(n, f"urn:{n}", n, n, n) for n in WIDE)
 METHODS = CLEANS  # what a label of a sanitizer can say; `absent` is a word of its own
+IN_THE_OPEN = Exposure("not-encrypted", Place("governance.p7s", 9))
 ABSENT = Statement("sanitizer", (), (1, 0), Place("labels", 1), Method.ABSENT, why="sold")
 
 
@@ -61,6 +63,7 @@ class System:
     never: dict[int, set[str]]
     hierarchy: Hierarchy = HIERARCHY
     outside: list[tuple[str, NonRosFacts]] = field(default_factory=list)
+    exposed: frozenset[int] = frozenset()  # channels, by vertex
     wildcard: bool = False  # the last two channels are what is written to a wildcard and what is read from it
 
     @property
@@ -99,7 +102,8 @@ class System:
         said = {v: (*said, *by_kind(elements[v])) for v, said in sorted(self.said.items())}
         facts = {v: facts for v, (_, facts) in self.facts.items()}
         statements = {v: some for v, some in said.items() if some}
-        return Bound(statements, flows, self.through(), outside=facts)
+        exposed = dict.fromkeys(sorted(self.exposed), (IN_THE_OPEN,))
+        return Bound(statements, flows, self.through(), outside=facts, exposed=exposed)
 
     def analyse(self, options: Options | None = None) -> Analysis:
         return analyse(self.graph(), self.bound(), self.hierarchy, options)
@@ -108,7 +112,16 @@ class System:
         never = {self.edges[i]: names for i, names in self.never.items()}
         names = {v: e.name for v, e in enumerate(self.graph().elements)}
         return Brute(
-            range(self.nodes), self.edges, self.said, self.hierarchy, never, self.facts, names, self.stated, self.sides
+            range(self.nodes),
+            self.edges,
+            self.said,
+            self.hierarchy,
+            never,
+            self.facts,
+            names,
+            self.stated,
+            self.sides,
+            self.exposed,
         )
 
 
@@ -162,7 +175,8 @@ def systems(
     said |= {vertex: draw(st.one_of(plain, plain, part)) for vertex in range(nodes, nodes + channels)}
     never = draw(st.dictionaries(st.integers(0, len(edges) - 1), some, max_size=2))
     unique = {vertex: list(dict.fromkeys(rows)) for vertex, rows in said.items()}
-    return System(nodes, channels, sorted(edges), unique, never, outside=beside)
+    exposed = draw(st.one_of(st.just(frozenset[int]()), st.frozensets(st.integers(nodes, nodes + channels - 1))))
+    return System(nodes, channels, sorted(edges), unique, never, outside=beside, exposed=exposed)
 
 
 def analysed(system: System) -> Analysis | None:

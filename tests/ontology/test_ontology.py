@@ -407,7 +407,7 @@ class TestElements:
         ("kind", "notations"),
         [
             ("Role", {"source", "leak", "sanitizer", "conduit", "derivation"}),
-            ("FindingKind", {"disclosure", "storage-limitation", "third-country-transfer"}),
+            ("FindingKind", {"disclosure", "storage-limitation", "third-country-transfer", "unprotected-channel"}),
             ("Verdict", {"always", "conditional", "may-reveal", "no"}),
         ],
     )

@@ -57,6 +57,14 @@ def test_the_name_and_half_of_the_interfaces_are_likely_in_any_namespace() -> No
     assert {str(one.place) for one in found} == {"rosprivacy:packages/usb_cam.yaml:16"}
 
 
+def test_exactly_half_is_enough() -> None:
+    found = evidence(policy("/teleop_twist_joy_node>/cmd_vel", "/n/teleop_twist_joy_node>/else"))
+    assert told(found, "conduit", "") == [
+        ("/n/teleop_twist_joy_node", MAY, "its name alone"),
+        ("/teleop_twist_joy_node", LIKELY, "its name, 1 of 2 of its interfaces"),
+    ]
+
+
 def test_the_name_alone_may_and_another_name_is_no_match() -> None:
     found = evidence(policy("/usb_cam>/else", "/camera_2>/image_raw,/camera_info"))
     assert told(found, "source", "Video") == [("/usb_cam", MAY, "its name alone")]
@@ -88,6 +96,7 @@ def test_a_node_of_known_types_without_the_interfaces_is_another_one_but_for_its
     found = evidence(policy("/usb_cam>/move", "/rviz2</move"), typed)
     assert told(found, "source", "Video") == []
     assert told(found, "leak", "PersonalData") == [("/rviz2", MAY, "its name alone")]
+    assert told(evidence(policy("/camera>/move"), typed), "leak", "Video") == [], "it is no camera"
     assert told(evidence(policy("/usb_cam>/move,/more"), typed), "source", "Video")[0][1] is MAY, (
         "one type is not known"
     )
@@ -102,7 +111,8 @@ def test_the_name_alone_is_evidence_of_a_name() -> None:
 
 def test_the_direction_counts_and_a_wildcard_confirms_nothing() -> None:
     assert told(evidence(policy("/usb_cam</image_raw,/camera_info")), "source", "Video")[0][1] is MAY
-    assert told(evidence(policy("/usb_cam>/*")), "source", "Video")[0][1] is MAY
+    for wildcards in ("/*", "/*/image_raw,/*/camera_info"):
+        assert told(evidence(policy(f"/usb_cam>{wildcards}")), "source", "Video")[0][1] is MAY
 
 
 def test_a_made_up_end_of_a_name_is_no_part_of_it() -> None:
