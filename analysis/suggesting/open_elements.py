@@ -1,6 +1,7 @@
 """What a person could say of elements that data reach and that nobody has reviewed (rule S11).
 
-A node there passes data on, or is an end of them: a conduit. A channel there is sensitive, since what arrives there may
+A node there passes data on, or is an end of them: a conduit. If a person says that it lets another kind out, it may let
+this one out, too. A channel there is sensitive, since what arrives there may
 go through it; or it is made for other things than that kind, by its types or its name: never. All of it is ``may``.
 """
 
@@ -13,6 +14,7 @@ from rosprivacy.analysis.suggesting.carried_kinds import cannot_carry
 from rosprivacy.analysis.suggesting.evidence import (
     CONDUIT,
     DATA_FLOW,
+    LEAK,
     NAMED,
     NEIGHBOUR,
     NEVER,
@@ -75,9 +77,18 @@ def of_open(
     for question in questions:
         vertices = at[question.element.shown_as]
         if question.element.is_node:
-            yield from _passed_on(question, vertices, graph, told)
+            let_out = sorted(
+                {k for v in vertices for s in bound.elements.get(v, ()) if s.role == LEAK for k in s.categories}
+            )
+            yield from _let_out(question, let_out) if let_out else _passed_on(question, vertices, graph, told)
         elif question.element.is_channel:
             yield from _at_channel(question, vertices, graph, bound, told, rules)
+
+
+def _let_out(question: OpenQuestion, kinds: Sequence[str]) -> Iterator[Evidence]:
+    for kind in question.categories:
+        reason = f"it gets {kind}, and a label says that it lets {_some(kinds)} out"
+        yield Evidence(Label(whole(question.element), LEAK, kind), DATA_FLOW, Confidence.MAY, reason, FLOWS)
 
 
 def _passed_on(question: OpenQuestion, vertices: Sequence[int], graph: FlowGraph, told: Traffic) -> Iterator[Evidence]:

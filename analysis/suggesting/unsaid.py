@@ -57,12 +57,16 @@ def unsaid(proposals: Iterable[Proposal], graph: FlowGraph, bound: Bound, hierar
 
 
 def _covered(label: Label, said: Sequence[Statement], hierarchy: Hierarchy) -> bool:
-    """Whether a person has spoken of the element for a kind that it may be about."""
+    """Whether a person has spoken of the element for a kind that it may be about; of a source or leak, for all of it.
+
+    Who says that a node lets one kind out has not said that it lets out no other.
+    """
+    near = hierarchy.distance if label.role in (SOURCE, LEAK) else hierarchy.overlap
     return any(
         not one.categories
         or not label.kind
         or one.role == "only"
-        or any(hierarchy.overlap(label.kind, kind) is not None for kind in one.categories)
+        or any(near(label.kind, kind) is not None for kind in one.categories)
         for one in said
     )
 

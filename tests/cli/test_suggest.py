@@ -144,6 +144,16 @@ def test_of_an_open_node_that_lets_data_out_no_conduit_is_suggested(cli: Cli, ro
     assert [row[1:] for row in rows(cli, robot) if row[0] == "/customer_bridge"] == [("leak", "PersonalData", "may")]
 
 
+def test_of_a_node_that_lets_another_kind_out_a_leak_is_suggested(cli: Cli, robot: Path) -> None:
+    said = "labels: 1\nnodes:\n  /driver: {source: [Video]}\n  /mover: {leak: [Voice]}\n"
+    (robot / "l.yaml").write_text(said + "  /customer_bridge: {leak: [Voice]}\n", "utf-8")
+    found = rows(cli, robot)
+    assert [row[1:] for row in found if row[0] == "/mover"] == [("leak", "Video", "may")]
+    assert [row[1:] for row in found if row[0] == "/customer_bridge"] == [
+        ("leak", "PersonalData", "may"), ("leak", "Video", "may"),
+    ]  # fmt: skip
+
+
 def test_what_a_channel_is_not_made_for_is_a_never_and_never_sure(cli: Cli, robot: Path) -> None:
     (robot / "l.yaml").write_text("labels: 1\nnodes:\n  /driver: {source: [Video]}\n", "utf-8")
     (robot / "types.yaml").write_text(f"types: 1\ntopics:\n  /c: [{{type: {IDS}}}]\n", "utf-8")
