@@ -223,6 +223,25 @@ def test_of_a_fleet_each_pattern_has_the_robots_on_which_the_enforced_view_adds_
 
 
 @pytest.mark.usefixtures("example")
+def test_one_that_a_person_has_accepted_is_told_all_the_same_and_its_remedies_are_proven(cli: Cli) -> None:
+    [entry] = both_views(("p.xml",), ("l.yaml",), Settings()).document()["enforced"]["added"]
+    said = "decision: accept, reason: nobody else gets in, owner: Ada, legal_basis: [6(1)(f)], date: 2026-11-02"
+    Path("d.yaml").write_text(f"decisions: 1\nfindings:\n  - {{id: {entry['finding']['id']}, {said}}}\n")
+    arguments = ("analyze", "p.xml", "-l", "l.yaml", "--view", "both", "--decisions", "d.yaml")
+    [accepted] = json.loads(cli(*arguments, "-f", "json").stdout)["enforced"]["added"]
+    assert accepted["finding"]["accepted"]
+    assert accepted["finding"]["decision"]["reason"] == "nobody else gets in"
+    assert {key: accepted[key] for key in accepted if key != "finding"} == {
+        key: entry[key] for key in entry if key != "finding"
+    }
+    assert "nobody else gets in" in cli(*arguments).stdout
+    run = checked(json.loads(cli(*arguments, "-f", "sarif").stdout))
+    assert [one["suppressions"][0]["status"] for one in run["results"] if one["ruleId"] == "beyond-profile"] == [
+        "accepted"
+    ]
+
+
+@pytest.mark.usefixtures("example")
 def test_sarif_has_notes_of_a_rule_of_their_own_at_the_line_of_another_profile(cli: Cli) -> None:
     run = checked(json.loads(cli("analyze", "p.xml", "-l", "l.yaml", "--view", "both", "-f", "sarif").stdout))
     [result] = [one for one in run["results"] if one["ruleId"] == "beyond-profile"]

@@ -82,6 +82,8 @@ def _entry(added: Mapping[str, Any], index: Index) -> Beyond:
 
 def _why(added: Mapping[str, Any], index: Index) -> Iterator[str]:
     words = index.words
+    if added["finding"]["accepted"]:
+        yield words.pair(words("f.filter.state"), words("state.accepted"))
     if added["enclaves"]:
         yield words("y.shared", enclaves=_row(added["enclaves"], index))
     if opened := added.get("opened_by"):

@@ -43,6 +43,7 @@ def added_results(enforced: Enforced, rule: int, files: Files) -> Iterator[dict[
             "locations": [{"physicalLocation": place, "logicalLocations": [logical(finding.leak)]}],
             "codeFlows": flows_of(finding, between, places, files.physical),
             "partialFingerprints": {"rosprivacyEnforced/v1": digest},
+            **({"suppressions": [{"kind": "external", "status": "accepted"}]} if finding.accepted else {}),
             "properties": {
                 "category": text(finding.category),
                 "finding": finding.id,

@@ -104,7 +104,7 @@ WORDS = {
     "y.left.many": "{n} weitere werden hier nicht genannt; der Befehl analyze --view both --format json hat sie.",
     "y.mark": "über das eigene Profil eines Knotens hinaus",
     "y.step": "über das eigene Profil hinaus",
-    "y.shared": "Möglich ist das nur, weil sich Knoten die Enklave {enclaves} teilen.",
+    "y.shared": "Möglich ist das nur, weil sich Knoten eine Enklave teilen: {enclaves}.",
     "y.opened": "Möglich ist das nur, weil die Governance dort keine Berechtigungen prüfen lässt: {lines}.",
     "y.robots": "Das kommt auf {n} von {all} hinzu{names}.",
     "y.remedies": "Was das beseitigt, jeweils durch eine neue Analyse nachgewiesen:",

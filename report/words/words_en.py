@@ -106,7 +106,7 @@ WORDS = {
     "y.left.many": "{n} more are not told here; the command analyze --view both --format json has them.",
     "y.mark": "beyond a node's own profile",
     "y.step": "beyond its own profile",
-    "y.shared": "It is possible only because nodes share the enclave {enclaves}.",
+    "y.shared": "It is possible only because nodes share an enclave: {enclaves}.",
     "y.opened": "It is possible only because the governance asks nobody for permissions there: {lines}.",
     "y.robots": "It is added on {n} of {all}{names}.",
     "y.remedies": "What takes it away, each proven by a new analysis:",

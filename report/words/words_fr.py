@@ -109,7 +109,7 @@ _TYPED = {
     "y.left.many": "{n} autres ne sont pas indiqués ici ; la commande analyze --view both --format json les donne.",
     "y.mark": "au-delà du propre profil d'un nœud",
     "y.step": "au-delà de son propre profil",
-    "y.shared": "Ce n'est possible que parce que des nœuds partagent l'enclave {enclaves}.",
+    "y.shared": "Ce n'est possible que parce que des nœuds partagent une enclave : {enclaves}.",
     "y.opened": "Ce n'est possible que parce que la gouvernance n'y fait vérifier aucune autorisation : {lines}.",
     "y.robots": "Cela s'ajoute sur {n} de {all}{names}.",
     "y.remedies": "Ce qui le supprime, prouvé à chaque fois par une nouvelle analyse :",

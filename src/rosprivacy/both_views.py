@@ -72,7 +72,7 @@ def _both(settings: Settings, reader: Callable[[Question], Reader]) -> Result:
     system = declared(NO_CHANGE)
     result = answer(system, of_record)
     every = answer(system, of_record._replace(every=True)) if system.is_fleet else result
-    known = {finding.id for finding in every.analysis.findings if finding.stands}
+    known = {finding.id for finding in every.analysis.findings if not finding.dismissed}
     whole = enforced(NO_CHANGE)
     found = answer(whole, question)
     remedies = Remedies(
@@ -82,7 +82,7 @@ def _both(settings: Settings, reader: Callable[[Question], Reader]) -> Result:
         _enclaves(whole.graph.profiles),
         whole.likeness.second,
     )
-    new = (finding for finding in found.analysis.findings if finding.stands and finding.id not in known)
+    new = (one for one in found.analysis.findings if not one.dismissed and one.id not in known)  # accepted ones, too
     return replace(result, enforced=Enforced(found, tuple(_added(new, remedies, whole.likeness))))
 
 

@@ -1,4 +1,4 @@
-"""Whether findings still stand after a change of the policies: an analysis of what these hang on, and no whole answer.
+"""Whether findings are still there after a change of the policies: an analysis of what these hang on, no whole answer.
 
 In: the enforced view as it was analysed, what reads the same policies with a change, and findings. Out: those that
 stand, with their witnesses. Where a change only takes flows away, nothing is read, bound or spread anew.
@@ -113,7 +113,7 @@ class Trials:
         """All findings: robots of a fleet are put together first."""
         if change not in self.answers:
             found = answer(self.read(change), self.question).analysis.findings
-            self.answers[change] = {one.id: one for one in found if one.stands}
+            self.answers[change] = {one.id: one for one in found if not one.dismissed}
         return self.answers[change]
 
     def _only(self, change: Change, findings: Sequence[Finding]) -> Mapping[str, Finding]:
@@ -130,7 +130,7 @@ class Trials:
         options = self.result.options
         assert options is not None, "an answer that was worked out here"
         found = chosen_findings(net, bound, self.system.vocabulary.hierarchy, options, chosen)
-        return {one.id: one for one in found if one.stands}
+        return {one.id: one for one in found if not one.dismissed}
 
     def _net(self, change: Change) -> tuple[Net, Bound]:
         bound = self.result.bound
