@@ -110,6 +110,16 @@ def measured(some: Iterable[System], look: Look, folder: Path) -> Measured:
     return Measured(precision, recall, wrong)
 
 
+def table(some: Sequence[System], folder: Path) -> str:
+    """Write the figures as they stand in docs/suggestions.md."""
+    rows = []
+    for look in LOOKS:
+        found = measured(some, look, folder)
+        shares = [*(found.precision[name] for name in ("likely", "may")), *found.recall.values()]
+        rows.append(f"| {look.name} | {' | '.join(f'{share.part} of {share.of}' for share in shares)} |\n")
+    return "".join(rows)
+
+
 def suggested(system: System, look: Look, folder: Path) -> Mapping[Pair, Confidence]:
     """Return what is suggested for the nodes of a system, each with its confidence."""
     policy, labels = folder / f"{system.name}.policy.xml", folder / f"{system.name}.labels.yaml"

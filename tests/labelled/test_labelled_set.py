@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 import pytest
 
 from rosprivacy.ontology.vocabulary import load
+from tests.helpers.paths import ROOT
 from tests.labelled.labelled_set import KINDS, LEAK, READERS, Pair, judged, kappa, met, said, systems
-from tests.labelled.measuring import LOOKS, Share, measured, policy_text, types_text
+from tests.labelled.measuring import LOOKS, Share, measured, policy_text, table, types_text
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -73,3 +74,8 @@ def test_types_find_sources_that_names_do_not(tmp_path: Path) -> None:
     """The baselines: all that is looked at finds more sources than types alone, and than names alone."""
     recall = {look.name: measured(systems()[0], look, tmp_path).recall["source"].part for look in LOOKS}
     assert recall["everything"] >= max(recall["types alone"], recall["names alone"])
+
+
+@pytest.mark.slow
+def test_the_page_tells_these_figures(tmp_path: Path) -> None:
+    assert table(systems()[0], tmp_path) in (ROOT / "docs" / "suggestions.md").read_text("utf-8")
