@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from rosprivacy.spark.units import Unit
 
 FORMAT = "rosprivacy-results-1"
-PARTS = tuple(field.name for field in fields(RobotRows) if field.name != "robot")
+PARTS = tuple(field.name for field in fields(RobotRows) if field.name not in ("robot", "beyond"))  # of one view only
 ROBOTS = "robot string, verdict string, model string, shared boolean, part int, " + ", ".join(
     f"{name} string" for name in PARTS
 )

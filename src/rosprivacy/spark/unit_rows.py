@@ -234,10 +234,9 @@ def put_together(some: Sequence[RobotRows]) -> RobotRows:
 
 
 def parts_of(rows: RobotRows) -> dict[str, Any]:
-    """Return all but the robot and its properties, by name."""
-    return {
-        field.name: getattr(rows, field.name) for field in fields(rows) if field.name not in ("robot", "properties")
-    }
+    """Return all but the robot and its properties, by name; what the enforced view adds only where it was asked for."""
+    left_out = ("robot", "properties", *(() if "beyond" in rows.properties else ("beyond",)))
+    return {field.name: getattr(rows, field.name) for field in fields(rows) if field.name not in left_out}
 
 
 def own_properties(properties: Row) -> Row:
