@@ -41,12 +41,15 @@ class System(NamedTuple):
 
     Attributes
     ----------
+    batch
+        Each was collected, split and labelled by itself.
     nodes
         Name -> ``publishes``, ``subscribes``, ``serves``, ``calls`` -> name -> type.
     """
 
     name: str
     repository: str
+    batch: int
     nodes: Mapping[str, Mapping[str, Any]]
 
 
@@ -58,11 +61,13 @@ class Judged(NamedTuple):
 
 
 def systems() -> tuple[Sequence[System], Sequence[System]]:
-    """Return those that rules may be tuned on, and those held out: every other one by the hash of its repository."""
+    """Return those that rules may be tuned on, and those held out: every other one of its batch, by hash."""
     read = [_read(file) for file in (HERE / "systems").glob("*.yaml")]
-    every = [System(one["system"], one["repository"], one["nodes"]) for one in read]
-    every.sort(key=lambda one: hashlib.sha256(one.repository.encode()).hexdigest())
-    return every[::2], every[1::2]
+    every = [System(one["system"], one["repository"], one["batch"], one["nodes"]) for one in read]
+    every.sort(key=lambda one: (one.batch, hashlib.sha256(one.repository.encode()).hexdigest()))
+    batches = [[one for one in every if one.batch == number] for number in sorted({one.batch for one in every})]
+    dev, held_out = ([one for batch in batches for one in batch[first::2]] for first in (0, 1))
+    return dev, held_out
 
 
 def said(reader: str, some: Iterable[System]) -> frozenset[Pair]:
