@@ -256,6 +256,14 @@ def test_an_enclave_that_two_files_state(tmp_path: Path) -> None:
     assert {b.rule.name for b in lint_policies((str(tmp_path),), (), Settings()).breaches} == {"shared-enclave"}
 
 
+def test_a_second_grant_of_a_subject_in_permissions(tmp_path: Path) -> None:
+    file = tmp_path / "permissions.xml"
+    file.write_text(permissions(grant("/e", rule("allow", publish=("rt/a",))), grant("/e")))
+    found = lint_policies((str(file),), (), Settings(allow_unsigned=True)).breaches
+    line = 1 + next(n for n, text in reversed([*enumerate(file.read_text().splitlines())]) if "<grant" in text)
+    assert [(b.place.line, b.rule.name) for b in found] == [(line, "several-profiles")]
+
+
 def test_an_enclave_that_mixes_a_source_and_a_leak(tmp_path: Path) -> None:
     text = policy(enclave(profile(), profile(node="b")))
     labels = "labels: 1\nnodes: {/a: {source: [Video]}, /b: {leak: [Voice]}}\n"
