@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.findings.beyond import Added, DenyLine, beyond, enclaves_of, rights
 from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, Change
+from rosprivacy.ingest.policies.names import writable
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
@@ -42,6 +43,8 @@ class Remedies:
         The nodes of each enclave.
     second
         Robots that only stand beside others like them.
+    hidden
+        Ids of the findings that the declared view has in pseudonymised form only: that form is left.
     """
 
     trials: Trials
@@ -49,6 +52,7 @@ class Remedies:
     known: frozenset[Ends]
     enclaves: Mapping[str, frozenset[str]]
     second: Collection[str]
+    hidden: Collection[str] = ()
     tried: set[Change] = field(default_factory=set)
     allowed: dict[Change, frozenset[Right]] = field(default_factory=dict)
     counts: dict[int, int] = field(default_factory=dict)
@@ -76,6 +80,7 @@ class Remedies:
             robots,
             _places(findings[0], set(steps) - set(shared)),
             tuple(findings),
+            findings[0].id in self.hidden,
         )
 
     def _shared(self, finding: Finding) -> tuple[int, ...]:
@@ -139,7 +144,8 @@ class Remedies:
             if self.counts[kind] > TRIED:
                 return None
             self.tried.add(change)
-        return self.trials.left(change, findings)
+        left = self.trials.left(change, findings)
+        return [one for one in left if not (one.pseudonymised and one.id in self.hidden)]
 
     def _rights(self, change: Change) -> frozenset[Right]:
         if change not in self.allowed:
@@ -165,7 +171,8 @@ def _lines(finding: Finding, number: int) -> Iterator[DenyLine]:
     channel = _meant(finding, number)
     first = {(grant.policy, grant.enclave): grant for grant in reversed(grants)}
     for (policy, enclave), grant in first.items():
-        yield DenyLine(policy, enclave, grant.node, step.role, channel.kind, channel.name)
+        for kind, name in writable(step.role, channel.kind, channel.name):
+            yield DenyLine(policy, enclave, grant.node, step.role, kind, name)
 
 
 def _meant(finding: Finding, number: int) -> Element:
