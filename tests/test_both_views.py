@@ -18,6 +18,7 @@ from hypothesis import strategies as st
 import rosprivacy
 from rosprivacy.analysis.modes import View
 from rosprivacy.both_views import both_views
+from rosprivacy.remedies import TRIED
 from rosprivacy.settings import Settings
 from tests.helpers.command import cli
 from tests.helpers.paths import ROOT
@@ -330,6 +331,23 @@ def test_a_deny_of_parts_of_an_action_is_one_that_can_be_written(
     assert deny == [(role[0], kind, f"/c/_action/{part}") for part in parts]
     added = "".join(f'<{k}s {r}="DENY"><{k}>{n}</{k}></{k}s>' for r, k, n in deny)
     assert entry["finding"]["id"] not in ids(text(added), View.enforced)
+
+
+@pytest.mark.usefixtures("example")
+def test_where_no_more_is_tried_it_is_not_said_that_splitting_ends_nothing(cli: Cli) -> None:
+    """Each finding has a pair of enclaves of its own; S11: what is not known is said."""
+    enclaves: Enclaves = {}
+    said = "labels: 1\nnodes:\n"
+    for i in range(TRIED + 1):
+        enclaves[f"/e{i}"] = {f"/s{i}": [], f"/x{i}": [("publish", f"/t{i}", "ALLOW")]}
+        enclaves[f"/l{i}"] = {f"/l{i}": [("subscribe", f"/t{i}", "ALLOW")]}
+        said += f"  /s{i}: {{source: [Video]}}\n  /l{i}: {{leak: [Video]}}\n"
+    Path("p.xml").write_text(policy(enclaves))
+    Path("l.yaml").write_text(said)
+    arguments = ("p.xml", "-l", "l.yaml", "--view", "both")
+    none = f"; for all findings together, {TRIED} sets are tried at most"
+    assert cli("analyze", *arguments).stdout.count(none) == 1
+    assert none in cli("report", *arguments).stdout
 
 
 @pytest.mark.usefixtures("example")

@@ -51,8 +51,9 @@ def _said(report: Mapping[str, Any], entry: Mapping[str, Any], words: Words) -> 
         yield words("tty.enforced.move", profile=shown(move["profile"]), enclave=shown(move["enclave"]))
     if entry.get("deny"):
         yield words("tty.enforced.deny", lines="; ".join(_line(line, words) for line in entry["deny"]))
-        lost = (f"{shown_name(one['node'])} {one['role']} {shown_name(one['channel'])}" for one in entry["loses"])
-        yield words("tty.enforced.loses", rights="; ".join(lost))
+        lost = [f"{shown_name(one['node'])} {one['role']} {shown_name(one['channel'])}" for one in entry["loses"]]
+        if lost:
+            yield words("tty.enforced.loses", rights="; ".join(lost))
 
 
 def _line(line: Mapping[str, Any], words: Words) -> str:

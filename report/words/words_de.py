@@ -112,7 +112,7 @@ WORDS = {
     "y.robots": "Das kommt auf {n} von {all} hinzu{names}.",
     "y.remedies": "Was das beseitigt, jeweils durch eine neue Analyse nachgewiesen:",
     "y.split": "{enclaves} in eine Enklave je Knoten teilen.",
-    "y.split.none": "Es wurde keine Menge von Enklaven gefunden, deren Teilung es beseitigt.",
+    "y.split.none": "Es wurde keine Menge von Enklaven gefunden, deren Teilung es beseitigt; für alle Befunde zusammen werden höchstens 20 versucht.",
     "y.move": "Es genügt, allein {profile} aus {enclave} in eine eigene Enklave zu legen.",
     "y.deny": "Oder {lines} hinzufügen. Ein DENY gilt für die ganze Enklave und hat daher einen Preis: Dann ginge nicht mehr, was eigene Profile erlauben: {rights}.",
     "y.line": "ein DENY für {role} {channel} in {enclave} ({file})",

@@ -114,7 +114,7 @@ WORDS = {
     "y.robots": "It is added on {n} of {all}{names}.",
     "y.remedies": "What takes it away, each proven by a new analysis:",
     "y.split": "Split {enclaves} into an enclave for each node.",
-    "y.split.none": "No set of enclaves was found of which splitting takes it away.",
+    "y.split.none": "No set of enclaves was found of which splitting takes it away; for all findings together, 20 sets are tried at most.",
     "y.move": "It is enough to move {profile} alone from {enclave} to an enclave of its own.",
     "y.deny": "Or add {lines}. A DENY holds for the whole enclave, so this has a price: then these could no longer do what their own profiles allow: {rights}.",
     "y.line": "a DENY to {role} {channel} in {enclave} ({file})",

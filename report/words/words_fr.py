@@ -117,7 +117,7 @@ _TYPED = {
     "y.robots": "Cela s'ajoute sur {n} de {all}{names}.",
     "y.remedies": "Ce qui le supprime, prouvé à chaque fois par une nouvelle analyse :",
     "y.split": "Diviser {enclaves} en une enclave par nœud.",
-    "y.split.none": "Aucun ensemble d'enclaves dont la division le supprime n'a été trouvé.",
+    "y.split.none": "Aucun ensemble d'enclaves dont la division le supprime n'a été trouvé ; pour tous les constats ensemble, 20 au plus sont essayés.",
     "y.move": "Il suffit de déplacer {profile} seul de {enclave} vers une enclave à lui.",
     "y.deny": "Ou ajouter {lines}. Un DENY vaut pour toute l'enclave et a donc un prix : ne serait plus possible ce que permettent des profils propres : {rights}.",
     "y.line": "un DENY pour {role} {channel} dans {enclave} ({file})",

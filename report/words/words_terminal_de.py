@@ -16,7 +16,7 @@ WORDS = {
     "tty.enforced.opened": "nur weil dort keine Berechtigungen geprüft werden: {lines}",
     "tty.enforced.by": "nur weil sich Knoten die Enklave {enclaves} teilen",
     "tty.enforced.split": "fällt weg, wenn {enclaves} in eine Enklave je Knoten geteilt wird: durch eine neue Analyse nachgewiesen",
-    "tty.enforced.no.split": "es wurde keine Menge von Enklaven gefunden, deren Teilung ihn beendet",
+    "tty.enforced.no.split": "es wurde keine Menge von Enklaven gefunden, deren Teilung ihn beendet; für alle Befunde zusammen werden höchstens 20 versucht",
     "tty.enforced.move": "fällt auch weg, wenn nur {profile} aus {enclave} in eine eigene Enklave kommt: durch eine neue Analyse nachgewiesen",
     "tty.enforced.deny": "fällt auch weg mit {lines}: durch eine neue Analyse nachgewiesen",
     "tty.enforced.line": "einem DENY für {role} {channel} in {enclave} ({file})",

@@ -16,7 +16,7 @@ WORDS = {
     "tty.enforced.opened": "only because permissions are not asked there: {lines}",
     "tty.enforced.by": "only because nodes share enclave {enclaves}",
     "tty.enforced.split": "gone if {enclaves} is split into an enclave for each node: proven by a new analysis",
-    "tty.enforced.no.split": "no set of enclaves was found of which splitting ends it",
+    "tty.enforced.no.split": "no set of enclaves was found of which splitting ends it; for all findings together, 20 sets are tried at most",
     "tty.enforced.move": "gone, too, if only {profile} is moved from {enclave} to an enclave of its own: proven by a new analysis",
     "tty.enforced.deny": "gone, too, with {lines}: proven by a new analysis",
     "tty.enforced.line": "a DENY to {role} {channel} in {enclave} ({file})",

@@ -18,7 +18,7 @@ _TYPED = {
     "tty.enforced.opened": "seulement parce que les autorisations n'y sont pas vérifiées : {lines}",
     "tty.enforced.by": "seulement parce que des nœuds partagent l'enclave {enclaves}",
     "tty.enforced.split": "disparaît si {enclaves} est divisée en une enclave par nœud : prouvé par une nouvelle analyse",
-    "tty.enforced.no.split": "aucun ensemble d'enclaves dont la division y mette fin n'a été trouvé",
+    "tty.enforced.no.split": "aucun ensemble d'enclaves dont la division y mette fin n'a été trouvé ; pour tous les constats ensemble, 20 au plus sont essayés",
     "tty.enforced.move": "disparaît aussi si seul {profile} passe de {enclave} à une enclave à lui : prouvé par une nouvelle analyse",
     "tty.enforced.deny": "disparaît aussi avec {lines} : prouvé par une nouvelle analyse",
     "tty.enforced.line": "un DENY pour {role} {channel} dans {enclave} ({file})",

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.findings.beyond import Added, DenyLine, beyond, enclaves_of, rights
 from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, Change
-from rosprivacy.ingest.policies.names import writable
+from rosprivacy.ingest.policies.names import DDS, writable
+from rosprivacy.ingest.zenoh_access.open_sessions import ANY_SESSION
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
@@ -109,13 +110,16 @@ class Remedies:
         return None
 
     def _movable(self, finding: Finding) -> Iterator[tuple[str, str]]:
-        """Who goes beyond its profile, then whose grants it uses; in an enclave of two, moving is splitting."""
+        """Who goes beyond its profile, then whose grants it uses; in an enclave of two, moving is splitting.
+
+        A session of Zenoh that says who it is stays among those that a list lets in whoever they are.
+        """
         steps = [finding.steps[n] for n in beyond(finding, self.known)]
         users = [(grant.enclave, _ends(step)[0].name) for step in steps for grant in step.grants]
         holders = [(grant.enclave, grant.node) for step in steps for grant in step.grants]
         for enclave, node in (*users, *sorted(holders)):
             nodes = self.enclaves.get(enclave, frozenset())
-            if node in nodes and len(nodes) > 2:  # noqa: PLR2004 - see above
+            if node in nodes and len(nodes) > 2 and enclave != ANY_SESSION:  # noqa: PLR2004 - see above
                 yield enclave, node
 
     def _deny(self, findings: Sequence[Finding]) -> tuple[DenyLine, ...]:
@@ -163,10 +167,13 @@ def _places(finding: Finding, steps: Iterable[int]) -> tuple[Place, ...]:
 
 
 def _lines(finding: Finding, number: int) -> Iterator[DenyLine]:
-    """The DENY lines that take a step of a path away, one for each policy and enclave; none overrules what was seen."""
+    """The DENY lines that take a step of a path away, for each policy and enclave; none overrules what was seen.
+
+    Permissions and access lists of Zenoh are no policies: no DENY of a profile stands there.
+    """
     step = finding.steps[number]
     grants = [grant for grant in step.grants if not (grant.dead or grant.rank)]
-    if len(grants) != len(step.grants) or any(grant.seen for grant in grants):
+    if len(grants) != len(step.grants) or any(grant.seen or grant.kind == DDS for grant in grants):
         return
     channel = _meant(finding, number)
     first = {(grant.policy, grant.enclave): grant for grant in reversed(grants)}
