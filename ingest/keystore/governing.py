@@ -32,11 +32,11 @@ class Governed(NamedTuple):
 
 
 def domains_of(permissions: Permissions, domain: int | None) -> Spans:
-    """Return the domains of ROS that permissions are about, as far as is known."""
+    """Return the domains that permissions are about, as far as is known: those of ROS, or if there are none, all."""
     if domain is not None:
         return ((domain, domain),)
     spans = tuple(span for grant in permissions.grants for rule in grant.rules for span in rule.domains.spans)
-    return common(OF_ROS, spans or OF_ROS)
+    return common(OF_ROS, spans) or spans or OF_ROS
 
 
 def governed(governance: Governance, spans: Spans) -> Iterator[Governed]:

@@ -12,7 +12,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputErrors, PolicyError, shown
-from rosprivacy.analysis.model import Diagnostic, Grant, Policy, Profile, Severity
+from rosprivacy.analysis.model import SEVERAL_PROFILES, Diagnostic, Grant, Policy, Profile, Severity
 from rosprivacy.ingest.policies.names import DDS
 
 if TYPE_CHECKING:
@@ -64,7 +64,8 @@ def policy_of(permissions: Permissions, domain: int | None, sources: tuple[tuple
         dead = enclave in profiles
         if dead:
             message = f"second grant for {enclave}: the middleware uses the first one that is valid"
-            said.append(_warning(grant.place, f"{message}; what this one allows is read too, what it denies is not"))
+            message = f"{message}; what this one allows is read too, what it denies is not"
+            said.append(Diagnostic(grant.place, Severity.WARNING, shown(message), SEVERAL_PROFILES))
         profile = profiles.setdefault(enclave, Profile(enclave, enclave, grant.place))
         grants += _grants(permissions.file, profile, grant, domain, dead=dead)
         said += _remarks(grant, domain)

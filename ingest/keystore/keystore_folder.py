@@ -22,6 +22,7 @@ from rosprivacy.ingest.keystore.governance_file import read_governance
 from rosprivacy.ingest.keystore.grants import enclave_of
 from rosprivacy.ingest.keystore.permissions_file import read_permissions
 from rosprivacy.ingest.keystore.signed_file import read_signed
+from rosprivacy.ingest.policies.folders import Contents, contents
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from rosprivacy.ingest.keystore.signed_file import SignedText
 
 PERMISSIONS, GOVERNANCE, CERTIFICATE = "permissions.p7s", "governance.p7s", "cert.pem"
+FILES = (".p7s", ".pem")
 PERMISSIONS_CA, IDENTITY_CA = "permissions_ca.cert.pem", "identity_ca.cert.pem"
 
 
@@ -61,10 +63,12 @@ def read_keystore(
     InputErrors
         With every problem of the keystore, one line each.
     """
-    inside = Path(folder) / "enclaves"
-    enclaves = sorted({path.parent for name in (PERMISSIONS, CERTIFICATE) for path in inside.rglob(name)})
-    problems: list[InputError] = []
-    if not enclaves:
+    inside = contents(str(Path(folder) / "enclaves")) or Contents()
+    unread = {Path(error.file): error for error in inside.problems}
+    paths = (*map(Path, inside.files | inside.others), *unread)
+    enclaves = sorted({path.parent for path in paths if path.name in (PERMISSIONS, CERTIFICATE)})
+    problems = [error for path, error in unread.items() if path.suffix not in FILES]  # of a file who reads it says it
+    if not (enclaves or problems):
         problems.append(PolicyError(folder, 0, f"a keystore without any {PERMISSIONS}", "create an enclave in it"))
     verified: dict[str, SignedText] = {}
     deployed: list[Deployed] = []

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import shown
 from rosprivacy.analysis.model import Breach
 from rosprivacy.ingest.lint.rule_table import RULES
-from rosprivacy.ingest.policies.names import covers, is_pattern
+from rosprivacy.ingest.policies.names import DDS, covers, is_pattern
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -35,7 +35,8 @@ def grant_breaches(grants: Iterable[Grant], graph: FlowGraph) -> Iterator[Breach
 
     Notes
     -----
-    Linear; beside that O(relative names of shared fragments, times the wildcards at the other end).
+    Linear; beside that O(relative names of shared fragments, times the wildcards at the other end), and of permissions
+    O(DENY times ALLOW lines of a subject).
     """
     grants = tuple(grants)
     of_line: dict[tuple[str, Place], list[Grant]] = defaultdict(list)
@@ -49,6 +50,7 @@ def grant_breaches(grants: Iterable[Grant], graph: FlowGraph) -> Iterator[Breach
         yield Breach(RULES[rule], place, f"{roles} {named}: {hint}")
     yield from _overridden(graph)
     yield from _alone_in_a_namespace(grants)
+    yield from _too_late(grants)
 
 
 def _rule(grant: Grant) -> str:
@@ -69,6 +71,21 @@ def _overridden(graph: FlowGraph) -> Iterator[Breach]:
     for (place, role, name), nodes in taken.items():
         message = f"{role} {shown(name)} of {_few(nodes)} is allowed here and denied at {next(iter(nodes.values()))}"
         yield Breach(RULES["overridden-allow"], place, f"{message}: it grants nothing")
+
+
+def _too_late(grants: Iterable[Grant]) -> Iterator[Breach]:
+    """DENYs of permissions after an ALLOW of all that they name: the first rule that matches decides."""
+    allowed: dict[tuple[str, str, str], list[Grant]] = defaultdict(list)
+    for grant in grants:
+        if grant.allow and grant.kind == DDS:
+            allowed[grant.policy, grant.enclave, grant.role].append(grant)
+    for grant in grants:
+        if not (grant.allow or grant.dead):
+            before = allowed.get((grant.policy, grant.enclave, grant.role), ())
+            first = next((one for one in before if one.rank < grant.rank and covers(one.name, grant.name)), None)
+            if first:
+                message = f"{grant.role} {shown(grant.name)} is allowed at {first.place}, and the first rule decides"
+                yield Breach(RULES["dead-deny"], grant.place, f"{message}; move the deny_rule before it")
 
 
 def _alone_in_a_namespace(grants: Iterable[Grant]) -> Iterator[Breach]:

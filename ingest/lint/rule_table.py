@@ -11,9 +11,15 @@ from rosprivacy.analysis.model import LintRule, Severity
 _E, _W, _N = Severity.ERROR, Severity.WARNING, Severity.NOTICE
 _RULES = (
     LintRule("refused-policy", _E, "a form that sros2 refuses", "no permissions are made of it"),
-    LintRule("dead-deny", _E, "a DENY that sros2 does not read", "what it should take away is allowed"),
+    LintRule(
+        "dead-deny", _E, "a DENY that sros2 does not read, or in permissions one after an ALLOW of the same",
+        "what it should take away is allowed",
+    ),
     LintRule("duplicate-enclave", _E, "an enclave path that is there twice", "sros2 uses the first one only"),
-    LintRule("several-profiles", _E, "several <profiles> in an enclave", "DDS uses the first grant only"),
+    LintRule(
+        "several-profiles", _E, "several <profiles> in an enclave, or grants of a subject",
+        "DDS uses the first grant only",
+    ),
     LintRule("overridden-allow", _W, "an ALLOW that a DENY of its enclave takes back", "it grants nothing"),
     LintRule("wildcard-everything", _E, "a name that is * alone", "it grants every name there is, parameters too"),
     LintRule("wildcard", _W, "a name with *, ? or […]", "it also grants names that nobody thought of"),

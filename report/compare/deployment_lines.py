@@ -13,6 +13,10 @@ if TYPE_CHECKING:
 
     from rosprivacy.report.contract.deployment import CheckDocument, DifferenceEntry
 
+SAME, NOT_KNOWN = (
+    "what is deployed is what the policy says",
+    "undetermined: no right differs, but more may be allowed than is compared here; the warnings say where",
+)
 SAID = {"policy": "only the policy says", "deployed": "only what is deployed says"}
 
 
@@ -20,7 +24,7 @@ def deployment_lines(document: CheckDocument) -> Iterator[str]:
     """Yield the lines of an answer."""
     found = document["differences"]
     if not found:
-        yield "what is deployed is what the policy says"
+        yield NOT_KNOWN if document["undetermined"] else SAME
     for enclave, of_enclave in groupby(found, key=lambda entry: entry["enclave"]):
         yield f"enclave {shown(enclave)}"
         for side, entries in groupby(of_enclave, key=lambda entry: entry["only_in"]):

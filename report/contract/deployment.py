@@ -29,11 +29,18 @@ class LossEntry(TypedDict):
 
 
 class CheckDocument(TypedDict):
-    """What a policy says and what is deployed."""
+    """What a policy says and what is deployed.
+
+    Attributes
+    ----------
+    undetermined
+        Whether more may be allowed than is compared: somewhere permissions are not asked, or any session is let in.
+    """
 
     format: str
     differences: list[DifferenceEntry]
     losses: list[LossEntry]
+    undetermined: bool
     diagnostics: list[dict[str, object]]
     policies: list[dict[str, str]]
     rosprivacy: str

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rosprivacy.analysis.model import ACCESS_GAP
 from rosprivacy.granted import ZENOH, read_granted
 from rosprivacy.ingest.keystore.deployed_rights import differences
 from rosprivacy.ingest.keystore.generator_losses import generator_losses
@@ -49,7 +50,7 @@ def check_document(policy: str, deployed: tuple[str, ...], settings: Settings) -
             losses = generator_losses(stated, there, new, who) if names is zenoh else losses
             read += there
             said += more
-    told = [one for one_read in read for one in one_read.diagnostics]
+    told = [*(one for one_read in read for one in one_read.diagnostics), *said]
     return {
         "format": FORMAT,
         "differences": [_entry(difference) for difference in sorted(found)],
@@ -57,7 +58,8 @@ def check_document(policy: str, deployed: tuple[str, ...], settings: Settings) -
             {"loss": one.fault, "message": one.message, "file": one.place.file, "line": one.place.line}
             for one in losses
         ],
-        "diagnostics": list(_diagnostics([*told, *said])),
+        "undetermined": any(one.code == ACCESS_GAP for one in told),
+        "diagnostics": list(_diagnostics(told)),
         "policies": [
             {"file": file, "sha256": digest} for file, digest in sorted({one for some in read for one in some.sources})
         ],

@@ -9,7 +9,7 @@ import jsonschema
 import pytest
 
 from tests.helpers.command import cli
-from tests.helpers.keystores import Keystore, grant, permissions, rule
+from tests.helpers.keystores import Keystore, governance, grant, permissions, rule, topic_rule
 from tests.helpers.paths import ROOT
 
 if TYPE_CHECKING:
@@ -85,4 +85,23 @@ def test_a_file_of_zenoh_is_compared_with_the_node_of_its_name(cli: Cli, folder:
 def test_what_is_not_verified_is_not_compared(cli: Cli, folder: Path) -> None:
     (folder / "permissions.xml").write_text(permissions(grant("/camera", *REPLY)))
     assert cli("check", "p.policy.xml", "permissions.xml", cwd=folder).returncode == 2
-    assert cli("check", "p.policy.xml", "permissions.xml", "--allow-unsigned", cwd=folder).returncode == 0
+    (folder / "governance.xml").write_text(governance())
+    files = ("permissions.xml", "governance.xml")
+    assert cli("check", "p.policy.xml", *files, "--allow-unsigned", cwd=folder).returncode == 0
+
+
+@pytest.mark.parametrize("given", [None, governance(topic_rule(reading="false"))])
+def test_where_permissions_may_not_be_asked_no_difference_is_not_told_as_none(
+    cli: Cli, folder: Path, given: str | None
+) -> None:
+    """Nothing says whether they are; they are not (rule S11)."""
+    (folder / "permissions.xml").write_text(permissions(grant("/camera", *REPLY)))
+    files = ["permissions.xml"]
+    if given:
+        (folder / "governance.xml").write_text(given)
+        files.append("governance.xml")
+    done = cli("check", "p.policy.xml", *files, "--allow-unsigned", cwd=folder)
+    assert (done.returncode, done.stdout.splitlines()[0].partition(":")[0]) == (4, "undetermined")
+    (folder / "p.policy.xml").write_text(POLICY.replace("/video", "/audio"))
+    done = cli("check", "p.policy.xml", *files, "--allow-unsigned", "-f", "json", cwd=folder)
+    assert (done.returncode, json.loads(done.stdout)["undetermined"]) == (1, True)

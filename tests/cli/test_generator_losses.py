@@ -34,7 +34,8 @@ def losses(cli: Cli, folder: Path, policy: str, tail: str = "/*/*") -> list[tupl
     done = cli("check", "p.xml", *files, "-f", "json", cwd=folder)
     document = json.loads(done.stdout)
     jsonschema.validate(document, json.loads((ROOT / "docs/check.schema.json").read_text("utf-8")))
-    assert done.returncode == int(bool(document["differences"]))
+    assert document["undetermined"]  # the generator's lists let in any session
+    assert done.returncode == (1 if document["differences"] else 4)
     text = cli("check", "p.xml", *files, cwd=folder).stdout.splitlines()
     assert all(one["message"] in text for one in document["losses"])
     return [(one["loss"], one["line"], one["message"]) for one in document["losses"]]

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from rosprivacy.cli.exit_code import LEAK
+from rosprivacy.cli.exit_code import LEAK, UNDETERMINED
 from rosprivacy.cli.inputs import Inputs, reads_system
 from rosprivacy.cli.options import Output, TextOrJson
 from rosprivacy.cli.output import emit
@@ -35,7 +35,7 @@ def check(
 ) -> None:
     """Compare a policy with what is deployed: which rights only one of them has, by enclave, each with its line.
 
-    Ends with 1 if there is a difference.
+    Ends with 1 if there is a difference, with 4 if there is none but more may be allowed than can be compared.
     """
     from rosprivacy.checking import check_document
     from rosprivacy.report.compare.deployment_lines import deployment_lines
@@ -46,3 +46,5 @@ def check(
     emit(as_text(document) if format is TextOrJson.json else lines, output)
     if document["differences"]:
         raise typer.Exit(LEAK)
+    if document["undetermined"]:
+        raise typer.Exit(UNDETERMINED)

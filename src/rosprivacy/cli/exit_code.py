@@ -21,7 +21,8 @@ CODES = {
     2: "bad input or usage",
     3: "a server (database, middleware, Spark) cannot be reached",
     4: "`analyze` and `bag`: undetermined; `--fail-on leak` makes it 0, but never where no data was followed; "
-    "`observe`: nothing was seen; `diff --as usage`: the observation has gaps",
+    "`check`: nothing differs, but not all is known; `observe`: nothing was seen; `diff --as usage`: the observation "
+    "has gaps",
     70: "an error of the program itself: no answer; the message says which file to send",
 }
 LEAK, UNDETERMINED, OWN_ERROR = 1, 4, 70

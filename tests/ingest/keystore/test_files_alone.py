@@ -131,6 +131,16 @@ def test_a_domain_that_no_governance_names_is_told_and_a_gap(tmp_path: Path) -> 
     assert not [one for one in read(tmp_path, camera("<id>0</id><id>7</id>"), of(0), of(7))[1] if one.code]
 
 
+def test_domains_that_ros_does_not_have_are_governed_too(tmp_path: Path) -> None:
+    """A middleware does not start there, but what stands in the files is not less open."""
+    outside = "<id>300</id>"
+    given = governance(OPEN, topic_rule(), domains=outside)
+    (policy,), said = read(tmp_path, camera(outside), given)
+    assert [len(one.topics) for one in policy.protections] == [2]
+    assert ACCESS_GAP in [one.code for one in said]
+    assert [one.code for one in read(tmp_path, camera(outside))[1]] == [ACCESS_GAP]
+
+
 def test_each_governance_governs_the_domains_of_its_rules(tmp_path: Path) -> None:
     wide, middle = ("<id_range><min>{}</min><max>{}</max></id_range>".format(*ends) for ends in ((0, 9), (1, 6)))
     texts = camera(wide), of(0), of(7, OPEN, topic_rule()), governance(domains=middle), of(8), of(9)

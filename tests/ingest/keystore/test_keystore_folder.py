@@ -141,6 +141,28 @@ def test_a_policy_that_lies_in_a_keystore_is_told(keystore: Keystore) -> None:
     assert [d.message for d in read(keystore)[1]] == ["not read: it is no part of the keystore"]
 
 
+def test_an_enclave_behind_a_link_is_one_of_the_keystore(keystore: Keystore) -> None:
+    """A middleware follows the link too, so leaving it out would hide who reads."""
+    viewer, elsewhere = keystore.folder / "enclaves/viewer", keystore.folder / "public/viewer"
+    viewer.rename(elsewhere)
+    viewer.symlink_to("../public/viewer")
+    (elsewhere / "governance.p7s").unlink()
+    (elsewhere / "governance.p7s").symlink_to("../../enclaves/governance.p7s")
+    assert [grant.enclave for policy in read(keystore)[0] for grant in policy.grants] == ["/camera", "/viewer"]
+    elsewhere.rename(keystore.folder / "gone")
+    assert refused(keystore) == [("enclaves/viewer", "a link to nothing: ../public/viewer")]
+
+
+def test_links_to_nothing_are_told_once_and_those_of_keys_not_at_all(keystore: Keystore) -> None:
+    folder = keystore.folder / "enclaves/viewer"
+    for name in ("key.pem", "permissions.p7s", "cert.pem"):
+        (folder / name).unlink()
+        (folder / name).symlink_to("nowhere")
+        if name == "key.pem":
+            assert len(read(keystore)[0]) == 2
+    assert [file for file, _ in refused(keystore)] == ["enclaves/viewer/permissions.p7s"]
+
+
 def test_an_empty_keystore_is_an_error(tmp_path: Path) -> None:
     (tmp_path / "k/enclaves").mkdir(parents=True)
     (tmp_path / "k/public").mkdir()

@@ -256,6 +256,27 @@ def test_an_enclave_that_two_files_state(tmp_path: Path) -> None:
     assert {b.rule.name for b in lint_policies((str(tmp_path),), (), Settings()).breaches} == {"shared-enclave"}
 
 
+def test_a_second_grant_of_a_subject_in_permissions(tmp_path: Path) -> None:
+    file = tmp_path / "permissions.xml"
+    file.write_text(permissions(grant("/e", rule("allow", publish=("rt/a",))), grant("/e")))
+    found = lint_policies((str(file),), (), Settings(allow_unsigned=True)).breaches
+    line = 1 + next(n for n, text in reversed([*enumerate(file.read_text().splitlines())]) if "<grant" in text)
+    assert [(b.place.line, b.rule.name) for b in found] == [(line, "several-profiles")]
+
+
+def test_a_deny_of_permissions_that_comes_too_late(tmp_path: Path) -> None:
+    """DDS-Security 1.1, 9.4.1.3.2.3: the first rule that matches decides."""
+    allow, deny = rule("allow", publish=("rt/a/*",)), rule("deny", publish=("rt/a/b", "rt/c"), subscribe=("rt/a/b",))
+    file = tmp_path / "permissions.xml"
+    found = {}
+    for order in ((allow, deny), (deny, allow)):
+        file.write_text(permissions(grant("/e", *order)))
+        said = lint_policies((str(file),), (), Settings(allow_unsigned=True)).breaches
+        lines = file.read_text().splitlines()
+        found[order] = [(lines[b.place.line - 1], b.rule.name) for b in said if b.rule.name == "dead-deny"]
+    assert list(found.values()) == [[("<topic>rt/a/b</topic>", "dead-deny")], []]
+
+
 def test_an_enclave_that_mixes_a_source_and_a_leak(tmp_path: Path) -> None:
     text = policy(enclave(profile(), profile(node="b")))
     labels = "labels: 1\nnodes: {/a: {source: [Video]}, /b: {leak: [Voice]}}\n"
