@@ -13,7 +13,7 @@ from rosprivacy.analysis.errors import InputErrors, LabelError, shown
 from rosprivacy.analysis.model import Confidence
 from rosprivacy.analysis.suggesting.evidence import CONDUIT, LEAK, SENSITIVE, SOURCE
 from rosprivacy.analysis.suggesting.written import written
-from rosprivacy.analysis.text import blanked, fit
+from rosprivacy.analysis.text import LONGEST_LINE, blanked, cut, printable
 from rosprivacy.ingest.labels.label_reader import SECTIONS
 
 if TYPE_CHECKING:
@@ -71,7 +71,7 @@ def comment_of(one: Proposal) -> str:
     """
     at = written(one.label)
     said = json.dumps({at.section: {at.name: at.said}})
-    reasons = "; ".join(dict.fromkeys(fit(reason.reason) for reason in one.evidence))
+    reasons = "; ".join(dict.fromkeys(cut(printable(reason.reason), LONGEST_LINE) for reason in one.evidence))
     return f"{MARK}{one.confidence} {said}{BECAUSE}{blanked(reasons, '?')}"
 
 

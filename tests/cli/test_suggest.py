@@ -294,6 +294,14 @@ def test_one_element_is_accepted_with_who_when_and_why(cli: Cli, robot: Path) ->
     ]
 
 
+def test_no_reason_is_cut(cli: Cli, tmp_path: Path) -> None:
+    cli("suggest", str(CARE), "--into", "l.yaml", cwd=tmp_path)
+    cli("labels", "--accept", "/face_recognizer", "--by", "Ada", "-l", "l.yaml", cwd=tmp_path)
+    text = (tmp_path / "l.yaml").read_text("utf-8")
+    assert "…" not in text
+    assert "detectors, recognisers and trackers make it of pictures" in text.partition("# suggest")[0]
+
+
 def test_all_of_a_confidence_are_accepted_but_what_could_hide_a_leak(cli: Cli, robot: Path) -> None:
     (robot / "l.yaml").write_text(typed(a=IMAGE, b=CLOUD, c=IDS, d=TWIST) + "author: Ada\n", "utf-8")
     cli("suggest", "p.xml", "-l", "l.yaml", "--into", "l.yaml", cwd=robot)
