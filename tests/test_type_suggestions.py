@@ -57,7 +57,7 @@ def suggested(name: str) -> list[str]:
         ("tf2_msgs/msg/TFMessage", ["may RobotPosition BodyPose"]),
         ("moveit_msgs/msg/PlanningScene", ["may PersonPointCloud", "may HouseholdObject"]),
         ("moveit_msgs/msg/RobotTrajectory", []),
-        ("visualization_msgs/msg/MarkerArray", ["may PersonDetection"]),
+        ("visualization_msgs/msg/MarkerArray", ["may PersonalData"]),
         ("sensor_msgs/msg/Joy", ["likely OperatorInput"]),
         ("rcl_interfaces/msg/Log", ["may PersonalData"]),
         ("std_msgs/msg/String", ["may PersonalData"]),

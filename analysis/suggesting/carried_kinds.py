@@ -2,7 +2,8 @@
 
 1. A type that the table knows says which kinds, with its confidence. Of several types of a channel each says its own.
 2. The name of a topic says no more than ``may`` by itself. It is not asked about services and actions, whose names are
-   verbs, nor of a kind that the types cannot carry, nor where the types are known and suggest nothing.
+   verbs, nor of a kind that the types cannot carry, nor where the types are known and suggest nothing, unless what the
+   name says can have any type.
 3. Where the name says a narrower kind of what the type says, the type says that, too: both agree.
 4. Where the name says that it is something else (a depth image), what the type says of that (video) is ``may``.
 """
@@ -103,7 +104,8 @@ def _excludes(kind: str, key: Key, rules: Rules) -> bool:
 def _clues(element: Element, types: Mapping[str, Place], rules: Rules) -> tuple[Clue, ...]:
     by_type = [clue for name, place in sorted(types.items()) for clue in _by_type(name, place, element, rules)]
     spoken = of_topic(element.name, rules.names) if element.kind == "topic" else None
-    if spoken is None or (types and not by_type and all((interface_of(n), "") in rules.suggestions for n in types)):
+    nothing = types and not by_type and all((interface_of(n), "") in rules.suggestions for n in types)
+    if spoken is None or (nothing and not spoken.rule.any_type):
         return tuple(dict.fromkeys(by_type))
     by_name = [clue for clue in _by_name(spoken, element) if not _limited(clue.kind, types, rules)]
     kinds = {clue.kind for clue in by_name}

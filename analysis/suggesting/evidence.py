@@ -15,7 +15,7 @@ HIDING = TAKING_AWAY | {CONDUIT}  # or that nobody looked
 OF_NODES = frozenset([SOURCE, LEAK, DERIVATION, SANITIZER, CONDUIT])  # the others are said of channels
 CODE, PACKAGE, TYPE, NAMED, DATA_FLOW, NEIGHBOUR = "code", "package", "type", "name", "data-flow", "neighbour"
 GROUNDS = (CODE, PACKAGE, TYPE, NAMED, DATA_FLOW, NEIGHBOUR)  # what evidence comes from, in the order of reasons
-INDEPENDENT = frozenset([CODE, PACKAGE, TYPE, NAMED])  # the others are drawn from types and names themselves
+INDEPENDENT = frozenset([CODE, TYPE, NAMED])  # the others know types and names, or are drawn from them
 
 
 class Label(NamedTuple):

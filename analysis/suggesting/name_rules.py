@@ -32,6 +32,8 @@ class NameRule(NamedTuple):
         The reason, in a few words.
     instead_of
         Categories: where another word of the name suggests one of these, it is the kinds of this rule instead.
+    any_type
+        Whether it can have any form, a flag or a velocity, so that no message type speaks against it.
     """
 
     kinds: tuple[str, ...]
@@ -39,6 +41,7 @@ class NameRule(NamedTuple):
     why: str
     place: Place
     instead_of: tuple[str, ...] = ()
+    any_type: bool = False
 
 
 class NameRules(NamedTuple):
@@ -58,6 +61,16 @@ class NameRules(NamedTuple):
         Words that say nothing by themselves, such as ``raw``.
     becomes
         Category -> the categories that nodes make of it, each with its rule.
+    computed
+        Categories that programs work out of other data, so that who writes them is seldom where they come from.
+    not_by_type
+        Categories of which a type that says no more than ``may`` makes no source by itself.
+    wanted
+        Phrases: what a topic with them last carries is wished, such as ``goal_pose``, and was not measured.
+    reworked
+        Words: a topic with one of them in its last part carries what somebody made of other data, such as ``debug``.
+    simulated
+        Words: a node with one of them in its name brings in what nobody measured.
     """
 
     carries: Mapping[Phrase, NameRule]
@@ -67,6 +80,11 @@ class NameRules(NamedTuple):
     silent: frozenset[Phrase]
     neutral: frozenset[str]
     becomes: Mapping[str, Mapping[str, NameRule]]
+    computed: frozenset[str] = frozenset()
+    not_by_type: frozenset[str] = frozenset()
+    wanted: frozenset[Phrase] = frozenset()
+    reworked: frozenset[str] = frozenset()
+    simulated: frozenset[str] = frozenset()
 
 
 class Spoken(NamedTuple):
@@ -112,14 +130,40 @@ def of_topic_nothing(name: str, rules: NameRules) -> Spoken | None:
     return _last(words(name.rpartition("/")[2]), rules.nothing, frozenset(), whole=True)
 
 
-def of_node(name: str, rules: Mapping[Phrase, NameRule]) -> Spoken | None:
+def ends_with(name: str, phrases: frozenset[Phrase]) -> bool:
+    """Return whether the last words of a name are one of some phrases.
+
+    >>> ends_with("/nav/goal_pose", frozenset([("goal", "pose")])), ends_with("/goal/x", frozenset([("goal",)]))
+    (True, False)
+    """
+    part = words(name.rpartition("/")[2])
+    return any(phrase in phrases for phrase in _ending_at(part, len(part)))
+
+
+def has_word(name: str, some: frozenset[str]) -> bool:
+    """Return whether the last part of a name has one of some words.
+
+    >>> has_word("/sim/fake_camera", frozenset(["fake"])), has_word("/fake/camera", frozenset(["fake"]))
+    (True, False)
+    """
+    return not some.isdisjoint(words(name.rpartition("/")[2]))
+
+
+def of_node(name: str, rules: Mapping[Phrase, NameRule], silent: frozenset[Phrase] = frozenset()) -> Spoken | None:
     """Return the rule that speaks about a node of this name, by its own part of the name.
 
+    Parameters
+    ----------
+    silent
+        Phrases that suggest nothing as the last words: ``get_camera_params`` is no camera.
+
+    Examples
+    --------
     >>> from rosprivacy.analysis.suggesting.example_names import NAMES
     >>> of_node("/front/camera_driver", NAMES.brings_in).words, of_node("/camera/pose", NAMES.brings_in)
     (('camera',), None)
     """
-    return _last(words(name.rpartition("/")[2]), rules, frozenset())
+    return _last(words(name.rpartition("/")[2]), rules, silent)
 
 
 def _last(

@@ -2,6 +2,11 @@
 
 A source brings data in: it writes a kind that it does not read, nor makes of what it reads. A node that reads images
 and writes only identifiers derives them, and drops the images. A leak lets data out of the robot, whatever gets there.
+
+That it brings data in is in doubt, and no more than ``may``, where its name says that it simulates, and where the name
+of the topic says that somebody made it of other data (``debug_image``). Of a kind that programs work out (a pose, a
+map) the name of the topic says what goes through it, and not where it comes from: it agrees with nothing. A goal is
+where the robot shall go: who writes it is no source of where somebody is.
 """
 
 from __future__ import annotations
@@ -9,7 +14,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import Confidence, Method
-from rosprivacy.analysis.suggesting.carried_kinds import ANYTHING, cannot_carry
+from rosprivacy.analysis.suggesting.carried_kinds import ANYTHING, Clue, cannot_carry
 from rosprivacy.analysis.suggesting.evidence import (
     DATA_FLOW,
     DERIVATION,
@@ -21,14 +26,15 @@ from rosprivacy.analysis.suggesting.evidence import (
     Evidence,
     Label,
 )
-from rosprivacy.analysis.suggesting.name_rules import of_node
+from rosprivacy.analysis.suggesting.name_rules import ends_with, has_word, of_node
 from rosprivacy.analysis.suggesting.weighing import surer
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from rosprivacy.analysis.model import Bound, Element, FlowGraph
-    from rosprivacy.analysis.suggesting.carried_kinds import Clue, Rules
+    from rosprivacy.analysis.suggesting.carried_kinds import Rules
+    from rosprivacy.analysis.suggesting.name_rules import Spoken
     from rosprivacy.analysis.suggesting.traffic import Traffic
 
     Clues = Mapping[int, tuple[Clue, ...]]
@@ -65,7 +71,10 @@ def of_nodes(graph: FlowGraph, bound: Bound, told: Traffic, clues: Clues, rules:
             continue
         written, read = told.writes.get(vertex, ()), told.reads.get(vertex, ())
         typed = [(graph.elements[one], [said.name for said in bound.types.get(one, ())]) for one in written]
-        node = _Node(element, rules, typed, _by_kind(written, clues), _by_kind(read, clues))
+        carried = {one: _of_writer(graph.elements[one].name, clues.get(one, ()), rules) for one in written}
+        brought = {one: _brought_in(element.name, graph.elements[one].name, carried[one], rules) for one in written}
+        into = _by_kind(read, {one: _of_node(clues.get(one, ()), rules) for one in read})
+        node = _Node(element, rules, typed, _by_kind(written, carried), _by_kind(written, brought), into)
         if read and (spoken := of_node(element.name, rules.names.lets_out)):
             reason = f"'{'_'.join(spoken.words)}' in the name of the node: {spoken.rule.why}"
             label = Label(element, LEAK, ANYTHING)
@@ -86,26 +95,55 @@ def _by_kind(channels: Sequence[int], clues: Clues) -> ByKind:
     return found
 
 
-class _Node:
-    """One node: what it is thought to write and to read."""
+def _of_node(clues: tuple[Clue, ...], rules: Rules) -> tuple[Clue, ...]:
+    """What is thought of a topic, as far as it says something of who writes or reads it."""
+    alone = rules.names.not_by_type - {clue.kind for clue in clues if clue.ground == NAMED}
+    return tuple(clue for clue in clues if clue.kind not in alone or clue.confidence is not Confidence.MAY)
 
-    def __init__(self, element: Element, rules: Rules, written: Typed, out: ByKind, into: ByKind) -> None:
-        self.element, self.rules, self.written, self.out, self.into = element, rules, written, out, into
+
+def _of_writer(topic: str, clues: tuple[Clue, ...], rules: Rules) -> tuple[Clue, ...]:
+    """What is thought of a topic, for who writes it: what a goal may carry, it does not bring in."""
+    wish = ends_with(topic, rules.names.wanted)
+    return tuple(clue for clue in _of_node(clues, rules) if not wish or clue.confidence is not Confidence.MAY)
+
+
+def _brought_in(node: str, topic: str, clues: tuple[Clue, ...], rules: Rules) -> tuple[Clue, ...]:
+    """What is thought of a topic, as far as it says that who writes it brings it in."""
+    names = rules.names
+    if has_word(node, names.simulated) or has_word(topic, names.reworked):
+        return tuple(clue._replace(ground=DATA_FLOW, confidence=Confidence.MAY) for clue in clues)
+    return tuple(
+        clue._replace(ground=DATA_FLOW) if clue.ground == NAMED and clue.kind in names.computed else clue
+        for clue in clues
+    )
+
+
+class _Node:
+    """One node: what it is thought to write, how far that speaks of a source, and what it is thought to read."""
+
+    def __init__(
+        self, element: Element, rules: Rules, written: Typed, out: ByKind, brought: ByKind, into: ByKind
+    ) -> None:
+        self.element, self.rules, self.written = element, rules, written
+        self.out, self.brought, self.into = out, brought, into
 
     def outputs(self) -> Iterator[Evidence]:
         """Yield for each kind that is written whether the node brings it in or makes it of what it reads."""
         for kind, clues in self.out.items():
             if self._reads(kind):
                 continue
-            made_of = [one for one in self.into if kind in self.rules.names.becomes.get(one, ())]
+            made_of = self._made_of(kind)
             for one in made_of:
-                yield self._derived(one, kind)
+                yield self._derived(one, kind, surest(clues))
             if not made_of:
-                for clue in clues:
+                for clue in self.brought[kind]:
                     yield Evidence(self._label(SOURCE, kind), clue.ground, clue.confidence, clue.reason, clue.place)
 
-    def _derived(self, source: str, made: str) -> Evidence:
-        first, second = surest(self.into[source]), surest(self.out[made])
+    def _made_of(self, kind: str) -> list[str]:
+        return [one for one in self.into if kind in self.rules.names.becomes.get(one, ())]
+
+    def _derived(self, source: str, made: str, second: Clue) -> Evidence:
+        first = surest(self.into[source])
         sure = first.confidence if surer(second.confidence, first.confidence) else second.confidence
         sure = Confidence.LIKELY if sure is Confidence.CERTAIN else sure
         rule = self.rules.names.becomes[source][made]
@@ -113,12 +151,26 @@ class _Node:
         return Evidence(self._label(DERIVATION, source)._replace(to=made), DATA_FLOW, sure, reason, rule.place)
 
     def by_name(self) -> Iterator[Evidence]:
-        """Yield of which kinds the name of the node says that it brings them in; what it writes has to be able to."""
-        spoken = of_node(self.element.name, self.rules.names.brings_in)
+        """Yield of which kinds the name of the node says that it brings them in, or makes them of what it reads.
+
+        What it writes has to be able to carry them.
+        """
+        names = self.rules.names
+        spoken = of_node(self.element.name, names.brings_in, names.silent)
         for kind in spoken.rule.kinds if spoken else ():
-            if spoken and not self._reads(kind) and not self._cannot_write(kind):
-                reason = f"'{'_'.join(spoken.words)}' in the name of the node: {spoken.rule.why}"
-                yield Evidence(self._label(SOURCE, kind), NAMED, spoken.rule.confidence, reason, spoken.rule.place)
+            if spoken and not self._reads(kind) and (spoken.rule.any_type or not self._cannot_write(kind)):
+                yield from self._by_its_name(kind, spoken)
+
+    def _by_its_name(self, kind: str, spoken: Spoken) -> Iterator[Evidence]:
+        rule = spoken.rule
+        reason = f"'{'_'.join(spoken.words)}' in the name of the node: {rule.why}"
+        made_of = self._made_of(kind)
+        for one in made_of:
+            yield self._derived(one, kind, Clue(kind, NAMED, rule.confidence, reason, rule.place))
+        if not made_of:
+            simulated = has_word(self.element.name, self.rules.names.simulated)
+            ground, sure = (DATA_FLOW, Confidence.MAY) if simulated else (NAMED, rule.confidence)
+            yield Evidence(self._label(SOURCE, kind), ground, sure, reason, rule.place)
 
     def dropped(self) -> Iterator[Evidence]:
         """Yield the kinds that come in for sure enough and that nothing that is written is made for."""

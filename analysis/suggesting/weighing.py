@@ -3,8 +3,9 @@
 The rules, in full (docs/suggestions.md):
 
 1. A proposal is as sure as its surest evidence.
-2. Where two independent grounds (code, package, type, name) each say no more than ``may``, both together are
-   ``likely``. Agreement never makes anything ``certain``: that is for one ground to say.
+2. Where two independent grounds (code, type, name) each say no more than ``may``, both together are ``likely``. Who
+   wrote of a package that it ``may`` knew its types. Agreement never makes anything ``certain``: that is for one ground
+   to say.
 3. What could hide a leak (sanitizer, conduit, mundane, never) is ``may``, whatever agrees; it is ``likely`` only if the
    catalogue of packages says so.
 4. What takes data away (all of these but conduit) is ``may`` also there, for a kind of which a finding is known.

@@ -28,8 +28,10 @@ if TYPE_CHECKING:
 
 NAMES = "rosprivacy:names"  # the shipped file
 WITH_KINDS, WITHOUT_KINDS = ("carries", "brings_in"), ("nothing", "lets_out")
-PARTS = ("name_rules", "version", "silent", "neutral", *WITH_KINDS, *WITHOUT_KINDS, "becomes")
-KEYS = ("words", "kinds", "confidence", "why", "source", "instead_of")
+LISTS = ("silent", "neutral", "computed", "not_by_type", "wanted", "reworked", "simulated")
+PARTS = ("name_rules", "version", *WITH_KINDS, *WITHOUT_KINDS, "becomes", *LISTS)
+OF_KINDS = ("kinds", "instead_of", "any_type")  # for rules that name kinds
+KEYS = ("words", "confidence", "why", "source", *OF_KINDS)
 SURE = (Confidence.LIKELY, Confidence.MAY)  # a name proves nothing, so no rule about one is certain
 
 
@@ -47,6 +49,11 @@ class NameFile:
     sha256: str
     silent: frozenset[Phrase]
     neutral: frozenset[str]
+    computed: frozenset[str]
+    not_by_type: frozenset[str]
+    wanted: frozenset[Phrase]
+    reworked: frozenset[str]
+    simulated: frozenset[str]
     sections: dict[str, dict[Phrase, NameRule]]
 
 
@@ -89,6 +96,11 @@ def read_name_rules(
         silent=_silent(read),
         neutral=frozenset().union(*(one.neutral for one in read)),
         becomes=becomes,
+        computed=frozenset().union(*(one.computed for one in read)),
+        not_by_type=frozenset().union(*(one.not_by_type for one in read)),
+        wanted=frozenset().union(*(one.wanted for one in read)),
+        reworked=frozenset().union(*(one.reworked for one in read)),
+        simulated=frozenset().union(*(one.simulated for one in read)),
     )
     return rules, tuple((one.file, one.sha256) for one in read)
 
@@ -133,15 +145,30 @@ class _Reader(FileReader):
                 self._rule(section, item)
         for item in self._items(said, "becomes"):
             self._becomes(item)
-        silent = frozenset(phrase for item in self._items(said, "silent") if (phrase := self._phrase(item)))
-        neutral = frozenset(word for item in self._items(said, "neutral") for word in self._phrase(item))
-        return NameFile(self.file, digest, silent, neutral, self.sections)
+        return NameFile(
+            self.file,
+            digest,
+            silent=self._phrases(said, "silent"),
+            neutral=self._words(said, "neutral"),
+            computed=frozenset(self._kinds(said, "computed")),
+            not_by_type=frozenset(self._kinds(said, "not_by_type")),
+            wanted=self._phrases(said, "wanted"),
+            reworked=self._words(said, "reworked"),
+            simulated=self._words(said, "simulated"),
+            sections=self.sections,
+        )
+
+    def _phrases(self, said: dict[str, Value], key: str) -> frozenset[Phrase]:
+        return frozenset(phrase for item in self._items(said, key) if (phrase := self._phrase(item)))
+
+    def _words(self, said: dict[str, Value], key: str) -> frozenset[str]:
+        return frozenset(word for item in self._items(said, key) for word in self._phrase(item))
 
     def _items(self, said: dict[str, Value], key: str) -> tuple[Value, ...]:
         return self.list_of(said[key], key) if key in said else ()
 
     def _rule(self, section: str, item: Value) -> None:
-        keys = KEYS if section in WITH_KINDS else tuple(key for key in KEYS if key not in ("kinds", "instead_of"))
+        keys = KEYS if section in WITH_KINDS else tuple(key for key in KEYS if key not in OF_KINDS)
         said = self._entry(item, keys, ("words", "why", *(("kinds",) if section in WITH_KINDS else ())))
         rule = NameRule(
             self._kinds(said, "kinds"),
@@ -149,6 +176,7 @@ class _Reader(FileReader):
             said["why"].text if "why" in said else "",
             Place(self.file, item.line),
             self._kinds(said, "instead_of"),
+            self._is_true(said, "any_type"),
         )
         known = self.sections[section]
         for word in self._items(said, "words"):
@@ -181,6 +209,13 @@ class _Reader(FileReader):
             self.problem(item.line, f"{shown(item.text or item.kind)!r} is no word of a name", hint)
             return ()
         return phrase
+
+    def _is_true(self, said: dict[str, Value], key: str) -> bool:
+        if key in said and said[key].text != "true":
+            self.problem(
+                said[key].line, f"{key} {shown(said[key].text or said[key].kind)!r}", "write true or leave it out"
+            )
+        return key in said
 
     def _confidence(self, said: dict[str, Value]) -> Confidence:
         if "confidence" not in said:

@@ -100,7 +100,7 @@ def test_a_node_that_reads_what_it_writes_brings_nothing_in(cli: Cli, tmp_path: 
     ("name", "type_", "expected"),
     [
         ("person_pose", POSE, ("PersonTrack", "likely")),  # both say may
-        ("pose", POSE, ("RobotPosition", "likely")),
+        ("pose", POSE, ("RobotPosition", "may")),  # programs work it out: who writes it is seldom where it comes from
         ("x", POSE, ("RobotPosition", "may")),
         ("person", "", ("PersonTrack", "may")),  # a name alone
         ("depth/image", IMAGE, ("DepthImage", "likely")),
@@ -115,6 +115,53 @@ def test_a_name_and_a_type_that_agree_are_surer(
     (tmp_path / "p.xml").write_text(policy_of({"n": ([f"/{name}"], [])}), "utf-8")
     (tmp_path / "l.yaml").write_text(typed(**{name: type_}) if type_ else "labels: 1\n", "utf-8")
     assert ("/n", "source", *expected) in rows(cli, tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("node", "topic", "type_", "expected"),
+    [
+        ("camera", "image", IMAGE, ["Video likely"]),
+        ("gazebo_camera", "image", IMAGE, ["Video may"]),  # nobody measured it
+        ("camera", "image_annotated", IMAGE, ["Video may"]),  # made of another picture
+        ("n", "debug_image", IMAGE, ["Video may"]),
+        ("n", "map", "nav_msgs/msg/OccupancyGrid", ["HomeMap may"]),  # worked out of other data
+        ("n", "odom", "nav_msgs/msg/Odometry", ["RobotPosition may"]),
+        ("n", "goal_pose", POSE, []),  # where it shall go
+        ("n", "pose", POSE, ["RobotPosition may"]),
+        ("n", "goal_markers", "visualization_msgs/msg/MarkerArray", []),
+        ("n", "people_markers", "visualization_msgs/msg/MarkerArray", ["PersonTrack may"]),
+        ("n", "imu", "sensor_msgs/msg/Imu", []),  # of the machine
+        ("keyboard_teleop", "cmd_vel", TWIST, ["OperatorInput may"]),  # what an operator does can have any type
+        ("planner", "cmd_vel", TWIST, []),
+        ("camera", "cmd_vel", TWIST, []),
+        ("n", "pir", "std_msgs/msg/Bool", ["Presence may"]),
+        ("n", "face", "std_msgs/msg/Bool", []),
+    ],
+)
+def test_what_puts_a_source_in_doubt(
+    cli: Cli, tmp_path: Path, node: str, topic: str, type_: str, expected: list[str]
+) -> None:
+    (tmp_path / "p.xml").write_text(policy_of({node: ([f"/{topic}"], [])}), "utf-8")
+    (tmp_path / "l.yaml").write_text(typed(**{topic: type_}), "utf-8")
+    found = [f"{kind} {sure}" for _, role, kind, sure in rows(cli, tmp_path) if role == "source"]
+    assert [one for one in found if not one.startswith(("DepthImage", "ThermalImage"))] == expected
+
+
+@pytest.mark.parametrize(
+    ("node", "read", "type_", "expected"),
+    [
+        ("stt_node", "microphone", "audio_common_msgs/msg/AudioData", "Voice SpeechTranscript"),
+        ("person_detector", "image", IMAGE, "Video PersonDetection"),
+    ],
+)
+def test_a_node_whose_name_says_what_it_makes_derives_it(
+    cli: Cli, tmp_path: Path, node: str, read: str, type_: str, expected: str
+) -> None:
+    (tmp_path / "p.xml").write_text(policy_of({node: (["/x"], [f"/{read}"])}), "utf-8")
+    (tmp_path / "l.yaml").write_text(typed(**{read: type_}), "utf-8")
+    found = rows(cli, tmp_path)
+    assert (f"/{node}", "derivation", expected, "may") in found
+    assert not [row for row in found if row[:2] == (f"/{node}", "source")]
 
 
 @pytest.mark.parametrize("type_", [TWIST, "std_msgs/msg/Bool"])

@@ -8,7 +8,7 @@ import pytest
 
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.model import Confidence
-from rosprivacy.analysis.suggesting.name_rules import of_node, of_topic, of_topic_nothing
+from rosprivacy.analysis.suggesting.name_rules import ends_with, has_word, of_node, of_topic, of_topic_nothing
 from rosprivacy.ingest.suggestions.name_file import read_name_rules
 from rosprivacy.ontology.vocabulary import load
 
@@ -69,6 +69,15 @@ OWN_KIND = """@prefix : <http://example.org/> . @prefix skos: <http://www.w3.org
         ("/joy", "OperatorInput"),
         ("/ble/beacons", "WirelessDeviceId"),
         ("/rfid", "StaffBadge"),
+        ("/voice_text", "SpeechTranscript"),  # text is no sound
+        ("/asr/text", "SpeechTranscript"),
+        ("/llm_response", "ConversationWithModel"),
+        ("/visitor_name", "PersonName"),
+        ("/pir", "Presence"),
+        ("/position", "RobotPosition"),
+        ("/object_tracker/current_position", "PersonTrack"),  # of what is followed
+        ("/cmd_vel_teleop", "OperatorInput"),
+        ("/gripper_position", ""),
         ("/delivery_order", "DeliveryOrder"),
         ("/camera/camera_info", ""),  # the last words say what it is
         ("/camera/parameter_events", ""),
@@ -107,13 +116,49 @@ def test_what_is_made_for_the_machine(name: str, nothing: int) -> None:
         ("/joy_node", "OperatorInput"),
         ("/thermal_camera", "ThermalImage"),
         ("/map_server", "HomeMap"),
+        ("/stt_node", "SpeechTranscript"),
+        ("/whisper", "SpeechTranscript"),
+        ("/voice_command", "VoiceCommand"),
+        ("/chat_gpt_node", "ConversationWithModel"),
+        ("/face_recognition_node", "PersonIdentifier"),
+        ("/person_detector", "PersonDetection"),
+        ("/people_tracker", "PersonTrack"),
+        ("/pir_node", "Presence"),
+        ("/rfid_reader", "StaffBadge"),
+        ("/audio_input_node", "Voice"),
+        ("/keyboard_driver", "OperatorInput"),
+        ("/web_gui", "OperatorInput"),
+        ("/get_camera_params", None),  # it asks for settings
         ("/camera/controller", None),
         ("/planner_server", None),
     ],
 )
 def test_what_a_node_brings_in_by_its_name(name: str, kinds: str | None) -> None:
-    spoken = of_node(name, SHIPPED.brings_in)
+    spoken = of_node(name, SHIPPED.brings_in, SHIPPED.silent)
     assert (spoken and " ".join(spoken.rule.kinds)) == kinds
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("/nav/goal_pose", "wanted"),
+        ("/initialpose", "wanted"),
+        ("/debug_image", "reworked"),
+        ("/image_annotated", "reworked"),
+        ("/gazebo_driver", "simulated"),
+        ("/fake_camera", "simulated"),
+        ("/pose", ""),
+        ("/debug/image", ""),  # its last part is asked
+        ("/similar_camera", ""),  # whole words only
+    ],
+)
+def test_what_puts_a_source_in_doubt(name: str, said: str) -> None:
+    found = {
+        "wanted": ends_with(name, SHIPPED.wanted),
+        "reworked": has_word(name, SHIPPED.reworked),
+        "simulated": has_word(name, SHIPPED.simulated),
+    }
+    assert [one for one, is_so in found.items() if is_so] == ([said] if said else [])
 
 
 @pytest.mark.parametrize(
@@ -129,6 +174,14 @@ def test_what_a_node_brings_in_by_its_name(name: str, kinds: str | None) -> None
         ("/tts", True),
         ("/email_notifier", True),
         ("/fleet_adapter", True),
+        ("/vlm_controller", True),
+        ("/asr_server", True),
+        ("/scada_node", True),
+        ("/map_saver", True),
+        ("/data_collector", True),
+        ("/image_capture", True),
+        ("/text_to_speech", True),
+        ("/cloud_bridge", True),
         ("/controller_server", False),
         ("/bridge/planner", False),
     ],
@@ -173,6 +226,8 @@ def test_a_users_rules_stand_before_ours_and_a_kind_of_their_own_takes_part(tmp_
          "f.yaml:3: unknown key 'kinds'; one of words, confidence, why, source"),
         ("name_rules: 1\nnothing:\n- {words: [a], why: x, confidence: certain}\n",
          "f.yaml:3: confidence 'certain'; write likely or may: a name proves nothing"),
+        ("name_rules: 1\ncarries:\n- {words: [a], kinds: [Video], why: x, any_type: 1}\n",
+         "f.yaml:3: any_type '1'; write true or leave it out"),
         ("name_rules: 1\nbecomes:\n- {from: Video, why: x}\n", "f.yaml:3: a rule without to; write from, to, why"),
     ],
 )  # fmt: skip
