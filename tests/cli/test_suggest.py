@@ -185,6 +185,13 @@ def test_open_elements_come_first_with_their_neighbours(cli: Cli, robot: Path) -
     assert not [row for row in said if row[0] == "/driver" and row[2] == "Video"]  # a person has spoken of it
 
 
+def test_where_data_end_it_is_asked_what_a_conduit_there_means(cli: Cli, tmp_path: Path) -> None:
+    (tmp_path / "p.xml").write_text(policy_of({"eye": (["/a"], []), "unknown": ([], ["/a"])}), "utf-8")
+    (tmp_path / "l.yaml").write_text("labels: 1\nnodes:\n  /eye: {source: [Video]}\n", "utf-8")
+    text = cli("suggest", "p.xml", "-l", "l.yaml", cwd=tmp_path).stdout
+    assert "a conduit only if the node neither keeps it, nor shows it, nor sends it elsewhere" in text
+
+
 def test_of_an_open_node_that_lets_data_out_no_conduit_is_suggested(cli: Cli, robot: Path) -> None:
     """A conduit of a narrower kind would outrank the leak (rule S7)."""
     (robot / "l.yaml").write_text("labels: 1\nnodes:\n  /driver: {source: [Video]}\n", "utf-8")
