@@ -353,7 +353,7 @@ def test_no_reason_is_cut(cli: Cli, tmp_path: Path) -> None:
     cli("labels", "--accept", "/face_recognizer", "--by", "Ada", "-l", "l.yaml", cwd=tmp_path)
     text = (tmp_path / "l.yaml").read_text("utf-8")
     assert "…" not in text
-    assert "detectors, recognisers and trackers make it of pictures" in text.partition("# suggest")[0]
+    assert "trackers and models that describe what they see make it of pictures" in text.partition("# suggest")[0]
 
 
 def test_all_of_a_confidence_are_accepted_but_what_could_hide_a_leak(cli: Cli, robot: Path) -> None:
