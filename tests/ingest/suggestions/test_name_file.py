@@ -128,6 +128,8 @@ def test_what_is_made_for_the_machine(name: str, nothing: int) -> None:
         ("/audio_input_node", "Voice"),
         ("/keyboard_driver", "OperatorInput"),
         ("/web_gui", "OperatorInput"),
+        ("/voice_node", "SpeechTranscript"),
+        ("/hotword_detector", "VoiceCommand"),
         ("/get_camera_params", None),  # it asks for settings
         ("/camera/controller", None),
         ("/planner_server", None),
@@ -145,6 +147,8 @@ def test_what_a_node_brings_in_by_its_name(name: str, kinds: str | None) -> None
         ("/initialpose", "wanted"),
         ("/debug_image", "reworked"),
         ("/image_annotated", "reworked"),
+        ("/scan_filtered", "reworked"),
+        ("/image_rect_color", ""),  # drivers of cameras rectify, too
         ("/gazebo_driver", "simulated"),
         ("/fake_camera", "simulated"),
         ("/pose", ""),
