@@ -80,9 +80,8 @@ def of_open(
     for question in questions:
         vertices = at[question.element.shown_as]
         if question.element.is_node:
-            let_out = sorted(
-                {k for v in vertices for s in bound.elements.get(v, ()) if s.role == LEAK for k in s.categories}
-            )
+            statements = [one for vertex in vertices for one in bound.elements.get(vertex, ())]
+            let_out = sorted({kind for one in statements if one.role == LEAK for kind in one.categories})
             yield from _let_out(question, let_out) if let_out else _passed_on(question, vertices, graph, told)
         elif question.element.is_channel:
             yield from _at_channel(question, vertices, graph, bound, told, rules)
