@@ -40,11 +40,14 @@ class Enforced(NamedTuple):
     answer
         Under the enforced view.
     added
-        The findings that only this view has, in its order.
+        The findings that only this view has, in its order; and those in which it alone has plain data.
+    unreviewed
+        How many elements are open in this view only, or for more categories.
     """
 
     answer: Answer
     added: tuple[Added, ...]
+    unreviewed: int = 0
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,7 @@ from hypothesis import strategies as st
 import rosprivacy
 from rosprivacy.analysis.modes import View
 from rosprivacy.both_views import both_views
+from rosprivacy.remedies import TRIED
 from rosprivacy.settings import Settings
 from tests.helpers.command import cli
 from tests.helpers.paths import ROOT
@@ -39,7 +40,7 @@ RIGHTS = [
 ]
 LABELS = (
     "{source: [Video]}", "{leak: [Video]}", "{sanitizer: {Video: anonymise}}", "conduit",
-    "{source: [Voice], leak: [Video]}",
+    "{source: [Voice], leak: [Video]}", "{sanitizer: {Video: pseudonymise}}",
 )  # fmt: skip
 
 systems = st.tuples(
@@ -101,10 +102,17 @@ def may(enclaves: Enclaves) -> set[tuple[str, str, str]]:
     return found
 
 
-def ids(text: str, view: View) -> set[str]:
+def ids(text: str, view: View) -> dict[str, bool]:
+    """The findings that stand, and whether only in pseudonymised form."""
     Path("q.xml").write_text(text)
     result = rosprivacy.analyze("q.xml", "l.yaml", view=view)
-    return {finding.id for finding in result.analysis.findings if finding.stands}
+    return {finding.id: finding.pseudonymised for finding in result.analysis.findings if finding.stands}
+
+
+def is_gone(entry: Mapping[str, Any], enclaves: Enclaves) -> bool:
+    """Whether a policy has no longer what the enforced view adds: where that is plain data, a pseudonymised rest is."""
+    left = ids(policy(enclaves), View.enforced).get(entry["finding"]["id"])
+    return left is None or (left and "plain" in entry)
 
 
 @given(systems)
@@ -122,20 +130,20 @@ def test_what_is_added_is_what_the_union_of_all_profiles_has_and_splitting_ends_
         except rosprivacy.InputErrors:
             assume(False)
             raise
-        declared = {finding.id for finding in result.analysis.findings if finding.stands}
+        declared = {finding.id: finding.pseudonymised for finding in result.analysis.findings if finding.stands}
         added = {entry["finding"]["id"] for entry in enforced["added"]}
-        of_union = ids(policy(union(enclaves)), View.declared)
-        assert declared <= of_union
-        assert added == of_union - declared
+        whole = ids(policy(union(enclaves)), View.declared)
+        assert declared.keys() <= whole.keys()
+        assert added == {one for one in whole if one not in declared or (declared[one] and not whole[one])}
         for entry in enforced["added"]:
             assert entry["enclaves"]
             assert entry["split"]
-            assert entry["finding"]["id"] not in ids(policy(apart(enclaves, entry["split"])), View.enforced)
+            assert is_gone(entry, apart(enclaves, entry["split"]))
             if entry["move"]:
-                assert entry["finding"]["id"] not in ids(policy(moved(enclaves, entry["move"])), View.enforced)
+                assert is_gone(entry, moved(enclaves, entry["move"]))
             if entry["deny"]:
                 after = with_denials(enclaves, entry["deny"])
-                assert entry["finding"]["id"] not in ids(policy(after), View.enforced)
+                assert is_gone(entry, after)
                 lost = {(one["node"]["name"], one["role"], one["channel"]["name"]) for one in entry["loses"]}
                 assert {one for one in lost if one[2] != "/*"} == may(enclaves) - may(after)
             else:
@@ -241,6 +249,106 @@ def test_one_that_a_person_has_accepted_is_told_all_the_same_and_its_remedies_ar
     assert [one["suppressions"][0]["status"] for one in run["results"] if one["ruleId"] == "beyond-profile"] == [
         "accepted"
     ]
+
+
+@pytest.mark.usefixtures("example")
+def test_plain_data_beside_what_the_declared_view_has_pseudonymised_is_added(cli: Cli) -> None:
+    """S10: a finding is pseudonymised only if nothing plain arrives; of one id both views say another thing."""
+    Path("l.yaml").write_text(EXAMPLE_LABELS.replace("anonymise", "pseudonymise"))
+    document = both_views(("p.xml",), ("l.yaml",), Settings()).document()
+    [declared] = document["findings"]
+    [entry] = document["enforced"]["added"]
+    assert entry["finding"]["id"] == declared["id"]
+    assert (declared["pseudonymised"], entry["finding"]["pseudonymised"], entry["plain"]) == (True, False, True)
+    assert (entry["enclaves"], entry["split"]) == (["/robot"], ["/robot"])
+    Path("q.xml").write_text(policy(apart(EXAMPLE, ["/robot"])))
+    [left] = rosprivacy.analyze("q.xml", "l.yaml", view=View.enforced).analysis.findings
+    assert left.pseudonymised
+    arguments = ("p.xml", "-l", "l.yaml", "--view", "both")
+    assert "   the declared view has it, too, but pseudonymised only" in cli("analyze", *arguments).stdout
+    assert "in pseudonymised form only. This is about the plain data." in cli("report", *arguments).stdout
+    assert "but pseudonymised only" in cli("analyze", *arguments, "-f", "sarif").stdout
+    schema = json.loads((ROOT / "docs" / "analysis.schema.json").read_text("utf-8"))
+    jsonschema.Draft202012Validator(schema).validate(document)
+
+
+@pytest.mark.usefixtures("example")
+def test_what_only_the_enforced_view_leaves_open_is_counted_beside_no_finding(cli: Cli) -> None:
+    """S11, S12: the declared view finds nothing and leaves nothing open; the other reaches a node nobody reviewed."""
+    Path("l.yaml").write_text(EXAMPLE_LABELS.replace("/uplink: {leak: [Video]}", "/none: {leak: [Video]}"))
+    enclaves = {**EXAMPLE, "/none": {"/none": [("subscribe", "/nothing", "ALLOW")]}}
+    Path("p.xml").write_text(policy(enclaves))
+    document = both_views(("p.xml",), ("l.yaml",), Settings()).document()
+    assert (document["verdict"], document["enforced"]["verdict"]) == ("no-leak-found", "undetermined")
+    assert (document["enforced"]["added"], document["enforced"]["unreviewed"]) == ([], 1)
+    arguments = ("p.xml", "-l", "l.yaml", "--view", "both")
+    assert "it also leaves 1 element open that nobody has reviewed" in cli("analyze", *arguments).stdout
+    assert "1 element that nobody has reviewed for it" in cli("report", *arguments).stdout
+
+
+@pytest.mark.usefixtures("example")
+def test_a_wildcard_of_another_enclave_that_fewer_denys_cut_is_beyond_the_own_one_of_that_name() -> None:
+    """S5, S6: /camera may write all of /a* but /ab; in its other enclave somebody else may write /ab, too."""
+    camera = [("publish", "/a*", "ALLOW"), ("publish", "/ab", "DENY")]
+    other = {"/camera": [("subscribe", "/z", "ALLOW")], "/other": [("publish", "/a*", "ALLOW")]}
+    enclaves = {"/e": {"/camera": camera}, "/f": other, "/g": {"/uplink": [("subscribe", "/ab", "ALLOW")]}}
+    Path("p.xml").write_text(policy(enclaves))
+    Path("l.yaml").write_text("labels: 1\nnodes: {/camera: {source: [Video]}, /uplink: {leak: [Video]}}\n")
+    [entry] = both_views(("p.xml",), ("l.yaml",), Settings()).document()["enforced"]["added"]
+    assert (entry["beyond"], entry["enclaves"], entry["split"]) == ([0], ["/f"], ["/f"])
+
+
+@pytest.mark.usefixtures("example")
+@pytest.mark.parametrize(
+    ("kind", "name", "role", "parts"),
+    [
+        ("topic", "/c/_action/feedback", ("publish", "subscribe"), ["feedback", "status"]),
+        ("service", "/c/_action/send_goal", ("request", "reply"), ["cancel_goal", "get_result", "send_goal"]),
+    ],
+)
+def test_a_deny_of_parts_of_an_action_is_one_that_can_be_written(
+    kind: str, name: str, role: tuple[str, str], parts: list[str]
+) -> None:
+    """S3: parts are folded into the action, of which no line says publish, subscribe, request or reply."""
+    lines = {
+        node: f'<{kind}s {does}="ALLOW"><{kind}>{name}</{kind}></{kind}s>'
+        for node, does in zip("xl", role, strict=True)
+    }
+    profiles = {"/e": {"s": "", "x": lines["x"]}, "/g": {"l": lines["l"]}}
+
+    def text(denied: str) -> str:
+        found = ""
+        for path, nodes in profiles.items():
+            said = "".join(
+                f'<profile ns="/" node="{n}">{own}{denied if n == "x" else ""}</profile>' for n, own in nodes.items()
+            )
+            found += f'<enclave path="{path}"><profiles>{said}</profiles></enclave>'
+        return f'<policy version="0.2.0"><enclaves>{found}</enclaves></policy>'
+
+    Path("p.xml").write_text(text(""))
+    Path("l.yaml").write_text("labels: 1\nnodes: {/s: {source: [Video]}, /l: {leak: [Video]}}\n")
+    [entry] = both_views(("p.xml",), ("l.yaml",), Settings()).document()["enforced"]["added"]
+    deny = [(line["role"], line["channel"]["kind"], line["channel"]["name"]) for line in entry["deny"]]
+    assert deny == [(role[0], kind, f"/c/_action/{part}") for part in parts]
+    added = "".join(f'<{k}s {r}="DENY"><{k}>{n}</{k}></{k}s>' for r, k, n in deny)
+    assert entry["finding"]["id"] not in ids(text(added), View.enforced)
+
+
+@pytest.mark.usefixtures("example")
+def test_where_no_more_is_tried_it_is_not_said_that_splitting_ends_nothing(cli: Cli) -> None:
+    """Each finding has a pair of enclaves of its own; S11: what is not known is said."""
+    enclaves: Enclaves = {}
+    said = "labels: 1\nnodes:\n"
+    for i in range(TRIED + 1):
+        enclaves[f"/e{i}"] = {f"/s{i}": [], f"/x{i}": [("publish", f"/t{i}", "ALLOW")]}
+        enclaves[f"/l{i}"] = {f"/l{i}": [("subscribe", f"/t{i}", "ALLOW")]}
+        said += f"  /s{i}: {{source: [Video]}}\n  /l{i}: {{leak: [Video]}}\n"
+    Path("p.xml").write_text(policy(enclaves))
+    Path("l.yaml").write_text(said)
+    arguments = ("p.xml", "-l", "l.yaml", "--view", "both")
+    none = f"; for all findings together, {TRIED} sets are tried at most"
+    assert cli("analyze", *arguments).stdout.count(none) == 1
+    assert none in cli("report", *arguments).stdout
 
 
 @pytest.mark.usefixtures("example")

@@ -49,6 +49,19 @@ def rows(driver: Driver, cypher: str) -> list[list[Any]]:
     return [list(record.values()) for record in driver.execute_query(cypher)[0]]
 
 
+def test_plain_data_is_added_beside_the_finding_that_has_it_pseudonymised(cli: Cli, driver: Driver) -> None:
+    """Both have one id; each keeps its own ends (S6, S10)."""
+    Path("l.yaml").write_text(EXAMPLE_LABELS.replace("anonymise", "pseudonymise"))
+    assert cli(*LOAD, "--view", "both").returncode == 0
+    found = """MATCH (a)<-[:FROM]-(f:Finding)-[:TO]->(b), (x)<-[:FROM]-(g:AddedFinding)-[:TO]->(y)
+        RETURN f.id = g.id, f.pseudonymised, g.pseudonymised, g.plain, a = x, b = y, g.split"""
+    assert rows(driver, found) == [[True, True, False, True, True, True, ["/robot"]]]
+    ends = "MATCH (:Finding)-[r:FROM|TO|OF_CATEGORY]->() RETURN type(r), count(*) ORDER BY type(r)"
+    assert rows(driver, ends) == [["FROM", 1], ["OF_CATEGORY", 1], ["TO", 1]]
+    assert cli(*LOAD).returncode == 0
+    assert rows(driver, "MATCH (f:Finding) OPTIONAL MATCH (g:AddedFinding) RETURN count(f), count(g)") == [[1, 0]]
+
+
 def test_a_finding_has_its_enclave_and_its_steps_and_goes_when_it_is_loaded_otherwise(cli: Cli, driver: Driver) -> None:
     assert cli(*LOAD, "--view", "both").returncode == 0
     found = """MATCH (f:AddedFinding {view: 'enforced'})-[:MADE_POSSIBLE_BY]->(e:Enclave)<-[:ENDED_BY_SPLITTING]-(f)

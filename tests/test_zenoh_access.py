@@ -255,6 +255,19 @@ def test_both_views_name_the_sessions_that_are_not_told_apart(cli: Cli, tmp_path
     assert entry["enclaves"] == entry["split"] == ["zenoh:any-session"]
 
 
+def test_no_deny_of_a_profile_and_no_move_of_one_process_is_told_of_access_lists(cli: Cli, tmp_path: Path) -> None:
+    """Neither can be written there; who has a certificate is still let in where everybody is (S6)."""
+    sends = rule("out", "allow", "put", "egress", "0/other/*/*")
+    takes = rule("in", "allow", "put", "ingress", "0/video/*/*", "0/log/*/*")
+    logger = rule("out", "allow", "put", "egress", "0/log/*/*"), rule("in", "allow", "put", "ingress", "0/video/*/*")
+    files = [put(tmp_path / "camera.json5", sends), put(tmp_path / "uplink.json5", takes)]
+    files.append(put(tmp_path / "logger.json5", *logger))
+    (tmp_path / "labels.yaml").write_text(LABELS, "utf-8")
+    done = cli("analyze", *files, "-l", tmp_path / "labels.yaml", "--view", "both", "--format", "json")
+    (entry,) = json.loads(done.stdout)["enforced"]["added"]
+    assert (entry["split"], entry["move"], entry["deny"]) == (["zenoh:any-session"], None, [])
+
+
 def test_check_says_who_is_let_in(cli: Cli, tmp_path: Path) -> None:
     policy = tmp_path / "robot.policy.xml"
     policy.write_text(

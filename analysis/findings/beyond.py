@@ -11,11 +11,11 @@ from rosprivacy.analysis.many_flows import one_by_one, parted
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Finding
-    from rosprivacy.analysis.model import FlowGraph, Place
+    from rosprivacy.analysis.model import Element, FlowGraph, Place
 
 Key = tuple[str, str, str]
 Right = tuple[Key, str, Key]  # node, role, channel
-Ends = tuple[Key, Key, str]  # of a flow, and its role
+Ends = tuple[Key, Key, str, tuple[str, ...]]  # of a flow, its role, and what DENYs take out of its wildcard
 MATCHES = "matches"
 
 
@@ -45,6 +45,8 @@ class Added(NamedTuple):
     ----------
     finding
         Of a fleet the first one of its pattern.
+    plain
+        Whether the declared view has it, too, but in pseudonymised form only: then this is about the plain data.
     findings
         Of a fleet those of the graph that differ from it only in the robot, itself first.
     beyond
@@ -75,6 +77,7 @@ class Added(NamedTuple):
     robots: tuple[str, ...] = ()
     opened: tuple[Place, ...] = ()
     findings: tuple[Finding, ...] = ()
+    plain: bool = False
 
 
 def rights(graph: FlowGraph) -> frozenset[Right]:
@@ -116,13 +119,23 @@ def granted(graph: FlowGraph) -> frozenset[Ends]:
     Examples
     --------
     >>> from rosprivacy.analysis.example import factory
-    >>> source, target, role = sorted(granted(factory()[0]))[0]
+    >>> source, target, role, _ = sorted(granted(factory()[0]))[0]
     >>> source[2], target[2], role
     ('/archive', 'disk', 'flow')
     """
     elements = graph.elements
     stored = parted(graph.flows)[0]
-    return frozenset((elements[f.source].identity, elements[f.target].identity, f.role) for _, f in stored)
+    return frozenset(ends(elements[f.source], elements[f.target], f.role) for _, f in stored)
+
+
+def ends(source: Element, target: Element, role: str) -> Ends:
+    """Return what a flow goes between: two wildcards that are written alike differ in what DENYs take out of them.
+
+    >>> from rosprivacy.analysis.model import Element
+    >>> ends(Element("node", "/a"), Element("topic", "/v*", side="write", without=("rt/vx",)), "publish")[2:]
+    ('publish', ('rt/vx',))
+    """
+    return source.identity, target.identity, role, (*source.without, *target.without)
 
 
 def beyond(finding: Finding, declared: frozenset[Ends]) -> tuple[int, ...]:
@@ -134,8 +147,8 @@ def beyond(finding: Finding, declared: frozenset[Ends]) -> tuple[int, ...]:
     >>> beyond(finding, granted(factory()[0])), beyond(finding, frozenset())
     ((), (0, 1, 2, 3))
     """
-    ends = ((step.source.identity, step.target.identity, step.role) for step in finding.steps)
-    return tuple(n for n, key in enumerate(ends) if finding.steps[n].grants and key not in declared)
+    keys = (ends(step.source, step.target, step.role) for step in finding.steps)
+    return tuple(n for n, key in enumerate(keys) if finding.steps[n].grants and key not in declared)
 
 
 def enclaves_of(finding: Finding, steps: tuple[int, ...]) -> tuple[str, ...]:

@@ -105,7 +105,8 @@ def _evidence(graph: FlowGraph, match: _Match, channels: Channels) -> Iterator[E
     seen = sum(_confirmed(one, base, channels) for one in interfaces)
     matched = bool(interfaces) and 2 * seen >= len(interfaces)
     by = f"its name, {seen} of {len(interfaces)} of its interfaces" if seen else "its name alone"
-    for claim in _claims(match.node) if interfaces and not seen and _all_typed(channels) else match.node.claims:
+    another = bool(interfaces) and not seen and _all_typed(channels)
+    for claim in _leaks_of_others_data(match.node) if another else match.node.claims:
         label = Label(element, claim.role, claim.kind, claim.method, claim.to)
         confidence = claim.confidence if matched else Confidence.MAY
         where = f", to a {claim.where}" if claim.where else ""
@@ -113,8 +114,8 @@ def _evidence(graph: FlowGraph, match: _Match, channels: Channels) -> Iterator[E
         yield Evidence(label, PACKAGE if matched else NAMED, confidence, reason, claim.place)
 
 
-def _claims(node: PackageNode) -> list[Claim]:
-    """What is told of a node that is probably another one."""
+def _leaks_of_others_data(node: PackageNode) -> list[Claim]:
+    """What is told of a node that is probably another one of that name: what it lets out, if it gets it from others."""
     own = {claim.kind for claim in node.claims if claim.role == SOURCE}
     return [claim for claim in node.claims if claim.role == LEAK and claim.kind not in own]
 

@@ -10,7 +10,8 @@ if TYPE_CHECKING:
 SOURCE, LEAK, DERIVATION, SENSITIVE = "source", "leak", "derivation", "sensitive"
 SANITIZER, CONDUIT, MUNDANE, NEVER = "sanitizer", "conduit", "mundane", "never"
 ROLES = (SOURCE, LEAK, DERIVATION, SENSITIVE, SANITIZER, CONDUIT, MUNDANE, NEVER)  # in the order in which they are told
-HIDING = frozenset([SANITIZER, CONDUIT, MUNDANE, NEVER])  # a wrong one can hide a leak, or that nobody looked
+TAKING_AWAY = frozenset([SANITIZER, MUNDANE, NEVER])  # a wrong one can hide a leak
+HIDING = TAKING_AWAY | {CONDUIT}  # or that nobody looked
 OF_NODES = frozenset([SOURCE, LEAK, DERIVATION, SANITIZER, CONDUIT])  # the others are said of channels
 CODE, PACKAGE, TYPE, NAMED, DATA_FLOW, NEIGHBOUR = "code", "package", "type", "name", "data-flow", "neighbour"
 GROUNDS = (CODE, PACKAGE, TYPE, NAMED, DATA_FLOW, NEIGHBOUR)  # what evidence comes from, in the order of reasons

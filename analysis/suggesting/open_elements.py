@@ -1,8 +1,8 @@
 """What a person could say of elements that data reach and that nobody has reviewed (rule S11).
 
 A node there passes data on, or is an end of them: a conduit. If a person says that it lets another kind out, it may let
-this one out, too. A channel there is sensitive, since what arrives there may
-go through it; or it is made for other things than that kind, by its types or its name: never. All of it is ``may``.
+this one out, too. A channel there is sensitive, since what arrives there may go through it; or it is made for other
+things than that kind, by its types or its name: never. All of it is ``may``.
 """
 
 from __future__ import annotations
@@ -35,6 +35,9 @@ if TYPE_CHECKING:
     from rosprivacy.analysis.suggesting.traffic import Traffic
 
 FLOWS = Place("the policies", 0)  # where a reason stands that is drawn from who writes and reads what
+NOWHERE = (
+    "and no policy lets it go on: a conduit only if the node neither keeps it, nor shows it, nor sends it elsewhere"
+)
 SHOWN = 3  # names in a reason
 
 
@@ -77,9 +80,8 @@ def of_open(
     for question in questions:
         vertices = at[question.element.shown_as]
         if question.element.is_node:
-            let_out = sorted(
-                {k for v in vertices for s in bound.elements.get(v, ()) if s.role == LEAK for k in s.categories}
-            )
+            statements = [one for vertex in vertices for one in bound.elements.get(vertex, ())]
+            let_out = sorted({kind for one in statements if one.role == LEAK for kind in one.categories})
             yield from _let_out(question, let_out) if let_out else _passed_on(question, vertices, graph, told)
         elif question.element.is_channel:
             yield from _at_channel(question, vertices, graph, bound, told, rules)
@@ -93,7 +95,7 @@ def _let_out(question: OpenQuestion, kinds: Sequence[str]) -> Iterator[Evidence]
 
 def _passed_on(question: OpenQuestion, vertices: Sequence[int], graph: FlowGraph, told: Traffic) -> Iterator[Evidence]:
     written = sorted({graph.elements[one].name for vertex in vertices for one in told.writes.get(vertex, ())})
-    goes = f"which can go on to {_some(written)}" if written else "and nothing goes out of it by what policies grant"
+    goes = f"which can go on to {_some(written)}" if written else NOWHERE
     for kind in question.categories:
         label = Label(whole(question.element), CONDUIT, kind)
         yield Evidence(label, DATA_FLOW, Confidence.MAY, f"it gets {kind}, {goes}", FLOWS)

@@ -17,7 +17,15 @@ from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.model import Confidence
-from rosprivacy.analysis.suggesting.evidence import CONDUIT, GROUNDS, HIDING, INDEPENDENT, PACKAGE, ROLES, Proposal
+from rosprivacy.analysis.suggesting.evidence import (
+    GROUNDS,
+    HIDING,
+    INDEPENDENT,
+    PACKAGE,
+    ROLES,
+    TAKING_AWAY,
+    Proposal,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Sequence
@@ -75,8 +83,7 @@ def closes_finding(label: Label, found: Collection[str]) -> bool:
     >>> [closes_finding(Label(topic, role, "Video"), {"Video"}) for role in ("never", "sensitive")]
     [True, False]
     """
-    takes_away = label.role in HIDING and label.role != CONDUIT
-    return takes_away and bool(found) and (not label.kind or label.kind in found)
+    return label.role in TAKING_AWAY and bool(found) and (not label.kind or label.kind in found)
 
 
 def _confidence(label: Label, reasons: Sequence[Evidence], found: Collection[str]) -> Confidence:

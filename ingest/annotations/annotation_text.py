@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from difflib import get_close_matches
+from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 from rosprivacy.analysis.errors import LabelError, shown
@@ -100,22 +101,34 @@ def looks_like_one(text: str) -> bool:
     (True, False)
     """
     words = _TOKEN.findall(text)
-    return any(_begins_one(words, at) for at, word in enumerate(words) if _is_sign(word))
+    signs = [at for at, word in enumerate(words) if _is_sign(word)]
+    behind = _behind_names(words) if signs else []
+    return any(_begins_one(words, at, behind) for at in signs)
 
 
-def _begins_one(words: Sequence[str], at: int) -> bool:
+def _behind_names(words: Sequence[str]) -> list[int]:
+    """For each word where a name in brackets that begins there is over; where it never is, the word itself."""
+    behind, closed, marked = [0] * len(words), 0, 0  # no name is over at 0
+    for at in range(len(words) - 1, -1, -1):  # once through: a comment may be as long as a file
+        closed = at + 1 if words[at] == ")" else closed
+        marked = at if words[at] == ":" else marked
+        behind[at] = closed or marked or at
+    return behind
+
+
+def _begins_one(words: Sequence[str], at: int, behind: Sequence[int]) -> bool:
     """Whether a word of a comment is the sign of an annotation, with what stands behind it."""
     if at and words[at - 1] == "`":  # quoted
         return False
     after = at + 1
     if words[after : after + 1] == ["("]:
-        end = next((sign for sign in (")", ":") if sign in words[after:]), "(")
-        after = words.index(end, after) + (end == ")")
+        after = behind[after]
     marked = words[after : after + 1] in ([":"], ["="])
     word = "".join(words[after + marked : after + marked + 1]).lower()
     return (marked or not at) and (word in WORDS or (marked and not at and words[at] == SIGN))
 
 
+@lru_cache(maxsize=2**12)
 def _is_sign(word: str) -> bool:
     near = len(word) in _LENGTHS and word[0] in "pP" and "v" in word.lower()
     return near and bool(get_close_matches(word.lower(), [SIGN], cutoff=0.8))

@@ -108,5 +108,6 @@ def _told(one: Added, finding: Finding) -> Row:
         "move": f"{one.move[1]} from {one.move[0]}" if one.move else None,
         "deny": [f"{line.role} {line.name} in {line.enclave} ({line.policy})" for line in one.deny],
         "loses": [f"{node[2]} {role} {channel[2]}" for node, role, channel in one.loses],
+        "plain": one.plain,
         "opened_by": [str(place) for place in one.opened] or None,
     }

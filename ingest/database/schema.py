@@ -252,6 +252,7 @@ ADDED_FINDING = NodeKind(
         Property("way", STRINGS, "names of the elements of its shortest way"),
         Property("beyond", STRINGS, "its steps that no profile of their node allows, with the policy line of another"),
         Property("enclaves", STRINGS, "whose nodes share their rights on it"),
+        Property("plain", BOOLEAN, "there is a `Finding` of it, too, but in pseudonymised form only"),
         Property("opened_by", STRINGS, "file:line of a governance that asks nobody for permissions there; else absent"),
         Property("split", STRINGS, "enclaves of which splitting takes it away, proven by a new analysis"),
         Property("move", STRING, "the profile of which an enclave of its own takes it away alone; absent if none does"),

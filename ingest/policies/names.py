@@ -109,6 +109,20 @@ def endpoints(role: str, kind: str, name: str) -> tuple[Endpoint, ...]:
     )
 
 
+def writable(role: str, kind: str, name: str) -> tuple[tuple[str, str], ...]:
+    """Return (kind, name) of the lines of a policy that state a role: of the parts of an action, where no line is both.
+
+    >>> writable("publish", "action", "/spin")
+    (('topic', '/spin/_action/feedback'), ('topic', '/spin/_action/status'))
+    >>> writable("call", "action", "/spin"), writable("publish", "topic", "/scan")
+    ((('action', '/spin'),), (('topic', '/scan'),))
+    """
+    if kind != "action" or role in ("call", "execute"):
+        return ((kind, name),)
+    parts = ("topic", ACTION_TOPICS) if role in ("publish", "subscribe") else ("service", ACTION_SERVICES)
+    return tuple((parts[0], f"{name}/_action/{part}") for part in parts[1])
+
+
 def _ros_channel(dds: str) -> tuple[str, str, str]:
     """(kind, name, leg) of the channel that a DDS topic, or an expression of such, is a part of."""
     if dds.startswith("rt/"):

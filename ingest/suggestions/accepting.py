@@ -3,8 +3,10 @@
 In: the text of a label file with suggestions as comments. Out: the text with the accepted ones as labels, and remarks.
 Only the entries that they are about change; what comes out is read anew before it is given out.
 
-What could hide a leak is never accepted with others, by its confidence, unless it is ``likely``, which only the
-catalogue of packages makes it: a person names the element. It is not put beside a source or a leak either.
+What takes data away (a sanitizer, never) is never accepted by its confidence, whoever says so: a finding that it would
+close may not be known yet. A person names the element, and gets it after what else is as sure. A conduit is accepted by
+its confidence if it is ``likely``, which only the catalogue of packages makes it. Neither is put beside a source or a
+leak of such data.
 """
 
 from __future__ import annotations
@@ -19,16 +21,18 @@ from rosprivacy.analysis.errors import InputErrors, LabelError, shown
 from rosprivacy.analysis.model import Confidence
 from rosprivacy.analysis.suggesting.weighing import surer
 from rosprivacy.analysis.text import blanked, counted
-from rosprivacy.analysis.written_names import literal
+from rosprivacy.analysis.written_names import literal, meant
 from rosprivacy.ingest.labels.label_file import parse_labels
 from rosprivacy.ingest.labels.label_reader import SECTIONS
 from rosprivacy.ingest.labels.label_writer import NewLine, add_line, facts_of
+from rosprivacy.ingest.policies.names import covered
 from rosprivacy.ingest.reading.kept_yaml import FAILURES, changed, keeps_comments
 from rosprivacy.ingest.suggestions.comments import as_written, taken_apart, with_comments
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
+    from rosprivacy.ingest.labels.entries import Entry
     from rosprivacy.ingest.suggestions.comments import Comment
     from rosprivacy.ontology.vocabulary import Vocabulary
 
@@ -51,7 +55,7 @@ def accept(file: str, text: str, named: Sequence[str], who: str, day: str, vocab
     ----------
     named
         Confidences, of which all that are as sure or surer are meant; and names of elements, of which the surest are
-        meant, since others are often what it could be instead.
+        meant, since others are often what it could be instead; of these what takes data away only when it stands alone.
     who, day
         For the note.
     vocabulary
@@ -73,7 +77,8 @@ def accept(file: str, text: str, named: Sequence[str], who: str, day: str, vocab
 
     def change(top: Any) -> None:
         for comment in chosen:
-            refused = _put(top, comment, f"accepted by {who} on {day}", vocabulary)
+            refused = _against(before, comment, vocabulary)
+            refused = refused or _put(top, comment, f"accepted by {who} on {day}", vocabulary)
             if refused:
                 remarks.append(f"{file}:{comment.line}: {shown(comment.name)} {refused}; change it by hand")
             else:
@@ -101,7 +106,7 @@ def _chosen(file: str, comments: Sequence[Comment], named: Sequence[str]) -> tup
     for comment in comments:
         sure = any(not surer(one, comment.confidence) for one in least)
         one_of = comment.name in elements and not any(
-            other.name == comment.name and surer(other.confidence, comment.confidence) for other in comments
+            other.name == comment.name and _comes_before(other, comment) for other in comments
         )
         if one_of or (sure and not _needs_name(comment)):
             chosen.append(comment)
@@ -115,7 +120,14 @@ def _chosen(file: str, comments: Sequence[Comment], named: Sequence[str]) -> tup
 
 
 def _needs_name(comment: Comment) -> bool:
-    return comment.hides and comment.confidence is Confidence.MAY
+    return comment.takes_away or (comment.hides and comment.confidence is Confidence.MAY)
+
+
+def _comes_before(other: Comment, comment: Comment) -> bool:
+    """Whether of two suggestions for an element the other is accepted first: what takes nothing away, if as sure."""
+    if other.confidence is comment.confidence:
+        return comment.takes_away and not other.takes_away
+    return surer(other.confidence, comment.confidence)
 
 
 def _put(top: Any, comment: Comment, how: str, vocabulary: Vocabulary) -> str:
@@ -143,6 +155,17 @@ def _put(top: Any, comment: Comment, how: str, vocabulary: Vocabulary) -> str:
         said = entry.get("note")
         entry["note"] = DoubleQuotedScalarString(f"{said}; {note}") if said else note
     return refused
+
+
+def _against(before: Iterable[Entry], comment: Comment, vocabulary: Vocabulary) -> str:
+    """Why one that hides is refused: a line, by a glob too, says that such data come in or go out there (rule S7)."""
+    (value,) = comment.said.values()
+    for entry in before if comment.hides else ():
+        meant_too = set(SECTIONS[comment.section]) & set(entry.kinds) and covered(entry.name, [meant(comment.name)])
+        for one in entry.statements if meant_too else ():
+            if one.role in BRINGS_OR_LETS_OUT and (not one.categories or _overlap(value, one.categories, vocabulary)):
+                return f"is a {one.role} of such data already, by line {entry.place.line}"
+    return ""
 
 
 def _overlap(value: Any, other: Any, vocabulary: Vocabulary) -> bool:

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rosprivacy.analysis.errors import InputErrors, LabelError, shown
 from rosprivacy.analysis.model import Confidence
-from rosprivacy.analysis.suggesting.evidence import HIDING
+from rosprivacy.analysis.suggesting.evidence import CONDUIT, LEAK, SENSITIVE, SOURCE
 from rosprivacy.analysis.suggesting.written import written
-from rosprivacy.analysis.text import blanked, fit
+from rosprivacy.analysis.text import LONGEST_LINE, blanked, cut, printable
 from rosprivacy.ingest.labels.label_reader import SECTIONS
 
 if TYPE_CHECKING:
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 MARK = "# suggest: "
 BECAUSE = " because "
 EXAMPLE = f'{MARK}likely {{"nodes": {{"/camera": {{"source": ["Video"]}}}}}}{BECAUSE}…'
+ADDING = frozenset([SOURCE, LEAK, "derives", SENSITIVE])  # no label of these hides anything; people may write others
 _DECODER = json.JSONDecoder()
 
 
@@ -50,7 +51,12 @@ class Comment(NamedTuple):
     @property
     def hides(self) -> bool:
         """Whether a wrong one could hide a leak, or that nobody has looked."""
-        return not HIDING.isdisjoint(self.said)
+        return not ADDING.issuperset(self.said)
+
+    @property
+    def takes_away(self) -> bool:
+        """Whether it says that data do not go on: a wrong one could hide a leak."""
+        return self.hides and CONDUIT not in self.said
 
 
 def comment_of(one: Proposal) -> str:
@@ -65,7 +71,7 @@ def comment_of(one: Proposal) -> str:
     """
     at = written(one.label)
     said = json.dumps({at.section: {at.name: at.said}})
-    reasons = "; ".join(dict.fromkeys(fit(reason.reason) for reason in one.evidence))
+    reasons = "; ".join(dict.fromkeys(cut(printable(reason.reason), LONGEST_LINE) for reason in one.evidence))
     return f"{MARK}{one.confidence} {said}{BECAUSE}{blanked(reasons, '?')}"
 
 

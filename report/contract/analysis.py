@@ -182,12 +182,14 @@ class AddedEntry(TypedDict):
     loses: NotRequired[list[LostEntry]]
     robots: NotRequired[list[str]]
     opened_by: NotRequired[list[PlaceEntry]]
+    plain: NotRequired[bool]
 
 
 class EnforcedEntry(TypedDict):
     """What the enforced view adds to the declared one (rule S6)."""
 
     verdict: str
+    unreviewed: NotRequired[int]
     added: list[AddedEntry]
 
 

@@ -26,6 +26,7 @@ def enforced_document(enforced: Enforced) -> EnforcedEntry:
         findings = decided_findings(findings, answer.decided)
     return {
         "verdict": str(answer.analysis.verdict),
+        "unreviewed": enforced.unreviewed,
         "added": [_added(one, finding) for one, finding in zip(enforced.added, findings, strict=True)],
     }
 
@@ -42,6 +43,8 @@ def _added(one: Added, finding: FindingEntry) -> AddedEntry:
     }
     if one.robots:
         entry["robots"] = list(one.robots)
+    if one.plain:
+        entry["plain"] = True
     if one.opened:
         entry["opened_by"] = [{"file": place.file, "line": place.line} for place in one.opened]
     return entry

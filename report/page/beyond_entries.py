@@ -59,7 +59,12 @@ def beyond_said(index: Index) -> tuple[str, ...]:
     """Return what is to be known of all of it: how much there is, and how many are not told one by one."""
     words, number = index.words, len(_added(index))
     left = number - MOST
-    return (words.count(number, "y.number"), *([words.count(left, "y.left")] if left > 0 else []))
+    unreviewed = index.document.get("enforced", {}).get("unreviewed", 0)
+    return (
+        words.count(number, "y.number"),
+        *([words.count(left, "y.left")] if left > 0 else []),
+        *([words.count(unreviewed, "y.unreviewed")] if unreviewed else []),
+    )
 
 
 def _added(index: Index) -> list[Mapping[str, Any]]:
@@ -84,6 +89,8 @@ def _why(added: Mapping[str, Any], index: Index) -> Iterator[str]:
     words = index.words
     if added["finding"]["accepted"]:
         yield words.pair(words("f.filter.state"), words("state.accepted"))
+    if added.get("plain"):
+        yield words("y.plain")
     if added["enclaves"]:
         yield words("y.shared", enclaves=_row(added["enclaves"], index))
     if opened := added.get("opened_by"):

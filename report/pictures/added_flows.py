@@ -18,7 +18,7 @@ from rosprivacy.report.words.typography import plain
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable
 
-    from rosprivacy.analysis.findings.beyond import Added, Ends
+    from rosprivacy.analysis.findings.beyond import Added
     from rosprivacy.report.answer import Answer
     from rosprivacy.report.pictures.phrases import Phrases
     from rosprivacy.report.pictures.picture import Box, Key, Line, Picture
@@ -28,7 +28,7 @@ MOST = 16  # boxes of the paths of one finding, unless the shortest is longer
 
 def marking(answer: Answer) -> Callable[[Picture], Picture]:
     """Return what marks the steps of a picture that no profile allows, by the flows of the declared view."""
-    declared = granted(answer.analysis.graph)
+    declared = frozenset(key[:3] for key in granted(answer.analysis.graph))  # a box is of both sides of a wildcard
 
     def marked(picture: Picture) -> Picture:
         lines = (replace(line, look=BEYOND) if _is_beyond(line, declared) else line for line in picture.lines)
@@ -37,7 +37,7 @@ def marking(answer: Answer) -> Callable[[Picture], Picture]:
     return marked
 
 
-def _is_beyond(line: Line, declared: Collection[Ends]) -> bool:
+def _is_beyond(line: Line, declared: Collection[tuple[Key, Key, str]]) -> bool:
     return bool(line.places) and all((line.source, line.target, role) not in declared for role in line.roles)
 
 

@@ -58,6 +58,8 @@ def _said(one: Added) -> Iterator[str]:
     finding = one.finding
     ends = f"from {named(finding.source)} to {named(finding.leak)}"
     yield f"Only if a node goes beyond its own profile: {text(finding.category)} can get {ends}."
+    if one.plain:
+        yield "The declared view has it, too, but pseudonymised only: this is about the plain data."
     if one.robots:
         yield f"On {len(one.robots):,} {'robot' if len(one.robots) == 1 else 'robots'} of the fleet."
     if one.enclaves:

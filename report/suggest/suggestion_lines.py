@@ -41,7 +41,13 @@ def suggestion_lines(document: SuggestionsDocument) -> Iterator[str]:
     times = Counter(row["confidence"] for row in rows)
     counts = ", ".join(f"{times[sure]} {sure}" for sure in Confidence if times[sure])
     yield f"{counted(len(rows), 'suggestion')} ({counts}): questions, no facts; nothing is applied that nobody accepts."
-    yield "Write them into a label file with --into labels.yaml, then: rosprivacy labels --accept likely -l labels.yaml"
+    yield f"Write them into a label file with --into labels.yaml, then: rosprivacy labels --accept {_what(rows)}"
+
+
+def _what(rows: Sequence[ProposalEntry]) -> str:
+    """What can be accepted, in the words of the command line: what is sure together, else an element by its name."""
+    sure = any(row["confidence"] != Confidence.MAY and not row["hides"] for row in rows)
+    return f"{Confidence.LIKELY if sure else 'NAME'} --by 'YOUR NAME' -l labels.yaml"
 
 
 def _table(rows: Sequence[ProposalEntry]) -> Iterator[str]:

@@ -23,6 +23,8 @@ def enforced_lines(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
     added = report["enforced"]["added"]
     yield "", ""
     yield words("tty.enforced", findings=words.count(len(added), "tty.finding")), "bold"
+    if number := report["enforced"].get("unreviewed"):
+        yield words.count(number, "tty.enforced.unreviewed"), ""
     by_id = {entry["finding"]["id"]: entry for entry in added}
 
     def more(finding: Mapping[str, Any]) -> Iterator[Line]:
@@ -33,6 +35,8 @@ def enforced_lines(report: Mapping[str, Any], words: Words) -> Iterator[Line]:
 
 def _said(report: Mapping[str, Any], entry: Mapping[str, Any], words: Words) -> Iterator[str]:
     """Where it is, what makes it possible, what takes it away: splitting first."""
+    if entry.get("plain"):
+        yield words("tty.enforced.plain")
     if robots := entry.get("robots"):
         everybody = words.count(report["fleet"]["robots"], "ofrobots")
         yield words("tty.enforced.on", n=str(len(robots)), robots=everybody, names=named(robots, words))
@@ -47,8 +51,9 @@ def _said(report: Mapping[str, Any], entry: Mapping[str, Any], words: Words) -> 
         yield words("tty.enforced.move", profile=shown(move["profile"]), enclave=shown(move["enclave"]))
     if entry.get("deny"):
         yield words("tty.enforced.deny", lines="; ".join(_line(line, words) for line in entry["deny"]))
-        lost = (f"{shown_name(one['node'])} {one['role']} {shown_name(one['channel'])}" for one in entry["loses"])
-        yield words("tty.enforced.loses", rights="; ".join(lost))
+        lost = [f"{shown_name(one['node'])} {one['role']} {shown_name(one['channel'])}" for one in entry["loses"]]
+        if lost:
+            yield words("tty.enforced.loses", rights="; ".join(lost))
 
 
 def _line(line: Mapping[str, Any], words: Words) -> str:

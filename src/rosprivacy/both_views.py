@@ -72,7 +72,7 @@ def _both(settings: Settings, reader: Callable[[Question], Reader]) -> Result:
     system = declared(NO_CHANGE)
     result = answer(system, of_record)
     every = answer(system, of_record._replace(every=True)) if system.is_fleet else result
-    known = {finding.id for finding in every.analysis.findings if not finding.dismissed}
+    known = {finding.id: finding.pseudonymised for finding in every.analysis.findings if not finding.dismissed}
     whole = enforced(NO_CHANGE)
     found = answer(whole, question)
     remedies = Remedies(
@@ -81,17 +81,30 @@ def _both(settings: Settings, reader: Callable[[Question], Reader]) -> Result:
         granted(system.graph),
         _enclaves(whole.graph.profiles),
         whole.likeness.second,
+        {one for one, pseudonymised in known.items() if pseudonymised},
     )
-    new = (one for one in found.analysis.findings if not one.dismissed and one.id not in known)  # accepted ones, too
-    return replace(result, enforced=Enforced(found, tuple(_added(new, remedies, whole.likeness))))
+    new = (one for one in found.analysis.findings if not one.dismissed and _is_new(one, known))  # accepted ones, too
+    added = tuple(_added(new, remedies, whole.likeness))
+    more = {shown for shown, _ in _open(found) - _open(every) if shown[0] not in whole.likeness.second}
+    return replace(result, enforced=Enforced(found, added, len(more)))
+
+
+def _is_new(finding: Finding, known: Mapping[str, bool]) -> bool:
+    """Whether the declared view has it not, or only in pseudonymised form while plain data is in it now (rule S10)."""
+    return finding.id not in known or (known[finding.id] and not finding.pseudonymised)
+
+
+def _open(result: Result) -> set[tuple[tuple[str, str, str, str], str]]:
+    """The open questions: what a reader sees of an element, and a category."""
+    return {(one.element.shown_as, category) for one in result.analysis.open for category in one.categories}
 
 
 def _added(findings: Iterable[Finding], remedies: Remedies, likeness: Likeness) -> Iterator[Added]:
     """Findings that differ only in the robot are told once, with the robots where they are added."""
-    alike: dict[str, list[Finding]] = {}
+    alike: dict[tuple[str, bool], list[Finding]] = {}
     for finding in findings:
         if likeness.count(finding) or not likeness.members:
-            alike.setdefault(pattern_id(finding, likeness), []).append(finding)
+            alike.setdefault((pattern_id(finding, likeness), finding.id in remedies.hidden), []).append(finding)
     for some in alike.values():
         robots = {name for one in some for name in likeness.placed(one.source.robot) or likeness.placed(one.leak.robot)}
         yield remedies.of(some, tuple(sorted(robots)))

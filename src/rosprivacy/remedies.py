@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.findings.beyond import Added, DenyLine, beyond, enclaves_of, rights
 from rosprivacy.ingest.policies.changed_policies import NO_CHANGE, Change
+from rosprivacy.ingest.policies.names import DDS, writable
+from rosprivacy.ingest.zenoh_access.open_sessions import ANY_SESSION
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
@@ -42,6 +44,8 @@ class Remedies:
         The nodes of each enclave.
     second
         Robots that only stand beside others like them.
+    hidden
+        Ids of the findings that the declared view has in pseudonymised form only: that form is left.
     """
 
     trials: Trials
@@ -49,6 +53,7 @@ class Remedies:
     known: frozenset[Ends]
     enclaves: Mapping[str, frozenset[str]]
     second: Collection[str]
+    hidden: Collection[str] = ()
     tried: set[Change] = field(default_factory=set)
     allowed: dict[Change, frozenset[Right]] = field(default_factory=dict)
     counts: dict[int, int] = field(default_factory=dict)
@@ -76,6 +81,7 @@ class Remedies:
             robots,
             _places(findings[0], set(steps) - set(shared)),
             tuple(findings),
+            findings[0].id in self.hidden,
         )
 
     def _shared(self, finding: Finding) -> tuple[int, ...]:
@@ -104,13 +110,16 @@ class Remedies:
         return None
 
     def _movable(self, finding: Finding) -> Iterator[tuple[str, str]]:
-        """Who goes beyond its profile, then whose grants it uses; in an enclave of two, moving is splitting."""
+        """Who goes beyond its profile, then whose grants it uses; in an enclave of two, moving is splitting.
+
+        A session of Zenoh that says who it is stays among those that a list lets in whoever they are.
+        """
         steps = [finding.steps[n] for n in beyond(finding, self.known)]
         users = [(grant.enclave, _ends(step)[0].name) for step in steps for grant in step.grants]
         holders = [(grant.enclave, grant.node) for step in steps for grant in step.grants]
         for enclave, node in (*users, *sorted(holders)):
             nodes = self.enclaves.get(enclave, frozenset())
-            if node in nodes and len(nodes) > 2:  # noqa: PLR2004 - see above
+            if node in nodes and len(nodes) > 2 and enclave != ANY_SESSION:  # noqa: PLR2004 - see above
                 yield enclave, node
 
     def _deny(self, findings: Sequence[Finding]) -> tuple[DenyLine, ...]:
@@ -139,7 +148,8 @@ class Remedies:
             if self.counts[kind] > TRIED:
                 return None
             self.tried.add(change)
-        return self.trials.left(change, findings)
+        left = self.trials.left(change, findings)
+        return [one for one in left if not (one.pseudonymised and one.id in self.hidden)]
 
     def _rights(self, change: Change) -> frozenset[Right]:
         if change not in self.allowed:
@@ -157,15 +167,19 @@ def _places(finding: Finding, steps: Iterable[int]) -> tuple[Place, ...]:
 
 
 def _lines(finding: Finding, number: int) -> Iterator[DenyLine]:
-    """The DENY lines that take a step of a path away, one for each policy and enclave; none overrules what was seen."""
+    """The DENY lines that take a step of a path away, for each policy and enclave; none overrules what was seen.
+
+    Permissions and access lists of Zenoh are no policies: no DENY of a profile stands there.
+    """
     step = finding.steps[number]
     grants = [grant for grant in step.grants if not (grant.dead or grant.rank)]
-    if len(grants) != len(step.grants) or any(grant.seen for grant in grants):
+    if len(grants) != len(step.grants) or any(grant.seen or grant.kind == DDS for grant in grants):
         return
     channel = _meant(finding, number)
     first = {(grant.policy, grant.enclave): grant for grant in reversed(grants)}
     for (policy, enclave), grant in first.items():
-        yield DenyLine(policy, enclave, grant.node, step.role, channel.kind, channel.name)
+        for kind, name in writable(step.role, channel.kind, channel.name):
+            yield DenyLine(policy, enclave, grant.node, step.role, kind, name)
 
 
 def _meant(finding: Finding, number: int) -> Element:

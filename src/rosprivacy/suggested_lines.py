@@ -15,7 +15,7 @@ from rosprivacy.clock import today
 from rosprivacy.ingest.labels.label_file import parse_labels
 from rosprivacy.ingest.labels.label_writer import NEW, facts_of
 from rosprivacy.ingest.reading import yaml_values
-from rosprivacy.ingest.reading.bounded_file import read_regular
+from rosprivacy.ingest.reading.bounded_file import read_utf8
 from rosprivacy.ingest.suggestions.accepting import accept
 from rosprivacy.ingest.suggestions.comments import comment_of, taken_apart, with_comments
 from rosprivacy.label_lines import Written, own_file
@@ -76,8 +76,7 @@ def with_accepted(labels: tuple[str, ...], named: Sequence[str], by: str | None,
 def _text(file: str) -> str:
     if not Path(file).exists():
         return NEW
-    data = read_regular(file, yaml_values.MAX_BYTES, partial(LabelError, file))
-    return data.decode("utf-8-sig")
+    return read_utf8(file, yaml_values.MAX_BYTES, partial(LabelError, file))[0]
 
 
 def _author(file: str, text: str) -> str:

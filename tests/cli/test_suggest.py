@@ -185,6 +185,13 @@ def test_open_elements_come_first_with_their_neighbours(cli: Cli, robot: Path) -
     assert not [row for row in said if row[0] == "/driver" and row[2] == "Video"]  # a person has spoken of it
 
 
+def test_where_data_end_it_is_asked_what_a_conduit_there_means(cli: Cli, tmp_path: Path) -> None:
+    (tmp_path / "p.xml").write_text(policy_of({"eye": (["/a"], []), "unknown": ([], ["/a"])}), "utf-8")
+    (tmp_path / "l.yaml").write_text("labels: 1\nnodes:\n  /eye: {source: [Video]}\n", "utf-8")
+    text = cli("suggest", "p.xml", "-l", "l.yaml", cwd=tmp_path).stdout
+    assert "a conduit only if the node neither keeps it, nor shows it, nor sends it elsewhere" in text
+
+
 def test_of_an_open_node_that_lets_data_out_no_conduit_is_suggested(cli: Cli, robot: Path) -> None:
     """A conduit of a narrower kind would outrank the leak (rule S7)."""
     (robot / "l.yaml").write_text("labels: 1\nnodes:\n  /driver: {source: [Video]}\n", "utf-8")
@@ -341,6 +348,14 @@ def test_one_element_is_accepted_with_who_when_and_why(cli: Cli, robot: Path) ->
     ]
 
 
+def test_no_reason_is_cut(cli: Cli, tmp_path: Path) -> None:
+    cli("suggest", str(CARE), "--into", "l.yaml", cwd=tmp_path)
+    cli("labels", "--accept", "/face_recognizer", "--by", "Ada", "-l", "l.yaml", cwd=tmp_path)
+    text = (tmp_path / "l.yaml").read_text("utf-8")
+    assert "…" not in text
+    assert "trackers and models that describe what they see make it of pictures" in text.partition("# suggest")[0]
+
+
 def test_all_of_a_confidence_are_accepted_but_what_could_hide_a_leak(cli: Cli, robot: Path) -> None:
     (robot / "l.yaml").write_text(typed(a=IMAGE, b=CLOUD, c=IDS, d=TWIST) + "author: Ada\n", "utf-8")
     cli("suggest", "p.xml", "-l", "l.yaml", "--into", "l.yaml", cwd=robot)
@@ -480,6 +495,78 @@ def test_a_hostile_name_gets_into_neither_the_file_nor_the_terminal(cli: Cli, tm
     assert cli("labels", "--accept", "may", "--by", 'A"\n- x: y', "-l", "l.yaml", cwd=tmp_path).returncode == 0
     said = rosprivacy.analyze(str(tmp_path / "p.xml"), str(tmp_path / "l.yaml")).document()
     assert {one["element"]["name"] for one in said["roles"]} <= {"/n"}
+
+
+# ---------------------------------------------------------------- what takes data away
+
+
+LEAKS = """labels: 1
+author: Ada
+nodes:
+  /driver: {source: [Video]}
+  /customer*: {leak: [Video]}
+topics:
+  /a: sensitive
+  /c: sensitive
+"""
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        suggestion("topics", "/a", {"never": ["Video"]}),
+        suggestion("topics", "/a", {"only": ["HomeMap"]}, "certain"),
+        suggestion("nodes", "/finder", {"sanitizer": {"Video": "drop"}}, "certain"),
+    ],
+)
+def test_what_takes_data_away_is_accepted_by_name_only_however_sure(cli: Cli, robot: Path, line: str) -> None:
+    """Rule S7, taking away is never silent; a package of a user's or an old suggestion may call it likely."""
+    (robot / "l.yaml").write_text(LEAKS + line, "utf-8")
+    done = cli("labels", "--accept", "likely", "-l", "l.yaml", cwd=robot)
+    assert "1 suggestion could hide a leak" in done.stderr
+    assert (robot / "l.yaml").read_text("utf-8") == LEAKS + line
+    assert cli("analyze", "p.xml", "-l", "l.yaml", cwd=robot).stdout.startswith("leak: ")
+
+
+def test_by_its_name_too_what_takes_data_away_comes_last(cli: Cli, robot: Path) -> None:
+    drop = suggestion("nodes", "/finder", {"sanitizer": {"Video": "drop"}}, "may")
+    derives = suggestion("nodes", "/finder", {"derives": [{"from": "Video", "to": "FaceImage"}]}, "may")
+    (robot / "l.yaml").write_text(LEAKS + drop + derives, "utf-8")
+    assert "1 suggestion accepted" in cli("labels", "--accept", "/finder", "-l", "l.yaml", cwd=robot).stderr
+    assert (robot / "l.yaml").read_text("utf-8").endswith(drop)
+    assert "1 suggestion accepted" in cli("labels", "--accept", "/finder", "-l", "l.yaml", cwd=robot).stderr
+
+
+@pytest.mark.parametrize("said", [{"conduit": ["Video"]}, {"sanitizer": {"PersonImage": "drop"}}])
+def test_nothing_that_hides_is_put_beside_a_leak_that_a_glob_says(cli: Cli, robot: Path, said: dict[str, Any]) -> None:
+    text = LEAKS + suggestion("nodes", "/customer_bridge", said, "may")
+    (robot / "l.yaml").write_text(text, "utf-8")
+    done = cli("labels", "--accept", "/customer_bridge", "-l", "l.yaml", cwd=robot)
+    assert "l.yaml:9: /customer_bridge is a leak of such data already, by line 5; change it by hand" in done.stderr
+    assert (robot / "l.yaml").read_text("utf-8") == text
+
+
+def test_the_file_that_is_written_into_is_read_without_being_named(cli: Cli, robot: Path) -> None:
+    (robot / "l.yaml").write_text(LEAKS, "utf-8")
+    cli("suggest", "p.xml", "--into", "l.yaml", cwd=robot)
+    alone = (robot / "l.yaml").read_text("utf-8")
+    cli("suggest", "p.xml", "-l", "l.yaml", "--into", "l.yaml", cwd=robot)
+    assert (robot / "l.yaml").read_text("utf-8") == alone
+    assert '"/finder"' in alone
+    assert '{"/driver": {"source": ["Video"]}}' not in alone
+
+
+def test_the_last_line_says_what_can_be_accepted(cli: Cli, robot: Path) -> None:
+    likely = cli("suggest", "p.xml", "-l", "l.yaml", cwd=robot).stdout.splitlines()[-1]
+    assert likely.endswith("rosprivacy labels --accept likely --by 'YOUR NAME' -l labels.yaml")
+    names_only = cli("suggest", str(CARE), cwd=robot).stdout.splitlines()[-1]
+    assert names_only.endswith("rosprivacy labels --accept NAME --by 'YOUR NAME' -l labels.yaml")
+
+
+def test_a_file_that_is_no_utf_8_is_told_with_its_line(cli: Cli, tmp_path: Path) -> None:
+    (tmp_path / "l.yaml").write_bytes(b"labels: 1\nauthor: Jos\xe9\n")
+    done = cli("labels", "--accept", "may", "-l", "l.yaml", cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (2, "l.yaml:2: not UTF-8; save the file as UTF-8\n")
 
 
 # ---------------------------------------------------------------- planted leaks

@@ -45,7 +45,7 @@ WINGS: dict[str, dict[str, set[str]]] = {
         "": set(),
         "reading": set(),
         "types": {"reading"},
-        "suggestions": {"reading", "labels"},
+        "suggestions": {"reading", "policies", "labels"},
         "packages": {"reading"},
         "policies": {"reading", "types"},
         "decisions": {"reading"},

@@ -80,6 +80,8 @@ def test_there_are_many_and_each_is_of_one_package() -> None:
         ("foxglove_bridge", "foxglove_bridge", "leak", "PersonalData"),
         ("rosbag2", "rosbag2_recorder", "leak", "PersonalData"),
         ("nav2", "amcl", "derivation", "LaserScan"),
+        ("ros2_whisper", "transcript_subscriber", "leak", "SpeechTranscript"),
+        ("septentrio_gnss_driver", "septentrio_gnss", "leak", "GnssPosition"),
     ],
 )
 def test_what_everybody_knows_of_a_package_is_in_it(package: str, node: str, role: str, kind: str) -> None:

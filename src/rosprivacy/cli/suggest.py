@@ -70,7 +70,7 @@ def suggest(
     from rosprivacy.suggesting import suggest_labels
 
     def told() -> Suggested:
-        labels = tuple(inputs.labels or ())
+        labels = _with_own(tuple(inputs.labels or ()), into)
         return suggest_labels(inputs.named, labels, inputs.settings, rules or (), packages or (), source or ())
 
     if into:
@@ -80,6 +80,13 @@ def suggest(
     document = suggestions_document(found.proposals, found.open, found.by_hand, found.result, found.rules)
     lines = "".join(f"{line}\n" for line in suggestion_lines(document))
     emit(as_text(document) if format is TextOrJson.json else lines, output)
+
+
+def _with_own(labels: tuple[str, ...], into: Path | None) -> tuple[str, ...]:
+    """The label files, with the one that is written into: what it says already is not asked again."""
+    if into is None or not into.is_file() or any(Path(one).exists() and into.samefile(one) for one in labels):
+        return labels
+    return (*labels, str(into))
 
 
 def _write(file: Path, told: Callable[[], Suggested]) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 import pytest
 
 from rosprivacy.analysis.errors import LabelError
@@ -98,3 +100,9 @@ def test_what_is_none_is_told(text: str, problem: str) -> None:
 )  # fmt: skip
 def test_other_comments_are_no_annotations(text: str) -> None:
     assert read_annotation(text, HERE, load()) is None
+
+
+def test_a_comment_as_long_as_a_file_is_looked_through_once() -> None:
+    started = time.process_time()
+    assert read_annotation("privacy(" * 100_000, HERE, load()) is None
+    assert time.process_time() - started < 5  # seconds; it took minutes when each bracket was looked for anew
