@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from rosprivacy.analysis.model import ACCESS_GAP
 from rosprivacy.ingest.zenoh_access.zenoh_inputs import read_zenoh
 from tests.helpers.command import cli
 
@@ -310,3 +311,17 @@ def test_a_session_with_a_namespace_is_heard_by_one_that_names_it(cli: Cli, tmp_
         receiver = put(tmp_path / "uplink.json5", rule("in", "allow", "put", "ingress", key))
         _, ways, told = answered(cli, tmp_path, sender, receiver)
         assert (bool(ways), apart in told) == (through, is_told)
+
+
+def test_two_lists_of_one_name_are_a_gap(cli: Cli, tmp_path: Path) -> None:
+    """The files of two computers: a flow from one process to the other would come back to where it began (S11)."""
+    for folder in ("a", "b"):
+        (tmp_path / folder).mkdir()
+    name = {"cert_common_names": ["camera"]}
+    both = [SENDS, rule("in", "allow", "put", "ingress", "0/video/*/*")]
+    other = rule("in", "allow", "put", "ingress", "0/other/*/*")
+    files = [put(tmp_path / folder / "camera.json5", *both, subject=name) for folder in ("a", "b")]
+    uplink = put(tmp_path / "uplink.json5", other, subject={"cert_common_names": ["uplink"]})
+    assert answered(cli, tmp_path, *files, uplink)[0] == 4
+    gaps = [one for policy in read_zenoh(map(str, (*files, uplink)), 0) for one in policy.diagnostics if one.code]
+    assert [(one.code, one.place.file) for one in gaps] == [(ACCESS_GAP, str(files[1]))]

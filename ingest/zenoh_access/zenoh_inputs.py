@@ -9,10 +9,10 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.errors import InputErrors, shown
-from rosprivacy.analysis.model import Diagnostic, Severity
+from rosprivacy.analysis.model import ACCESS_GAP, Diagnostic, Severity
 from rosprivacy.analysis.modes import View
 from rosprivacy.ingest.zenoh_access.access_file import read_access
-from rosprivacy.ingest.zenoh_access.access_grants import keys_of, policy_of
+from rosprivacy.ingest.zenoh_access.access_grants import keys_of, policy_of, process_of
 from rosprivacy.ingest.zenoh_access.open_sessions import open_remarks, open_sessions
 from rosprivacy.ingest.zenoh_access.ros_keys import namespaces_of
 
@@ -56,7 +56,7 @@ def read_zenoh(files: Iterable[str], domain: int | None, *, view: str = View.dec
             problems += error.errors
     if problems:
         raise InputErrors(problems)
-    said = (*open_remarks(keys), *_joined(spaces))
+    said = (*open_remarks(keys), *_joined(spaces), *_one_name(read))
     policies = [_with(policy_of(access, of_it), said) for access, of_it in keys.items()]
     sources = tuple(sorted({source for policy in policies for source in policy.sources}))
     if View(view) is View.enforced and (left := open_sessions(keys, sources)).grants:
@@ -83,3 +83,13 @@ def _joined(spaces: Mapping[str, Place]) -> Iterator[Diagnostic]:
         named = ", ".join(repr(shown(one)) for one in sorted(spaces))
         message = f"keys behind namespaces {named}: Zenoh keeps them apart, here a name is one channel in all of them"
         yield Diagnostic(spaces[last], Severity.WARNING, message)
+
+
+def _one_name(read: Iterable[AccessFile]) -> Iterator[Diagnostic]:
+    """A gap where two files make one process: what goes from one of them to the other is no flow then (rule S11)."""
+    first: dict[str, AccessFile] = {}
+    for access in read:
+        if (other := first.setdefault(process_of(access), access)) is not access:
+            message = f"the process is called as that of {shown(other.file)}: both are one element here, and what goes "
+            message += "from one to the other is not seen; give the files different names"
+            yield Diagnostic(access.place, Severity.WARNING, message, ACCESS_GAP)
