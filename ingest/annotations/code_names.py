@@ -38,10 +38,13 @@ class CodeNames:
         self._node_classes = {language: self._derived(language) for language in {code.language for code in codes}}
         self._of_file: dict[tuple[str, str], set[str | None]] = defaultdict(set)
         self._of_language: dict[tuple[str, str], set[str | None]] = defaultdict(set)
+        self._in_a_namespace: set[tuple[str, str]] = set()  # file and owner: the code states one, a literal or not
         for code in codes:
             for site in code.sites:
                 if site.kind == NODE and site.owner and not site.head and self.is_node(code, site):
                     name = self._of_site(site)
+                    if site.namespace != "":
+                        self._in_a_namespace.add((code.file, site.owner))
                     self._of_file[code.file, site.owner].add(name)
                     self._of_language[code.language, site.owner].add(name)
 
@@ -69,7 +72,8 @@ class CodeNames:
         if not is_ros_name(written):
             return ""
         node = self.node(code, site.owner)
-        if written.startswith("~") and not node:
+        unknown = written.startswith("~") or (code.file, site.owner) in self._in_a_namespace
+        if not node and unknown and not written.startswith("/"):
             return ""
         space, _, base = node.rpartition("/") if node else (self.namespace, "", "")
         return resolve(written, space or ROOT, base)

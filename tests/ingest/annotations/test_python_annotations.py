@@ -119,6 +119,20 @@ def test_what_is_attached_to_nothing_or_guessed_is_told(text: str, problem: str)
     assert problem in problems[0]
 
 
+def test_a_relative_name_in_a_namespace_that_is_no_literal_is_not_guessed() -> None:
+    """What is said of another topic of that name could hide a leak there."""
+    found, problems = read("""\
+        class Camera(Node):
+            def __init__(self, space):
+                super().__init__("camera", namespace=space)
+                self.a = self.create_publisher(Image, "image", 1)  # privacy: never Video
+                self.b = self.create_publisher(Image, "/absolute", 1)  # privacy: never Video
+        """)
+    assert [name for _, name, _ in found] == ["/absolute"]
+    (problem,) = problems
+    assert "the node here has no name that is a literal" in problem
+
+
 def test_one_variable_of_two_names_is_not_guessed() -> None:
     text = (
         "n = rclpy.create_node('a')\nn = rclpy.create_node('b')\nn.create_publisher(I, 'x', 1)  # privacy: source Video"
