@@ -335,6 +335,22 @@ def test_a_deny_of_parts_of_an_action_is_one_that_can_be_written(
 
 
 @pytest.mark.usefixtures("example")
+def test_what_only_the_type_of_a_channel_holds_back_is_not_told_as_beyond_a_profile(cli: Cli) -> None:
+    """S15: limits of types hold in the declared view only, since no middleware enforces what a type is used for."""
+    Path("p.xml").write_text(
+        policy({"/e": {"/s": [("publish", "/b", "ALLOW")]}, "/l": {"/l": [("subscribe", "/b", "ALLOW")]}})
+    )
+    types = "channels: {/b: {types: [std_msgs/msg/Bool]}}"
+    Path("l.yaml").write_text(f"labels: 1\nnodes: {{/s: {{source: [Video]}}, /l: {{leak: [Video]}}}}\n{types}\n")
+    arguments = ("p.xml", "-l", "l.yaml", "--view", "both")
+    assert "   no step goes beyond a profile: " in cli("analyze", *arguments).stdout
+    assert "No step of it goes beyond a profile: " in cli("report", *arguments).stdout
+    said = cli("analyze", *arguments, "-f", "sarif").stdout
+    assert "Only if a channel carries what its type cannot hold: Video can get" in said
+    assert "Only if a node goes beyond" not in said
+
+
+@pytest.mark.usefixtures("example")
 def test_where_no_more_is_tried_it_is_not_said_that_splitting_ends_nothing(cli: Cli) -> None:
     """Each finding has a pair of enclaves of its own; S11: what is not known is said."""
     enclaves: Enclaves = {}

@@ -91,6 +91,8 @@ def _why(added: Mapping[str, Any], index: Index) -> Iterator[str]:
         yield words.pair(words("f.filter.state"), words("state.accepted"))
     if added.get("plain"):
         yield words("y.plain")
+    if added.get("beyond") == []:
+        yield words("y.types")
     if added["enclaves"]:
         yield words("y.shared", enclaves=_row(added["enclaves"], index))
     if opened := added.get("opened_by"):

@@ -57,7 +57,10 @@ def added_results(enforced: Enforced, rule: int, files: Files) -> Iterator[dict[
 def _said(one: Added) -> Iterator[str]:
     finding = one.finding
     ends = f"from {named(finding.source)} to {named(finding.leak)}"
-    yield f"Only if a node goes beyond its own profile: {text(finding.category)} can get {ends}."
+    if one.beyond:
+        yield f"Only if a node goes beyond its own profile: {text(finding.category)} can get {ends}."
+    else:
+        yield f"Only if a channel carries what its type cannot hold: {text(finding.category)} can get {ends}."
     if one.plain:
         yield "The declared view has it, too, but pseudonymised only: this is about the plain data."
     if one.robots:

@@ -37,6 +37,8 @@ def _said(report: Mapping[str, Any], entry: Mapping[str, Any], words: Words) -> 
     """Where it is, what makes it possible, what takes it away: splitting first."""
     if entry.get("plain"):
         yield words("tty.enforced.plain")
+    if entry.get("beyond") == []:
+        yield words("tty.enforced.types")
     if robots := entry.get("robots"):
         everybody = words.count(report["fleet"]["robots"], "ofrobots")
         yield words("tty.enforced.on", n=str(len(robots)), robots=everybody, names=named(robots, words))

@@ -108,6 +108,7 @@ WORDS = {
     "y.plain": "Das maßgebliche Ergebnis hat diesen Befund auch, aber nur in pseudonymisierter Form. Hier geht es um die nicht pseudonymisierten Daten.",
     "y.unreviewed.one": "Daten könnten dann außerdem {n} Element erreichen, das niemand dafür geprüft hat: Was dahinter liegt, ist nicht bekannt.",
     "y.unreviewed.many": "Daten könnten dann außerdem {n} Elemente erreichen, die niemand dafür geprüft hat: Was dahinter liegt, ist nicht bekannt.",
+    "y.types": "Kein Schritt geht über ein Profil hinaus: Das maßgebliche Ergebnis nimmt an, dass ein Kanal nur trägt, was sein Nachrichtentyp aufnehmen kann; das erzwingt keine Middleware.",
     "y.opened": "Möglich ist das nur, weil die Governance dort keine Berechtigungen prüfen lässt: {lines}.",
     "y.robots": "Das kommt auf {n} von {all} hinzu{names}.",
     "y.remedies": "Was das beseitigt, jeweils durch eine neue Analyse nachgewiesen:",

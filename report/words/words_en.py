@@ -110,6 +110,7 @@ WORDS = {
     "y.plain": "The result of record has this finding, too, but in pseudonymised form only. This is about the plain data.",
     "y.unreviewed.one": "Data could then also reach {n} element that nobody has reviewed for it: what lies behind it is not known.",
     "y.unreviewed.many": "Data could then also reach {n} elements that nobody has reviewed for it: what lies behind them is not known.",
+    "y.types": "No step of it goes beyond a profile: the result of record takes a channel to carry only what its message type can hold, which no middleware enforces.",
     "y.opened": "It is possible only because the governance asks nobody for permissions there: {lines}.",
     "y.robots": "It is added on {n} of {all}{names}.",
     "y.remedies": "What takes it away, each proven by a new analysis:",

@@ -113,6 +113,7 @@ _TYPED = {
     "y.plain": "Le résultat de référence a aussi ce constat, mais seulement sous forme pseudonymisée. Il s'agit ici des données non pseudonymisées.",
     "y.unreviewed.one": "Des données pourraient alors atteindre aussi {n} élément que personne n'a examiné pour cela : ce qui se trouve derrière n'est pas connu.",
     "y.unreviewed.many": "Des données pourraient alors atteindre aussi {n} éléments que personne n'a examinés pour cela : ce qui se trouve derrière n'est pas connu.",
+    "y.types": "Aucune étape ne va au-delà d'un profil : le résultat de référence suppose qu'un canal ne porte que ce que son type de message peut contenir, ce qu'aucun intergiciel n'impose.",
     "y.opened": "Ce n'est possible que parce que la gouvernance n'y fait vérifier aucune autorisation : {lines}.",
     "y.robots": "Cela s'ajoute sur {n} de {all}{names}.",
     "y.remedies": "Ce qui le supprime, prouvé à chaque fois par une nouvelle analyse :",

@@ -13,6 +13,7 @@ WORDS = {
     "tty.enforced.plain": "die Sicht declared hat ihn auch, aber nur pseudonymisiert: hier geht es um die nicht pseudonymisierten Daten",
     "tty.enforced.unreviewed.one": "sie lässt außerdem {n} Element offen, das niemand geprüft hat: was dahinter liegt, ist nicht bekannt",
     "tty.enforced.unreviewed.many": "sie lässt außerdem {n} Elemente offen, die niemand geprüft hat: was dahinter liegt, ist nicht bekannt",
+    "tty.enforced.types": "kein Schritt geht über ein Profil hinaus: die Sicht declared nimmt an, dass ein Kanal nur trägt, was sein Typ aufnehmen kann; das erzwingt keine Middleware",
     "tty.enforced.opened": "nur weil dort keine Berechtigungen geprüft werden: {lines}",
     "tty.enforced.by": "nur weil sich Knoten die Enklave {enclaves} teilen",
     "tty.enforced.split": "fällt weg, wenn {enclaves} in eine Enklave je Knoten geteilt wird: durch eine neue Analyse nachgewiesen",

@@ -13,6 +13,7 @@ WORDS = {
     "tty.enforced.plain": "the declared view has it, too, but pseudonymised only: this is about the plain data",
     "tty.enforced.unreviewed.one": "it also leaves {n} element open that nobody has reviewed: what lies behind it is not known",
     "tty.enforced.unreviewed.many": "it also leaves {n} elements open that nobody has reviewed: what lies behind them is not known",
+    "tty.enforced.types": "no step goes beyond a profile: the declared view takes a channel to carry only what its type can hold, which no middleware enforces",
     "tty.enforced.opened": "only because permissions are not asked there: {lines}",
     "tty.enforced.by": "only because nodes share enclave {enclaves}",
     "tty.enforced.split": "gone if {enclaves} is split into an enclave for each node: proven by a new analysis",

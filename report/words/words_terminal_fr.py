@@ -15,6 +15,7 @@ _TYPED = {
     "tty.enforced.plain": "la vue declared l'a aussi, mais seulement pseudonymisé : il s'agit ici des données non pseudonymisées",
     "tty.enforced.unreviewed.one": "elle laisse aussi {n} élément ouvert que personne n'a examiné : ce qui se trouve derrière n'est pas connu",
     "tty.enforced.unreviewed.many": "elle laisse aussi {n} éléments ouverts que personne n'a examinés : ce qui se trouve derrière n'est pas connu",
+    "tty.enforced.types": "aucune étape ne va au-delà d'un profil : la vue declared suppose qu'un canal ne porte que ce que son type peut contenir, ce qu'aucun intergiciel n'impose",
     "tty.enforced.opened": "seulement parce que les autorisations n'y sont pas vérifiées : {lines}",
     "tty.enforced.by": "seulement parce que des nœuds partagent l'enclave {enclaves}",
     "tty.enforced.split": "disparaît si {enclaves} est divisée en une enclave par nœud : prouvé par une nouvelle analyse",
