@@ -163,7 +163,7 @@ def ends_of(spread: Spread, number: int, kinds: Sequence[Concern]) -> dict[str, 
     >>> graph, bound, hierarchy = factory()
     >>> carried = spread(graph, bound, hierarchy)
     >>> ends = ends_of(carried, carried.categories.index("Video"), tuple(concerns(carried, bound, hierarchy)))
-    >>> {kind: [NAMES[vertex] for vertex in vertices] for kind, vertices in ends.items() if vertices}
+    >>> {kind: [NAMES[vertex] for vertex in vertices] for kind, vertices in ends.items() if len(vertices)}
     {'disclosure': ['/archive'], 'storage-limitation': ['disk']}
     """
     both = spread.both(spread.categories[number])
