@@ -170,13 +170,20 @@ def _last(
     part: Phrase, rules: Mapping[Phrase, NameRule], silent: frozenset[Phrase], *, whole: bool = False
 ) -> Spoken | None:
     """The rule about the last words of a part that a rule is about; of several phrases there the longest."""
-    for end in range(len(part), 0, -1):
-        for phrase in _ending_at(part, end):
-            if phrase in silent:
-                return None
-            if phrase in rules and (not whole or phrase == part):
-                return Spoken(rules[phrase], phrase)
+    if whole:
+        return Spoken(rules[part], part) if part in rules else None
+    for phrase in _phrases(part):
+        if phrase in silent:
+            return None
+        if phrase in rules:
+            return Spoken(rules[phrase], phrase)
     return None
+
+
+@lru_cache(maxsize=2**16)
+def _phrases(part: Phrase) -> tuple[Phrase, ...]:
+    """The phrases of a part of a name: those that end last first, of these the longest first."""
+    return tuple(phrase for end in range(len(part), 0, -1) for phrase in _ending_at(part, end))
 
 
 def _ending_at(part: Phrase, end: int) -> Iterator[Phrase]:
@@ -188,9 +195,8 @@ def _instead(spoken: Spoken | None, parts: Sequence[Phrase], rules: NameRules) -
     if spoken is None:
         return None
     for part in reversed(parts):
-        for end in range(len(part), 0, -1):
-            for phrase in _ending_at(part, end):
-                rule = rules.carries.get(phrase)
-                if rule and not set(spoken.rule.kinds).isdisjoint(rule.instead_of):
-                    return Spoken(rule, phrase)
+        for phrase in _phrases(part):
+            rule = rules.carries.get(phrase)
+            if rule and not set(spoken.rule.kinds).isdisjoint(rule.instead_of):
+                return Spoken(rule, phrase)
     return spoken

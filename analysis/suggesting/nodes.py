@@ -70,26 +70,27 @@ def of_nodes(graph: FlowGraph, bound: Bound, told: Traffic, clues: Clues, rules:
         if not element.is_node:
             continue
         written, read = told.writes.get(vertex, ()), told.reads.get(vertex, ())
-        typed = [(graph.elements[one], [said.name for said in bound.types.get(one, ())]) for one in written]
-        carried = {one: _of_writer(graph.elements[one].name, clues.get(one, ()), rules) for one in written}
-        brought = {one: _brought_in(element.name, graph.elements[one].name, carried[one], rules) for one in written}
-        into = _by_kind(read, {one: _of_node(clues.get(one, ()), rules) for one in read})
-        node = _Node(element, rules, typed, _by_kind(written, carried), _by_kind(written, brought), into)
+        into = _by_kind([_of_node(clues[one], rules) for one in read if one in clues])
         if read and (spoken := of_node(element.name, rules.names.lets_out)):
             reason = f"'{'_'.join(spoken.words)}' in the name of the node: {spoken.rule.why}"
             label = Label(element, LEAK, ANYTHING)
             yield Evidence(label, NAMED, spoken.rule.confidence, reason, spoken.rule.place)
         if written:
+            typed = [(graph.elements[one], [said.name for said in bound.types.get(one, ())]) for one in written]
+            told_of = [(graph.elements[one].name, clues[one]) for one in written if one in clues]
+            carried = [(name, _of_writer(name, some, rules)) for name, some in told_of]
+            brought = _by_kind([_brought_in(element.name, name, some, rules) for name, some in carried])
+            node = _Node(element, rules, typed, _by_kind([some for _, some in carried]), brought, into)
             yield from node.outputs()
             yield from node.by_name()
             yield from node.dropped()
 
 
-def _by_kind(channels: Sequence[int], clues: Clues) -> ByKind:
+def _by_kind(clues: Sequence[tuple[Clue, ...]]) -> ByKind:
     """What channels are thought to carry; that they can carry anything says nothing of a node."""
     found: ByKind = {}
-    for channel in channels:
-        for clue in clues.get(channel, ()):
+    for some in clues:
+        for clue in some:
             if clue.kind != ANYTHING:
                 found.setdefault(clue.kind, []).append(clue)
     return found
@@ -97,14 +98,18 @@ def _by_kind(channels: Sequence[int], clues: Clues) -> ByKind:
 
 def _of_node(clues: tuple[Clue, ...], rules: Rules) -> tuple[Clue, ...]:
     """What is thought of a topic, as far as it says something of who writes or reads it."""
-    alone = rules.names.not_by_type - {clue.kind for clue in clues if clue.ground == NAMED}
+    alone = rules.names.not_by_type
+    if not any(clue.kind in alone for clue in clues):
+        return clues
+    alone -= {clue.kind for clue in clues if clue.ground == NAMED}
     return tuple(clue for clue in clues if clue.kind not in alone or clue.confidence is not Confidence.MAY)
 
 
 def _of_writer(topic: str, clues: tuple[Clue, ...], rules: Rules) -> tuple[Clue, ...]:
     """What is thought of a topic, for who writes it: what a goal may carry, it does not bring in."""
-    wish = ends_with(topic, rules.names.wanted)
-    return tuple(clue for clue in _of_node(clues, rules) if not wish or clue.confidence is not Confidence.MAY)
+    if not ends_with(topic, rules.names.wanted):
+        return _of_node(clues, rules)
+    return tuple(clue for clue in _of_node(clues, rules) if clue.confidence is not Confidence.MAY)
 
 
 def _brought_in(node: str, topic: str, clues: tuple[Clue, ...], rules: Rules) -> tuple[Clue, ...]:
@@ -148,7 +153,8 @@ class _Node:
         sure = Confidence.LIKELY if sure is Confidence.CERTAIN else sure
         rule = self.rules.names.becomes[source][made]
         reason = f"reads {source} ({first.reason}) and writes {made} ({second.reason}); {rule.why}"
-        return Evidence(self._label(DERIVATION, source)._replace(to=made), DATA_FLOW, sure, reason, rule.place)
+        label = Label(self.element, DERIVATION, source, to=made)
+        return Evidence(label, DATA_FLOW, sure, reason, rule.place)
 
     def by_name(self) -> Iterator[Evidence]:
         """Yield of which kinds the name of the node says that it brings them in, or makes them of what it reads.

@@ -61,7 +61,7 @@ def proposals(evidence: Iterable[Evidence], found: Collection[str] = ()) -> tupl
     of_labels: dict[Label, dict[Evidence, None]] = defaultdict(dict)
     for one in evidence:
         of_labels[one.label][one] = None
-    groups = ((label, tuple(sorted(of_labels[label], key=_evidence_order))) for label in sorted(of_labels, key=_order))
+    groups = ((label, _in_order(of_labels[label])) for label in sorted(of_labels, key=_order))
     return tuple(Proposal(label, _confidence(label, reasons, found), reasons) for label, reasons in groups)
 
 
@@ -99,6 +99,10 @@ def _confidence(label: Label, reasons: Sequence[Evidence], found: Collection[str
 
 def _order(label: Label) -> tuple[object, ...]:
     return (label.element.sort_key(), ROLES.index(label.role), label.kind, label.method or "", label.to)
+
+
+def _in_order(reasons: Collection[Evidence]) -> tuple[Evidence, ...]:
+    return tuple(reasons) if len(reasons) == 1 else tuple(sorted(reasons, key=_evidence_order))
 
 
 def _evidence_order(one: Evidence) -> tuple[object, ...]:
