@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from rosprivacy.analysis.many_flows import one_by_one, parted
+from rosprivacy.analysis.meeting import MATCHES
 
 if TYPE_CHECKING:
     from rosprivacy.analysis.answer import Finding
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
 Key = tuple[str, str, str]
 Right = tuple[Key, str, Key]  # node, role, channel
 Ends = tuple[Key, Key, str, tuple[str, ...]]  # of a flow, its role, and what DENYs take out of its wildcard
-MATCHES = "matches"
 
 
 class DenyLine(NamedTuple):

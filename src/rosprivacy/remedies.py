@@ -72,16 +72,16 @@ class Remedies:
                 deny = ()
         return Added(
             findings[0],
-            steps,
-            tuple(sorted(enclaves)),
-            self._split(findings),
-            self._move(findings[0], findings),
-            deny,
-            tuple(sorted(right for right in loses if right[0][0] not in self.second)),
-            robots,
-            _places(findings[0], set(steps) - set(shared)),
-            tuple(findings),
-            findings[0].id in self.hidden,
+            beyond=steps,
+            enclaves=tuple(sorted(enclaves)),
+            split=self._split(findings),
+            move=self._move(findings[0], findings),
+            deny=deny,
+            loses=tuple(sorted(right for right in loses if right[0][0] not in self.second)),
+            robots=robots,
+            opened=_places(findings[0], set(steps) - set(shared)),
+            findings=tuple(findings),
+            plain=findings[0].id in self.hidden,
         )
 
     def _shared(self, finding: Finding) -> tuple[int, ...]:
