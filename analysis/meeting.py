@@ -82,3 +82,19 @@ class Meeting(NamedTuple):
         ends = [tuple(vertex for vertex in side if vertex in some) for side, _, some in sides]
         rights = [tuple(of for vertex, of in zip(*pair, strict=False) if vertex in some) for *pair, some in sides]
         return Meeting(ends[0], ends[1], rights[0], rights[1])
+
+
+def sharing(nodes: tuple[int, ...], channels: tuple[int, ...], rights: tuple[Right, ...], *, writes: bool) -> Meeting:
+    """Return what nodes of an enclave share: each writes, or reads, each of some channels.
+
+    Parameters
+    ----------
+    rights
+        Of each channel.
+
+    Examples
+    --------
+    >>> sharing((0, 1), (5,), (Right("subscribe"),), writes=False).flow(5, 1).role
+    'subscribe'
+    """
+    return Meeting(nodes, channels, of_read=rights) if writes else Meeting(channels, nodes, of_written=rights)

@@ -13,13 +13,14 @@ from operator import attrgetter
 from typing import TYPE_CHECKING
 
 from rosprivacy.analysis.many_flows import Flows, parted
-from rosprivacy.analysis.meeting import Meeting, Right
+from rosprivacy.analysis.meeting import Right, sharing
 from rosprivacy.analysis.model import Flow
 from rosprivacy.ingest.policies.names import covers, endpoints, is_pattern
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
+    from rosprivacy.analysis.meeting import Meeting
     from rosprivacy.analysis.model import Element, FlowGraph, Grant, Policy
     from rosprivacy.ingest.policies.changed_policies import Change
 
@@ -142,13 +143,7 @@ class _Kept:
                 single += [Flow(source, target, right.role, own)] if own else []
         if not shared or not others:
             return [], single
-        some = tuple(shared)
-        met = (
-            Meeting(others, some, of_read=tuple(shared.values()))
-            if writes
-            else Meeting(some, others, of_written=tuple(shared.values()))
-        )
-        return [met], single
+        return [sharing(others, tuple(shared), tuple(shared.values()), writes=writes)], single
 
     def _touches(self, grants: Iterable[Grant]) -> bool:
         """Whether the change is about an enclave of some grants at all."""

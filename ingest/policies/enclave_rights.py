@@ -9,11 +9,12 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
-from rosprivacy.analysis.meeting import Meeting, Right
+from rosprivacy.analysis.meeting import Right, sharing
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 
+    from rosprivacy.analysis.meeting import Meeting
     from rosprivacy.analysis.model import Flow, Grant, Profile
 
 STORED = 2  # times its members a group of nodes and channels may have flows that are stored
@@ -73,8 +74,7 @@ def shared(flows: Iterable[Flow], groups: Mapping[int, Sequence[int]]) -> tuple[
         single = sorted(channel for channel, roles in of.items() if len(roles) == 1)
         if len(nodes) * len(single) > STORED * (len(nodes) + len(single)):
             rights = tuple(Right(flow.role, flow.grants) for channel in single for flow in of.pop(channel))
-            ends = (tuple(nodes), tuple(single)) if writes else (tuple(single), tuple(nodes))
-            meetings.append(Meeting(*ends, of_read=rights) if writes else Meeting(*ends, of_written=rights))
+            meetings.append(sharing(tuple(nodes), tuple(single), rights, writes=writes))
         stored += of_each((flow for some in of.values() for flow in some), {node: nodes})
     return stored, meetings
 
